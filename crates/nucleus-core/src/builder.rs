@@ -1,0 +1,161 @@
+//! The door: what comes in here is checked once, and refused with the element named.
+//! From [`ModelBuilder::finish`] on, nothing can be invalid.
+
+use crate::ids::{ClothId, ColliderId};
+use crate::surface::Surface;
+
+/// How the mass of a cloth is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mass {
+    /// Kilograms at every point, as Maya's `pointMass` means it.
+    PerPoint(f64),
+    /// Kilograms per square metre, shared out by the area round each point; does not depend on the mesh.
+    PerArea(f64),
+}
+
+/// Which lists a cloth can ever need. A list that is off is never built and never visited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClothLists {
+    /// Links along edges (stretch or compression resistance is ever non-zero).
+    pub stretch: bool,
+    /// Cross links of quads (shear resistance is ever non-zero).
+    pub shear: bool,
+    /// Bending between faces (bend resistance is ever non-zero).
+    pub bend: bool,
+    /// Drag, lift or wind is ever felt.
+    pub air: bool,
+    /// Damping of relative velocities is ever non-zero.
+    pub damp: bool,
+}
+
+impl ClothLists {
+    /// Everything on.
+    pub const ALL: Self = Self { stretch: true, shear: true, bend: true, air: true, damp: true };
+    /// Everything off: free points.
+    pub const NONE: Self = Self { stretch: false, shear: false, bend: false, air: false, damp: false };
+}
+
+/// A mesh that becomes cloth. Its shape is both where it starts and how it is at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cloth {
+    /// The mesh at the start, in metres. Faces may be empty: then the points are free.
+    pub surface: Surface,
+    /// How heavy it is.
+    pub mass: Mass,
+    /// The lists it can ever need.
+    pub lists: ClothLists,
+}
+
+/// A mesh that others collide with (an nRigid): given in world space, moved by [`ColliderFrame`](crate::ColliderFrame).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collider {
+    /// The mesh at the start, in metres.
+    pub surface: Surface,
+}
+
+/// What is wrong with an object, and with which element of it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A position is NaN or infinite.
+    #[error("point {point} is not a finite position")]
+    NotFinite {
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A face names a point that does not exist.
+    #[error("face {face} names point {point}, but there are only {points} points")]
+    FaceOutOfRange {
+        /// The face.
+        face: usize,
+        /// The point it names.
+        point: u32,
+        /// How many there are.
+        points: usize,
+    },
+    /// A face has fewer than three corners or names a point twice.
+    #[error("face {face} has fewer than three different points")]
+    DegenerateFace {
+        /// The face.
+        face: usize,
+    },
+    /// The mesh has faces, but none of them has any area.
+    #[error("the mesh has no area")]
+    NoArea,
+    /// The mesh has no points at all.
+    #[error("the mesh has no points")]
+    NoPoints,
+    /// The mass is not a positive number.
+    #[error("the mass must be above zero and finite, not {mass}")]
+    BadMass {
+        /// What was given.
+        mass: f64,
+    },
+}
+
+/// Collects the objects of one solver.
+#[derive(Debug, Clone, Default)]
+pub struct ModelBuilder {
+    pub(crate) cloths: Vec<Cloth>,
+    pub(crate) colliders: Vec<Collider>,
+}
+
+impl ModelBuilder {
+    /// An empty solver.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a cloth.
+    ///
+    /// # Errors
+    /// When the mesh is empty, without area, not finite or names points it does not have, or the mass is
+    /// not positive; see [`BuildError`].
+    pub fn cloth(&mut self, cloth: Cloth) -> Result<ClothId, BuildError> {
+        check_surface(&cloth.surface)?;
+        let (Mass::PerPoint(mass) | Mass::PerArea(mass)) = cloth.mass;
+        if !(mass > 0.0 && mass.is_finite()) {
+            return Err(BuildError::BadMass { mass });
+        }
+        self.cloths.push(cloth);
+        Ok(ClothId(self.cloths.len() as u32 - 1))
+    }
+
+    /// Adds a collider.
+    ///
+    /// # Errors
+    /// When the mesh is empty, without area, not finite or names points it does not have; see [`BuildError`].
+    pub fn collider(&mut self, collider: Collider) -> Result<ColliderId, BuildError> {
+        check_surface(&collider.surface)?;
+        self.colliders.push(collider);
+        Ok(ColliderId(self.colliders.len() as u32 - 1))
+    }
+}
+
+/// Refuses what no pass could work with.
+fn check_surface(surface: &Surface) -> Result<(), BuildError> {
+    let points = surface.positions.len();
+    if points == 0 {
+        return Err(BuildError::NoPoints);
+    }
+    if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(BuildError::NotFinite { point });
+    }
+    for (face, corners) in surface.faces.iter().enumerate() {
+        if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {
+            return Err(BuildError::FaceOutOfRange { face, point, points });
+        }
+        let repeats = (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
+        if corners.len() < 3 || repeats {
+            return Err(BuildError::DegenerateFace { face });
+        }
+    }
+    let area = |[a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|point| surface.positions[point as usize]);
+        (b - a).cross(&(c - a)).norm()
+    };
+    if !surface.faces.is_empty() && !surface.faces.triangles().map(area).any(|area| area > 0.0) {
+        return Err(BuildError::NoArea);
+    }
+    Ok(())
+}

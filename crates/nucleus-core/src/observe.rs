@@ -1,0 +1,45 @@
+//! Watching a frame from outside: after each substep the solver shows its state to an observer.
+
+use nalgebra::Vector3;
+
+use crate::ids::{ClothId, ColliderId};
+
+/// Which substep of the frame has just ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Moment {
+    /// The substep that has ended, counted from 1.
+    pub substep: u32,
+    /// How many the frame has.
+    pub substeps: u32,
+}
+
+impl Moment {
+    /// Whether this is the end of the frame.
+    pub fn ends_frame(self) -> bool {
+        self.substep == self.substeps
+    }
+}
+
+/// What can be read of the state between substeps. Everything is in the user's order of points.
+pub trait StateView {
+    /// Replaces `out` by the positions of a cloth, in units of which `units_per_metre` make a metre.
+    fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
+    /// Replaces `out` by the velocities of a cloth, in units per second.
+    fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
+    /// Replaces `out` by the positions of a collider.
+    fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
+    /// Whether the collider has moved since the frame before.
+    fn collider_moved(&self, collider: ColliderId) -> bool;
+    /// One point of a cloth in metres and double precision; for tests and measures.
+    fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64>;
+}
+
+/// Something that is shown the state after each substep: a recorder, a meter, nothing (`()`).
+pub trait StepObserver {
+    /// Called once after each substep.
+    fn substep(&mut self, moment: Moment, state: &dyn StateView);
+}
+
+impl StepObserver for () {
+    fn substep(&mut self, _moment: Moment, _state: &dyn StateView) {}
+}

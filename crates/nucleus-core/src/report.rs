@@ -1,0 +1,46 @@
+//! What the solver says about a frame: counts and worst values. A step cannot fail; what could not be
+//! satisfied is counted here.
+
+/// The account of one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepReport {
+    /// Largest stretch of any link at the end of the frame: length over rest length, less one.
+    pub max_strain: f64,
+    /// The stretch that 99 % of the links stay below.
+    pub strain_99: f64,
+    /// Smallest distance between a point and a collider or the plane at the end of the frame, over the
+    /// thickness held there: 1 is touching, below 1 is pressed in. Infinite when nothing is near.
+    pub min_gap: f64,
+    /// Contacts that pushed, over all passes of the frame.
+    pub contacts: u64,
+    /// Candidate pairs found by the broad phase, over all its runs in the frame.
+    pub pairs: u64,
+    /// Runs of the broad phase: one per substep, and one more wherever motion outran its margin.
+    pub broad_phases: u32,
+    /// Points that were caught on the far side of a collider and carried back to their own.
+    pub caught: u64,
+    /// Points that ended a substep on the far side of a collider after all. Always 0 unless the
+    /// start was already tangled.
+    pub crossed: u64,
+    /// Kinetic energy at the end of the frame in joules.
+    pub kinetic_energy: f64,
+    /// Whether every position and velocity is a finite number.
+    pub finite: bool,
+}
+
+impl Default for StepReport {
+    fn default() -> Self {
+        Self {
+            max_strain: 0.0,
+            strain_99: 0.0,
+            min_gap: f64::INFINITY,
+            contacts: 0,
+            pairs: 0,
+            broad_phases: 0,
+            caught: 0,
+            crossed: 0,
+            kinetic_energy: 0.0,
+            finite: true,
+        }
+    }
+}

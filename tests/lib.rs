@@ -1,0 +1,1 @@
+//! Tests over the whole pipeline live in `tests/tests/`.
