@@ -1,3 +1,4 @@
 //! To come.
 
+pub mod animation;
 pub mod scene;
