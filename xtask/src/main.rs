@@ -9,6 +9,7 @@
 //! | which files belong to the repository                  | [`files`]       |
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::Parser;
 
@@ -31,12 +32,19 @@ enum Chore {
     Tidy,
 }
 
-fn main() -> anyhow::Result<()> {
+fn main() -> ExitCode {
     let root = root();
-    match Chore::parse() {
+    let result = match Chore::parse() {
         Chore::Ci => ci::run(&root),
         Chore::Evidence => evidence::print(&root),
         Chore::Tidy => tidy::run(&root),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
     }
 }
 
