@@ -1,1 +1,5 @@
 //! To come.
+
+pub mod animation;
+pub mod mesh;
+pub mod scene;
