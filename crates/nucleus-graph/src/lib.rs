@@ -1,1 +1,5 @@
 //! To come.
+
+pub mod animation;
+pub mod attributes;
+pub mod scene;

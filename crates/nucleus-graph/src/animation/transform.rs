@@ -1,0 +1,104 @@
+//! Translate, rotate and scale as Maya's transform nodes have them.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::affine::Affine;
+use super::angle::sin_cos_degrees;
+
+/// Where a thing stands, how it is turned and how large it is, relative to its parent.
+///
+/// Points are scaled, then turned about x, then y, then z (Maya's default order), then moved. The pivots
+/// are at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transform {
+    /// How far it is moved, in scene units.
+    pub translate: Vector3<f64>,
+    /// How far it is turned about each axis, in degrees.
+    pub rotate: Vector3<f64>,
+    /// Factors along its own axes.
+    pub scale: Vector3<f64>,
+}
+
+impl Transform {
+    /// Where points of the thing go in the space of its parent.
+    pub fn affine(&self) -> Affine {
+        let [x, y, z] = [self.rotate.x, self.rotate.y, self.rotate.z].map(sin_cos_degrees);
+        let linear = about_z(z) * about_y(y) * about_x(x) * Matrix3::from_diagonal(&self.scale);
+        Affine { linear, offset: self.translate }
+    }
+
+    /// Where a point goes; for many points take [`affine`](Self::affine) once.
+    pub fn point(&self, point: Vector3<f64>) -> Vector3<f64> {
+        self.affine().point(point)
+    }
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self { translate: Vector3::zeros(), rotate: Vector3::zeros(), scale: Vector3::repeat(1.0) }
+    }
+}
+
+fn about_x((sin, cos): (f64, f64)) -> Matrix3<f64> {
+    Matrix3::new(1.0, 0.0, 0.0, 0.0, cos, -sin, 0.0, sin, cos)
+}
+
+fn about_y((sin, cos): (f64, f64)) -> Matrix3<f64> {
+    Matrix3::new(cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos)
+}
+
+fn about_z((sin, cos): (f64, f64)) -> Matrix3<f64> {
+    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
+        [-size..size, -size..size, -size..size].prop_map(Vector3::from)
+    }
+
+    fn transforms() -> impl Strategy<Value = Transform> {
+        (vector(100.0), vector(720.0), vector(3.0)).prop_map(|(translate, rotate, scale)| Transform {
+            translate,
+            rotate,
+            scale,
+        })
+    }
+
+    #[test]
+    fn the_order_is_scale_then_x_then_y_then_z_then_translate() {
+        let transform = Transform {
+            translate: Vector3::new(10.0, 20.0, 30.0),
+            rotate: Vector3::new(90.0, 90.0, 0.0),
+            scale: Vector3::new(1.0, 2.0, 1.0),
+        };
+        // y, doubled, goes to z about x, and from there to x about y.
+        assert_eq!(transform.point(Vector3::y()), Vector3::new(12.0, 20.0, 30.0));
+        let z_last = Transform { rotate: Vector3::new(90.0, 0.0, 90.0), ..Transform::default() };
+        assert_eq!(z_last.point(Vector3::y()), Vector3::z());
+    }
+
+    proptest! {
+        #[test]
+        fn the_identity_changes_no_bit(point in prop::array::uniform3(any::<f64>())) {
+            let after = Transform::default().point(Vector3::from(point));
+            prop_assert_eq!(after.map(f64::to_bits), Vector3::from(point).map(f64::to_bits));
+        }
+
+        #[test]
+        fn without_scale_distances_stay(transform in transforms(), a in vector(50.0), b in vector(50.0)) {
+            let rigid = Transform { scale: Vector3::repeat(1.0), ..transform };
+            let distance = (rigid.point(a) - rigid.point(b)).norm();
+            prop_assert!((distance - (a - b).norm()).abs() < 1e-12);
+        }
+
+        #[test]
+        fn a_child_goes_where_its_parent_takes_it(child in transforms(), parent in transforms(), p in vector(50.0)) {
+            let together = child.affine().under(&parent.affine()).point(p);
+            prop_assert!((together - parent.point(child.point(p))).norm() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Scene files.
+
+pub mod syntax;
