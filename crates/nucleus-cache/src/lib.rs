@@ -33,6 +33,7 @@ mod object;
 mod open_error;
 mod playback;
 mod points;
+mod provenance;
 mod record_error;
 mod recorder;
 mod run;

@@ -14,7 +14,8 @@ use crate::moment::{self, RecordedMoment};
 use crate::object::ObjectInfo;
 use crate::open_error::{OpenError, ReadError};
 use crate::points::PointsMessage;
-use crate::run::{PROFILE, RunInfo};
+use crate::provenance::PROFILE;
+use crate::run::RunInfo;
 use crate::{salvage, summary, target, topology};
 
 /// An open cache.

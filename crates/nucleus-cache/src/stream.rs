@@ -9,8 +9,8 @@ use mcap::records::Metadata;
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
 use crate::points::Stamp;
+use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
-use crate::run::PROFILE;
 use crate::tally::Tally;
 
 /// Level 3 makes files 1 % smaller than level 1 at the same speed.

@@ -7,8 +7,8 @@ use std::path::Path;
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
+use crate::provenance::PROFILE;
 use crate::record_error::RecordError;
-use crate::run::PROFILE;
 
 /// Makes the file, after a look at what is there.
 pub(crate) fn create(path: &Path) -> Result<File, RecordError> {

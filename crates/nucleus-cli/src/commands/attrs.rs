@@ -1,5 +1,6 @@
 //! `nucleus attrs`: what a type of node holds.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use anyhow::{Result, bail};
@@ -59,20 +60,16 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
     let rows: Vec<&Attribute> = node_type.attributes().into_iter().filter(shown).collect();
     let left_out = node_type.attributes().len() - rows.len();
     let mut text = format!("{}: {}\n", node_type.name, node_type.doc());
-    let mut group = "";
-    for row in rows {
-        if row.group != group {
-            group = row.group;
-            writeln!(text, "\n{group}")?;
+    // A group may come both from the type itself and from one it inherits from.
+    let mut seen = HashSet::new();
+    let groups = rows.iter().map(|row| row.group).filter(|group| seen.insert(*group));
+    for group in groups {
+        writeln!(text, "\n{group}")?;
+        for row in rows.iter().filter(|row| row.group == group) {
+            let name = format!("{} ({})", row.name, row.short);
+            let without_effect = if row.effect == Effect::NotYet { " No effect yet." } else { "" };
+            writeln!(text, "  {name:<36} {}\n      {}{without_effect}", facts(row), row.doc())?;
         }
-        let name = format!("{} ({})", row.name, row.short);
-        writeln!(text, "  {name:<36} {}", facts(row))?;
-        writeln!(
-            text,
-            "      {}{}",
-            row.doc(),
-            if row.effect == Effect::NotYet { " No effect yet." } else { "" }
-        )?;
     }
     if left_out > 0 {
         writeln!(text, "\n{left_out} more are hidden or have no effect yet: `--all` shows them")?;
