@@ -1,17 +1,55 @@
 //! The Nucleus solver: points, links and collisions, advanced one frame at a time.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | what happens in a frame, in order | `step.rs` |
+//! | what a frame brings | `frame.rs` |
+//! | what an artist's resistance means | `resistance.rs` |
+//! | how often each effect is swept, and when | `schedule.rs` |
+//! | where stretch, shear, bend and damping are computed | `constraints/` |
+//! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
+//! | how lists are laid out in blocks and colours | `model/rows.rs` |
+//! | how contact is found and proven | `collision/` |
+//! | how threads share the work | `team.rs`, `columns.rs` |
+//!
+//! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
+//! threads. From the door ([`ModelBuilder`]) on, everything is in metres, kilograms and seconds.
 
+#![deny(unsafe_code)] // allowed where columns are shared among tasks, each time with its reason
+
+mod air;
 mod builder;
+mod collide;
+mod collision;
+mod columns;
+mod constraints;
 mod frame;
+mod frame_start;
 mod ids;
+mod measure;
+mod model;
 mod observe;
+mod passes;
+mod predict;
+mod relax;
 mod report;
+mod resistance;
+mod scalar;
+mod schedule;
 mod solver;
+mod state;
+mod step;
 mod surface;
+mod team;
+mod velocity;
 
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder};
 pub use frame::{COUNT_PERIOD, ClothFrame, ColliderFrame, FrameInput, GroundPlane, Pin, ResistanceModel};
 pub use ids::{ClothId, ColliderId, PointId};
 pub use observe::{Moment, StateView, StepObserver};
+pub use passes::PassCost;
 pub use report::StepReport;
-pub use solver::{PassCost, Real, Solver};
+pub use resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, classic_stiffness};
+pub use scalar::Real;
+pub use solver::Solver;
 pub use surface::{Faces, Surface};

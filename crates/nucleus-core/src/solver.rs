@@ -1,85 +1,100 @@
-//! The solver: a model, its state, and the step. (Skeleton: points fall freely.)
+//! The solver: the lists of a scene, its state, and the threads that work on them.
 
 use nalgebra::Vector3;
 
-use crate::{ClothId, ColliderId, FrameInput, ModelBuilder, Moment, StateView, StepObserver, StepReport};
+use crate::builder::ModelBuilder;
+use crate::collision::pairs::{ColliderState, Cover, PairList};
+use crate::ids::{ClothId, ColliderId};
+use crate::model::{ClothModel, ColliderModel};
+use crate::observe::StateView;
+use crate::scalar::{Real, Row4};
+use crate::state::State;
+use crate::team::Team;
 
-/// A scalar the solver can work in: `f32` to be fast, `f64` for references.
-pub trait Real: Copy + Send + Sync + 'static {}
-impl Real for f32 {}
-impl Real for f64 {}
-
-/// One list of rows, or one pass over all points, and what a frame spends on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PassCost {
-    /// The pass, named after what it does: `stretch`, `bend`, `collide` ...
-    pub name: &'static str,
-    /// Rows in its list.
-    pub rows: usize,
-    /// Visits of the whole list in a frame.
-    pub sweeps: f64,
-}
-
-/// Everything needed to advance a scene by a frame.
+/// Everything needed to advance a scene by a frame; [`Solver::step`] does it.
 pub struct Solver<R: Real = f32> {
-    builder: ModelBuilder,
-    velocity: Vec<Vector3<f64>>,
-    _scalar: std::marker::PhantomData<R>,
+    pub(crate) cloths: Vec<ClothModel<R>>,
+    pub(crate) colliders: Vec<ColliderModel>,
+    pub(crate) state: State<R>,
+    pub(crate) collider_states: Vec<ColliderState>,
+    /// Pairs that can touch, per cloth and collider.
+    pub(crate) pairs: Vec<PairList<R>>,
+    /// What is foreseen for each point; empty where the scene has no collider.
+    pub(crate) cover: Vec<Cover<R>>,
+    /// Heights of anchors above the ground plane; empty where the scene uses none.
+    pub(crate) heights: Vec<R>,
+    pub(crate) team: Team,
 }
 
 impl<R: Real> Solver<R> {
-    /// Builds lists, trees and state. `threads` is the number of cores to use; it never changes a bit of the result.
-    pub fn new(builder: ModelBuilder, _threads: usize) -> Self {
-        let n = builder.cloths.iter().map(|c| c.surface.positions.len()).sum();
-        Self { builder, velocity: vec![Vector3::zeros(); n], _scalar: std::marker::PhantomData }
-    }
-
-    /// Advances by one frame. Cannot fail: what could not be satisfied is counted in the report.
-    pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-        let h = frame.duration / f64::from(frame.substeps);
-        for substep in 1..=frame.substeps {
-            let mut k = 0;
-            for cloth in &mut self.builder.cloths {
-                for p in &mut cloth.surface.positions {
-                    self.velocity[k] += frame.gravity * h;
-                    *p += self.velocity[k] * h;
-                    k += 1;
-                }
-            }
-            watch.substep(Moment { substep, substeps: frame.substeps }, self);
+    /// Builds lists, trees and state. `threads` is the number of cores to use; it never changes a bit of
+    /// the result.
+    pub fn new(builder: ModelBuilder, threads: usize) -> Self {
+        let ModelBuilder { cloths, colliders } = builder;
+        let collides = !colliders.is_empty();
+        let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
+        for cloth in &cloths {
+            let first = models.last().map_or(0, |last| last.points().start + last.blocks.columns());
+            models.push(ClothModel::new(cloth, first, collides));
         }
-        StepReport::default()
+        let state = State::new(&cloths, &models);
+        drop(cloths);
+        let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
+        let both = |cloth| (0..colliders.len()).map(move |collider| PairList::new(cloth, collider));
+        Self {
+            cover: vec![[Row4::ZERO; 2]; if collides { state.anchor.len() } else { 0 }],
+            pairs: (0..models.len()).flat_map(both).collect(),
+            collider_states: colliders.iter().map(ColliderState::new).collect(),
+            cloths: models,
+            colliders,
+            state,
+            heights: Vec::new(),
+            team: Team::new(threads),
+        }
     }
 
-    /// The passes a frame consists of, for `info`.
-    pub fn passes(&self, _frame: &FrameInput) -> Vec<PassCost> {
-        Vec::new()
+    /// How far into the frame the solver has come, as a share of it.
+    pub(crate) fn set_time(&mut self, now: f64) {
+        self.collider_states.iter_mut().for_each(|collider| collider.now = now);
     }
 
-    /// A fingerprint of positions and velocities: equal bits, equal hash.
+    /// A fingerprint of all positions and velocities: equal bits, equal hash.
     pub fn state_hash(&self) -> u64 {
-        0
+        self.state.hash()
+    }
+
+    /// Replaces `out` by a column of a cloth, point by point in the user's order.
+    fn column(&self, cloth: ClothId, out: &mut Vec<[f32; 3]>, value: impl Fn(u32) -> [f64; 3]) {
+        let model = &self.cloths[cloth.index()];
+        let first = model.points().start;
+        out.clear();
+        out.extend(model.order.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
     }
 }
 
 impl<R: Real> StateView for Solver<R> {
-    fn positions(&self, cloth: ClothId, unit: f64, out: &mut Vec<[f32; 3]>) {
+    fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        self.column(cloth, out, |row| self.state.position(row).map(|x| x * units_per_metre));
+    }
+
+    fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        let velocity = |row: u32| self.state.velocity[row as usize].xyz();
+        self.column(cloth, out, |row| velocity(row).map(|x| x.to_f64() * units_per_metre));
+    }
+
+    fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        let state = &self.collider_states[collider.index()];
+        let at = |(start, end): (&Vector3<f64>, &Vector3<f64>)| start + (end - start) * state.now;
         out.clear();
-        let points = &self.builder.cloths[cloth.index()].surface.positions;
-        out.extend(points.iter().map(|p| [p.x, p.y, p.z].map(|x| (x * unit) as f32)));
+        let scaled = state.start.iter().zip(&state.end).map(at).map(|p| p * units_per_metre);
+        out.extend(scaled.map(|p| [p.x as f32, p.y as f32, p.z as f32]));
     }
-    fn velocities(&self, cloth: ClothId, unit: f64, out: &mut Vec<[f32; 3]>) {
-        self.positions(cloth, unit * 0.0, out);
+
+    fn collider_moved(&self, collider: ColliderId) -> bool {
+        self.collider_states[collider.index()].moves
     }
-    fn collider_positions(&self, collider: ColliderId, unit: f64, out: &mut Vec<[f32; 3]>) {
-        out.clear();
-        let points = &self.builder.colliders[collider.index()].surface.positions;
-        out.extend(points.iter().map(|p| [p.x, p.y, p.z].map(|x| (x * unit) as f32)));
-    }
-    fn collider_moved(&self, _collider: ColliderId) -> bool {
-        false
-    }
+
     fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64> {
-        self.builder.cloths[cloth.index()].surface.positions[point]
+        self.state.position(self.cloths[cloth.index()].place(point)).into()
     }
 }

@@ -1,0 +1,374 @@
+//! Contacts: a pair of elements, one of a cloth and one of a collider, kept apart by its thickness.
+//!
+//! A pair carries a separating plane: a direction `n`, and for each cloth point the gap n·x - max n·q over
+//! the collider's points. Both sides move along straight lines within a step, so a positive gap at both ends
+//! of the step, for one `n`, *proves* that nothing passed in between (the maximum of linear functions stays
+//! below its chord). Where the pair's own plane proves nothing any more, others are tried; where none does,
+//! the cloth would pass, and is pushed back to its side by the plane that held at the start of the step.
+
+use nalgebra::Vector3;
+
+use super::friction::{Push, rub};
+use super::narrow::{closest_on_segments, closest_on_triangle};
+use crate::columns::Shared;
+use crate::scalar::{Real, Row4, dot};
+
+type Point = Vector3<f64>;
+
+/// Parts in a million of the thickness that count as touching: without it a contact at rest would push
+/// for ever at its last bit.
+const TOUCH: f64 = 1e-6;
+/// A contact's plane is good for motion along it up to this share of the thickness (its error is then
+/// below 1/128 of the thickness, and none on flat faces).
+const PLANE_REACH: f64 = 1.0 / 8.0;
+
+/// One element of a cloth, of `N` points, near one element of a collider, of `M` points.
+/// Point and face: 1 and 3; edge and edge: 2 and 2; face and point: 3 and 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair<R, const N: usize, const M: usize> {
+    /// The cloth's points, in the solver's places.
+    pub points: [u32; N],
+    /// The collider's points.
+    pub collider_points: [u32; M],
+    normal: [R; 3],
+    /// n·q less n·anchor for each cloth point, at the start and at the end of the span the pair was found for.
+    plane: [[R; N]; 2],
+    /// Where on the cloth element the contact is.
+    weights: [R; N],
+    /// How the collider moves there in the whole frame.
+    surface_motion: [R; 3],
+    /// Displacement of the contact when the plane was found.
+    found_at: [R; 3],
+}
+
+/// How a step went for a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Apart.
+    Apart,
+    /// Touched, and pushed to the thickness.
+    Pushed,
+    /// Would have passed; pushed back to its side.
+    Caught,
+    /// No plane holds: the two are tangled, and are left alone.
+    Tangled,
+}
+
+/// All that resolving a pair needs to know of the step.
+pub struct Step<'a, R> {
+    /// Displacements from the anchors, with the inverse mass.
+    pub displacement: Shared<'a, Row4<R>>,
+    /// Where the points would be had nothing held them; less the start of the step, this is velocity.
+    pub predicted: Shared<'a, Row4<R>>,
+    /// Velocities at the start of the step.
+    pub velocity: Shared<'a, Row4<R>>,
+    /// Anchors in metres.
+    pub anchors: &'a [[f64; 3]],
+    /// The collider's points at the start and at the end of the frame.
+    pub collider: [&'a [Point]; 2],
+    /// Start and end of the step, as shares of the frame.
+    pub time: [f64; 2],
+    /// The span the pairs were found for, as shares of the frame.
+    pub span: [f64; 2],
+    /// Length of the step in seconds.
+    pub h: R,
+    /// Sum of the two thicknesses in metres.
+    pub thickness: R,
+    /// Sum of the two frictions.
+    pub friction: R,
+}
+
+impl<R: Real> Step<'_, R> {
+    /// The cloth's points at the start and at the end of the step.
+    fn cloth<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
+        let at = |point: u32, row: [R; 3]| {
+            let [x, y, z] = row.map(R::to_f64);
+            Point::from(self.anchors[point as usize]) + Point::new(x, y, z)
+        };
+        [
+            points.map(|point| at(point, self.start(point))),
+            points.map(|point| at(point, self.moved(point).xyz())),
+        ]
+    }
+
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    fn moved(&self, point: u32) -> Row4<R> {
+        // SAFETY: the phase hands every task points of its own.
+        unsafe { self.displacement.get(point) }
+    }
+
+    /// Displacement at the start of the step.
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    fn start(&self, point: u32) -> [R; 3] {
+        // SAFETY: as above.
+        let (p, v) = unsafe { (self.predicted.get(point).0, self.velocity.get(point).0) };
+        [p[0] - v[0] * self.h, p[1] - v[1] * self.h, p[2] - v[2] * self.h]
+    }
+
+    /// The collider's points at the start and at the end of the step.
+    fn surface<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
+        self.time.map(|t| points.map(|point| self.surface_point(point, t)))
+    }
+
+    /// A point of the collider at a time of the frame.
+    pub fn surface_point(&self, point: u32, time: f64) -> Point {
+        let [start, end] = self.collider.map(|points| points[point as usize]);
+        start + (end - start) * time
+    }
+
+    /// A time as a share of the span the pairs were found for.
+    fn share(&self, time: f64) -> R {
+        let [from, to] = self.span;
+        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
+    /// A pair whose plane stands across the shortest line between the two where they are at the start of the step.
+    pub fn new(points: [u32; N], collider_points: [u32; M], step: &Step<'_, R>) -> Self {
+        let zero = [R::ZERO; 3];
+        let mut pair = Self {
+            points,
+            collider_points,
+            normal: zero,
+            plane: [[R::ZERO; N]; 2],
+            weights: [R::ZERO; N],
+            surface_motion: zero,
+            found_at: zero,
+        };
+        let (x, q) = (step.cloth(points)[0], step.surface(collider_points)[0]);
+        let (b, c) = closest(x, q);
+        let line = weigh(x, b) - weigh(q, c);
+        let touching = || across(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
+        let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
+        pair.turn_to(normal, (b, c), step);
+        pair
+    }
+
+    /// The smallest gap of the pair's plane over a box of possible displacements per cloth point, over the
+    /// whole span: where it is above the thickness the pair cannot touch.
+    pub fn least_gap(&self, boxes: impl Fn(u32) -> [Row4<R>; 2]) -> R {
+        let mut least = R::from_f64(f64::INFINITY.min(1e30));
+        for k in 0..N {
+            let [low, high] = boxes(self.points[k]);
+            let corner = |axis: usize| if self.normal[axis] > R::ZERO { low.0[axis] } else { high.0[axis] };
+            let reach = dot(self.normal, [corner(0), corner(1), corner(2)]);
+            for plane in self.plane {
+                let gap = reach - plane[k];
+                least = if gap < least { gap } else { least };
+            }
+        }
+        least
+    }
+
+    /// The distance between the two elements at the end of the step, in metres.
+    pub fn distance(&self, step: &Step<'_, R>) -> f64 {
+        let (x, q) = (step.cloth(self.points)[1], step.surface(self.collider_points)[1]);
+        let (b, c) = closest(x, q);
+        (weigh(x, b) - weigh(q, c)).norm()
+    }
+
+    /// Keeps the two apart. The caller hands in points that no other task of the phase touches.
+    #[inline]
+    pub fn resolve(&mut self, step: &Step<'_, R>) -> Outcome {
+        let moved = self.points.map(|point| step.moved(point).xyz());
+        let held = step.thickness * R::from_f64(1.0 - TOUCH);
+        let (gap, least) = self.gaps(moved, step.share(step.time[1]));
+        if least >= held {
+            return Outcome::Apart;
+        }
+        if least < R::ZERO || !self.plane_reaches(moved, step) {
+            return self.look_closer(step, least);
+        }
+        if gap >= held {
+            return Outcome::Apart;
+        }
+        let start = self.points.map(|point| step.start(point));
+        let (gap_at_start, _) = self.gaps(start, step.share(step.time[0]));
+        self.push(step, step.thickness - gap, step.thickness - gap_at_start);
+        Outcome::Pushed
+    }
+
+    /// The gap at the contact and the smallest gap of any point, at a share of the span.
+    #[inline(always)]
+    fn gaps(&self, displacement: [[R; 3]; N], share: R) -> (R, R) {
+        let mut at_contact = R::ZERO;
+        let mut least = R::ZERO;
+        for k in 0..N {
+            let plane = self.plane[0][k] + (self.plane[1][k] - self.plane[0][k]) * share;
+            let gap = dot(self.normal, displacement[k]) - plane;
+            at_contact += self.weights[k] * gap;
+            least = if k == 0 || gap < least { gap } else { least };
+        }
+        (at_contact, least)
+    }
+
+    /// Whether the contact is still about where the plane was found for.
+    #[inline(always)]
+    fn plane_reaches(&self, displacement: [[R; 3]; N], step: &Step<'_, R>) -> bool {
+        let time = R::from_f64(step.time[1]);
+        let away: [R; 3] = std::array::from_fn(|axis| {
+            self.contact(displacement)[axis] - self.surface_motion[axis] * time - self.found_at[axis]
+        });
+        let reach = step.thickness * R::from_f64(PLANE_REACH);
+        dot(away, away) <= reach * reach
+    }
+
+    /// Displacement of the contact on the cloth.
+    #[inline(always)]
+    fn contact(&self, displacement: [[R; 3]; N]) -> [R; 3] {
+        std::array::from_fn(|axis| (0..N).map(|k| self.weights[k] * displacement[k][axis]).sum())
+    }
+
+    /// Takes the exact places of the two, and the plane that belongs to them.
+    #[cold]
+    fn look_closer(&mut self, step: &Step<'_, R>, least: R) -> Outcome {
+        let [x0, x1] = step.cloth(self.points);
+        let [q0, q1] = step.surface(self.collider_points);
+        let thickness = step.thickness.to_f64();
+        let at_start = closest(x0, q0);
+        let start_line = weigh(x0, at_start.0) - weigh(q0, at_start.1);
+        let at_end = closest(x1, q1);
+        let line = weigh(x1, at_end.0) - weigh(q1, at_end.1);
+        let distance = line.norm();
+        let mut proof = None;
+        if least < R::ZERO {
+            let directions = [start_line, across(x1, q1), across(x0, q0), line];
+            let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
+                return Outcome::Tangled;
+            };
+            if gap < 0.0 {
+                self.turn_to(normal, at_start, step);
+                self.push(step, R::from_f64(thickness - gap), R::ZERO);
+                return Outcome::Caught;
+            }
+            proof = Some(normal);
+        }
+        let old = Point::new(self.normal[0].to_f64(), self.normal[1].to_f64(), self.normal[2].to_f64());
+        let normal = line.try_normalize(1e-9).or(proof).unwrap_or(old);
+        self.turn_to(normal, at_end, step);
+        if distance >= thickness * (1.0 - TOUCH) {
+            return Outcome::Apart;
+        }
+        self.push(step, R::from_f64(thickness - distance), R::from_f64(thickness - start_line.norm()));
+        Outcome::Pushed
+    }
+
+    /// Sets the plane, and the contact it belongs to.
+    fn turn_to(&mut self, normal: Point, (b, c): ([f64; N], [f64; M]), step: &Step<'_, R>) {
+        self.normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+        // As it is rounded, so that plane and direction belong together to the last bit.
+        let normal = Point::from(self.normal.map(R::to_f64));
+        for (end, time) in step.span.into_iter().enumerate() {
+            let support = self.collider_points.iter().map(|&q| normal.dot(&step.surface_point(q, time)));
+            let support = support.fold(f64::NEG_INFINITY, f64::max);
+            self.plane[end] = self
+                .points
+                .map(|point| R::from_f64(support - normal.dot(&Point::from(step.anchors[point as usize]))));
+        }
+        let ends = step.collider.map(|points| weigh(self.collider_points.map(|q| points[q as usize]), c));
+        let motion = ends[1] - ends[0];
+        self.weights = b.map(R::from_f64);
+        self.surface_motion = [motion.x, motion.y, motion.z].map(R::from_f64);
+        let contact = self.contact(self.points.map(|point| step.moved(point).xyz()));
+        let time = R::from_f64(step.time[1]);
+        self.found_at = std::array::from_fn(|axis| contact[axis] - self.surface_motion[axis] * time);
+    }
+
+    /// Moves the cloth's points by `depth` along the plane's normal at the contact, with friction.
+    /// `before` is how much of that was missing when the step began.
+    fn push(&self, step: &Step<'_, R>, depth: R, before: R) {
+        let rows = self.points.map(|point| step.moved(point));
+        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
+        if mobility <= R::ZERO {
+            return;
+        }
+        let push = Push::new(depth, before, step.h);
+        let along = self.normal.map(|n| n * push.length());
+        let rub = self.friction(step, rows, along, push.pressed);
+        for k in 0..N {
+            let mobile = rows[k].0[3] * self.weights[k] / mobility;
+            let mut row = rows[k];
+            for axis in 0..3 {
+                row.0[axis] += mobile * (along[axis] + rub[axis]);
+            }
+            self.write(step, self.points[k], row, self.normal.map(|n| n * push.led * mobile));
+        }
+    }
+
+    /// The correction along the surface, against the motion over it within the step.
+    fn friction(&self, step: &Step<'_, R>, rows: [Row4<R>; N], along: [R; 3], pressed: R) -> [R; 3] {
+        let slip_limit = step.friction * pressed;
+        if slip_limit <= R::ZERO {
+            return [R::ZERO; 3];
+        }
+        let start = self.contact(self.points.map(|point| step.start(point)));
+        let now = self.contact(rows.map(|row| row.xyz()));
+        let passed = R::from_f64(step.time[1] - step.time[0]);
+        let motion: [R; 3] = std::array::from_fn(|axis| {
+            now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * passed
+        });
+        rub(motion, self.normal, slip_limit)
+    }
+
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    fn write(&self, step: &Step<'_, R>, point: u32, row: Row4<R>, led: [R; 3]) {
+        // SAFETY: the phase hands every task points of its own.
+        unsafe {
+            step.displacement.set(point, row);
+            let mut predicted = step.predicted.get(point);
+            for axis in 0..3 {
+                predicted.0[axis] += led[axis];
+            }
+            step.predicted.set(point, predicted);
+        }
+    }
+}
+
+/// Among some directions, each taken both ways, the one that separates the two at the start of the step
+/// and leaves the largest gap at its end.
+fn best_plane<const N: usize, const M: usize>(
+    directions: [Point; 4],
+    [x0, x1]: [[Point; N]; 2],
+    [q0, q1]: [[Point; M]; 2],
+) -> Option<(f64, Point)> {
+    let gap = |n: Point, x: &[Point], q: &[Point]| {
+        let least = x.iter().map(|x| n.dot(x)).fold(f64::INFINITY, f64::min);
+        least - q.iter().map(|q| n.dot(q)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let units = directions.into_iter().filter_map(|direction| direction.try_normalize(1e-12));
+    let planes = units.flat_map(|n| [n, -n]).filter(|&n| gap(n, &x0, &q0) > 0.0);
+    planes.map(|n| (gap(n, &x1, &q1), n)).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The closest points of two elements, as weights.
+fn closest<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> ([f64; N], [f64; M]) {
+    let mut b = [1.0; N];
+    let mut c = [1.0; M];
+    match N {
+        1 => c.copy_from_slice(&closest_on_triangle(x[0], [q[0], q[1], q[2]])),
+        2 => {
+            let (first, second) = closest_on_segments([x[0], x[1]], [q[0], q[1]]);
+            b.copy_from_slice(&first);
+            c.copy_from_slice(&second);
+        }
+        _ => b.copy_from_slice(&closest_on_triangle(q[0], [x[0], x[1], x[2]])),
+    }
+    (b, c)
+}
+
+/// The direction across two elements: a face's normal, or at right angles to two edges. Any length.
+fn across<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> Point {
+    match N {
+        1 => (q[1] - q[0]).cross(&(q[2] - q[0])),
+        2 => (x[1] - x[0]).cross(&(q[1] - q[0])),
+        _ => (x[1] - x[0]).cross(&(x[2] - x[0])),
+    }
+}
+
+fn weigh<const K: usize>(points: [Point; K], weights: [f64; K]) -> Point {
+    (0..K).map(|k| points[k] * weights[k]).sum()
+}

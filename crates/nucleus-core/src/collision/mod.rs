@@ -1,0 +1,21 @@
+//! Collisions: thickened elements that meet in space and time (§2.3).
+//!
+//! | Stage | Read |
+//! |---|---|
+//! | boxes over a collider through a span of time | [`tree`] |
+//! | elements of one object, in groups | [`skin`] |
+//! | broad phase: which elements can touch in this span | [`pairs`] |
+//! | narrow phase: how close two elements are | [`narrow`] |
+//! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
+//! | friction, and how a push is split | [`friction`] |
+//! | the ground plane | [`plane`] |
+//! | one collision pass | [`resolve`] |
+
+pub mod contact;
+pub mod friction;
+pub mod narrow;
+pub mod pairs;
+pub mod plane;
+pub mod resolve;
+pub mod skin;
+pub mod tree;

@@ -1,0 +1,101 @@
+//! What of a mesh can touch: its points, edges and triangles (§2.3), in small groups of neighbours.
+//!
+//! Each point and each edge is owned by one triangle, so that walking over pairs of triangles meets every
+//! pair of lower elements once: whenever two elements are near, so are the triangles that own them.
+
+use super::tree::Aabb;
+use crate::model::triangle_edges;
+use std::ops::Range;
+
+/// The elements of one object, in the solver's places.
+#[derive(Debug, Clone, Default)]
+pub struct Skin {
+    /// Triangles, sorted by their lowest point.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges, in the order of their owners.
+    pub edges: Vec<[u32; 2]>,
+    /// Points, in the order of their owners; points of no triangle come last.
+    pub points: Vec<u32>,
+    /// Where each triangle's own edges end, and its own points.
+    edge_ends: Vec<u32>,
+    point_ends: Vec<u32>,
+}
+
+/// A run of neighbouring elements.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// Runs in the columns of the skin.
+    pub triangles: Range<usize>,
+    /// Edges owned by these triangles.
+    pub edges: Range<usize>,
+    /// Points owned by these triangles.
+    pub points: Range<usize>,
+}
+
+/// Triangles to a group.
+const GROUP: usize = 8;
+
+impl Skin {
+    /// The elements of a mesh of `points` points.
+    pub fn new(mut triangles: Vec<[u32; 3]>, points: Range<u32>) -> Self {
+        triangles.sort_unstable_by_key(|triangle| (triangle.iter().min().copied(), *triangle));
+        let mut skin = Self::default();
+        let mut owned_points = vec![false; points.len()];
+        let edges = triangle_edges(&triangles);
+        let mut owned_edges = vec![false; edges.len()];
+        for &[a, b, c] in &triangles {
+            for point in [a, b, c] {
+                if !std::mem::replace(&mut owned_points[(point - points.start) as usize], true) {
+                    skin.points.push(point);
+                }
+            }
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let ends = [p.min(q), p.max(q)];
+                // The list holds every side of every triangle.
+                let Ok(edge) = edges.binary_search(&ends) else { continue };
+                if !std::mem::replace(&mut owned_edges[edge], true) {
+                    skin.edges.push(ends);
+                }
+            }
+            skin.edge_ends.push(skin.edges.len() as u32);
+            skin.point_ends.push(skin.points.len() as u32);
+        }
+        skin.points.extend(points.clone().filter(|point| !owned_points[(point - points.start) as usize]));
+        skin.triangles = triangles;
+        skin
+    }
+
+    /// The elements owned by one triangle.
+    pub fn owned(&self, triangle: usize) -> Group {
+        self.owned_by(triangle..triangle + 1)
+    }
+
+    /// All elements in groups of neighbours; free points in groups of their own.
+    pub fn groups(&self) -> impl Iterator<Item = Group> + '_ {
+        let triangles = self.triangles.len();
+        let of_triangles =
+            (0..triangles).step_by(GROUP).map(move |k| self.owned_by(k..(k + GROUP).min(triangles)));
+        let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
+        let free = (in_faces..self.points.len()).step_by(GROUP);
+        of_triangles.chain(free.map(move |k| Group {
+            triangles: 0..0,
+            edges: 0..0,
+            points: k..(k + GROUP).min(self.points.len()),
+        }))
+    }
+
+    fn owned_by(&self, triangles: Range<usize>) -> Group {
+        let before = |ends: &[u32]| triangles.start.checked_sub(1).map_or(0, |k| ends[k] as usize);
+        let last = triangles.end - 1;
+        Group {
+            edges: before(&self.edge_ends)..self.edge_ends[last] as usize,
+            points: before(&self.point_ends)..self.point_ends[last] as usize,
+            triangles,
+        }
+    }
+}
+
+/// The box round the boxes of some points.
+pub fn bound(points: &[u32], boxes: impl Fn(u32) -> Aabb) -> Aabb {
+    points.iter().fold(Aabb::EMPTY, |all, &point| all.union(boxes(point)))
+}

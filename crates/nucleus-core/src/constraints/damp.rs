@@ -1,0 +1,70 @@
+//! Damping of relative velocity between linked points, once per substep.
+//!
+//! `stretchDamp` acts along the links only, `damp` in all directions. Both are given by pairs, equal and
+//! opposite, so they change no momentum: a cloth that flies or falls as one is not slowed.
+
+use crate::columns::Shared;
+use crate::frame::COUNT_PERIOD;
+use crate::scalar::{Real, Row4, dot};
+
+use super::stretch::LinkGroup;
+
+/// Shares of the relative velocity of two linked points that one sweep takes away.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DampStrength<R> {
+    along: R,
+    all: R,
+}
+
+impl<R: Real> DampStrength<R> {
+    /// For a substep of `substep` seconds; nothing where neither is above nought.
+    pub fn new(stretch_damp: f64, damp: f64, substep: f64) -> Option<Self> {
+        // Implicit, so that it slows but never turns back, however large.
+        let share = |attribute: f64| {
+            let rate = attribute.max(0.0) * substep / COUNT_PERIOD;
+            R::from_f64(rate / (1.0 + rate))
+        };
+        let all = share(damp);
+        // What acts in all directions has acted along the link too.
+        let along = share(stretch_damp) * (R::ONE - all);
+        (stretch_damp > 0.0 || damp > 0.0).then_some(Self { along, all })
+    }
+}
+
+/// Sweeps the links of `groups` once.
+///
+/// # Safety
+/// No other task of the phase touches the points of `groups`.
+#[allow(unsafe_code)]
+pub unsafe fn relax<R: Real>(
+    velocity: Shared<'_, Row4<R>>,
+    points: &[Row4<R>],
+    groups: &[LinkGroup<R>],
+    strength: &DampStrength<R>,
+) {
+    for group in groups {
+        for lane in 0..4 {
+            let [a, b] = group.ends.map(|ends| ends[lane]);
+            let (x_a, x_b) = (points[a as usize].0, points[b as usize].0);
+            let total = x_a[3] + x_b[3];
+            if total <= R::ZERO {
+                continue;
+            }
+            // SAFETY: the caller's promise.
+            let (mut v_a, mut v_b) = unsafe { (velocity.get(a), velocity.get(b)) };
+            let d: [R; 3] = std::array::from_fn(|axis| group.span[axis][lane] + (x_b[axis] - x_a[axis]));
+            let relative: [R; 3] = std::array::from_fn(|axis| v_b.0[axis] - v_a.0[axis]);
+            let along = strength.along * dot(relative, d) / (dot(d, d) + R::TINY);
+            for axis in 0..3 {
+                let taken = (strength.all * relative[axis] + along * d[axis]) / total;
+                v_a.0[axis] += x_a[3] * taken;
+                v_b.0[axis] -= x_b[3] * taken;
+            }
+            // SAFETY: the caller's promise.
+            unsafe {
+                velocity.set(a, v_a);
+                velocity.set(b, v_b);
+            }
+        }
+    }
+}

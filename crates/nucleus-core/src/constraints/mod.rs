@@ -1,0 +1,7 @@
+//! The effects that hold cloth together, one file each, named as the artist names them.
+//! Each has its rows, and a `relax` that sweeps them once.
+
+pub mod bend;
+pub mod damp;
+pub mod shear;
+pub mod stretch;

@@ -1,0 +1,20 @@
+//! Shear: the cross links of quads keep their length, so that squares stay square.
+//!
+//! Shear rows are links like any other, swept by [`stretch::relax`](super::stretch::relax) with the strength
+//! of `shearResistance`; what makes them shear is which points they join.
+
+use super::stretch::LinkRow;
+use crate::model::cross_links;
+use crate::scalar::Real;
+use crate::surface::Surface;
+
+/// The cross links of a mesh, between the solver's places of its points.
+///
+/// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a
+/// resistance means the same stiffness here as along the edges.
+pub fn rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+    let mut rows: Vec<LinkRow<R>> =
+        cross_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
+    rows.sort_unstable_by_key(|row| row.ends);
+    rows
+}

@@ -1,0 +1,152 @@
+//! Stretch and compression: edges keep their length.
+//!
+//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of
+//! Macklin et al. 2016, eq. 18. Every sweep starts from no multiplier: in a time step there is one sweep
+//! (Physical), or there is no compliance (Classic).
+
+use crate::columns::Shared;
+use crate::model::{Link, Row};
+use crate::scalar::{Lanes, Real, Row4};
+
+/// Four links side by side. 28 bytes a link in `f32`.
+#[derive(Debug, Clone, Copy)]
+pub struct LinkGroup<R> {
+    /// The points a and b.
+    pub ends: [[u32; 4]; 2],
+    /// From anchor a to anchor b: x, y, z. Set at the start of each frame.
+    pub span: [[R; 4]; 3],
+    /// Length at rest in metres.
+    pub rest_length: [R; 4],
+    /// Length over width of the strip of cloth the link stands for.
+    pub slenderness: [R; 4],
+}
+
+/// A link between points of the solver, before it is laid out.
+#[derive(Debug, Clone, Copy)]
+pub struct LinkRow<R> {
+    /// The points a and b.
+    pub ends: [u32; 2],
+    /// Length at rest in metres.
+    pub rest_length: R,
+    /// Length over width of the strip of cloth the link stands for.
+    pub slenderness: R,
+}
+
+impl<R: Real> LinkRow<R> {
+    /// The link between the solver's places of its ends.
+    pub fn new(link: &Link, place: impl Fn(u32) -> u32) -> Self {
+        Self {
+            ends: link.ends.map(place),
+            rest_length: R::from_f64(link.rest_length),
+            slenderness: R::from_f64(link.slenderness),
+        }
+    }
+}
+
+impl<R: Real> Row for LinkRow<R> {
+    type Group = LinkGroup<R>;
+    const POINTS: usize = 2;
+
+    fn point(&self, k: usize) -> u32 {
+        self.ends[k]
+    }
+
+    fn idle(stand_in: u32) -> Self {
+        Self { ends: [stand_in; 2], rest_length: R::ZERO, slenderness: R::ONE }
+    }
+
+    fn group(rows: [Self; 4]) -> LinkGroup<R> {
+        LinkGroup {
+            ends: [0, 1].map(|k| rows.map(|row| row.ends[k])),
+            span: [[R::ZERO; 4]; 3],
+            rest_length: rows.map(|row| row.rest_length),
+            slenderness: rows.map(|row| row.slenderness),
+        }
+    }
+}
+
+/// What one sweep does to a link that is longer (`above`) or shorter (`below`) than at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sides<T> {
+    /// Longer than at rest.
+    pub above: T,
+    /// Shorter than at rest.
+    pub below: T,
+}
+
+/// How strongly a sweep acts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkStrength<R> {
+    /// The share of the error that is taken away, 0 to 1.
+    pub share: Sides<R>,
+    /// 1 / (stiffness h²) in 1/kg for a link as long as it is wide; 0 is rigid.
+    pub compliance: Sides<R>,
+    /// Factor on all rest lengths.
+    pub rest_scale: R,
+}
+
+impl<R: Real> LinkGroup<R> {
+    /// Takes up where the anchors now are. Differences are taken in double precision, so a cloth far from the
+    /// origin is as exact as one near it.
+    pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
+        for lane in 0..4 {
+            let [a, b] = self.ends.map(|end| anchors[end[lane] as usize]);
+            for axis in 0..3 {
+                self.span[axis][lane] = R::from_f64(b[axis] - a[axis]);
+            }
+        }
+    }
+
+    /// The strain of each link, length over rest length less one, in four lanes; 0 for a link of no length.
+    pub fn strain(&self, points: &[Row4<R>], rest_scale: R) -> [R; 4] {
+        std::array::from_fn(|lane| {
+            let [a, b] = self.ends.map(|end| points[end[lane] as usize].0);
+            let d: [R; 3] = std::array::from_fn(|axis| self.span[axis][lane] + (b[axis] - a[axis]));
+            let rest = self.rest_length[lane] * rest_scale;
+            if rest > R::ZERO { crate::scalar::dot(d, d).sqrt() / rest - R::ONE } else { R::ZERO }
+        })
+    }
+}
+
+/// Sweeps the links of `groups` once.
+///
+/// # Safety
+/// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
+#[allow(unsafe_code)]
+#[inline]
+pub unsafe fn relax<R: Real>(
+    points: Shared<'_, Row4<R>>,
+    groups: &[LinkGroup<R>],
+    strength: &LinkStrength<R>,
+) {
+    let both = |sides: Sides<R>| (R::Lanes::splat(sides.above), R::Lanes::splat(sides.below));
+    let (share_above, share_below) = both(strength.share);
+    let (compliance_above, compliance_below) = both(strength.compliance);
+    let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::TINY));
+    for group in groups {
+        // SAFETY: the caller's promise.
+        let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
+        let [ax, ay, az, w_a] = R::Lanes::transpose(a);
+        let [bx, by, bz, w_b] = R::Lanes::transpose(b);
+        let [sx, sy, sz] = group.span.map(R::Lanes::from_array);
+        let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
+        let length = (dx * dx + dy * dy + dz * dz).sqrt();
+        let c = length - R::Lanes::from_array(group.rest_length) * rest_scale;
+        let share = c.choose_by_sign(share_above, share_below);
+        let compliance = c.choose_by_sign(compliance_above, compliance_below);
+        let softness = compliance * R::Lanes::from_array(group.slenderness);
+        // Two pinned ends, or no length and so no direction: the numerator or the difference is nought too.
+        let lambda = share * c / ((w_a + w_b + softness) * length + tiny);
+        let push = R::Lanes::transpose([lambda * dx, lambda * dy, lambda * dz, R::Lanes::splat(R::ZERO)]);
+        for lane in 0..4 {
+            let [end_a, end_b] = group.ends.map(|end| end[lane]);
+            let moved_a = a[lane] + a[lane].splat_last() * push[lane];
+            let moved_b = b[lane] - b[lane].splat_last() * push[lane];
+            // SAFETY: the caller's promise.
+            unsafe {
+                points.set(end_a, Row4(moved_a.to_array()));
+                points.set(end_b, Row4(moved_b.to_array()));
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The start of a frame: anchors move to where the points are, pins and colliders take up their motion, and
+//! rows take up the new anchors. From here to the end of the frame nothing is allocated that was not before.
+
+use crate::collision::plane;
+use crate::frame::{FrameInput, Pin};
+use crate::scalar::{Real, Row4};
+use crate::solver::Solver;
+
+impl<R: Real> Solver<R> {
+    /// Takes up what a frame brings.
+    pub(crate) fn begin_frame(&mut self, frame: &FrameInput) {
+        self.move_anchors();
+        for pin in &frame.pins {
+            self.hold(pin, frame.duration);
+        }
+        self.anchor_rows();
+        for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
+            state.begin_frame(&motion.start, &motion.end);
+        }
+        // Foreseen places are displacements from anchors that have just moved.
+        self.forget_pairs();
+        self.heights.clear();
+        if let Some(ground) = &frame.plane {
+            let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
+            plane::heights(&self.state.anchor, ground.origin, normal, &mut self.heights);
+        }
+    }
+
+    fn move_anchors(&mut self) {
+        let state = &mut self.state;
+        for ((anchor, row), mass) in
+            state.anchor.iter_mut().zip(&mut state.displacement).zip(&state.inverse_mass)
+        {
+            for axis in 0..3 {
+                anchor[axis] += row.0[axis].to_f64();
+            }
+            *row = Row4([R::ZERO, R::ZERO, R::ZERO, *mass]);
+        }
+    }
+
+    /// A pinned point is one of endless mass on its way.
+    fn hold(&mut self, pin: &Pin, duration: f64) {
+        let row = self.cloths[pin.cloth.index()].place(pin.point.index()) as usize;
+        self.state.anchor[row] = pin.start.into();
+        self.state.displacement[row].0[3] = R::ZERO;
+        self.state.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
+    }
+
+    fn anchor_rows(&mut self) {
+        let anchors = &self.state.anchor;
+        for cloth in &mut self.cloths {
+            cloth.stretch.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
+            cloth.shear.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
+            cloth.bend.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What a frame is reported to have done.
+
+use crate::collide::StepParts;
+use crate::collision::resolve::Tally;
+use crate::frame::FrameInput;
+use crate::report::StepReport;
+use crate::scalar::{Real, dot};
+use crate::schedule::Schedule;
+use crate::solver::Solver;
+
+/// Strains are counted in bins of this width up to `BINS` of them; what is above is in the last.
+const BIN: f64 = 1e-4;
+const BINS: usize = 10_000;
+
+impl<R: Real> Solver<R> {
+    /// The account of the frame that has just ended.
+    pub(crate) fn report(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) -> StepReport {
+        let (max_strain, strain_99) = self.strains(frame);
+        let (kinetic_energy, finite) = self.kinetic_energy();
+        StepReport {
+            max_strain,
+            strain_99,
+            min_gap: self.smallest_gap(frame, schedule),
+            contacts: tally.contacts.load(std::sync::atomic::Ordering::Relaxed),
+            pairs: tally.pairs.load(std::sync::atomic::Ordering::Relaxed),
+            broad_phases: tally.broad_phases.load(std::sync::atomic::Ordering::Relaxed) as u32,
+            caught: tally.caught.load(std::sync::atomic::Ordering::Relaxed),
+            crossed: tally.crossed.load(std::sync::atomic::Ordering::Relaxed),
+            kinetic_energy,
+            finite,
+        }
+    }
+
+    /// The largest strain, and the strain that 99 % of the links stay below (to 1e-4).
+    fn strains(&self, frame: &FrameInput) -> (f64, f64) {
+        let mut most = 0.0f64;
+        let mut bins = vec![0u64; BINS];
+        let mut links = 0u64;
+        for (cloth, settings) in self.cloths.iter().zip(&frame.cloths) {
+            let scale = R::from_f64(settings.rest_length_scale);
+            for group in cloth.stretch.groups() {
+                let strains = group.strain(&self.state.displacement, scale);
+                for (_, strain) in group.rest_length.iter().zip(strains).filter(|(rest, _)| **rest > R::ZERO)
+                {
+                    let strain = strain.to_f64();
+                    most = most.max(strain);
+                    bins[((strain.max(0.0) / BIN) as usize).min(BINS - 1)] += 1;
+                    links += 1;
+                }
+            }
+        }
+        let mut below = 0;
+        let bin = bins.iter().position(|&count| {
+            below += count;
+            below * 100 >= links * 99
+        });
+        let upper = bin.map_or(0.0, |bin| (bin + 1) as f64 * BIN);
+        (most, if links == 0 { 0.0 } else { upper.min(most) })
+    }
+
+    /// The energy of motion in joules, and whether all is finite.
+    fn kinetic_energy(&self) -> (f64, bool) {
+        let mut energy = 0.0;
+        let mut finite = true;
+        for cloth in &self.cloths {
+            for row in cloth.points() {
+                let row = row as usize;
+                let v = self.state.velocity[row].xyz().map(R::to_f64);
+                let inverse_mass = self.state.inverse_mass[row].to_f64();
+                energy += dot(v, v) / (2.0 * inverse_mass);
+                finite &= self.state.displacement[row].xyz().iter().all(|x| x.to_f64().is_finite());
+            }
+        }
+        (energy, finite && energy.is_finite())
+    }
+
+    /// The smallest distance to a collider or the plane, over the thickness.
+    fn smallest_gap(&mut self, frame: &FrameInput, schedule: &Schedule<R>) -> f64 {
+        let mut least = f64::INFINITY;
+        if let Some(ground) = &frame.plane {
+            let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
+            for (cloth, settings) in self.cloths.iter().zip(&frame.cloths) {
+                if settings.collide && settings.thickness > 0.0 {
+                    let height = |row| {
+                        (nalgebra::Vector3::from(self.state.position(row)) - ground.origin).dot(&normal)
+                    };
+                    let free =
+                        cloth.points().filter(|&row| self.state.displacement[row as usize].0[3] > R::ZERO);
+                    least = free.map(|row| height(row) / settings.thickness).fold(least, f64::min);
+                }
+            }
+        }
+        let Self { state, collider_states, pairs, .. } = self;
+        for list in pairs.iter() {
+            let (cloth, collider) = (list.cloth, list.collider);
+            let view = StepParts { frame, cloth, collider, h: schedule.h, time: [1.0; 2], span: list.span };
+            let step = view.of(state, &collider_states[collider]);
+            let distances = list.point_face.iter().map(|pair| pair.distance(&step));
+            least = distances.map(|distance| distance / step.thickness.to_f64()).fold(least, f64::min);
+        }
+        least
+    }
+}

@@ -1,0 +1,166 @@
+//! What is fixed once a scene is compiled: the lists of each cloth, laid out to be swept.
+
+mod order;
+mod rows;
+mod topology;
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+pub use order::Order;
+pub use rows::{Blocks, Row, RowList};
+pub use topology::{
+    Hinge, Link, cross_links, edge_links, hinges, point_areas, triangle_area, triangle_edges,
+};
+
+use crate::builder::{Cloth, Collider, Mass};
+use crate::collision::skin::Skin;
+use crate::constraints::bend::{HingeGroup, HingeRow};
+use crate::constraints::shear;
+use crate::constraints::stretch::{LinkGroup, LinkRow};
+use crate::scalar::Real;
+use crate::surface::Surface;
+
+/// One cloth: where its points are in the columns of the state, and its lists.
+#[derive(Debug, Clone)]
+pub struct ClothModel<R> {
+    /// Between the user's points and the solver's places (counted from the cloth's first).
+    pub order: Order,
+    /// Its points in the columns, in blocks.
+    pub blocks: Blocks,
+    /// Links along edges.
+    pub stretch: RowList<LinkGroup<R>>,
+    /// Cross links of quads.
+    pub shear: RowList<LinkGroup<R>>,
+    /// Hinges between faces.
+    pub bend: RowList<HingeGroup<R>>,
+    /// The triangles that touch each block, for normals; empty where no air is felt.
+    pub triangles: Vec<Vec<[u32; 3]>>,
+    /// What can touch; empty where the scene has no collider.
+    pub skin: Skin,
+    /// `pointMass`, as a number: air forces are divided by it.
+    pub weight: f64,
+    /// Whether velocities are ever damped.
+    pub damps: bool,
+}
+
+impl<R: Real> ClothModel<R> {
+    /// Compiles a cloth whose first point is `first` in the columns.
+    pub fn new(cloth: &Cloth, first: u32, collides: bool) -> Self {
+        let surface = &cloth.surface;
+        let order = Order::morton(&surface.positions);
+        let blocks = Blocks::new(first, surface.positions.len());
+        let (Mass::PerPoint(weight) | Mass::PerArea(weight)) = cloth.mass;
+        let mut model = Self {
+            order,
+            blocks,
+            stretch: RowList::default(),
+            shear: RowList::default(),
+            bend: RowList::default(),
+            triangles: Vec::new(),
+            skin: Skin::default(),
+            weight,
+            damps: cloth.lists.damp,
+        };
+        let places = model.order.places().to_vec();
+        let place = |point: u32| first + places[point as usize];
+        if cloth.lists.stretch {
+            model.stretch = RowList::new(&edge_rows(surface, place), &model.blocks);
+        }
+        if cloth.lists.shear {
+            model.shear = RowList::new(&shear::rows(surface, place), &model.blocks);
+        }
+        if cloth.lists.bend {
+            model.bend = RowList::new(&hinge_rows(surface, place), &model.blocks);
+        }
+        if cloth.lists.air {
+            model.triangles = triangles_by_block(surface, place, &model.blocks);
+        }
+        if collides {
+            let triangles = surface.faces.triangles().map(|t| t.map(place)).collect();
+            model.skin = Skin::new(triangles, model.points());
+        }
+        model
+    }
+
+    /// Its points in the columns.
+    pub fn points(&self) -> Range<u32> {
+        self.blocks.range(0).start..self.blocks.range(self.blocks.len() - 1).end
+    }
+
+    /// The place in the columns of one of the user's points.
+    pub fn place(&self, point: usize) -> u32 {
+        self.points().start + self.order.place(point)
+    }
+}
+
+/// One collider: its mesh, in the user's order.
+#[derive(Debug, Clone)]
+pub struct ColliderModel {
+    /// Where it starts, in metres.
+    pub positions: Vec<Vector3<f64>>,
+    /// What can touch.
+    pub skin: Skin,
+}
+
+impl ColliderModel {
+    /// Compiles a collider.
+    pub fn new(collider: Collider) -> Self {
+        let triangles = collider.surface.faces.triangles().collect();
+        let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
+        Self { positions: collider.surface.positions, skin }
+    }
+}
+
+/// The mass of each point in kilograms, in the user's order.
+pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
+    match cloth.mass {
+        Mass::PerPoint(mass) => vec![mass; cloth.surface.positions.len()],
+        Mass::PerArea(density) => {
+            let areas = point_areas(&cloth.surface);
+            // A point of no face has no area: it weighs like an average one.
+            let faces = areas.iter().filter(|&&area| area > 0.0).count().max(1);
+            let average = areas.iter().sum::<f64>() / faces as f64;
+            let average = if average > 0.0 { average } else { 1.0 };
+            areas.iter().map(|&area| density * if area > 0.0 { area } else { average }).collect()
+        }
+    }
+}
+
+fn edge_rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+    let mut rows: Vec<LinkRow<R>> =
+        edge_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
+    rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
+    rows
+}
+
+fn hinge_rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<HingeRow<R>> {
+    let all = hinges(surface);
+    let mut rows: Vec<HingeRow<R>> =
+        all.iter().filter_map(|hinge| HingeRow::new(surface, hinge, &place)).collect();
+    rows.sort_unstable_by_key(|row| {
+        let mut points = [0, 1, 2, 3].map(|k| row.point(k));
+        points.sort_unstable();
+        points
+    });
+    rows
+}
+
+/// Each block's triangles: all that touch one of its points, so that a block's normals need no other's work.
+fn triangles_by_block(surface: &Surface, place: impl Fn(u32) -> u32, blocks: &Blocks) -> Vec<Vec<[u32; 3]>> {
+    let mut by_block = vec![Vec::new(); blocks.len()];
+    for triangle in surface.faces.triangles() {
+        let triangle = triangle.map(&place);
+        let [a, b, c] = triangle.map(|point| blocks.of(point));
+        by_block[a as usize].push(triangle);
+        if b != a {
+            by_block[b as usize].push(triangle);
+        }
+        if c != a && c != b {
+            by_block[c as usize].push(triangle);
+        }
+    }
+    by_block.iter_mut().for_each(|triangles| triangles.sort_unstable());
+    by_block
+}

@@ -1,0 +1,92 @@
+//! The solver's own order of points: along a Morton curve, so that points near in space are near in memory.
+//! The user's order stays outside; [`Order`] maps between them.
+
+use nalgebra::Vector3;
+
+/// A permutation of the points of one object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Order {
+    /// The user's point at each place of the solver.
+    user: Vec<u32>,
+    /// The solver's place of each of the user's points.
+    place: Vec<u32>,
+}
+
+impl Order {
+    /// Points in the order of a Morton curve through their bounding box; equal places keep the user's order.
+    pub fn morton(positions: &[Vector3<f64>]) -> Self {
+        let zero = positions.first().copied().unwrap_or_default();
+        let (low, high) = positions.iter().fold((zero, zero), |(low, high), p| (low.inf(p), high.sup(p)));
+        let size = (high - low).max().max(f64::MIN_POSITIVE);
+        let key = |p: &Vector3<f64>| {
+            let cell = (p - low) * (f64::from(CELLS) / size);
+            interleave(cell.x) | interleave(cell.y) << 1 | interleave(cell.z) << 2
+        };
+        let mut keyed: Vec<(u64, u32)> = positions.iter().map(key).zip(0..).collect();
+        keyed.sort_unstable();
+        let user: Vec<u32> = keyed.into_iter().map(|(_, point)| point).collect();
+        let mut place = vec![0; user.len()];
+        (0..).zip(&user).for_each(|(at, &point)| place[point as usize] = at);
+        Self { user, place }
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.user.len()
+    }
+
+    /// The user's point at a place of the solver.
+    pub fn user(&self, place: usize) -> usize {
+        self.user[place] as usize
+    }
+
+    /// The solver's place of one of the user's points.
+    pub fn place(&self, point: usize) -> u32 {
+        self.place[point]
+    }
+
+    /// The solver's places in the user's order.
+    pub fn places(&self) -> &[u32] {
+        &self.place
+    }
+}
+
+/// Cells along the longest side of the bounding box.
+const CELLS: u32 = (1 << 21) - 1;
+
+/// The low 21 bits of a number, two zeros after each.
+fn interleave(x: f64) -> u64 {
+    let mut x = u64::from((x as u32).min(CELLS));
+    x = (x | x << 32) & 0x001f_0000_0000_ffff;
+    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_two_directions_of_an_order_undo_each_other(
+            points in proptest::collection::vec(proptest::array::uniform3(-1e3..1e3f64), 1..200)
+        ) {
+            let order = Order::morton(&points.iter().map(|&p| p.into()).collect::<Vec<_>>());
+            prop_assert!((0..points.len()).all(|point| order.user(order.place(point) as usize) == point));
+        }
+    }
+
+    #[test]
+    fn points_near_in_space_are_near_in_memory() {
+        let grid: Vec<_> =
+            (0..64 * 64).map(|k| Vector3::new(f64::from(k % 64), 0.0, f64::from(k / 64))).collect();
+        let order = Order::morton(&grid);
+        let mean_jump =
+            (1..grid.len()).map(|at| (grid[order.user(at)] - grid[order.user(at - 1)]).norm()).sum::<f64>()
+                / grid.len() as f64;
+        assert!(mean_jump < 2.0, "{mean_jump}");
+    }
+}

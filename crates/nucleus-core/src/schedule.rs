@@ -1,0 +1,186 @@
+//! The order of things within a frame: substeps, time steps, and the sweeps of each, as data.
+//!
+//! Effects are interleaved, not run one after the other, each as often as its resistance says (§2.2), and
+//! the last pass of a step is always collision. Classic: a substep is one time step with many sweeps.
+//! Physical: a substep is many time steps with one sweep of each effect.
+
+use crate::constraints::bend::BendStrength;
+use crate::constraints::stretch::{LinkStrength, Sides};
+use crate::frame::{ClothFrame, FrameInput, ResistanceModel};
+use crate::resistance::{
+    BENDING_PER_RESISTANCE, STEPS_PER_BEND, STIFFNESS_PER_RESISTANCE, Share, share, steps,
+};
+use crate::scalar::Real;
+
+/// One pass of one effect over one cloth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sweep<R> {
+    /// The cloth, by its index.
+    pub cloth: usize,
+    /// What is swept.
+    pub effect: Effect<R>,
+}
+
+/// What a sweep does, and how strongly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Effect<R> {
+    /// Links along edges: stretch, compression or both.
+    Stretch(LinkStrength<R>),
+    /// Cross links of quads.
+    Shear(LinkStrength<R>),
+    /// Hinges between faces.
+    Bend(BendStrength<R>),
+}
+
+/// What comes next in a time step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Round {
+    /// These sweeps together, a run of [`Schedule::sweeps`].
+    Relax(std::ops::Range<usize>),
+    /// A pass over all contacts.
+    Collide,
+}
+
+/// Everything a frame will do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Schedule<R> {
+    /// Substeps in the frame.
+    pub substeps: u32,
+    /// Time steps in a substep.
+    pub steps: u32,
+    /// Length of a time step in seconds.
+    pub h: f64,
+    /// All sweeps of the two kinds of time steps.
+    pub sweeps: Vec<Sweep<R>>,
+    /// The rounds of a time step with bending, and of one without. Classic steps are all of the first kind.
+    rounds: [Vec<Round>; 2],
+    steps_per_bend: u32,
+}
+
+impl<R: Real> Schedule<R> {
+    /// Plans a frame.
+    pub fn new(frame: &FrameInput) -> Self {
+        let substeps = frame.substeps.max(1);
+        let substep = frame.duration / f64::from(substeps);
+        let steps = match frame.resistance {
+            ResistanceModel::Classic => 1,
+            ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
+        };
+        let h = substep / f64::from(steps);
+        let mut plan = Self {
+            substeps,
+            steps,
+            h,
+            sweeps: Vec::new(),
+            rounds: [Vec::new(), Vec::new()],
+            steps_per_bend: 1,
+        };
+        match frame.resistance {
+            ResistanceModel::Classic => plan.rounds[0] = classic(frame, substep, &mut plan.sweeps),
+            ResistanceModel::Physical { .. } => {
+                plan.steps_per_bend = STEPS_PER_BEND.min(substeps * steps);
+                let every = plan.steps_per_bend;
+                plan.rounds =
+                    [true, false].map(|bends| physical(frame, h, bends.then_some(every), &mut plan.sweeps));
+            }
+        }
+        plan
+    }
+
+    /// The rounds of time step `step` of the frame, counted from nought.
+    pub fn rounds(&self, step: u32) -> &[Round] {
+        &self.rounds[usize::from(!step.is_multiple_of(self.steps_per_bend))]
+    }
+}
+
+/// All passes of a substep in the order of the moments at which they are due: the k-th of n sweeps in the
+/// middle of its n-th part, the k-th of n collision passes at the end of its.
+fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Round> {
+    let mut due: Vec<(f64, Option<Sweep<R>>)> = Vec::new();
+    for (cloth, settings) in frame.cloths.iter().enumerate() {
+        for (count, effect) in classic_effects(settings) {
+            let Share { sweeps, strength } = share(count, substep);
+            let effect = effect(R::from_f64(strength));
+            let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
+            due.extend((0..sweeps).map(|k| (moment(k), Some(Sweep { cloth, effect }))));
+        }
+    }
+    let passes = share(frame.collision_iterations, substep).sweeps.max(1);
+    due.extend((1..=passes).map(|k| (f64::from(k) / f64::from(passes), None)));
+    due.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut rounds = Vec::new();
+    for (_, sweep) in due {
+        match sweep {
+            Some(sweep) => {
+                rounds.push(Round::Relax(sweeps.len()..sweeps.len() + 1));
+                sweeps.push(sweep);
+            }
+            None => rounds.push(Round::Collide),
+        }
+    }
+    rounds
+}
+
+/// What makes an effect of a strength.
+type Strengthen<R> = Box<dyn Fn(R) -> Effect<R>>;
+
+/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each its own side.
+fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, Strengthen<R>); 4] {
+    let rest_scale = R::from_f64(cloth.rest_length_scale);
+    let rigid = Sides { above: R::ZERO, below: R::ZERO };
+    let links = move |above: R, below: R| LinkStrength {
+        share: Sides { above, below },
+        compliance: rigid,
+        rest_scale,
+    };
+    [
+        (cloth.stretch_resistance, Box::new(move |share| Effect::Stretch(links(share, R::ZERO)))),
+        (cloth.compression_resistance, Box::new(move |share| Effect::Stretch(links(R::ZERO, share)))),
+        (cloth.shear_resistance, Box::new(move |share| Effect::Shear(links(share, share)))),
+        (cloth.bend_resistance, Box::new(|share| Effect::Bend(BendStrength { share, compliance: R::ZERO }))),
+    ]
+}
+
+/// One sweep of every effect, then collision; bending where it is due, standing for `bend_every` steps.
+fn physical<R: Real>(
+    frame: &FrameInput,
+    h: f64,
+    bend_every: Option<u32>,
+    sweeps: &mut Vec<Sweep<R>>,
+) -> Vec<Round> {
+    let first = sweeps.len();
+    for (cloth, settings) in frame.cloths.iter().enumerate() {
+        let mut add = |resistance: f64, effect: Effect<R>| {
+            if resistance > 0.0 {
+                sweeps.push(Sweep { cloth, effect });
+            }
+        };
+        let stretch = settings.stretch_resistance.max(settings.compression_resistance);
+        let above = settings.stretch_resistance;
+        add(stretch, Effect::Stretch(physical_links(settings, above, settings.compression_resistance, h)));
+        let shear = settings.shear_resistance;
+        add(shear, Effect::Shear(physical_links(settings, shear, shear, h)));
+        if let Some(every) = bend_every {
+            // A sweep that stands for n steps gives n steps' worth of momentum: 1/(B n h · h).
+            let compliance =
+                1.0 / (BENDING_PER_RESISTANCE * settings.bend_resistance * h * h * f64::from(every));
+            let compliance = R::from_f64(compliance);
+            add(settings.bend_resistance, Effect::Bend(BendStrength { share: R::ONE, compliance }));
+        }
+    }
+    vec![Round::Relax(first..sweeps.len()), Round::Collide]
+}
+
+/// Links as stiff as two resistances say; a side without resistance is left alone.
+fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -> LinkStrength<R> {
+    let side = |resistance: f64| match resistance > 0.0 {
+        true => (R::ONE, R::from_f64(1.0 / (STIFFNESS_PER_RESISTANCE * resistance * h * h))),
+        false => (R::ZERO, R::ZERO),
+    };
+    let (above, below) = (side(above), side(below));
+    LinkStrength {
+        share: Sides { above: above.0, below: below.0 },
+        compliance: Sides { above: above.1, below: below.1 },
+        rest_scale: R::from_f64(cloth.rest_length_scale),
+    }
+}

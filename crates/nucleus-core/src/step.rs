@@ -1,0 +1,133 @@
+//! One frame, told as a story.
+
+use std::ops::Range;
+
+use crate::air::{self, Air};
+use crate::collision::resolve::Tally;
+use crate::columns::Shared;
+use crate::constraints::damp::{self, DampStrength};
+use crate::frame::FrameInput;
+use crate::observe::{Moment, StepObserver};
+use crate::predict::{self, Columns, Drive, gravity_kick};
+use crate::relax;
+use crate::report::StepReport;
+use crate::scalar::Real;
+use crate::schedule::{Round, Schedule};
+use crate::solver::Solver;
+use crate::velocity;
+
+impl<R: Real> Solver<R> {
+    /// Advances by one frame. Cannot fail: what could not be satisfied is counted in the report.
+    ///
+    /// `frame` has one entry per cloth and per collider.
+    pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
+        let schedule = Schedule::new(frame);
+        let mut tally = Tally::default();
+        self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
+        let fastest = self.fastest(frame);
+        for substep in 1..=schedule.substeps {
+            self.find_normals();
+            for step in (substep - 1) * schedule.steps..substep * schedule.steps {
+                self.predict(frame, &schedule, &fastest, step); // gravity, wind, drag; inertia
+                for round in schedule.rounds(step) {
+                    match round {
+                        Round::Relax(sweeps) => relax::sweep(self, &schedule.sweeps[sweeps.clone()]),
+                        Round::Collide => self.collide(frame, &schedule, step, &mut tally), // the last word
+                    }
+                }
+                self.follow_positions(&schedule);
+            }
+            self.damp(frame, &schedule);
+            self.set_time(f64::from(substep) / f64::from(schedule.substeps));
+            watch.substep(Moment { substep, substeps: schedule.substeps }, self);
+        }
+        self.report(frame, &schedule, &tally)
+    }
+
+    /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.
+    fn fastest(&self, frame: &FrameInput) -> Vec<f64> {
+        let of_cloth = |points: Range<u32>| {
+            let rows = &self.state.velocity[points.start as usize..points.end as usize];
+            let speeds = rows.iter().map(|row| row.xyz().map(R::to_f64));
+            let most = speeds.flatten().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most });
+            most + frame.gravity.amax() * frame.duration
+        };
+        self.cloths.iter().map(|cloth| of_cloth(cloth.points())).collect()
+    }
+
+    /// Normals for the air, once per substep.
+    fn find_normals(&mut self) {
+        let Self { cloths, state, team, .. } = self;
+        let (anchor, displacement) = (&state.anchor, &state.displacement);
+        let position = |row: u32| {
+            let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
+            [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
+        };
+        let normals = Shared::new(&mut state.normal);
+        for cloth in cloths.iter() {
+            team.phase(cloth.triangles.len(), |block| {
+                // SAFETY: blocks do not overlap.
+                #[allow(unsafe_code)]
+                unsafe {
+                    air::find_normals(normals, cloth.blocks.range(block), &cloth.triangles[block], position);
+                }
+            });
+        }
+    }
+
+    fn predict(&mut self, frame: &FrameInput, schedule: &Schedule<R>, fastest: &[f64], step: u32) {
+        let Self { cloths, state, team, .. } = self;
+        let columns = Columns {
+            displacement: Shared::new(&mut state.displacement),
+            velocity: Shared::new(&mut state.velocity),
+            predicted: Shared::new(&mut state.predicted),
+            normal: &state.normal,
+        };
+        for ((cloth, settings), &fastest) in cloths.iter().zip(&frame.cloths).zip(fastest) {
+            let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, fastest);
+            let air = Air::new(frame, settings, cloth.weight, schedule.h);
+            let drive = Drive {
+                gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
+                impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
+                air: air.filter(|_| !cloth.triangles.is_empty()),
+                h: R::from_f64(schedule.h),
+            };
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            team.phase(cloth.blocks.len(), |block| unsafe {
+                predict::move_points(&columns, cloth.blocks.range(block), &drive);
+            });
+        }
+    }
+
+    fn follow_positions(&mut self, schedule: &Schedule<R>) {
+        let Self { cloths, state, team, .. } = self;
+        let (displacement, predicted) =
+            (Shared::new(&mut state.displacement), Shared::new(&mut state.predicted));
+        let velocity = Shared::new(&mut state.velocity);
+        let h = R::from_f64(schedule.h);
+        for cloth in cloths.iter() {
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            team.phase(cloth.blocks.len(), |block| unsafe {
+                velocity::follow_positions(displacement, predicted, velocity, cloth.blocks.range(block), h);
+            });
+        }
+    }
+
+    fn damp(&mut self, frame: &FrameInput, schedule: &Schedule<R>) {
+        let Self { cloths, state, team, .. } = self;
+        let substep = schedule.h * f64::from(schedule.steps);
+        let velocity = Shared::new(&mut state.velocity);
+        for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
+            let Some(strength) = DampStrength::new(settings.stretch_damp, settings.damp, substep) else {
+                continue;
+            };
+            // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
+            #[allow(unsafe_code)]
+            relax::over_list(team, &cloth.blocks, &cloth.stretch, |groups| unsafe {
+                damp::relax(velocity, &state.displacement, groups, &strength);
+            });
+        }
+    }
+}
