@@ -17,7 +17,7 @@ fn main() -> Result<(), ViewError> {
         Object { name: "ball", kind: Kind::Collider, faces: &ball.0, positions: &ball.1, rest: None },
         Object { name: "cube", kind: Kind::Collider, faces: &cube.0, positions: &cube.1, rest: None },
     ];
-    let plain = Style { ground: Some(0.0), ..Style::default() };
+    let plain = Style::default();
     let camera = Camera::framing(&Bounds::of_interest(&objects), plain.size);
     let begun = std::time::Instant::now();
     draw(&objects, &camera, &plain).write_png(folder.join("plain.png"))?;

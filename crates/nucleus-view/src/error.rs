@@ -3,10 +3,28 @@
 use std::io;
 use std::path::PathBuf;
 
+use nucleus_cache::ReadError;
+
 /// Why a picture could not be written or a cache not be shown.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
+    /// The cache could not be opened for reading.
+    #[error("cannot read `{}`", path.display())]
+    Open {
+        /// The cache.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The player could not be served, most often because the port is taken.
+    #[error("cannot listen on port {port}")]
+    Listen {
+        /// The port that was asked for.
+        port: u16,
+        /// What the system said.
+        source: io::Error,
+    },
     /// The file could not be opened for writing.
     #[error("cannot write `{}`", path.display())]
     Create {
@@ -33,6 +51,15 @@ pub enum ViewError {
         /// Width and height of the frame, in pixels.
         found: [u32; 2],
     },
+    /// A frame of the cache cannot be read.
+    #[error("cannot read the cache")]
+    Read {
+        /// What is wrong with it.
+        source: ReadError,
+    },
+    /// The cache holds no frame.
+    #[error("the cache holds no frame")]
+    NoMoment,
     /// An animation without frames is not a picture.
     #[error("`{}` has no frame", path.display())]
     NoFrame {

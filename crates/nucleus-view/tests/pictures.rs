@@ -4,13 +4,15 @@ use std::fs::File;
 use std::io::BufReader;
 
 use nucleus_core::Faces;
-use nucleus_view::{AnimationWriter, Bounds, Camera, Colouring, Image, Kind, Object, Style, ViewError, draw};
+use nucleus_view::{
+    AnimationWriter, Bounds, Camera, Colouring, Ground, Image, Kind, Object, Style, ViewError, draw,
+};
 use proptest::prelude::*;
 
 const FROM_ABOVE: Camera = Camera { eye: [0.0, 10.0, 0.0], target: [0.0; 3], field_of_view: 40.0 };
 
 fn small() -> Style {
-    Style { size: [64, 48], samples: 1, ..Style::default() }
+    Style { size: [64, 48], samples: 1, ground: Ground::None, ..Style::default() }
 }
 
 /// A level square at a height, seen from above as its front.
@@ -54,7 +56,7 @@ proptest! {
         eye in prop::array::uniform3(wild()),
         target in prop::array::uniform3(wild()),
         field_of_view in wild(),
-        ground in prop::option::of(wild()),
+        ground in prop_oneof![Just(Ground::None), Just(Ground::Below), wild().prop_map(Ground::At)],
         full_scale in wild(),
     ) {
         let faces: Faces = faces.iter().map(Vec::as_slice).collect();
@@ -94,7 +96,7 @@ fn a_lost_point_takes_only_its_own_faces_with_it() {
 
 #[test]
 fn a_sheet_darkens_the_floor_below_it_and_not_far_from_it() {
-    let style = Style { ground: Some(0.0), size: [96, 96], ..small() };
+    let style = Style { ground: Ground::At(0.0), size: [96, 96], ..small() };
     let faces = one_face();
     let camera = Camera { eye: [0.0, 4.0, 9.0], ..FROM_ABOVE };
     let sheet = square(1.0, 1.0);

@@ -39,14 +39,31 @@ pub struct Style {
     pub colouring: Colouring,
     /// Whether the edges of faces are drawn over them.
     pub wireframe: bool,
-    /// Height of the floor, in scene units; `None` draws no floor.
-    pub ground: Option<f32>,
+    /// Where the floor is.
+    pub ground: Ground,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { size: [960, 540], samples: 2, colouring: Colouring::Objects, wireframe: false, ground: None }
+        Self {
+            size: [960, 540],
+            samples: 2,
+            colouring: Colouring::Objects,
+            wireframe: false,
+            ground: Ground::Below,
+        }
     }
+}
+
+/// Where the floor of a picture is. It is seen only from above or below, and casts no shadow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ground {
+    /// There is none.
+    None,
+    /// Under everything that is drawn.
+    Below,
+    /// At this height, in scene units.
+    At(f32),
 }
 
 /// What the colour of a cloth tells.

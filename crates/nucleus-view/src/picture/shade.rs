@@ -1,5 +1,6 @@
 //! From what is seen to a colour: matt surfaces in a key light, the sky and what the floor throws back.
 
+use super::Vec3;
 use super::camera::Lens;
 use super::ground::Ground;
 use super::image::Image;
@@ -7,7 +8,6 @@ use super::light::Light;
 use super::mesh::Mesh;
 use super::normals::unit;
 use super::visible::Sample;
-use super::{Style, Vec3};
 
 const KEY: [f32; 3] = [0.98, 0.94, 0.88];
 const SKY: [f32; 3] = [0.36, 0.39, 0.43];
@@ -18,24 +18,27 @@ const BACKGROUND_BOTTOM: [f32; 3] = [0.66, 0.665, 0.67];
 /// The back of a cloth is a little darker, so that a fold is told from a crease.
 const BACK: f32 = 0.72;
 
+/// What a style asks of the shading.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    /// Height of the floor.
+    pub floor: Option<f32>,
+    pub wireframe: bool,
+    /// Samples along each side of a pixel.
+    pub samples: u32,
+}
+
 /// Shades every sample and blends the samples of each pixel.
-pub(super) fn picture(
-    mesh: &Mesh,
-    visible: &[Sample],
-    lens: &Lens,
-    light: &Light,
-    style: &Style,
-    samples: u32,
-) -> Image {
-    let ground = style.ground.filter(|height| height.abs() < 1e9);
+pub(super) fn picture(mesh: &Mesh, visible: &[Sample], lens: &Lens, light: &Light, look: Look) -> Image {
+    let samples = look.samples;
     let scene = Scene {
         mesh,
         lens,
         light,
         key: Light::key_direction(lens),
-        ground: ground.map(|height| Ground::new(height, lens, light)),
+        ground: look.floor.map(|height| Ground::new(height, lens, light)),
         // A line is as wide in every picture, however many samples a pixel has.
-        line_width: if style.wireframe { 0.55 * samples as f32 } else { 0.0 },
+        line_width: if look.wireframe { 0.55 * samples as f32 } else { 0.0 },
     };
     let [width, height] = lens.size.map(|side| side / samples);
     let mut image = Image::new(width, height);
