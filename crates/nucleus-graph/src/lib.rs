@@ -2,4 +2,5 @@
 
 pub mod animation;
 pub mod attributes;
+pub mod mesh;
 pub mod scene;
