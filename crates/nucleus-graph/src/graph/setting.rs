@@ -27,7 +27,15 @@ impl Setting {
     /// Whether it can be set on an attribute: the right kind, within the hard range, keyed only where that
     /// is possible.
     pub fn fits(&self, attribute: &Attribute) -> bool {
-        let within = |curve: &Curve| curve.keys().iter().all(|key| attribute.range.contains(key.value));
+        let whole = |x: f64| match attribute.kind {
+            Kind::Bool => x == 0.0 || x == 1.0,
+            Kind::Int => x.fract() == 0.0,
+            Kind::Choice(words) => words.iter().any(|(index, _)| f64::from(*index) == x),
+            _ => true,
+        };
+        let within = |curve: &Curve| {
+            curve.keys().iter().all(|key| attribute.range.contains(key.value) && whole(key.value))
+        };
         match (self, attribute.kind) {
             (Self::Fixed(Value::Float(x)), Kind::Float) => attribute.range.contains(*x),
             (Self::Fixed(Value::Int(x)), Kind::Int) => attribute.range.contains(*x as f64),
