@@ -28,7 +28,7 @@ node_table! {
     /// A relation between parts of objects. Its own transform is what points are pinned to.
     DYNAMIC_CONSTRAINT = "dynamicConstraint", inherits Some(&TRANSFORM), hides [];
     "Nucleus (open)" {
-        /// What Maya's menu makes; sets the values that Maya sets on creation. So far only `transform` acts: it holds points and carries them with its own transform.
+        /// Which constraint of Maya's menu it is. So far only `transform` acts: it holds points and carries them with its own transform.
         CONSTRAINT_TYPE: Choice = choice("constraintType", "type", 0, CONSTRAINT_TYPES).solved("pin").fixed().extension();
         /// What it takes hold of: `["cloth1.vtx[0]", "cloth1.vtx[8:16]", "cloth1.vtx[*]"]`.
         COMPONENTS: Vec<Component> = components("components", "components").solved("pin").extension();

@@ -17,6 +17,13 @@ pub struct NodeType {
     pub(super) doc: &'static str,
 }
 
+/// Types are compared by identity: there is one static per type.
+impl PartialEq for NodeType {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
 /// All types that a scene can name, in the order in which they are best read about.
 pub fn node_types() -> &'static [&'static NodeType] {
     &TYPES
@@ -53,7 +60,7 @@ impl NodeType {
 
     /// Whether this type is `other` or inherits from it.
     pub fn is_a(&'static self, other: &NodeType) -> bool {
-        self.lineage().any(|ancestor| std::ptr::eq(ancestor, other))
+        self.lineage().any(|ancestor| ancestor == other)
     }
 
     /// The attribute of this long or short name. A long name goes before a short one, and within each the

@@ -51,6 +51,13 @@ pub enum Effect {
     NotYet,
 }
 
+/// Rows are compared by identity: there is one static per row.
+impl PartialEq for Attribute {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
 impl Range {
     /// Whether a number lies within the hard range.
     pub fn contains(self, x: f64) -> bool {

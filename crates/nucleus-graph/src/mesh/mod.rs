@@ -1,0 +1,26 @@
+//! Meshes from files, and meshes from a few numbers.
+//!
+//! | You want to know...                              | Read                        |
+//! |--------------------------------------------------|-----------------------------|
+//! | what of an OBJ file is read, and what is refused | [`read_obj`]                |
+//! | what becomes of triangles without area           | [`drop_degenerate_faces`]   |
+//! | in which order Maya counts the points of a plane, cube, sphere, cylinder | [`poly_plane`], [`poly_cube`], [`poly_sphere`], [`poly_cylinder`] |
+//!
+//! **Invariant:** the order and number of points is that of the file, or of Maya, and nothing here changes
+//! it: weights, pins and caches name points by number. Lengths are in scene units, not yet in metres.
+
+mod cube;
+mod degenerate;
+mod obj;
+mod plane;
+mod primitive;
+mod round;
+#[cfg(test)]
+mod tests;
+
+pub use cube::poly_cube;
+pub use degenerate::drop_degenerate_faces;
+pub use obj::{ObjError, ObjFault, read_obj};
+pub use plane::poly_plane;
+pub use primitive::PrimitiveError;
+pub use round::{poly_cylinder, poly_sphere};

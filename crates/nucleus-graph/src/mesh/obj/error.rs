@@ -1,0 +1,87 @@
+//! Why an OBJ file is not a mesh.
+
+use std::io;
+use std::path::PathBuf;
+
+/// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObjError {
+    /// It cannot be read at all: missing, a folder, no permission ...
+    #[error("cannot read `{}`: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A line of it cannot be understood.
+    #[error("`{}`, line {line}: {fault}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// What is wrong there.
+        fault: ObjFault,
+    },
+    /// It has no vertices: most likely it is no OBJ file.
+    #[error("`{}` has no vertices; is it an OBJ file?", path.display())]
+    NoVertices {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// What is wrong with a line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObjFault {
+    /// A coordinate is not written as a number.
+    #[error("`{text}` is not a number")]
+    NotANumber {
+        /// What is written.
+        text: String,
+    },
+    /// A coordinate is NaN, infinite, or too large to hold.
+    #[error("`{text}` is not a finite number")]
+    NotFinite {
+        /// What is written.
+        text: String,
+    },
+    /// A vertex has neither three numbers nor three and a weight, a colour or both.
+    #[error("a vertex takes three numbers, then may take a weight and a colour; this one has {found}")]
+    WrongNumberCount {
+        /// How many it has.
+        found: usize,
+    },
+    /// A face has fewer than three corners.
+    #[error("a face takes at least three corners; this one has {found}")]
+    TooFewCorners {
+        /// How many it has.
+        found: usize,
+    },
+    /// A corner does not begin with a whole number.
+    #[error("`{text}` is not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
+    NotACorner {
+        /// What is written.
+        text: String,
+    },
+    /// Vertices are counted from 1, or backwards from -1.
+    #[error("there is no vertex 0; the first is 1, the latest is -1")]
+    VertexZero,
+    /// A corner names a vertex that is not there.
+    #[error("there is no vertex {vertex}; there are {vertices}")]
+    NoSuchVertex {
+        /// The number as written.
+        vertex: i64,
+        /// How many vertices there are; for a negative number, before this line.
+        vertices: usize,
+    },
+    /// More vertices or corners than can be numbered.
+    #[error("the mesh has more than {most} vertices or corners")]
+    TooLarge {
+        /// How many it may have.
+        most: u32,
+    },
+}
