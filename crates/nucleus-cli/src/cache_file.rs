@@ -33,3 +33,12 @@ pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
         }),
     }
 }
+
+/// Whether the file is to be read as a cache and not as a scene: by its first bytes, or else by its name.
+pub fn is_cache(path: &Path) -> bool {
+    use std::io::Read;
+    let mut head = [0; 5];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    let named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
+    named || read.is_ok() && head == *b"\x89MCAP"
+}

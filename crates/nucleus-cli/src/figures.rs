@@ -33,6 +33,11 @@ pub fn number(x: f64) -> String {
     }
 }
 
+/// A share in percent: `1.25 %`.
+pub fn percent(share: f64) -> String {
+    format!("{} %", number(100.0 * share))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

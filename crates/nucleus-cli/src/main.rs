@@ -4,14 +4,26 @@
 //! |--------------------------------------------|----------------------------|
 //! | what a subcommand does                     | `commands/`, a file each   |
 //! | what the exit code means                   | `outcome.rs`               |
+//! | how a run goes, frame by frame             | `simulate.rs`              |
+//! | what its cache says of it                  | `recording.rs`             |
+//! | how a scene is opened, and refused         | `scene_file.rs`            |
 //! | how a cache is opened, and refused         | `cache_file.rs`            |
 //! | how numbers are written for people         | `figures.rs`               |
 
+mod account;
 mod cache_file;
 mod commands;
+mod diagnostics;
 mod figures;
+mod frame_range;
+mod interrupt;
 mod outcome;
 mod output;
+mod progress;
+mod recording;
+mod scene_file;
+mod simulate;
+mod summary;
 
 use std::process::ExitCode;
 

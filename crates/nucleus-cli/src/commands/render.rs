@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::{ObjectKind, Playback};
-use nucleus_view::{AnimationWriter, Bounds, Camera, Colouring, Image, Kind, Object, Style, draw};
+use nucleus_cache::Playback;
+use nucleus_view::{Colouring, Film, Image, Style};
 
 use crate::outcome::Outcome;
 use crate::{cache_file, figures, output};
@@ -59,64 +59,26 @@ impl Render {
 
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = cache_file::moment(cache, self.frame)?;
-        let positions = positions(cache, moment)?;
-        let camera = Camera::framing(&Bounds::of_interest(&objects(cache, &positions)), self.size);
-        self.picture(cache, &positions, &camera).write_png(out)?;
-        Ok(format!("frame {}", cache.moments()[moment].frame))
+        let frame = cache.moments()[moment].frame;
+        // The camera holds the whole run, found from a few of its frames.
+        let every = cache.moments().len() / 24;
+        Film::of(cache, every, self.style())?.moment(moment)?.write_png(out)?;
+        Ok(format!("frame {frame}"))
     }
 
     fn animate(&self, cache: &mut Playback, out: &Path) -> Result<String> {
-        let ends = (0..cache.moments().len()).filter(|&k| cache.moments()[k].ends_frame());
-        let moments: Vec<usize> = ends.step_by(self.every as usize).collect();
-        ensure!(!moments.is_empty(), "the cache holds no frame");
-        // One camera for all frames, so that nothing but the scene moves.
-        let mut bounds = Bounds::default();
-        for &moment in &moments {
-            let positions = positions(cache, moment)?;
-            bounds.merge(&Bounds::of_interest(&objects(cache, &positions)));
-        }
-        let camera = Camera::framing(&bounds, self.size);
-        let rate = cache.run().frames_per_second / f64::from(self.every);
-        let mut animation = AnimationWriter::create(out, self.size, rate)?;
-        for &moment in &moments {
-            let positions = positions(cache, moment)?;
-            animation.push(&self.picture(cache, &positions, &camera))?;
-        }
-        animation.finish()?;
-        Ok(figures::count(moments.len(), "frame"))
+        let mut film = Film::of(cache, self.every as usize, self.style())?;
+        film.write(out)?;
+        Ok(figures::count(film.len(), "frame"))
     }
 
-    fn picture(&self, cache: &Playback, positions: &[Vec<[f32; 3]>], camera: &Camera) -> Image {
+    fn style(&self) -> Style {
         let colouring = match self.strain {
             Some(full_scale) => Colouring::Strain { full_scale },
             None => Colouring::Objects,
         };
-        let style = Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() };
-        draw(&objects(cache, positions), camera, &style)
+        Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
     }
-}
-
-/// Positions of every object at a moment.
-fn positions(cache: &mut Playback, moment: usize) -> Result<Vec<Vec<[f32; 3]>>> {
-    (0..cache.objects().len()).map(|object| Ok(cache.positions(object, moment)?)).collect()
-}
-
-/// The objects of a cache, as the painter wants them.
-fn objects<'a>(cache: &'a Playback, positions: &'a [Vec<[f32; 3]>]) -> Vec<Object<'a>> {
-    let objects = cache.objects().iter().zip(positions);
-    objects
-        .map(|(object, positions)| Object {
-            name: &object.name,
-            kind: match object.kind {
-                ObjectKind::Cloth => Kind::Cloth,
-                ObjectKind::Collider => Kind::Collider,
-                ObjectKind::Particles => Kind::Particles,
-            },
-            faces: &object.faces,
-            positions,
-            rest: Some(&object.rest),
-        })
-        .collect()
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
