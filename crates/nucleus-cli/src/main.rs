@@ -1,2 +1,50 @@
-//! The `nucleus` command.
-fn main() {}
+//! The `nucleus` command: the only crate that prints or exits.
+//!
+//! | You want to know…                          | Read                       |
+//! |--------------------------------------------|----------------------------|
+//! | what a subcommand does                     | `commands/`, a file each   |
+//! | what the exit code means                   | `outcome.rs`               |
+//! | how a run goes, frame by frame             | `simulate.rs`              |
+//! | what its cache says of it                  | `recording.rs`             |
+//! | how a scene is opened, and refused         | `scene_file.rs`            |
+//! | how a cache is opened, and refused         | `cache_file.rs`            |
+//! | how numbers are written for people         | `figures.rs`               |
+
+mod account;
+mod cache_file;
+mod commands;
+mod diagnostics;
+mod figures;
+mod frame_range;
+mod interrupt;
+mod outcome;
+mod output;
+mod progress;
+mod recording;
+mod scene_file;
+mod simulate;
+mod summary;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// The open Nucleus: cloth and colliders, simulated without Maya.
+#[derive(Debug, Parser)]
+#[command(name = "nucleus", version, after_help = outcome::EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command.run() {
+        Ok(outcome) => outcome.into(),
+        // Whoever reads our output has seen enough: `nucleus info x.mcap | head -3`.
+        Err(error) if output::reader_has_gone(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            outcome::COULD_NOT_START.into()
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! One chunk, which is one frame: found, read, unpacked, and checked against its checksum.
+
+use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
+
+use mcap::records::{MessageHeader, Record, op};
+
+/// Bytes before the body of a record: its kind and its length.
+pub(crate) const RECORD_HEAD: u64 = 9;
+
+/// Where a chunk lies in the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ChunkPlace {
+    /// The whole record, its head included.
+    pub bytes: Range<u64>,
+    /// First and last time of its messages in nanoseconds.
+    pub times: (u64, u64),
+}
+
+/// A chunk in memory. Kept and refilled, so that its buffers are allocated once.
+#[derive(Default)]
+pub(crate) struct Chunk {
+    compressed: Vec<u8>,
+    records: Vec<u8>,
+    channels: Vec<mcap::records::Channel>,
+    messages: Vec<(MessageHeader, Range<usize>)>,
+}
+
+/// Why a chunk cannot be used.
+#[derive(Debug)]
+pub(crate) enum ChunkFault {
+    /// Its bytes are not what was written.
+    Damaged,
+    /// The system failed to read.
+    Io(io::Error),
+}
+
+impl Chunk {
+    /// Reads the chunk whose record fills `bytes` of the file; gives the times of its messages.
+    pub fn read(
+        &mut self,
+        file: &mut (impl Read + Seek),
+        bytes: Range<u64>,
+    ) -> Result<(u64, u64), ChunkFault> {
+        self.messages.clear();
+        self.channels.clear();
+        self.compressed.clear();
+        file.seek(SeekFrom::Start(bytes.start)).map_err(ChunkFault::Io)?;
+        let length = bytes.end.saturating_sub(bytes.start);
+        file.take(length).read_to_end(&mut self.compressed).map_err(ChunkFault::Io)?;
+        self.unpack().ok_or(ChunkFault::Damaged)
+    }
+
+    /// The channels that were introduced in this chunk.
+    pub fn channels(&self) -> &[mcap::records::Channel] {
+        &self.channels
+    }
+
+    /// The messages in order.
+    pub fn messages(&self) -> impl Iterator<Item = (&MessageHeader, &[u8])> {
+        self.messages.iter().map(|(header, range)| (header, &self.records[range.clone()]))
+    }
+
+    /// The message of a channel at a time.
+    pub fn message(&self, channel: u16, log_time: u64) -> Option<&[u8]> {
+        let mut messages = self.messages();
+        messages
+            .find(|(head, _)| head.channel_id == channel && head.log_time == log_time)
+            .map(|(_, data)| data)
+    }
+
+    /// Checks and unpacks `compressed`; `None` when anything is not as written.
+    fn unpack(&mut self) -> Option<(u64, u64)> {
+        let (&opcode, body) = self.compressed.split_first()?;
+        let (length, body) = body.split_first_chunk::<8>()?;
+        if opcode != op::CHUNK || u64::from_le_bytes(*length) != body.len() as u64 {
+            return None;
+        }
+        let Ok(Record::Chunk { header, data }) = mcap::parse_record(opcode, body) else { return None };
+        self.records.clear();
+        match header.compression.as_str() {
+            // One byte more than stated shows that the statement is wrong, whatever it says.
+            "zstd" => zstd::stream::read::Decoder::with_buffer(&*data)
+                .and_then(|unpacked| {
+                    unpacked.take(header.uncompressed_size.saturating_add(1)).read_to_end(&mut self.records)
+                })
+                .ok()?,
+            "" => io::copy(&mut &*data, &mut self.records).ok()? as usize,
+            _ => return None,
+        };
+        let whole = self.records.len() as u64 == header.uncompressed_size;
+        if !whole || crc32fast::hash(&self.records) != header.uncompressed_crc {
+            return None;
+        }
+        self.list_records()?;
+        let times = self.messages.iter().map(|(head, _)| head.log_time);
+        let times = (times.clone().min().unwrap_or(0), times.max().unwrap_or(0));
+        (times == (header.message_start_time, header.message_end_time)).then_some(times)
+    }
+
+    /// Notes where each message lies, and each channel.
+    fn list_records(&mut self) -> Option<()> {
+        let mut rest = 0..self.records.len();
+        while let Some((opcode, body)) = next_record(&self.records, &mut rest) {
+            let data = &self.records[body.clone()];
+            match mcap::parse_record(opcode, data).ok()? {
+                Record::Message { header, data } => {
+                    self.messages.push((header, body.end - data.len()..body.end));
+                }
+                Record::Channel(channel) => self.channels.push(channel),
+                _ => {}
+            }
+        }
+        rest.is_empty().then_some(())
+    }
+}
+
+/// The kind and the body of the record at the start of `rest`, which is moved behind it; `None` at the end
+/// and where no whole record is left.
+pub(crate) fn next_record(bytes: &[u8], rest: &mut Range<usize>) -> Option<(u8, Range<usize>)> {
+    let (&opcode, after) = bytes[rest.clone()].split_first()?;
+    let (length, after) = after.split_first_chunk::<8>()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok().filter(|&length| length <= after.len())?;
+    let begin = rest.start + RECORD_HEAD as usize;
+    rest.start = begin + length;
+    Some((opcode, begin..rest.start))
+}

@@ -1,0 +1,272 @@
+//! Reads a cache: what it holds, and any moment of it.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::chunk::{Chunk, ChunkFault};
+use crate::contents::Contents;
+use crate::loss::Loss;
+use crate::moment::{self, RecordedMoment};
+use crate::object::ObjectInfo;
+use crate::open_error::{OpenError, ReadError};
+use crate::points::PointsMessage;
+use crate::provenance::PROFILE;
+use crate::run::RunInfo;
+use crate::{salvage, summary, target, topology};
+
+/// An open cache.
+///
+/// A finished file is found by its index and only the frames that are asked for are read. Any other file is
+/// walked through once, and opened as far as it is whole; [`loss`](Self::loss) says what is missing.
+pub struct Playback<R = BufReader<File>> {
+    file: R,
+    bytes: u64,
+    library: String,
+    run: RunInfo,
+    contents: Contents,
+    loss: Loss,
+    objects: Vec<ObjectInfo>,
+    points_channels: Vec<u16>,
+    moments: Vec<RecordedMoment>,
+    chunk: Chunk,
+    loaded: Option<usize>,
+}
+
+impl Playback {
+    /// Opens the cache at `path`.
+    ///
+    /// # Errors
+    /// When it is no cache, or so damaged that no frame can be shown; see [`OpenError`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
+        let path = path.as_ref();
+        let failed = |source| OpenError::Io { path: path.to_owned(), source };
+        if path.is_dir() {
+            return Err(OpenError::Folder { path: path.to_owned() });
+        }
+        Self::read(BufReader::new(File::open(path).map_err(failed)?))
+    }
+}
+
+impl<R: Read + Seek> Playback<R> {
+    /// Opens a cache from anything that can be read and sought.
+    ///
+    /// # Errors
+    /// As [`Playback::open`].
+    pub fn read(mut file: R) -> Result<Self, OpenError> {
+        let bytes = file.seek(SeekFrom::End(0))?;
+        let library = check_head(&mut file)?;
+        let (contents, mut loss) = match summary::read(&mut file, bytes) {
+            Some(contents) => (contents, Loss::default()),
+            None => salvage::read(&mut file, bytes)?,
+        };
+        let nothing = loss.cut_off && contents.chunks.is_empty();
+        let (run, scene_is_sound) = match RunInfo::from_metadata(&contents.metadata) {
+            Err(OpenError::NoRecord { .. }) if nothing => return Err(OpenError::TooShort),
+            run => run?,
+        };
+        loss.scene = !scene_is_sound;
+        let mut playback = Self {
+            file,
+            bytes,
+            library,
+            run,
+            contents,
+            loss,
+            objects: Vec::new(),
+            points_channels: Vec::new(),
+            moments: Vec::new(),
+            chunk: Chunk::default(),
+            loaded: None,
+        };
+        playback.read_objects()?;
+        playback.moments = moment::list(&playback.run, &playback.contents, &playback.points_channels);
+        playback.loss.frames = moment::missing(&playback.run, &playback.moments);
+        Ok(playback)
+    }
+
+    /// What the run is.
+    pub fn run(&self) -> &RunInfo {
+        &self.run
+    }
+
+    /// The objects, in the order of the recording.
+    pub fn objects(&self) -> &[ObjectInfo] {
+        &self.objects
+    }
+
+    /// All recorded moments in order of time; the first is the initial state.
+    pub fn moments(&self) -> &[RecordedMoment] {
+        &self.moments
+    }
+
+    /// The moment that shows the end of `frame`.
+    pub fn end_of(&self, frame: i32) -> Option<usize> {
+        self.moments.iter().position(|moment| moment.frame == frame && moment.ends_frame())
+    }
+
+    /// What is missing, as far as it is known; [`verify`](Self::verify) knows for certain.
+    pub fn loss(&self) -> &Loss {
+        &self.loss
+    }
+
+    /// Size of the file in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The program that wrote the file, with its version.
+    pub fn library(&self) -> &str {
+        &self.library
+    }
+
+    /// Every channel: topic, encoding, number of messages.
+    pub fn channels(&self) -> impl Iterator<Item = (&str, &str, usize)> {
+        self.contents.channels.values().map(|channel| {
+            let messages = self.contents.messages.get(&channel.id).map_or(0, Vec::len);
+            (channel.topic.as_str(), channel.message_encoding.as_str(), messages)
+        })
+    }
+
+    /// Positions of an object at a moment, in scene units. An object that does not move keeps its last ones.
+    ///
+    /// # Errors
+    /// When there is no such object or moment, or its frame is damaged.
+    pub fn positions(&mut self, object: usize, moment: usize) -> Result<Vec<[f32; 3]>, ReadError> {
+        self.points(object, moment).map(|points| points.positions())
+    }
+
+    /// Velocities of an object at a moment, in scene units per second, if they were recorded.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn velocities(&mut self, object: usize, moment: usize) -> Result<Option<Vec<[f32; 3]>>, ReadError> {
+        self.points(object, moment).map(|points| points.velocities())
+    }
+
+    /// The report of each frame in order: JSON objects with a field `frame`. Reads the whole file; frames
+    /// that are damaged or have no report are left out.
+    ///
+    /// # Errors
+    /// When the system fails to read.
+    pub fn reports(&mut self) -> Result<Vec<Value>, ReadError> {
+        let Some(channel) = self.contents.channel("/report") else { return Ok(Vec::new()) };
+        let mut reports = Vec::new();
+        for (log_time, index) in self.contents.messages.get(&channel).cloned().unwrap_or_default() {
+            match self.load(index) {
+                Ok(()) => {}
+                Err(ReadError::Damaged { .. }) => continue,
+                Err(error) => return Err(error),
+            }
+            let line = self.chunk.message(channel, log_time);
+            reports.extend(line.and_then(|line| serde_json::from_slice(line).ok()));
+        }
+        Ok(reports)
+    }
+
+    /// Reads every frame and checks it; gives what is lost then.
+    ///
+    /// # Errors
+    /// When the system fails to read.
+    pub fn verify(&mut self) -> Result<&Loss, ReadError> {
+        for index in 0..self.contents.chunks.len() {
+            match self.load(index) {
+                Ok(()) => {}
+                Err(ReadError::Damaged { frame }) => self.loss.frames.push(frame),
+                Err(error) => return Err(error),
+            }
+        }
+        self.loss.frames.sort_unstable();
+        self.loss.frames.dedup();
+        Ok(&self.loss)
+    }
+
+    /// The message that holds for an object at a moment.
+    fn points(&mut self, object: usize, moment: usize) -> Result<PointsMessage<'_>, ReadError> {
+        let (objects, moments) = (self.objects.len(), self.moments.len());
+        let channel = *self.points_channels.get(object).ok_or(ReadError::NoObject { object, objects })?;
+        let RecordedMoment { frame, log_time, .. } =
+            *self.moments.get(moment).ok_or(ReadError::NoMoment { moment, moments })?;
+        let Some((log_time, index)) = self.contents.latest(channel, log_time) else {
+            return Err(ReadError::Nothing { object: self.objects[object].name.clone(), frame });
+        };
+        self.load(index)?;
+        let frame = self.run.frame_at(log_time);
+        let message = self.chunk.message(channel, log_time).and_then(PointsMessage::read);
+        let (count, stamp) = (self.objects[object].rest.len(), (frame, log_time));
+        message
+            .filter(|points| {
+                points.count() == count && (points.stamp.frame, points.stamp.log_time()) == stamp
+            })
+            .ok_or(ReadError::Damaged { frame })
+    }
+
+    /// Makes `index` the chunk in memory.
+    fn load(&mut self, index: usize) -> Result<(), ReadError> {
+        if self.loaded == Some(index) {
+            return Ok(());
+        }
+        self.loaded = None;
+        let place = &self.contents.chunks[index];
+        match self.chunk.read(&mut self.file, place.bytes.clone()) {
+            Ok(times) if times == place.times => self.loaded = Some(index),
+            Ok(_) | Err(ChunkFault::Damaged) => {
+                return Err(ReadError::Damaged { frame: self.run.frame_at(place.times.1) });
+            }
+            Err(ChunkFault::Io(error)) => return Err(ReadError::Io(error)),
+        }
+        Ok(())
+    }
+
+    /// Reads the meshes.
+    fn read_objects(&mut self) -> Result<(), OpenError> {
+        let topologies: BTreeMap<u16, String> = self
+            .contents
+            .channels
+            .values()
+            .filter(|channel| channel.message_encoding == topology::ENCODING)
+            .filter_map(|channel| Some((channel.id, object_name(&channel.topic)?.to_owned())))
+            .collect();
+        for (channel, name) in topologies {
+            let damaged = || OpenError::Topology { object: format!("`{name}`") };
+            let points = self.contents.channel(&format!("/{name}/points")).ok_or_else(damaged)?;
+            let (log_time, index) = self.contents.latest(channel, u64::MAX).ok_or_else(damaged)?;
+            self.load(index).map_err(|_| damaged())?;
+            let message = self.chunk.message(channel, log_time);
+            let object = message.and_then(|data| topology::read(&name, data)).ok_or_else(damaged)?;
+            self.objects.push(object);
+            self.points_channels.push(points);
+        }
+        if self.contents.channels.is_empty() && self.loss.cut_off && self.contents.chunks.is_empty() {
+            return Err(OpenError::TooShort);
+        }
+        if self.contents.channels.is_empty() {
+            return Err(OpenError::Topology { object: "every object".to_owned() });
+        }
+        Ok(())
+    }
+}
+
+/// Looks at the first bytes; gives the library that wrote them.
+fn check_head(file: &mut (impl Read + Seek)) -> Result<String, OpenError> {
+    let mut head = Vec::new();
+    file.seek(SeekFrom::Start(0))?;
+    file.take(4096).read_to_end(&mut head)?;
+    let magic = &mcap::MAGIC[..mcap::MAGIC.len().min(head.len())];
+    match target::read_header(&head) {
+        _ if head.is_empty() => Err(OpenError::Empty),
+        _ if !head.starts_with(magic) => Err(OpenError::NotMcap),
+        None if head.len() < 64 => Err(OpenError::TooShort),
+        None => Err(OpenError::NotMcap),
+        Some((profile, library)) if profile == PROFILE => Ok(library),
+        Some((profile, library)) => Err(OpenError::OtherTool { profile, library }),
+    }
+}
+
+/// The object a topology channel belongs to.
+fn object_name(topic: &str) -> Option<&str> {
+    topic.strip_prefix('/')?.strip_suffix("/topology")
+}

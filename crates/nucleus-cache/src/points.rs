@@ -1,0 +1,127 @@
+//! The bytes of an object at a moment: the message on `/<object>/points`. Everything is little-endian.
+
+use mcap::records::MessageHeader;
+
+use crate::shuffle::unshuffle;
+
+pub(crate) const ENCODING: &str = "nucleus.points.v1";
+
+/// What a stranger needs to read a points message; stored in the file.
+pub(crate) const SCHEMA: &str = "\
+Little-endian. i32 frame, u32 substep (counted from 1; 0 is the initial state), u32 substeps, u32 count,
+u32 flags (bit 0: velocities follow), u32 zero, f64 time (seconds since the start frame). Then positions
+in scene units as four planes of 3 * count bytes: plane k holds byte k of every f32 (0 is the lowest), in
+the order x0 y0 z0 x1 ... With bit 0 set, velocities (scene units per second) follow in the same way.
+";
+
+/// The flag that says that velocities follow.
+const VELOCITIES: u32 = 1;
+const HEAD: usize = 32;
+
+/// When a message was taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stamp {
+    pub frame: i32,
+    pub substep: u32,
+    pub substeps: u32,
+    pub time: f64,
+}
+
+impl Stamp {
+    /// The initial state, at the start frame.
+    pub fn start(frame: i32) -> Self {
+        Self { frame, substep: 0, substeps: 1, time: 0.0 }
+    }
+
+    /// The time as MCAP wants it.
+    pub fn log_time(&self) -> u64 {
+        (self.time * 1e9).round() as u64
+    }
+
+    /// The header of a message taken now.
+    pub fn header(&self, channel_id: u16, sequence: u32) -> MessageHeader {
+        MessageHeader { channel_id, sequence, log_time: self.log_time(), publish_time: self.log_time() }
+    }
+}
+
+/// Replaces `out` by the head of a points message for `count` points; positions and velocities follow
+/// through [`shuffle`](crate::shuffle::shuffle).
+pub(crate) fn write_head(stamp: &Stamp, count: usize, velocities: bool, out: &mut Vec<u8>) {
+    out.clear();
+    out.reserve_exact(HEAD + 12 * count * (1 + usize::from(velocities)));
+    out.extend_from_slice(&stamp.frame.to_le_bytes());
+    for word in [stamp.substep, stamp.substeps, count as u32, u32::from(velocities) * VELOCITIES, 0] {
+        out.extend_from_slice(&word.to_le_bytes());
+    }
+    out.extend_from_slice(&stamp.time.to_le_bytes());
+}
+
+/// A points message, its values still shuffled.
+pub(crate) struct PointsMessage<'a> {
+    pub stamp: Stamp,
+    positions: &'a [u8],
+    velocities: Option<&'a [u8]>,
+}
+
+impl<'a> PointsMessage<'a> {
+    /// Reads the head; `None` when it contradicts the length.
+    pub fn read(data: &'a [u8]) -> Option<Self> {
+        let (head, values) = data.split_at_checked(HEAD)?;
+        let word = |k: usize| u32::from_le_bytes(head[4 * k..4 * k + 4].try_into().expect("four bytes"));
+        let time = f64::from_le_bytes(head[24..32].try_into().expect("eight bytes"));
+        let stamp = Stamp { frame: word(0).cast_signed(), substep: word(1), substeps: word(2), time };
+        let bytes = 12 * word(3) as usize;
+        let has_velocities = word(4) & VELOCITIES != 0;
+        if values.len() != bytes * (1 + usize::from(has_velocities)) {
+            return None;
+        }
+        let (positions, velocities) = values.split_at(bytes);
+        Some(Self { stamp, positions, velocities: has_velocities.then_some(velocities) })
+    }
+
+    pub fn count(&self) -> usize {
+        self.positions.len() / 12
+    }
+
+    pub fn positions(&self) -> Vec<[f32; 3]> {
+        unshuffle(self.positions)
+    }
+
+    pub fn velocities(&self) -> Option<Vec<[f32; 3]>> {
+        self.velocities.map(unshuffle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shuffle::shuffle;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn only_a_message_of_the_length_it_states_is_read(
+            count in 0..9_u8, slack in prop_oneof![Just(12_usize), 0..20_usize], noise: u8,
+        ) {
+            let mut bytes = vec![noise; 12 * usize::from(count) + 20 + slack];
+            bytes.resize(bytes.len().max(24), noise); // The head up to its flags is there.
+            bytes[12..24].fill(0);
+            bytes[12] = count;
+            let points = PointsMessage::read(&bytes);
+            prop_assert_eq!(points.is_some(), bytes.len() == HEAD + 12 * usize::from(count));
+            prop_assert!(points.is_none_or(|points| points.positions().len() == usize::from(count)));
+        }
+    }
+
+    #[test]
+    fn a_points_message_is_laid_out_as_the_schema_says() {
+        let stamp = Stamp { frame: -2, substep: 3, substeps: 4, time: 0.5 };
+        let mut bytes = Vec::new();
+        write_head(&stamp, 1, false, &mut bytes);
+        shuffle(&[[1.0, 0.0, 0.0]], &mut bytes);
+        assert_eq!(bytes[..4], (-2_i32).to_le_bytes());
+        assert_eq!(bytes[4..24], [3, 0, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(bytes[24..32], 0.5_f64.to_le_bytes());
+        assert_eq!(bytes[32..], [0, 0, 0, 0, 0, 0, 0x80, 0, 0, 0x3f, 0, 0]);
+    }
+}

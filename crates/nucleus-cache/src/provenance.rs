@@ -1,0 +1,155 @@
+//! The two metadata records that say what a run is, each with a checksum.
+
+use std::collections::BTreeMap;
+
+use mcap::records::Metadata;
+
+use crate::open_error::OpenError;
+use crate::run::{Detail, RunInfo};
+
+/// The layout written here. A reader refuses a higher one.
+const FORMAT: u32 = 1;
+pub(crate) const PROFILE: &str = "nucleus";
+const SCENE: &str = "nucleus.scene";
+const RUN: &str = "nucleus.run";
+/// The key of a record's checksum over all its other keys and values.
+const CHECKSUM: &str = "crc32";
+
+impl RunInfo {
+    pub(crate) fn to_metadata(&self) -> [Metadata; 2] {
+        let detail = match self.detail {
+            Detail::Frames => "frames",
+            Detail::Substeps => "substeps",
+        };
+        let mut run = self.extra.clone();
+        run.extend(
+            [
+                ("format", FORMAT.to_string()),
+                ("start", self.start.to_string()),
+                ("end", self.end.to_string()),
+                ("fps", self.frames_per_second.to_string()),
+                ("units_per_metre", self.units_per_metre.to_string()),
+                ("record", detail.to_owned()),
+                ("velocities", self.velocities.to_string()),
+                ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ]
+            .map(|(key, value)| (key.to_owned(), value)),
+        );
+        let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
+            .map(|(key, value)| (key.to_owned(), value.clone()));
+        [sealed(SCENE, scene.into()), sealed(RUN, run)]
+    }
+
+    /// The run, and whether its scene is as it was written. A damaged scene is left out.
+    pub(crate) fn from_metadata(records: &[Metadata]) -> Result<(Self, bool), OpenError> {
+        let find = |name: &str| records.iter().find(|record| record.name == name);
+        let missing = OpenError::NoRecord { name: RUN };
+        let Some(record) = find(RUN) else { return Err(missing) };
+        let mut run = Keys(record.metadata.clone());
+        let version = run.0.remove("version").unwrap_or_default();
+        match run.parse("format") {
+            Ok(format) if format > FORMAT => return Err(OpenError::Newer { format, version, known: FORMAT }),
+            _ if !is_sound(record) => return Err(missing),
+            _ => {}
+        }
+        run.0.remove(CHECKSUM);
+        let scene = find(SCENE).filter(|record| is_sound(record));
+        let (scene_is_sound, mut scene) =
+            (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
+        let info = Self {
+            scene_path: scene.remove("path").unwrap_or_default(),
+            scene_text: scene.remove("text").unwrap_or_default(),
+            start: run.parse("start")?,
+            end: run.parse("end")?,
+            frames_per_second: run.parse("fps")?,
+            units_per_metre: run.parse("units_per_metre")?,
+            detail: run.detail()?,
+            velocities: run.parse("velocities")?,
+            version,
+            extra: run.0,
+        };
+        match info.fault() {
+            Some(fault) => Err(OpenError::BadValue { key: RUN, value: fault }),
+            None => Ok((info, scene_is_sound)),
+        }
+    }
+}
+
+/// A metadata record with a checksum, as MCAP has none for them.
+fn sealed(name: &str, mut values: BTreeMap<String, String>) -> Metadata {
+    values.remove(CHECKSUM);
+    let checksum = checksum(&values);
+    values.insert(CHECKSUM.to_owned(), checksum);
+    Metadata { name: name.to_owned(), metadata: values }
+}
+
+fn is_sound(record: &Metadata) -> bool {
+    let mut values = record.metadata.clone();
+    values.remove(CHECKSUM).is_some_and(|found| found == checksum(&values))
+}
+
+fn checksum(values: &BTreeMap<String, String>) -> String {
+    let mut hasher = crc32fast::Hasher::new();
+    for text in values.iter().flat_map(|(key, value)| [key, value]) {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    }
+    format!("{:08x}", hasher.finalize())
+}
+
+/// The record `nucleus.run` while it is being taken apart; what is left over is `extra`.
+struct Keys(BTreeMap<String, String>);
+
+impl Keys {
+    fn parse<T: std::str::FromStr>(&mut self, key: &'static str) -> Result<T, OpenError> {
+        let value = self.0.remove(key).unwrap_or_default();
+        value.parse().map_err(|_| OpenError::BadValue { key, value })
+    }
+
+    fn detail(&mut self) -> Result<Detail, OpenError> {
+        match self.0.remove("record").unwrap_or_default().as_str() {
+            "frames" => Ok(Detail::Frames),
+            "substeps" => Ok(Detail::Substeps),
+            other => Err(OpenError::BadValue { key: "record", value: other.to_owned() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_of_a_run_is_what_is_read() {
+        let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
+        let run = RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ..RunInfo::default() };
+        assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
+    }
+
+    /// What a run with one value exchanged is refused with.
+    fn refusal(key: &str, value: &str) -> String {
+        let [scene, mut run] = RunInfo::default().to_metadata();
+        run.metadata.insert(key.to_owned(), value.to_owned());
+        RunInfo::from_metadata(&[scene, sealed(RUN, run.metadata)]).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn impossible_values_are_refused_by_name() {
+        assert_eq!(refusal("record", "framez"), "the run's `record` cannot be `framez`");
+        assert_eq!(refusal("start", ""), "the run's `start` cannot be ``");
+        assert!(refusal("fps", "-4").contains("frames per second must be above zero"));
+        assert!(refusal("units_per_metre", "NaN").contains("units per metre must be above zero"));
+        assert!(refusal("end", "-9").contains("frame -9 ends before frame 1"));
+    }
+
+    #[test]
+    fn a_changed_scene_is_left_out_and_a_changed_run_is_refused() {
+        let run = RunInfo { scene_text: "a".to_owned(), ..RunInfo::default() };
+        let [mut scene, mut record] = run.to_metadata();
+        scene.metadata.insert("text".to_owned(), "b".to_owned());
+        let (read, sound) = RunInfo::from_metadata(&[scene.clone(), record.clone()]).unwrap();
+        assert_eq!((read.scene_text.as_str(), sound), ("", false));
+        record.metadata.insert("fps".to_owned(), "25".to_owned());
+        assert!(matches!(RunInfo::from_metadata(&[scene, record]), Err(OpenError::NoRecord { .. })));
+    }
+}

@@ -1,0 +1,90 @@
+//! Why a run cannot be recorded, or no further.
+
+use std::io;
+use std::path::PathBuf;
+
+use mcap::McapError;
+
+/// Why a run cannot be recorded, or no further.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// A cache would replace a file that is none.
+    #[error("`{}` exists and is not a nucleus cache; remove it or choose another name", path.display())]
+    NotOurs {
+        /// The file in the way.
+        path: PathBuf,
+    },
+    /// A cache would replace a folder or a device.
+    #[error("`{}` is not a file; give the name of a file to write", path.display())]
+    NotAFile {
+        /// What is in the way.
+        path: PathBuf,
+    },
+    /// The file cannot be made.
+    #[error("cannot write `{}`: {source}", path.display())]
+    Create {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The description of the run contradicts itself.
+    #[error("nothing can be recorded: {fault}")]
+    BadRun {
+        /// What is wrong with it.
+        fault: String,
+    },
+    /// Two objects have the same name.
+    #[error("two objects are named `{name}`")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// An object has another number of points than it was announced with.
+    #[error("`{object}` has {found} points in the solver but was announced with {expected}")]
+    PointCount {
+        /// The object.
+        object: String,
+        /// Points announced.
+        expected: usize,
+        /// Points in the solver.
+        found: usize,
+    },
+    /// Frames must come in order, after the start frame.
+    #[error("frame {frame} cannot follow frame {last}")]
+    FrameOrder {
+        /// The frame that was to be recorded.
+        frame: i32,
+        /// The last one recorded.
+        last: i32,
+    },
+    /// The report of a frame has no JSON form.
+    #[error("the report of frame {frame} cannot be written as JSON: {source}")]
+    Report {
+        /// The frame.
+        frame: i32,
+        /// Why not.
+        source: serde_json::Error,
+    },
+    /// Writing failed on the way: a full disk, most likely.
+    #[error(
+        "writing the cache failed: {source}; {frames} frames ({bytes} bytes) were written and can be played"
+    )]
+    Write {
+        /// Whole frames in the file, the initial state among them.
+        frames: u32,
+        /// Bytes handed to the system.
+        bytes: u64,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// The cause of a failed write: what the system said, where it said anything.
+pub(crate) fn cause(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}

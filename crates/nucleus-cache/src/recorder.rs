@@ -1,0 +1,248 @@
+//! Writes a run as it is simulated: one chunk per frame, safe on disk before the next begins.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{Seek, Write};
+use std::path::Path;
+
+use nucleus_core::{Moment, StateView, StepObserver};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::object::{ObjectInfo, Source};
+use crate::points::{self, Stamp};
+use crate::record_error::RecordError;
+use crate::run::{Detail, RunInfo};
+use crate::shuffle::shuffle;
+use crate::stream::Stream;
+use crate::{target, topology};
+
+/// Records a run.
+///
+/// ```no_run
+/// # use nucleus_cache::*; use nucleus_core::*;
+/// # fn run(solver: &mut Solver, input: &FrameInput, objects: Vec<(Source, ObjectInfo)>) -> Result<(), RecordError> {
+/// let run = RunInfo { start: 1, end: 24, ..RunInfo::default() };
+/// let mut recorder = Recorder::create("hang.mcap", &run, objects)?;
+/// recorder.record_start(solver)?;
+/// for frame in 2..=24 {
+///     let report = solver.step(input, &mut recorder.frame(frame)?);
+///     recorder.end_frame(&report.max_strain)?;
+/// }
+/// recorder.finish()?;
+/// # Ok(()) }
+/// ```
+///
+/// A recorder that is dropped before [`finish`](Self::finish) leaves a file that plays to its last whole frame.
+pub struct Recorder<W: Write + Seek = File> {
+    stream: Stream<W>,
+    run: RunInfo,
+    tracks: Vec<Track>,
+    report_channel: u16,
+    last_frame: i32,
+    moments: u64,
+    /// What went wrong inside the step, where it could not be said.
+    trouble: Option<RecordError>,
+    // Reused for every message.
+    values: Vec<[f32; 3]>,
+    message: Vec<u8>,
+}
+
+/// An object while it is recorded.
+struct Track {
+    name: String,
+    source: Source,
+    channel: u16,
+    points: usize,
+}
+
+/// What has been recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Recorded {
+    /// Frames in the file, the initial state among them.
+    pub frames: u32,
+    /// Moments in the file: as many as frames, or more where substeps are recorded.
+    pub moments: u64,
+    /// Size of the file in bytes.
+    pub bytes: u64,
+}
+
+impl Recorder<File> {
+    /// Begins a cache at `path`. An older cache there is replaced; any other file is left alone.
+    ///
+    /// # Errors
+    /// When something else is in the way, the file cannot be made, or the description contradicts itself.
+    pub fn create(
+        path: impl AsRef<Path>,
+        run: &RunInfo,
+        objects: Vec<(Source, ObjectInfo)>,
+    ) -> Result<Self, RecordError> {
+        check(run, &objects)?;
+        Self::to_writer(target::create(path.as_ref())?, run, objects)
+    }
+}
+
+impl<W: Write + Seek> Recorder<W> {
+    /// Begins a cache in an empty `target`.
+    ///
+    /// # Errors
+    /// When `target` cannot be written to or the description contradicts itself.
+    pub fn to_writer(
+        target: W,
+        run: &RunInfo,
+        objects: Vec<(Source, ObjectInfo)>,
+    ) -> Result<Self, RecordError> {
+        check(run, &objects)?;
+        let mut recorder = Self {
+            stream: Stream::create(target)?,
+            run: run.clone(),
+            tracks: Vec::with_capacity(objects.len()),
+            report_channel: 0,
+            last_frame: run.start,
+            moments: 0,
+            trouble: None,
+            values: Vec::new(),
+            message: Vec::new(),
+        };
+        recorder.begin(objects)?;
+        Ok(recorder)
+    }
+
+    /// Records the initial state: substep 0 of the start frame.
+    ///
+    /// # Errors
+    /// When writing fails or an object has another number of points than announced.
+    pub fn record_start(&mut self, state: &dyn StateView) -> Result<(), RecordError> {
+        self.record(Stamp::start(self.run.start), state)?;
+        self.stream.close_frame()
+    }
+
+    /// The observer of frame `frame`, to be shown its substeps.
+    ///
+    /// # Errors
+    /// When the frame does not come after the one before.
+    pub fn frame(&mut self, frame: i32) -> Result<FrameRecorder<'_, W>, RecordError> {
+        if frame <= self.last_frame {
+            return Err(RecordError::FrameOrder { frame, last: self.last_frame });
+        }
+        self.last_frame = frame;
+        Ok(FrameRecorder { recorder: self })
+    }
+
+    /// Ends the frame with its report, a JSON object to which `frame` is added, and puts it on disk.
+    ///
+    /// # Errors
+    /// When writing failed, now or during the step.
+    pub fn end_frame(&mut self, report: &impl Serialize) -> Result<(), RecordError> {
+        if let Some(trouble) = self.trouble.take() {
+            return Err(trouble);
+        }
+        let frame = self.last_frame;
+        let report = report_line(frame, report).map_err(|source| RecordError::Report { frame, source })?;
+        let stamp = Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) };
+        self.message.clear();
+        self.message.extend_from_slice(report.to_string().as_bytes());
+        self.stream.send(&stamp, self.report_channel, &self.message)?;
+        self.stream.close_frame()
+    }
+
+    /// Writes the index and closes the file.
+    ///
+    /// # Errors
+    /// When writing fails; the frames before are in the file all the same.
+    pub fn finish(self) -> Result<Recorded, RecordError> {
+        let (frames, bytes) = self.stream.finish()?;
+        Ok(Recorded { frames, moments: self.moments, bytes })
+    }
+
+    /// Writes what stands before the first frame: the run, the channels, the meshes.
+    fn begin(&mut self, objects: Vec<(Source, ObjectInfo)>) -> Result<(), RecordError> {
+        for record in self.run.to_metadata() {
+            self.stream.metadata(&record)?;
+        }
+        let topology_schema = self.stream.schema(topology::ENCODING, topology::SCHEMA)?;
+        let points_schema = self.stream.schema(points::ENCODING, points::SCHEMA)?;
+        self.report_channel = self.stream.channel("/report", 0, "json")?;
+        for (source, object) in objects {
+            let (name, points) = (object.name.clone(), object.rest.len());
+            let mesh =
+                self.stream.channel(&format!("/{name}/topology"), topology_schema, topology::ENCODING)?;
+            let channel = self.stream.channel(&format!("/{name}/points"), points_schema, points::ENCODING)?;
+            topology::write(object, &mut self.message);
+            self.stream.send(&Stamp::start(self.run.start), mesh, &self.message)?;
+            self.tracks.push(Track { name, source, channel, points });
+        }
+        Ok(())
+    }
+
+    /// Writes one message per object that may have changed.
+    fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
+        let units = self.run.units_per_metre;
+        for k in 0..self.tracks.len() {
+            let Track { source, channel, points, .. } = self.tracks[k];
+            match source {
+                Source::Collider(id) if stamp.substep > 0 && !state.collider_moved(id) => continue,
+                Source::Collider(id) => state.collider_positions(id, units, &mut self.values),
+                Source::Cloth(id) => state.positions(id, units, &mut self.values),
+            }
+            if self.values.len() != points {
+                let (object, found) = (self.tracks[k].name.clone(), self.values.len());
+                return Err(RecordError::PointCount { object, expected: points, found });
+            }
+            let cloth = match source {
+                Source::Cloth(id) if self.run.velocities => Some(id),
+                _ => None,
+            };
+            points::write_head(&stamp, points, cloth.is_some(), &mut self.message);
+            shuffle(&self.values, &mut self.message);
+            if let Some(id) = cloth {
+                state.velocities(id, units, &mut self.values);
+                shuffle(&self.values, &mut self.message);
+            }
+            self.stream.send(&stamp, channel, &self.message)?;
+        }
+        self.moments += 1;
+        Ok(())
+    }
+}
+
+/// Records the substeps of one frame. What goes wrong is told by [`Recorder::end_frame`].
+pub struct FrameRecorder<'a, W: Write + Seek = File> {
+    recorder: &'a mut Recorder<W>,
+}
+
+impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
+    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+        let wanted = self.recorder.run.detail == Detail::Substeps || moment.ends_frame();
+        if !wanted || self.recorder.trouble.is_some() {
+            return;
+        }
+        let frame = self.recorder.last_frame;
+        let Moment { substep, substeps } = moment;
+        let stamp =
+            Stamp { frame, substep, substeps, time: self.recorder.run.time(frame, substep, substeps) };
+        self.recorder.trouble = self.recorder.record(stamp, state).err();
+    }
+}
+
+/// Refuses a run that could not be read back.
+fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(), RecordError> {
+    if let Some(fault) = run.fault() {
+        return Err(RecordError::BadRun { fault });
+    }
+    let mut names = HashSet::new();
+    match objects.iter().find(|(_, object)| !names.insert(object.name.as_str())) {
+        Some((_, object)) => Err(RecordError::DuplicateName { name: object.name.clone() }),
+        None => Ok(()),
+    }
+}
+
+/// The report as a JSON object that names its frame.
+fn report_line(frame: i32, report: &impl Serialize) -> Result<Value, serde_json::Error> {
+    let mut line = match serde_json::to_value(report)? {
+        Value::Object(fields) => fields,
+        other => serde_json::Map::from_iter([("report".to_owned(), other)]),
+    };
+    line.insert("frame".to_owned(), frame.into());
+    Ok(Value::Object(line))
+}

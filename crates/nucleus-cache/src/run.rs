@@ -1,0 +1,103 @@
+//! What a run is: which scene, which frames, which units, and how frames become times.
+
+use std::collections::BTreeMap;
+
+/// How finely time is recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Detail {
+    /// The end of each frame.
+    #[default]
+    Frames,
+    /// The end of each substep.
+    Substeps,
+}
+
+/// What a cache says about the run it holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunInfo {
+    /// The file the scene was read from, as it was given.
+    pub scene_path: String,
+    /// The text of that file.
+    pub scene_text: String,
+    /// The frame of the initial state.
+    pub start: i32,
+    /// The last frame that was asked for; the run may have ended sooner.
+    pub end: i32,
+    /// Frames per second; fixes the times of the messages.
+    pub frames_per_second: f64,
+    /// Units of the recorded positions that make a metre (100 for centimetres).
+    pub units_per_metre: f64,
+    /// How finely time is recorded.
+    pub detail: Detail,
+    /// Whether velocities follow the positions (units per second). Doubles the size.
+    pub velocities: bool,
+    /// The version of Nucleus that wrote the cache. A recorder sets it.
+    pub version: String,
+    /// Anything else worth keeping. Keys of the format itself are ignored when writing.
+    pub extra: BTreeMap<String, String>,
+}
+
+impl Default for RunInfo {
+    /// An unnamed scene of 24 frames a second in metres, only its start frame.
+    fn default() -> Self {
+        Self {
+            scene_path: String::new(),
+            scene_text: String::new(),
+            start: 1,
+            end: 1,
+            frames_per_second: 24.0,
+            units_per_metre: 1.0,
+            detail: Detail::Frames,
+            velocities: false,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            extra: BTreeMap::new(),
+        }
+    }
+}
+
+impl RunInfo {
+    /// Why nothing can be recorded under this description, if so.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let positive = |name: &str, x: f64| {
+            (!(x.is_finite() && x > 0.0)).then(|| format!("{name} must be above zero and finite, not {x}"))
+        };
+        let backwards = || {
+            (self.end < self.start).then(|| format!("frame {} ends before frame {}", self.end, self.start))
+        };
+        positive("frames per second", self.frames_per_second)
+            .or_else(|| positive("units per metre", self.units_per_metre))
+            .or_else(backwards)
+    }
+
+    /// Seconds from the start frame to the end of `substep` of `substeps` in `frame`.
+    pub(crate) fn time(&self, frame: i32, substep: u32, substeps: u32) -> f64 {
+        let frames = f64::from(frame) - f64::from(self.start) - 1.0;
+        (frames + f64::from(substep) / f64::from(substeps.max(1))) / self.frames_per_second
+    }
+
+    /// The frame in which a message of this time was recorded.
+    pub(crate) fn frame_at(&self, log_time: u64) -> i32 {
+        // Times are rounded to nanoseconds; substeps are far longer than the slack given here.
+        let frames = (log_time as f64 * 1e-9 * self.frames_per_second - 1e-6).ceil();
+        self.start.saturating_add(frames as i32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_time_names_its_frame(
+            start in -1000_i32..1000, after in 1_i32..100_000, substeps in 1_u32..500, share in 0.0..1.0_f64,
+            fps in 1.0..120.0_f64,
+        ) {
+            let run = RunInfo { start, end: start, frames_per_second: fps, ..RunInfo::default() };
+            let substep = 1 + (share * f64::from(substeps - 1)) as u32;
+            let time = run.time(start + after, substep, substeps);
+            prop_assert_eq!(run.frame_at((time * 1e9).round() as u64), start + after);
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Cut off anywhere, or a byte flipped anywhere: what is whole is played, what is not is named.
+
+use std::io::Cursor;
+
+use nucleus_cache::{OpenError, Playback, Recorder};
+
+use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
+
+fn open(bytes: &[u8]) -> Result<Playback<Cursor<&[u8]>>, OpenError> {
+    Playback::read(Cursor::new(bytes))
+}
+
+/// Reads everything; fails when a frame that can be read is not the one that was recorded.
+fn frames_that_play(cache: &mut Playback<Cursor<&[u8]>>) -> Vec<i32> {
+    let mut played = Vec::new();
+    for moment in 0..cache.moments().len() {
+        let frame = cache.moments()[moment].frame;
+        let state = if frame == START { Falling::INITIAL } else { Falling { frame, substep: SUBSTEPS } };
+        if let Ok(positions) = cache.positions(0, moment) {
+            assert_eq!(positions, state.cloth_positions(100.0), "frame {frame}");
+            played.push(frame);
+        }
+    }
+    played
+}
+
+/// Ends of the frames in the file, each with the number of frames before it.
+fn chunk_ends(bytes: &[u8]) -> Vec<u64> {
+    let summary = mcap::Summary::read(bytes).unwrap().unwrap();
+    summary.chunk_indexes.iter().map(|chunk| chunk.chunk_start_offset + chunk.chunk_length).collect()
+}
+
+#[test]
+fn a_file_cut_off_at_any_byte_plays_every_whole_frame() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let ends = chunk_ends(&bytes);
+    for cut in 0..bytes.len() {
+        let whole = ends.iter().filter(|&&end| end <= cut as u64).count();
+        match open(&bytes[..cut]) {
+            Ok(mut cache) => {
+                assert_eq!(frames_that_play(&mut cache).len(), whole, "cut at {cut}");
+                assert!(!cache.loss().is_none(), "cut at {cut}");
+            }
+            Err(error) => assert_eq!(whole, 0, "cut at {cut}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn a_flipped_bit_is_never_played_and_never_makes_a_panic() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    for at in 0..bytes.len() {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        let Ok(mut cache) = open(&flipped) else { continue };
+        let played = frames_that_play(&mut cache);
+        let lost = cache.verify().unwrap().frames.clone();
+        let whole: Vec<i32> = (START..=END).filter(|frame| !lost.contains(frame)).collect();
+        let tail_lost = whole.starts_with(&played);
+        assert!(tail_lost, "byte {at}: played {played:?}, named as lost {lost:?}");
+        assert!(played.len() == whole.len() || cache.loss().cut_off, "byte {at}: {}", cache.loss());
+    }
+}
+
+#[test]
+fn a_flipped_bit_in_a_frame_names_that_frame_and_spares_the_others() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let end = chunk_ends(&bytes)[4] as usize;
+    let mut flipped = bytes.clone();
+    flipped[end - 9] ^= 0x10;
+    let mut cache = open(&flipped).unwrap();
+    let moment = cache.end_of(START + 4).unwrap();
+    let error = cache.positions(0, moment).unwrap_err();
+    assert_eq!(error.to_string(), format!("frame {} is damaged and cannot be read", START + 4));
+    assert_eq!(frames_that_play(&mut cache).len() as i32, END - START);
+    assert_eq!(cache.verify().unwrap().to_string(), format!("missing or damaged: frame {}", START + 4));
+}
+
+#[test]
+fn a_damaged_frame_of_a_killed_run_is_named_when_opened() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let ends = chunk_ends(&bytes);
+    let mut killed = bytes[..ends[6] as usize].to_vec();
+    killed[ends[4] as usize - 9] ^= 0x10;
+    let cache = open(&killed).unwrap();
+    assert_eq!(cache.loss().frames, [START + 4]);
+    assert!(cache.loss().cut_off);
+}
+
+#[test]
+fn a_recorder_that_is_forgotten_leaves_all_its_frames() {
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, START + 3).unwrap();
+    std::mem::forget(recorder); // What a kill does: no destructor runs.
+    let bytes = file.contents();
+    let mut cache = open(&bytes).unwrap();
+    assert_eq!(frames_that_play(&mut cache), [START, START + 1, START + 2, START + 3]);
+    assert_eq!(cache.loss().to_string(), "the file was cut off before its index");
+}
+
+#[test]
+fn a_run_that_ends_early_but_is_closed_has_lost_nothing() {
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, START + 2).unwrap();
+    recorder.finish().unwrap();
+    let bytes = file.contents();
+    let cache = open(&bytes).unwrap();
+    assert!(cache.loss().is_none(), "{}", cache.loss());
+    assert_eq!((cache.moments().len(), cache.run().end), (3, END));
+}

@@ -1,0 +1,108 @@
+//! What is refused, and in which words.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use nucleus_cache::{OpenError, Playback, RecordError, Recorder, RunInfo};
+
+use crate::falling;
+
+fn refusal(path: &Path) -> OpenError {
+    Playback::open(path).err().expect("it should be refused")
+}
+
+fn create_error(path: &Path) -> RecordError {
+    Recorder::create(path, &falling::run_info(), falling::objects()).err().expect("it should be refused")
+}
+
+/// A cache whose bytes have `from` exchanged for `to`, of the same length.
+fn forged(from: &str, to: &str) -> Result<Playback<Cursor<Vec<u8>>>, OpenError> {
+    let (mut bytes, _) = falling::whole_run(&falling::run_info());
+    let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).unwrap();
+    bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
+    Playback::read(Cursor::new(bytes))
+}
+
+#[test]
+fn a_missing_file_a_folder_and_an_empty_file_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let empty = folder.path().join("empty.mcap");
+    fs::write(&empty, "").unwrap();
+    assert!(matches!(refusal(&folder.path().join("none.mcap")), OpenError::Io { .. }));
+    assert!(matches!(refusal(folder.path()), OpenError::Folder { .. }));
+    assert!(matches!(refusal(&empty), OpenError::Empty));
+}
+
+#[test]
+fn a_file_that_is_not_mcap_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.ron");
+    fs::write(&path, "Scene(time: (start: 1))").unwrap();
+    assert_eq!(refusal(&path).to_string(), "this is not an MCAP file");
+}
+
+#[test]
+fn an_mcap_file_of_another_tool_is_refused_by_name() {
+    let mut bytes = Cursor::new(Vec::new());
+    mcap::WriteOptions::new().profile("ros2").library("bag 9").create(&mut bytes).unwrap().finish().unwrap();
+    let error = Playback::read(bytes).err().unwrap();
+    let OpenError::OtherTool { profile, library } = error else { panic!("{error}") };
+    assert_eq!((profile.as_str(), library.as_str()), ("ros2", "bag 9"));
+}
+
+#[test]
+fn a_later_layout_is_refused_with_both_versions() {
+    // The key's length, the key, the value's length, the value.
+    let error = forged("format\u{1}\0\0\x001", "format\u{1}\0\0\x007").err().unwrap();
+    let OpenError::Newer { format, known, .. } = error else { panic!("{error}") };
+    assert_eq!((format, known), (7, 1));
+}
+
+#[test]
+fn an_older_cache_is_replaced_and_any_other_file_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    fs::write(&path, falling::whole_run(&falling::with_substeps()).0).unwrap();
+    let mut recorder = Recorder::create(&path, &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, falling::END).unwrap();
+    recorder.finish().unwrap();
+    assert!(Playback::open(&path).unwrap().loss().is_none());
+
+    fs::write(&path, "my thesis").unwrap();
+    assert!(matches!(create_error(&path), RecordError::NotOurs { .. }));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "my thesis");
+    assert!(matches!(create_error(folder.path()), RecordError::NotAFile { .. }));
+    assert!(matches!(create_error(&folder.path().join("no/such/run.mcap")), RecordError::Create { .. }));
+}
+
+#[test]
+fn an_impossible_run_is_refused_before_a_file_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    let run = RunInfo { frames_per_second: 0.0, ..falling::run_info() };
+    assert!(matches!(Recorder::create(&path, &run, falling::objects()), Err(RecordError::BadRun { .. })));
+    let twice = falling::objects().into_iter().chain(falling::objects()).collect();
+    let doubled = Recorder::create(&path, &falling::run_info(), twice);
+    assert!(matches!(doubled, Err(RecordError::DuplicateName { name }) if name.starts_with("a|b")));
+    assert!(!path.exists());
+}
+
+#[test]
+fn a_frame_out_of_order_is_refused() {
+    let disk = falling::Shared::default();
+    let mut recorder = Recorder::to_writer(disk, &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, falling::START + 2).unwrap();
+    let error = recorder.frame(falling::START + 1).err().unwrap();
+    assert_eq!(error.to_string(), "frame 11 cannot follow frame 12");
+}
+
+#[test]
+fn an_object_of_another_size_is_named() {
+    let disk = falling::Shared::default();
+    let mut objects = falling::objects();
+    objects[1].1.rest.push([0.0; 3]);
+    let mut recorder = Recorder::to_writer(disk, &falling::run_info(), objects).unwrap();
+    let error = falling::record(&mut recorder, falling::END).unwrap_err();
+    assert_eq!(error.to_string(), "`floor` has 3 points in the solver but was announced with 4");
+}

@@ -1,0 +1,103 @@
+//! What is recorded is what is played.
+
+use std::io::Cursor;
+
+use nucleus_cache::{Playback, RunInfo};
+
+use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS};
+
+fn open(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
+    Playback::read(Cursor::new(falling::whole_run(run).0)).unwrap()
+}
+
+#[test]
+fn every_frame_comes_back_bit_for_bit() {
+    let mut cache = open(&falling::run_info());
+    assert_eq!(cache.moments().len() as i32, END - START + 1);
+    assert_eq!(cache.positions(0, 0).unwrap(), Falling::INITIAL.cloth_positions(100.0));
+    for frame in START + 1..=END {
+        let moment = cache.end_of(frame).unwrap();
+        let expected = Falling { frame, substep: SUBSTEPS }.cloth_positions(100.0);
+        assert_eq!(cache.positions(0, moment).unwrap(), expected, "frame {frame}");
+    }
+    assert!(cache.loss().is_none(), "{}", cache.loss());
+}
+
+#[test]
+fn every_substep_comes_back_with_its_velocities() {
+    let mut cache = open(&falling::with_substeps());
+    assert_eq!(cache.moments().len() as i32, 1 + (END - START) * SUBSTEPS as i32);
+    for moment in 1..cache.moments().len() {
+        let (frame, substep) = (cache.moments()[moment].frame, cache.moments()[moment].substep);
+        let state = Falling { frame, substep };
+        assert_eq!(cache.positions(0, moment).unwrap(), state.cloth_positions(100.0));
+        let velocities = cache.velocities(0, moment).unwrap().unwrap();
+        assert_eq!(velocities[2], [0.0, -100.0 * frame as f32, 200.0]);
+    }
+}
+
+#[test]
+fn a_moment_knows_its_frame_substep_and_time() {
+    let cache = open(&falling::with_substeps());
+    let first = cache.moments()[0];
+    assert_eq!((first.frame, first.substep, first.time), (START, 0, 0.0));
+    let third = cache.moments()[1 + SUBSTEPS as usize];
+    assert_eq!((third.frame, third.substep, third.substeps), (START + 2, 1, SUBSTEPS));
+    assert!((third.time - (1.0 + 1.0 / f64::from(SUBSTEPS)) / 24.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_was_said_of_run_and_objects_comes_back() {
+    let cache = open(&falling::run_info());
+    assert_eq!(cache.run(), &falling::run_info());
+    let objects: Vec<_> = falling::objects().into_iter().map(|(_, object)| object).collect();
+    assert_eq!(cache.objects(), objects);
+}
+
+#[test]
+fn a_collider_is_recorded_only_when_it_moves() {
+    let mut cache = open(&falling::run_info());
+    let messages = cache.channels().find(|(topic, ..)| *topic == "/floor/points").unwrap().2;
+    assert_eq!(messages, 2);
+    let (before, after) = (cache.end_of(SHOVE - 1).unwrap(), cache.end_of(END).unwrap());
+    assert_eq!(cache.positions(1, before).unwrap()[0], [0.0, -100.0, 0.0]);
+    assert_eq!(cache.positions(1, after).unwrap()[0], [100.0, -100.0, 0.0]);
+}
+
+#[test]
+fn each_frame_has_its_report() {
+    let reports = open(&falling::run_info()).reports().unwrap();
+    let frames: Vec<i64> = reports.iter().map(|report| report["frame"].as_i64().unwrap()).collect();
+    assert_eq!(frames, (i64::from(START) + 1..=i64::from(END)).collect::<Vec<_>>());
+    assert_eq!(reports[0]["max_strain"], 0.5);
+    assert!(reports[0]["min_gap"].is_null(), "JSON has no infinity");
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes() {
+    let run = falling::with_substeps();
+    assert_eq!(falling::whole_run(&run).0, falling::whole_run(&run).0);
+}
+
+#[test]
+fn the_size_that_is_told_is_the_size_of_the_file() {
+    let (bytes, recorded) = falling::whole_run(&falling::run_info());
+    assert_eq!(recorded.bytes, bytes.len() as u64);
+    assert_eq!(recorded.frames as i32, END - START + 1);
+}
+
+/// What the player in the browser relies on; read with nothing but the `mcap` crate.
+#[test]
+fn any_mcap_reader_finds_channels_schemas_and_one_chunk_per_frame() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    assert_eq!(summary.chunk_indexes.len() as i32, END - START + 1);
+    let mut topics: Vec<_> = summary.channels.values().map(|channel| channel.topic.as_str()).collect();
+    topics.sort_unstable();
+    let cloth = "/a|b:cloth/1 \u{e4}";
+    let expected = [&*format!("{cloth}/points"), &*format!("{cloth}/topology"), "/floor/points"];
+    assert_eq!(topics[..3], expected);
+    assert_eq!(topics[3..], ["/floor/topology", "/report"]);
+    let schema = |name: &str| summary.schemas.values().any(|s| s.name == name && s.encoding == "text");
+    assert!(schema("nucleus.points.v1") && schema("nucleus.topology.v1"));
+}

@@ -1,0 +1,129 @@
+//! What a run has come to so far: its worst figures, and when.
+
+use std::time::Duration;
+
+use nucleus_core::StepReport;
+use serde::Serialize;
+
+/// The figures of one frame, as they are recorded and printed for machines.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FrameFigures {
+    /// The frame.
+    pub frame: i32,
+    /// See [`StepReport`] for this and all that follow.
+    pub max_strain: f64,
+    pub strain_99: f64,
+    /// Nothing where nothing is near: JSON has no infinity.
+    pub min_gap: Option<f64>,
+    pub contacts: u64,
+    pub pairs: u64,
+    pub broad_phases: u32,
+    pub caught: u64,
+    pub crossed: u64,
+    pub kinetic_energy: f64,
+    pub finite: bool,
+}
+
+impl FrameFigures {
+    /// The figures of a frame from its report.
+    pub fn new(frame: i32, report: &StepReport) -> Self {
+        let StepReport { max_strain, strain_99, min_gap, contacts, pairs, broad_phases, .. } = *report;
+        let StepReport { caught, crossed, kinetic_energy, finite, .. } = *report;
+        let min_gap = min_gap.is_finite().then_some(min_gap);
+        Self {
+            frame,
+            max_strain,
+            strain_99,
+            min_gap,
+            contacts,
+            pairs,
+            broad_phases,
+            caught,
+            crossed,
+            kinetic_energy,
+            finite,
+        }
+    }
+}
+
+/// The worst figures of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Account {
+    /// Frames that were simulated.
+    pub frames: u32,
+    /// Time spent on them, recording included.
+    pub spent: Duration,
+    /// Time spent on the last of them.
+    pub last: Duration,
+    /// The largest strain, and its frame.
+    pub worst_strain: Option<(f64, i32)>,
+    /// The smallest gap over thickness, and its frame; nothing if nothing ever came near.
+    pub smallest_gap: Option<(f64, i32)>,
+    /// Points that ended on the far side of a collider, over all frames.
+    pub crossed: u64,
+    /// The first frame in which something was not a finite number.
+    pub not_finite: Option<i32>,
+}
+
+impl Account {
+    /// Adds a frame.
+    pub fn add(&mut self, figures: &FrameFigures, spent: Duration) {
+        let frame = figures.frame;
+        self.frames += 1;
+        self.spent += spent;
+        self.last = spent;
+        if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {
+            self.worst_strain = Some((figures.max_strain, frame));
+        }
+        if let Some(gap) =
+            figures.min_gap.filter(|&gap| self.smallest_gap.is_none_or(|(least, _)| gap < least))
+        {
+            self.smallest_gap = Some((gap, frame));
+        }
+        self.crossed += figures.crossed;
+        if !figures.finite {
+            self.not_finite = self.not_finite.or(Some(frame));
+        }
+    }
+
+    /// Milliseconds to a frame so far.
+    pub fn milliseconds(&self) -> f64 {
+        1e3 * self.spent.as_secs_f64() / f64::from(self.frames.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn account(reports: &[StepReport]) -> Account {
+        let mut account = Account::default();
+        for (frame, report) in (2..).zip(reports) {
+            account.add(&FrameFigures::new(frame, report), Duration::from_millis(10));
+        }
+        account
+    }
+
+    #[test]
+    fn the_worst_of_each_kind_is_kept_with_its_frame() {
+        let strain = |max_strain, min_gap| StepReport { max_strain, min_gap, ..StepReport::default() };
+        let account = account(&[strain(0.1, f64::INFINITY), strain(0.3, 0.9), strain(0.2, 0.5)]);
+        assert_eq!(account.worst_strain, Some((0.3, 3)));
+        assert_eq!(account.smallest_gap, Some((0.5, 4)));
+        assert_eq!((account.frames, account.milliseconds()), (3, 10.0));
+    }
+
+    #[test]
+    fn a_gap_to_nothing_is_no_gap() {
+        assert_eq!(account(&[StepReport::default()]).smallest_gap, None);
+        let figures = FrameFigures::new(2, &StepReport::default());
+        assert!(serde_json::to_value(figures).unwrap()["min_gap"].is_null());
+    }
+
+    #[test]
+    fn the_first_frame_that_is_not_finite_is_named() {
+        let bad = StepReport { finite: false, crossed: 2, ..StepReport::default() };
+        let account = account(&[StepReport::default(), bad, bad]);
+        assert_eq!((account.not_finite, account.crossed), (Some(3), 4));
+    }
+}

@@ -1,0 +1,44 @@
+//! A cache given on the command line.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow};
+use nucleus_cache::{OpenError, Playback};
+
+/// Opens a cache; the error names the file.
+pub fn open(path: &Path) -> Result<Playback> {
+    Playback::open(path).map_err(|error| match error {
+        OpenError::Io { .. } | OpenError::Folder { .. } => anyhow!(error),
+        other => anyhow!(other).context(format!("cannot open `{}`", path.display())),
+    })
+}
+
+/// Opens a cache to look at it: what is lost is said on standard error.
+pub fn open_and_warn(path: &Path) -> Result<Playback> {
+    let cache = open(path)?;
+    if !cache.loss().is_none() {
+        eprintln!("warning: `{}`: {}", path.display(), cache.loss());
+    }
+    Ok(cache)
+}
+
+/// The moment that shows the end of `frame`, or the last one.
+pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
+    let moments = cache.moments();
+    let (first, last) = moments.first().zip(moments.last()).context("the cache holds no frame")?;
+    match frame {
+        None => Ok(moments.len() - 1),
+        Some(frame) => cache.end_of(frame).with_context(|| {
+            format!("there is no frame {frame}; the cache has {} to {}", first.frame, last.frame)
+        }),
+    }
+}
+
+/// Whether the file is to be read as a cache and not as a scene: by its first bytes, or else by its name.
+pub fn is_cache(path: &Path) -> bool {
+    use std::io::Read;
+    let mut head = [0; 5];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    let named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
+    named || read.is_ok() && head == *b"\x89MCAP"
+}

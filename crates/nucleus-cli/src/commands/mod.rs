@@ -1,0 +1,38 @@
+//! One file per subcommand.
+
+mod attrs;
+mod check;
+mod info;
+mod play;
+mod render;
+mod run;
+
+use anyhow::Result;
+use clap::Subcommand;
+
+use crate::outcome::Outcome;
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Run(run::Run),
+    Check(check::Check),
+    Info(info::Info),
+    Play(play::Play),
+    Render(render::Render),
+    Attrs(attrs::Attrs),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(self) -> Result<Outcome> {
+        match self {
+            Self::Run(run) => run.run(),
+            Self::Check(check) => check.run(),
+            Self::Play(play) => play.run(),
+            Self::Info(info) => info.run(),
+            Self::Render(render) => render.run(),
+            Self::Attrs(attrs) => attrs.run(),
+        }
+    }
+}

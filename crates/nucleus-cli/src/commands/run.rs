@@ -1,0 +1,114 @@
+//! `nucleus run`: simulates a scene and records it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use nucleus_cache::Recorded;
+use nucleus_graph::Simulation;
+use nucleus_graph::checks::Judge;
+use serde_json::json;
+
+use crate::account::{Account, FrameFigures};
+use crate::frame_range::FrameRange;
+use crate::outcome::Outcome;
+use crate::progress::Progress;
+use crate::recording::{self, Record};
+use crate::simulate::{Ending, simulate};
+use crate::summary::Summary;
+use crate::{interrupt, output, scene_file};
+
+/// Simulates a scene and records it as a cache.
+///
+/// Ctrl-C ends the run after the frame it is in and closes the cache; the exit code is then 130. A second
+/// Ctrl-C ends it at once; the cache then plays to its last whole frame.
+#[derive(Debug, Args)]
+pub struct Run {
+    /// The scene (.ron).
+    scene: PathBuf,
+    /// Frames to run: so many (`48`, the start frame among them) or from one to another (`10..58`).
+    #[arg(long, allow_hyphen_values = true)]
+    frames: Option<FrameRange>,
+    /// Cores to use; all if none are given. The result is the same, bit for bit.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// What to record, instead of what the scene says.
+    #[arg(long)]
+    record: Option<Record>,
+    /// The cache to write; the scene's name with `.mcap` if none is given.
+    #[arg(short, long)]
+    out: Option<PathBuf>,
+    /// Print a JSON object for each frame and one for the run.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Run {
+    /// A run of a scene with everything else left as it is.
+    pub fn of(scene: PathBuf) -> Self {
+        Self { scene, frames: None, threads: None, record: None, out: None, json: false }
+    }
+
+    /// The cache that it writes.
+    pub fn out(&self) -> Result<PathBuf> {
+        match &self.out {
+            Some(out) => Ok(out.clone()),
+            None => {
+                let stem = self.scene.file_stem().context("the scene has no name")?;
+                Ok(Path::new(stem).with_extension("mcap"))
+            }
+        }
+    }
+
+    /// Runs it.
+    pub fn run(self) -> Result<Outcome> {
+        let Some((_, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
+            return Ok(Outcome::Refused);
+        };
+        let (start, end) = recording::frames(&program)?;
+        let mut simulation = Simulation::new(&program, self.threads());
+        let mut judge = Judge::new(program.checks(), program.mass());
+        let record = Record::of(self.record, &program);
+        let out = self.out()?;
+        let mut recorder = recording::begin(&simulation, record, &out, (&self.scene, &text))?;
+        interrupt::listen()?;
+
+        let mut progress = Progress::new(end.abs_diff(start));
+        let mut tell = |figures: &FrameFigures, account: &Account| {
+            progress.show(account);
+            if self.json { print_frame(figures, account) } else { Ok(()) }
+        };
+        let (account, mut ending) = simulate(&mut simulation, &mut recorder, &mut judge, &mut tell)?;
+        progress.end();
+        let recorded = match recorder.filter(|_| !matches!(ending, Ending::Lost(_))) {
+            None => None,
+            Some(recorder) => match recorder.finish() {
+                Ok(Recorded { bytes, .. }) => Some((out, bytes)),
+                Err(error) => {
+                    ending = Ending::Lost(error);
+                    None
+                }
+            },
+        };
+        interrupt::run_is_over();
+        let last = simulation.frame();
+        let summary =
+            Summary { account, ending, checks: judge.outcomes(), recorded, frames: (start.into(), last) };
+        match self.json {
+            true => output::print_json(&summary.as_json())?,
+            false => output::print(&summary.as_text()?)?,
+        }
+        Ok(summary.outcome())
+    }
+
+    fn threads(&self) -> usize {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.map_or_else(all, usize::from)
+    }
+}
+
+fn print_frame(figures: &FrameFigures, account: &Account) -> Result<()> {
+    let mut line = serde_json::to_value(figures)?;
+    line["milliseconds"] = json!(account.last.as_secs_f64() * 1e3);
+    output::print_json(&line)
+}

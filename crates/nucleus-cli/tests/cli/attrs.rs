@@ -1,0 +1,33 @@
+//! `nucleus attrs`.
+
+use crate::sample::{assert_refused, folder, nucleus, stdout};
+
+#[test]
+fn a_type_lists_its_own_and_inherited_attributes() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["attrs", "nCloth"]));
+    assert!(said.contains("stretchResistance (stch)"), "{said}");
+    assert!(said.contains("thickness ("), "it is inherited from nBase: {said}");
+}
+
+#[test]
+fn hidden_attributes_are_shown_on_request() {
+    let folder = folder();
+    let said = |arguments: &[&str]| stdout(&nucleus(folder.path(), arguments));
+    assert!(!said(&["attrs", "nCloth"]).contains("lifespanMode"));
+    assert!(said(&["attrs", "nCloth", "--all"]).contains("lifespanMode"));
+}
+
+#[test]
+fn without_a_type_all_types_are_listed() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["attrs"]));
+    assert!(["nucleus", "nCloth", "nRigid"].iter().all(|name| said.contains(name)), "{said}");
+}
+
+#[test]
+fn an_unknown_type_is_refused_with_those_there_are() {
+    let folder = folder();
+    let output = nucleus(folder.path(), &["attrs", "nHair"]);
+    assert_refused(&output, "there is no node type `nHair`; there are `nucleus`");
+}

@@ -1,0 +1,54 @@
+//! `nucleus info`.
+
+use std::fs;
+
+use crate::sample::{END, assert_refused, cache, folder, nucleus, stderr, stdout};
+
+#[test]
+fn a_cache_tells_its_run_and_its_objects() {
+    let folder = folder();
+    cache(folder.path());
+    let output = nucleus(folder.path(), &["info", "fall.mcap", "--verify"]);
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(said.contains("a run of fall.ron"), "{said}");
+    assert!(said.contains("1 to 6 at 24 a second"), "{said}");
+    assert!(said.contains("object sheet: cloth, 4 points, 1 face, 1 x 0 x 1 m"), "{said}");
+    assert!(said.contains("nothing is lost"), "{said}");
+}
+
+#[test]
+fn json_says_the_same_for_machines() {
+    let folder = folder();
+    cache(folder.path());
+    let output = nucleus(folder.path(), &["info", "fall.mcap", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(said["frames"]["last"], END);
+    assert_eq!(said["moments"], END);
+    assert_eq!(said["objects"][0]["size_metres"][2], 1.0);
+    assert_eq!(said["loss"]["none"], true);
+}
+
+#[test]
+fn a_cache_that_has_lost_frames_is_trouble() {
+    let folder = folder();
+    let path = cache(folder.path());
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let output = nucleus(folder.path(), &["info", "fall.mcap"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("the file was cut off"), "{}", stdout(&output));
+}
+
+#[test]
+fn what_cannot_be_opened_is_named_with_the_reason() {
+    let folder = folder();
+    fs::write(folder.path().join("empty.mcap"), "").unwrap();
+    fs::write(folder.path().join("text.mcap"), "not a cache at all").unwrap();
+    fs::create_dir(folder.path().join("folder.mcap")).unwrap();
+    let info = |name: &str| nucleus(folder.path(), &["info", name]);
+    assert_refused(&info("none.mcap"), "cannot read `none.mcap`: No such file");
+    assert_refused(&info("empty.mcap"), "cannot open `empty.mcap`: the file is empty");
+    assert_refused(&info("text.mcap"), "cannot open `text.mcap`: this is not an MCAP file");
+    assert_refused(&info("folder.mcap"), "`folder.mcap` is a folder");
+}

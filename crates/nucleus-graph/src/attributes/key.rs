@@ -1,0 +1,202 @@
+//! Typed keys: a row, and the Rust type its values are read as.
+
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+use super::kind::Kind;
+use super::row::{Attribute, Effect, Range};
+use super::value::{Choice, Component, RampPoint, Value};
+
+/// A row whose values are read as `T`.
+#[derive(Debug)]
+pub struct Key<T> {
+    /// The row.
+    pub row: Attribute,
+    read_as: PhantomData<fn() -> T>,
+}
+
+/// A type that an attribute's value can be read as.
+pub trait FromValue: Sized {
+    /// The value as this type; `None` when it is of another kind.
+    fn from_value(value: &Value) -> Option<Self>;
+}
+
+/// Stands for what has no value to read: a plug, the name of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plugged {}
+
+macro_rules! read_as {
+    ($($type:ty: $variant:ident),+ $(,)?) => {
+        $(impl FromValue for $type {
+            fn from_value(value: &Value) -> Option<Self> {
+                if let Value::$variant(value) = value { Some(value.clone().into()) } else { None }
+            }
+        })+
+    };
+}
+
+read_as! {
+    bool: Bool, i64: Int, f64: Float, [f64; 3]: Vector, Choice: Choice, String: Text, Vec<u32>: Ints,
+    Vec<f64>: Floats, Vec<[f64; 3]>: Vectors, Cow<'static, [RampPoint]>: Ramp, Vec<Component>: Components,
+}
+
+/// A switch.
+pub(super) const fn toggle(name: &'static str, short: &'static str, default: bool) -> Key<bool> {
+    Key::new(name, short, Kind::Bool, Some(Value::Bool(default)))
+}
+
+/// A whole number.
+pub(super) const fn int(name: &'static str, short: &'static str, default: i64) -> Key<i64> {
+    Key::new(name, short, Kind::Int, Some(Value::Int(default)))
+}
+
+/// A number.
+pub(super) const fn float(name: &'static str, short: &'static str, default: f64) -> Key<f64> {
+    Key::new(name, short, Kind::Float, Some(Value::Float(default)))
+}
+
+/// A vector; its parts have short names of their own.
+pub(super) const fn vector(
+    name: &'static str,
+    short: &'static str,
+    default: [f64; 3],
+    parts: [&'static str; 3],
+) -> Key<[f64; 3]> {
+    Key::new(name, short, Kind::Vector(parts), Some(Value::Vector(default)))
+}
+
+/// One of some words, by Maya's index.
+pub(super) const fn choice(
+    name: &'static str,
+    short: &'static str,
+    default: i32,
+    words: &'static [(i32, &'static str)],
+) -> Key<Choice> {
+    Key::new(name, short, Kind::Choice(words), Some(Value::Choice(Choice(default))))
+}
+
+/// Text, empty when not set.
+pub(super) const fn text(name: &'static str, short: &'static str) -> Key<String> {
+    Key::new(name, short, Kind::Text, Some(Value::Text(String::new()))).fixed()
+}
+
+/// Whole numbers, one per element.
+pub(super) const fn ints(name: &'static str, short: &'static str) -> Key<Vec<u32>> {
+    Key::new(name, short, Kind::Ints, Some(Value::Ints(Vec::new()))).fixed()
+}
+
+/// Numbers, one per point.
+pub(super) const fn floats(name: &'static str, short: &'static str) -> Key<Vec<f64>> {
+    Key::new(name, short, Kind::Floats, Some(Value::Floats(Vec::new()))).fixed()
+}
+
+/// Vectors, one per point.
+pub(super) const fn vectors(name: &'static str, short: &'static str) -> Key<Vec<[f64; 3]>> {
+    Key::new(name, short, Kind::Vectors, Some(Value::Vectors(Vec::new()))).fixed()
+}
+
+/// A ramp.
+pub(super) const fn ramp(
+    name: &'static str,
+    short: &'static str,
+    default: &'static [RampPoint],
+) -> Key<Cow<'static, [RampPoint]>> {
+    Key::new(name, short, Kind::Ramp, Some(Value::Ramp(Cow::Borrowed(default)))).fixed()
+}
+
+/// Parts of objects.
+pub(super) const fn components(name: &'static str, short: &'static str) -> Key<Vec<Component>> {
+    Key::new(name, short, Kind::Components, Some(Value::Components(Vec::new()))).fixed()
+}
+
+/// The name of another node.
+pub(super) const fn node(name: &'static str, short: &'static str) -> Key<Plugged> {
+    Key::new(name, short, Kind::Node, None).fixed()
+}
+
+/// What is only ever connected.
+pub(super) const fn plug(name: &'static str, short: &'static str) -> Key<Plugged> {
+    Key::new(name, short, Kind::Plug, None).fixed().hidden()
+}
+
+/// Several attributes in one go.
+pub(super) const fn together(name: &'static str, parts: &'static [&'static str]) -> Key<Plugged> {
+    Key::new(name, name, Kind::Together(parts), None).fixed()
+}
+
+/// What a row says beyond name, type and default.
+impl<T> Key<T> {
+    const fn new(name: &'static str, short: &'static str, kind: Kind, default: Option<Value>) -> Self {
+        let range = Range { min: None, max: None, soft: None };
+        let row = Attribute {
+            name,
+            short,
+            kind,
+            default,
+            range,
+            unit: "",
+            group: "",
+            hidden: false,
+            extension: false,
+            keyable: true,
+            effect: Effect::NotYet,
+            doc: "",
+        };
+        Self { row, read_as: PhantomData }
+    }
+
+    /// Refused below this.
+    pub(super) const fn min(mut self, min: f64) -> Self {
+        self.row.range.min = Some(min);
+        self
+    }
+
+    /// Refused above this.
+    pub(super) const fn max(mut self, max: f64) -> Self {
+        self.row.range.max = Some(max);
+        self
+    }
+
+    /// Where Maya's slider begins and ends.
+    pub(super) const fn soft(mut self, from: f64, to: f64) -> Self {
+        self.row.range.soft = Some((from, to));
+        self
+    }
+
+    /// Unit of the numbers.
+    pub(super) const fn unit(mut self, unit: &'static str) -> Self {
+        self.row.unit = unit;
+        self
+    }
+
+    /// The module where it takes effect.
+    pub(super) const fn solved(mut self, module: &'static str) -> Self {
+        self.row.effect = Effect::Solved(module);
+        self
+    }
+
+    /// Not shown to users.
+    pub(super) const fn hidden(mut self) -> Self {
+        self.row.hidden = true;
+        self
+    }
+
+    /// Ours, unknown to Maya.
+    pub(super) const fn extension(mut self) -> Self {
+        self.row.extension = true;
+        self
+    }
+
+    /// Read once, before the first frame.
+    pub(super) const fn fixed(mut self) -> Self {
+        self.row.keyable = false;
+        self
+    }
+
+    /// Section and description, which the table knows.
+    pub(super) const fn described(mut self, group: &'static str, doc: &'static str) -> Self {
+        self.row.group = group;
+        self.row.doc = doc;
+        self
+    }
+}

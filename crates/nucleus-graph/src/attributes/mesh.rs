@@ -1,0 +1,14 @@
+//! Meshes from files.
+
+use super::key::text;
+use super::surface_shape::SURFACE_SHAPE;
+use super::table::node_table;
+
+node_table! {
+    /// A mesh that is read from a file, points in the order of the file.
+    MESH = "mesh", inherits Some(&SURFACE_SHAPE), hides [];
+    "Nucleus (open)" {
+        /// An OBJ file, its path relative to the scene's own.
+        FILE: String = text("file", "file").solved("mesh").extension();
+    }
+}

@@ -1,0 +1,192 @@
+//! What all objects of a nucleus share.
+
+use std::borrow::Cow;
+
+use super::key::{choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::particle::PARTICLE;
+use super::table::node_table;
+use super::{Choice, Plugged, RampPoint};
+
+/// What a map is taken from.
+pub(super) const MAP_TYPES: &[(i32, &str)] = &[(0, "None"), (1, "Per-vertex"), (2, "Texture")];
+
+/// From 1 down to 0.
+const FALLING: &[RampPoint] = &[
+    RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) },
+    RampPoint { position: 1.0, value: 0.0, interpolation: Choice(1) },
+];
+
+node_table! {
+    /// What every object of a nucleus has: mass, thickness, collisions, fields.
+    N_BASE = "nBase", inherits Some(&PARTICLE), hides [];
+    "General" {
+        /// The mesh node that it is made from.
+        INPUT_MESH: Plugged = node("inputMesh", "imsh").solved("graph");
+    }
+    "Collisions" {
+        /// How far the surface reaches out; two objects touch at the sum of theirs. Worked out from the size of the mesh when left out.
+        THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("contact");
+        /// How much speed is kept in a contact; the larger of the two sides counts.
+        BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("contact");
+        /// Resistance to sliding; the values of both sides are added.
+        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("contact");
+        /// Resistance to coming apart after a contact; the values of both sides are added.
+        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0);
+        /// How much of a collision is carried out: 1 all, 0 none.
+        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0);
+        /// Up to which elements it collides: points, edges or faces.
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]);
+        /// Which elements collide when the object meets itself.
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]);
+        /// Takes part in collisions with other objects.
+        COLLIDE: bool = toggle("collide", "cold", true).solved("contact");
+        /// Takes part in collisions with itself.
+        SELF_COLLIDE: bool = toggle("selfCollide", "scld", true);
+        /// Which objects it meets, and which of the two gives way.
+        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0);
+        /// Colour in which Maya draws the thickness.
+        DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]);
+    }
+    "Dynamic Properties" {
+        /// Evens out the velocities of linked points: vibrations die down, free fall is untouched.
+        DAMP: f64 = float("damp", "adng", 0.0).min(0.0).soft(0.0, 10.0).solved("damp");
+        /// Classic: kilograms of every point. Physical: kilograms per square metre, so that the mesh does not matter.
+        POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg, or kg/m²").solved("compile").fixed();
+        /// Factor on the rest length of every link.
+        REST_LENGTH_SCALE: f64 = float("restLengthScale", "rlsc", 1.0).min(0.0).soft(0.0, 2.0).solved("stretch");
+        /// A force on every point of this object alone.
+        LOCAL_FORCE: [f64; 3] = vector("localForce", "lfcr", [0.0, 0.0, 0.0], ["lfcx", "lfcy", "lfcz"]).unit("N").solved("predict");
+        /// Wind that only this object feels, added to the solver's.
+        LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("air");
+    }
+    "Wind Field Generation" {
+        /// How much the wind closes in again behind this object.
+        WIND_SHADOW_DIFFUSION: f64 = float("windShadowDiffusion", "wsdi", 0.0).soft(0.0, 1.0);
+        /// How far behind it this object keeps the wind from others.
+        WIND_SHADOW_DISTANCE: f64 = float("windShadowDistance", "wsds", 0.0).soft(0.0, 50.0);
+        /// How far the air that this object moves is felt by others.
+        AIR_PUSH_DISTANCE: f64 = float("airPushDistance", "apds", 0.0).soft(0.0, 50.0);
+        /// How much the air that it pushes curls.
+        AIR_PUSH_VORTICITY: f64 = float("airPushVorticity", "apvy", 0.0).soft(0.0, 1.0);
+    }
+    "Force Field Generation" {
+        /// A force field on the surface, and the side of the surface it acts on.
+        FORCE_FIELD: Choice = choice("forceField", "ffd", 0, &[(0, "Off"), (1, "AlongNormal"), (2, "Single Sided"), (3, "Double Sided")]);
+        /// Strength of the surface's field: above 0 it pushes others away.
+        FIELD_MAGNITUDE: f64 = float("fieldMagnitude", "fma", 1.0).soft(-10.0, 10.0);
+        /// How far the surface's field reaches.
+        FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0);
+        /// The surface's field from the surface (0) to its reach (1).
+        FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING);
+        /// A force field round every point, and what its strength goes by.
+        POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]);
+        /// Strength of the points' field on others: above 0 it pushes them away.
+        POINT_FIELD_MAGNITUDE: f64 = float("pointFieldMagnitude", "pfma", 1.0).soft(-10.0, 10.0);
+        /// Strength of the points' field within the object: above 0 it pulls together.
+        SELF_ATTRACT: f64 = float("selfAttract", "sfat", 0.0).soft(-10.0, 10.0);
+        /// How far the points' field reaches.
+        POINT_FIELD_DISTANCE: f64 = float("pointFieldDistance", "pfdi", 2.0).min(0.0).soft(0.0, 100.0);
+        /// The points' field from the point (0) to its reach (1).
+        POINT_FIELD_DROPOFF: Cow<'static, [RampPoint]> = ramp("pointFieldDropoff", "pfdo", FALLING);
+    }
+    "Quality Settings" {
+        /// Passes for collisions with itself in 1/24 s.
+        MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s");
+        /// No effect is given more iterations than this, whatever its resistance.
+        MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0);
+        /// Pushes points of other objects to the nearest place outside; the sign says which side that is.
+        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0);
+        /// Points farther from the surface than this are not pushed out.
+        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0);
+        /// Pushes along the line where two objects pass through each other, until they come free.
+        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
+        /// Remembers on which side points started and brings them back there.
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false);
+    }
+    "Initial State" {
+        /// Initial positions, in place of those of the input mesh.
+        START_POSITIONS: Vec<[f64; 3]> = vectors("startPositions", "spns");
+        /// Initial velocities.
+        START_VELOCITIES: Vec<[f64; 3]> = vectors("startVelocities", "sves");
+    }
+    "Caching" {
+        /// Positions that come from a cache.
+        POSITIONS: Plugged = plug("positions", "poss");
+        /// Velocities that come from a cache.
+        VELOCITIES: Plugged = plug("velocities", "vels");
+        /// Solver state that comes from a cache.
+        INTERNAL_STATE: Plugged = plug("internalState", "inst");
+        /// Takes the state from a cache instead of solving.
+        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false);
+        /// Everything that comes from a cache of particles.
+        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad");
+    }
+    "Collision Properties Maps" {
+        /// Texture that varies thickness.
+        THICKNESS_MAP: f64 = float("thicknessMap", "thmp", 0.1);
+        /// Factor on thickness at each point.
+        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv");
+        /// Texture that varies bounce.
+        BOUNCE_MAP: f64 = float("bounceMap", "bomp", 0.0);
+        /// Factor on bounce at each point.
+        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
+        /// Texture that varies friction.
+        FRICTION_MAP: f64 = float("frictionMap", "frmp", 0.0);
+        /// Factor on friction at each point.
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
+        /// Texture that varies stickiness.
+        STICKINESS_MAP: f64 = float("stickinessMap", "skmp", 0.0);
+        /// Factor on stickiness at each point.
+        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv");
+        /// Texture that varies collide strength.
+        COLLIDE_STRENGTH_MAP: f64 = float("collideStrengthMap", "csmp", 0.0);
+        /// Factor on collide strength at each point.
+        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv");
+        /// Whether thickness is varied by nothing, by point, or by a texture.
+        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES);
+        /// Whether bounce is varied by nothing, by point, or by a texture.
+        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
+        /// Whether friction is varied by nothing, by point, or by a texture.
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
+        /// Whether stickiness is varied by nothing, by point, or by a texture.
+        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
+        /// Whether collide strength is varied by nothing, by point, or by a texture.
+        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES);
+    }
+    "Dynamic Properties Maps" {
+        /// Texture that varies damp.
+        DAMP_MAP: f64 = float("dampMap", "admp", 0.0);
+        /// Factor on damp at each point.
+        DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv");
+        /// Texture that varies mass.
+        MASS_MAP: f64 = float("massMap", "mamp", 1.0);
+        /// Factor on mass at each point.
+        MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv");
+        /// Whether damp is varied by nothing, by point, or by a texture.
+        DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES);
+        /// Whether mass is varied by nothing, by point, or by a texture.
+        MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES);
+    }
+    "Force Field Maps" {
+        /// Texture that varies field magnitude.
+        FIELD_MAGNITUDE_MAP: f64 = float("fieldMagnitudeMap", "fmmp", 0.0);
+        /// Factor on field magnitude at each point.
+        FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv");
+        /// Whether field magnitude is varied by nothing, by point, or by a texture.
+        FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES);
+    }
+    "Nucleus (open)" {
+        /// The nucleus it belongs to; the only one of the scene when left out.
+        NUCLEUS: Plugged = node("nucleus", "nucleus").solved("graph").extension();
+    }
+    "Connections" {
+        /// Its state as its nucleus has solved it.
+        NEXT_STATE: Plugged = plug("nextState", "nxst");
+        /// Its state as its nucleus is to see it.
+        CURRENT_STATE: Plugged = plug("currentState", "cust");
+        /// Its initial state.
+        START_STATE: Plugged = plug("startState", "stst");
+        /// Which object of its nucleus it is.
+        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid");
+    }
+}

@@ -1,0 +1,212 @@
+//! Cloth.
+
+use super::key::{choice, float, floats, int, plug, toggle};
+use super::n_base::MAP_TYPES;
+use super::n_base::N_BASE;
+use super::table::node_table;
+use super::{Choice, Plugged};
+
+node_table! {
+    /// A mesh that behaves as cloth.
+    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides ["dieOnEmissionVolumeExit", "lifespanMode", "lifespanRandom", "expressionsAfterDynamics", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail", "inheritFactor", "currentTime", "startFrame", "inputGeometrySpace", "enforceCountFromHistory", "targetGeometrySpace", "goalSmoothness", "cacheData", "traceDepth", "particleRenderType"];
+    "Collisions" {
+        /// Thickness towards itself, as a multiple of `thickness`.
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0);
+        /// Out of use in Maya.
+        SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0);
+        /// What Maya draws of the solver's data.
+        SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]);
+    }
+    "Dynamic Properties" {
+        /// A mesh to take rest lengths and angles from, in place of the initial state.
+        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh");
+        /// Whether a resistance belongs to a link, or to the cloth however finely it is divided.
+        SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]);
+        /// Resistance of links that are longer than at rest.
+        STRETCH_RESISTANCE: f64 = float("stretchResistance", "stch", 20.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("stretch");
+        /// Resistance of links that are shorter than at rest; at 0 they are rubber bands.
+        COMPRESSION_RESISTANCE: f64 = float("compressionResistance", "comr", 10.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("stretch");
+        /// How strongly faces keep the angle between them.
+        BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("bend");
+        /// Lets small bends be free and resists large ones.
+        BEND_ANGLE_DROPOFF: f64 = float("bendAngleDropoff", "bnad", 0.0).soft(0.0, 1.0);
+        /// Links pulled harder than this stay longer.
+        RESTITUTION_TENSION: f64 = float("restitutionTension", "retn", 1000.0).soft(0.0, 1000.0);
+        /// Edges bent farther than this stay bent; at 360 none do.
+        RESTITUTION_ANGLE: f64 = float("restitutionAngle", "reae", 360.0).soft(0.0, 360.0).unit("degrees");
+        /// Resistance of the cross links of quads.
+        SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("shear");
+        /// How strongly the whole mesh moves like one rigid body.
+        RIGIDITY: f64 = float("rigidity", "rity", 0.0).soft(0.0, 10.0);
+        /// Treats unconnected parts of the mesh each on its own for `rigidity` and `deformResistance`.
+        USE_POLYGON_SHELLS: bool = toggle("usePolygonShells", "ussh", false);
+        /// How strongly the mesh keeps its overall shape, without being rigid.
+        DEFORM_RESISTANCE: f64 = float("deformResistance", "dety", 0.0).soft(0.0, 10.0);
+        /// How strongly points are drawn to the input mesh.
+        INPUT_MESH_ATTRACT: f64 = float("inputMeshAttract", "imat", 0.0).soft(0.0, 1.0);
+        /// Whether points that are drawn fully are locked to the input mesh.
+        INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]);
+        /// How little points swing about the input mesh: 0 freely, 1 not at all.
+        INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0);
+        /// How much the motion of the input mesh drags the cloth along.
+        INPUT_MOTION_DRAG: f64 = float("inputMotionDrag", "imdr", 0.0).soft(0.0, 1.0);
+        /// Factor on rest angles: 0 wants to be flat, 1 as modelled.
+        BEND_ANGLE_SCALE: f64 = float("bendAngleScale", "basc", 1.0).soft(-2.0, 2.0);
+        /// Takes speed out of links that grow longer or shorter.
+        STRETCH_DAMP: f64 = float("stretchDamp", "sdmp", 0.1).min(0.0).soft(0.0, 10.0).solved("damp");
+        /// Does not feel the solver's gravity.
+        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("predict");
+        /// Does not feel the solver's wind.
+        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("air");
+        /// Force of the air at right angles to the motion.
+        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("air");
+        /// Force of the air against the motion, as far as the surface faces it.
+        DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("air");
+        /// Share of `drag` that also acts along the surface.
+        TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("air");
+    }
+    "Wind Field Generation" {
+        /// Lets parts of the object keep the wind from other parts.
+        WIND_SELF_SHADOW: bool = toggle("windSelfShadow", "wssh", false);
+    }
+    "Pressure" {
+        /// Whether pressure is set by hand, or follows from the air inside.
+        PRESSURE_METHOD: Choice = choice("pressureMethod", "pmth", 0, &[(0, "Manual Pressure Setting"), (1, "Volume Tracking Model")]);
+        /// Pressure set by hand: above 0 it pushes outwards.
+        PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0);
+        /// Air inside at the start beyond what fills the volume.
+        START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0);
+        /// How strongly the air inside keeps its volume.
+        INCOMPRESSIBILITY: f64 = float("incompressibility", "incm", 5.0).soft(0.0, 200.0);
+        /// How fast swings of the pressure die down.
+        PRESSURE_DAMPING: f64 = float("pressureDamping", "prdg", 0.0).soft(0.0, 1.0);
+        /// Air that is pumped in over time.
+        PUMP_RATE: f64 = float("pumpRate", "pure", 0.0).soft(-1.0, 1.0);
+        /// How much of the air stays inside: at 1 all of it.
+        AIR_TIGHTNESS: f64 = float("airTightness", "aits", 1.0).soft(0.0, 1.0);
+        /// Treats openings of the mesh as if they were closed.
+        SEAL_HOLES: bool = toggle("sealHoles", "shol", true);
+    }
+    "Quality Settings" {
+        /// How bending is worked out.
+        BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]);
+        /// When shape attraction is in use: whether collision still has the last word in a step.
+        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0);
+        /// Solves links in the order of their distance from contacts and constraints.
+        SORT_LINKS: bool = toggle("sortLinks", "stlk", false);
+        /// Whether links are solved one after another, or all from the same state.
+        EVALUATION_ORDER: Choice = choice("evaluationOrder", "evo", 0, &[(0, "Sequential"), (1, "Parallel")]);
+        /// Links all corners of faces with more than three.
+        ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true);
+        /// `crossoverPush` of the object against itself.
+        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0);
+        /// `trappedCheck` of the object against itself.
+        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false);
+    }
+    "Caching" {
+        /// What a cache keeps of this object.
+        CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 0, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamic State")]);
+        /// How a cache is used.
+        CACHE_USAGE: Choice = choice("cacheUsage", "cu", 0, &[(0, "None"), (1, "Cache/Simulation"), (2, "Cache File Info")]);
+    }
+    "Dynamic Properties Maps" {
+        /// Texture that varies stretch.
+        STRETCH_MAP: f64 = float("stretchMap", "stmp", 1.0);
+        /// Factor on stretch at each point.
+        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv");
+        /// Texture that varies compression.
+        COMPRESSION_MAP: f64 = float("compressionMap", "cmmp", 1.0);
+        /// Factor on compression at each point.
+        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv");
+        /// Texture that varies bend.
+        BEND_MAP: f64 = float("bendMap", "bemp", 0.0);
+        /// Factor on bend at each point.
+        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv");
+        /// Texture that varies bend angle dropoff.
+        BEND_ANGLE_DROPOFF_MAP: f64 = float("bendAngleDropoffMap", "badm", 0.0);
+        /// Factor on bend angle dropoff at each point.
+        BEND_ANGLE_DROPOFF_PER_VERTEX: Vec<f64> = floats("bendAngleDropoffPerVertex", "badv");
+        /// Texture that varies restitution angle.
+        RESTITUTION_ANGLE_MAP: f64 = float("restitutionAngleMap", "ranm", 0.0);
+        /// Factor on restitution angle at each point.
+        RESTITUTION_ANGLE_PER_VERTEX: Vec<f64> = floats("restitutionAnglePerVertex", "rapv");
+        /// Texture that varies rigidity.
+        RIGIDITY_MAP: f64 = float("rigidityMap", "rimp", 0.0);
+        /// Factor on rigidity at each point.
+        RIGIDITY_PER_VERTEX: Vec<f64> = floats("rigidityPerVertex", "rpv");
+        /// Texture that varies deform.
+        DEFORM_MAP: f64 = float("deformMap", "demp", 0.0);
+        /// Factor on deform at each point.
+        DEFORM_PER_VERTEX: Vec<f64> = floats("deformPerVertex", "dfpv");
+        /// Texture that varies input attract.
+        INPUT_ATTRACT_MAP: f64 = float("inputAttractMap", "iamp", 0.0);
+        /// Factor on input attract at each point.
+        INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv");
+        /// Texture that varies rest length scale.
+        REST_LENGTH_SCALE_MAP: f64 = float("restLengthScaleMap", "rlmp", 1.0);
+        /// Factor on rest length scale at each point.
+        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv");
+        /// Texture that varies lift.
+        LIFT_MAP: f64 = float("liftMap", "lfmp", 1.0);
+        /// Factor on lift at each point.
+        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv");
+        /// Texture that varies drag.
+        DRAG_MAP: f64 = float("dragMap", "drmp", 1.0);
+        /// Factor on drag at each point.
+        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv");
+        /// Texture that varies tangential drag.
+        TANGENTIAL_DRAG_MAP: f64 = float("tangentialDragMap", "tdmp", 1.0);
+        /// Factor on tangential drag at each point.
+        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv");
+        /// Texture that varies wrinkle.
+        WRINKLE_MAP: f64 = float("wrinkleMap", "wkmp", 0.0);
+        /// Factor on wrinkle at each point.
+        WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv");
+        /// How high the wrinkles of the wrinkle map stand.
+        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0);
+        /// Whether stretch is varied by nothing, by point, or by a texture.
+        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES);
+        /// Whether compression is varied by nothing, by point, or by a texture.
+        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES);
+        /// Whether bend is varied by nothing, by point, or by a texture.
+        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES);
+        /// Whether bend angle dropoff is varied by nothing, by point, or by a texture.
+        BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES);
+        /// Whether restitution angle is varied by nothing, by point, or by a texture.
+        RESTITUTION_ANGLE_MAP_TYPE: Choice = choice("restitutionAngleMapType", "ramt", 2, MAP_TYPES);
+        /// Whether rigidity is varied by nothing, by point, or by a texture.
+        RIGIDITY_MAP_TYPE: Choice = choice("rigidityMapType", "rmt", 2, MAP_TYPES);
+        /// Whether deform is varied by nothing, by point, or by a texture.
+        DEFORM_MAP_TYPE: Choice = choice("deformMapType", "dmmt", 2, MAP_TYPES);
+        /// Whether input attract is varied by nothing, by point, or by a texture.
+        INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES);
+        /// Whether rest length scale is varied by nothing, by point, or by a texture.
+        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES);
+        /// Whether lift is varied by nothing, by point, or by a texture.
+        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES);
+        /// Whether drag is varied by nothing, by point, or by a texture.
+        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES);
+        /// Whether tangential drag is varied by nothing, by point, or by a texture.
+        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES);
+        /// Whether wrinkle is varied by nothing, by point, or by a texture.
+        WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES);
+    }
+    "Hidden" {
+        /// Left over from early versions of Maya.
+        NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).hidden();
+        /// An experiment of Maya's with stretch.
+        MINIMAL_STRETCH: bool = toggle("minimalStretch", "msso", false).hidden();
+        /// An experiment of Maya's with bending.
+        MINIMAL_BEND: bool = toggle("minimalBend", "mbso", false).hidden();
+        /// An experiment of Maya's with shear.
+        MINIMAL_SHEAR: bool = toggle("minimalShear", "mshs", false).hidden();
+        /// An experiment of Maya's with coarser levels of links.
+        STRETCH_HIERARCHY_LEVELS: i64 = int("stretchHierarchyLevels", "shlv", 0).min(0.0).soft(0.0, 10.0).hidden();
+        /// How much of those levels is used.
+        STRETCH_HIERARCHY_PERCENT: f64 = float("stretchHierarchyPercent", "shpe", 25.0).soft(0.0, 100.0).hidden();
+    }
+    "Connections" {
+        /// The solved mesh in world space.
+        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh");
+    }
+}

@@ -1,0 +1,99 @@
+//! The solver node.
+
+use super::key::{choice, float, int, plug, toggle, vector};
+use super::table::node_table;
+use super::transform::TRANSFORM;
+use super::{Choice, Plugged};
+
+node_table! {
+    /// A solver: only what belongs to the same one interacts. Holds gravity, wind, the ground plane and the quality settings.
+    NUCLEUS = "nucleus", inherits Some(&TRANSFORM), hides [];
+    "General" {
+        /// Solves at all; when off, everything keeps the state it has.
+        ENABLE: bool = toggle("enable", "ena", true);
+    }
+    "Gravity and Wind" {
+        /// Acceleration of free fall; metres are scene units times `spaceScale`.
+        GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("predict");
+        /// Where things fall to; its length does not matter.
+        GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("predict");
+        /// How much there is of the air that drags and lifts: 0 is a vacuum, 1 ordinary air.
+        AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("air");
+        /// How fast the air moves.
+        WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("air");
+        /// Where the wind blows to; its length does not matter.
+        WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("air");
+        /// How unsteady the wind is.
+        WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0);
+    }
+    "Ground Plane" {
+        /// Adds an endless ground plane that everything collides with.
+        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("contact");
+        /// Any point of the ground plane.
+        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("contact");
+        /// The side of the ground plane on which things stay; its length does not matter.
+        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("contact");
+        /// How much speed is kept when something bounces off the ground plane.
+        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("contact");
+        /// Friction of the ground plane, added to the other side's.
+        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("contact");
+        /// How strongly the ground plane holds on to what touches it.
+        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0);
+    }
+    "Solver Attributes" {
+        /// Reads directions and the ground plane in the space of this node's own transform.
+        USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("compile");
+        /// Objects whose collision layers are this far apart, or farther, do not meet.
+        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0);
+        /// Parts that a frame is solved in; the shortest time the solver knows.
+        SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("schedule");
+        /// Collision passes in 1/24 s, shared among the substeps.
+        MAX_COLLISION_ITERATIONS: i64 = int("maxCollisionIterations", "mcit", 4).min(0.0).max(1000000.0).soft(0.0, 100.0).unit("per 1/24 s").solved("schedule");
+        /// Whether Maya prints how long frames or substeps take.
+        TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]);
+    }
+    "Scale Attributes" {
+        /// How fast simulated time runs against the time of the animation.
+        TIME_SCALE: f64 = float("timeScale", "tisc", 1.0).min(0.0001).max(10000.0).soft(0.01, 10.0).solved("compile");
+        /// Metres in one scene unit: 1 for a scene in metres, 0.01 for one in centimetres.
+        SPACE_SCALE: f64 = float("spaceScale", "spsc", 1.0).min(1e-06).max(1000000.0).soft(0.01, 10.0).unit("m per scene unit").solved("compile").fixed();
+    }
+    "Time Attributes" {
+        /// The time it solves for; driven by `time1.outTime`.
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
+        /// The frame at which everything is in its initial state; a run begins here if the scene's time begins earlier.
+        START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("simulation").fixed();
+        /// How many frames a single evaluation may leap over and still be solved.
+        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0);
+    }
+    "Nucleus (open)" {
+        /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.
+        RESISTANCE_MODEL: Choice = choice("resistanceModel", "resistanceModel", 1, &[(0, "Classic"), (1, "Physical")]).solved("schedule").fixed().extension();
+        /// Physical: evaluations of every list in 1/24 s. More only lessens the error.
+        EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("schedule").extension();
+    }
+    "Hidden" {
+        /// How deep a contact may press into the thickness.
+        COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden();
+        /// Kinds of element pairs that are tested between objects.
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden();
+        /// Kinds of element pairs that are tested within an object.
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden();
+    }
+    "Connections" {
+        /// Current state of each active object.
+        INPUT_ACTIVE: Plugged = plug("inputActive", "niao");
+        /// Initial state of each active object.
+        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias");
+        /// Current state of each collider.
+        INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo");
+        /// Initial state of each collider.
+        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips");
+        /// Each constraint as it is now.
+        INPUT_CURRENT: Plugged = plug("inputCurrent", "ic");
+        /// Each constraint as it is at the start.
+        INPUT_START: Plugged = plug("inputStart", "is");
+        /// Solved state of each active object.
+        OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao");
+    }
+}

@@ -1,0 +1,282 @@
+//! What must hold during a run: `checks: [noPenetration, maxStretch(0.02)]`.
+//!
+//! Every check is a row: a figure that is read off each frame, and a bound on it. To add one, add a row to
+//! `FORMS`.
+
+use std::fmt;
+
+use nucleus_core::StepReport;
+
+use crate::simulation::FrameReport;
+
+/// A check of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    form: &'static Form,
+    arguments: Vec<f64>,
+}
+
+/// A kind of check.
+#[derive(Debug)]
+pub struct Form {
+    /// Its name in scenes.
+    pub name: &'static str,
+    /// What it says, in one line.
+    pub doc: &'static str,
+    /// Names of its arguments.
+    pub parameters: &'static [&'static str],
+    bound: Bound,
+    limit: fn(&[f64]) -> f64,
+    figure: fn(&Seen, &[f64]) -> Option<f64>,
+}
+
+/// On which side of its limit a figure has to stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    /// It must not be larger.
+    AtMost,
+    /// It must not be smaller.
+    AtLeast,
+}
+
+/// How a check ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The check.
+    pub check: Check,
+    /// Whether it held in every frame it is about, and there was at least one.
+    pub passed: bool,
+    /// The worst figure, and the first frame that had it; `None` when no frame was looked at.
+    pub worst: Option<(f64, i64)>,
+}
+
+/// Follows a run and judges it.
+#[derive(Debug, Clone)]
+pub struct Judge {
+    outcomes: Vec<Outcome>,
+    mass: f64,
+}
+
+/// What a check can look at.
+struct Seen<'a> {
+    frame: i64,
+    report: &'a StepReport,
+    /// All points together, in kilograms.
+    mass: f64,
+}
+
+static FORMS: [Form; 6] = [
+    Form {
+        name: "noPenetration",
+        doc: "No point ends a substep on the far side of a collider.",
+        parameters: &[],
+        bound: Bound::AtMost,
+        limit: |_| 0.0,
+        figure: |seen, _| Some(seen.report.crossed as f64),
+    },
+    Form {
+        name: "maxStretch",
+        doc: "No link is longer than at rest by more than this share.",
+        parameters: &["strain"],
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.max_strain),
+    },
+    Form {
+        name: "maxStretch99",
+        doc: "99 % of the links are not longer than at rest by more than this share.",
+        parameters: &["strain"],
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.strain_99),
+    },
+    Form {
+        name: "minGap",
+        doc: "Nothing comes closer to a collider than this share of the thickness.",
+        parameters: &["gap"],
+        bound: Bound::AtLeast,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.min_gap),
+    },
+    Form {
+        name: "finite",
+        doc: "Every position and velocity is a finite number.",
+        parameters: &[],
+        bound: Bound::AtMost,
+        limit: |_| 0.0,
+        figure: |seen, _| Some(if seen.report.finite { 0.0 } else { 1.0 }),
+    },
+    Form {
+        name: "restsBy",
+        doc: "From this frame on the root mean square speed, in m/s, is not above this.",
+        parameters: &["frame", "speed"],
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[1],
+        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then(|| seen.speed()),
+    },
+];
+
+impl Seen<'_> {
+    fn speed(&self) -> f64 {
+        if self.mass > 0.0 { (2.0 * self.report.kinetic_energy / self.mass).sqrt() } else { 0.0 }
+    }
+}
+
+/// There is one static per kind, compared by identity.
+impl PartialEq for Form {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl Check {
+    /// A check by its name; `None` when there is none of this name that takes so many arguments.
+    pub fn new(name: &str, arguments: &[f64]) -> Option<Self> {
+        let form = Form::all().iter().find(|form| form.name == name)?;
+        (form.parameters.len() == arguments.len()).then(|| Self { form, arguments: arguments.to_vec() })
+    }
+
+    /// What kind of check it is.
+    pub fn form(&self) -> &'static Form {
+        self.form
+    }
+
+    /// Which side of which limit its figure has to keep to.
+    pub fn limit(&self) -> (Bound, f64) {
+        (self.form.bound, (self.form.limit)(&self.arguments))
+    }
+
+    /// Whether a figure is on the right side. NaN never is.
+    pub fn accepts(&self, figure: f64) -> bool {
+        match self.limit() {
+            (Bound::AtMost, limit) => figure <= limit,
+            (Bound::AtLeast, limit) => figure >= limit,
+        }
+    }
+
+    /// Whether one figure is worse than another. NaN is the worst.
+    fn is_worse(&self, figure: f64, than: f64) -> bool {
+        let farther = match self.form.bound {
+            Bound::AtMost => figure > than,
+            Bound::AtLeast => figure < than,
+        };
+        farther || (figure.is_nan() && !than.is_nan())
+    }
+}
+
+/// As a scene writes it: `noPenetration`, `maxStretch(0.02)`, `restsBy(frame: 100, speed: 0.01)`.
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Form { name, parameters, .. } = self.form;
+        match self.arguments.as_slice() {
+            [] => write!(f, "{name}"),
+            [argument] => write!(f, "{name}({argument})"),
+            arguments => {
+                let named = |(name, value): (&&str, &f64)| format!("{name}: {value}");
+                let named: Vec<String> = parameters.iter().zip(arguments).map(named).collect();
+                write!(f, "{name}({})", named.join(", "))
+            }
+        }
+    }
+}
+
+impl Form {
+    /// All kinds of checks.
+    pub fn all() -> &'static [Form] {
+        &FORMS
+    }
+}
+
+impl Judge {
+    /// Begins with checks of which nothing is known. `mass` is that of all cloth together in kilograms.
+    pub fn new(checks: &[Check], mass: f64) -> Self {
+        let open = |check: &Check| Outcome { check: check.clone(), passed: false, worst: None };
+        Self { outcomes: checks.iter().map(open).collect(), mass }
+    }
+
+    /// Looks at the next frame.
+    pub fn see(&mut self, frame: &FrameReport) {
+        let seen = Seen { frame: frame.frame, report: &frame.report, mass: self.mass };
+        for outcome in &mut self.outcomes {
+            let check = &outcome.check;
+            let Some(figure) = (check.form.figure)(&seen, &check.arguments) else { continue };
+            if outcome.worst.is_none_or(|(worst, _)| check.is_worse(figure, worst)) {
+                outcome.worst = Some((figure, frame.frame));
+                outcome.passed = check.accepts(figure);
+            }
+        }
+    }
+
+    /// How every check stands, in the order of the scene.
+    pub fn outcomes(&self) -> &[Outcome] {
+        &self.outcomes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judge(check: &str, arguments: &[f64], reports: &[StepReport]) -> Outcome {
+        let check = Check::new(check, arguments).expect("a known check");
+        let mut judge = Judge::new(&[check], 2.0);
+        for (frame, report) in (2..).zip(reports) {
+            judge.see(&FrameReport { frame, report: *report });
+        }
+        judge.outcomes()[0].clone()
+    }
+
+    #[test]
+    fn the_worst_figure_decides_and_its_first_frame_is_named() {
+        let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
+        let outcome = judge("maxStretch", &[0.02], &[strain(0.01), strain(0.03), strain(0.03), strain(0.02)]);
+        assert_eq!((outcome.passed, outcome.worst), (false, Some((0.03, 3))));
+        assert!(judge("maxStretch", &[0.02], &[strain(0.02)]).passed);
+    }
+
+    #[test]
+    fn a_gap_must_not_be_smaller() {
+        let gap = |min_gap| StepReport { min_gap, ..StepReport::default() };
+        let outcome = judge("minGap", &[0.9], &[gap(f64::INFINITY), gap(0.95), gap(0.99)]);
+        assert_eq!((outcome.passed, outcome.worst), (true, Some((0.95, 3))));
+        assert!(!judge("minGap", &[0.9], &[gap(0.89)]).passed);
+    }
+
+    #[test]
+    fn one_crossing_is_a_penetration() {
+        let crossed = StepReport { crossed: 1, ..StepReport::default() };
+        assert!(
+            !judge("noPenetration", &[], &[StepReport::default(), crossed, StepReport::default()]).passed
+        );
+        assert!(judge("noPenetration", &[], &[StepReport::default()]).passed);
+    }
+
+    #[test]
+    fn nan_never_passes_and_stays() {
+        let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
+        let outcome = judge("maxStretch", &[0.02], &[strain(f64::NAN), strain(0.0)]);
+        assert!(!outcome.passed && outcome.worst.is_some_and(|(worst, frame)| worst.is_nan() && frame == 2));
+    }
+
+    #[test]
+    fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
+        // 4 J in 2 kg are 2 m/s.
+        let moving = |kinetic_energy| StepReport { kinetic_energy, ..StepReport::default() };
+        let outcome = judge("restsBy", &[3.0, 2.0], &[moving(100.0), moving(4.0), moving(1.0)]);
+        assert_eq!((outcome.passed, outcome.worst), (true, Some((2.0, 3))));
+        assert!(!judge("restsBy", &[3.0, 1.9], &[moving(0.0), moving(4.0)]).passed);
+    }
+
+    #[test]
+    fn a_check_that_never_came_up_has_not_passed() {
+        let outcome = judge("restsBy", &[100.0, 1.0], &[StepReport::default()]);
+        assert_eq!((outcome.passed, outcome.worst), (false, None));
+    }
+
+    #[test]
+    fn names_and_numbers_of_arguments_must_be_right() {
+        assert_eq!(Check::new("noPenetration", &[1.0]), None);
+        assert_eq!(Check::new("maxStretch", &[]), None);
+        assert_eq!(Check::new("maxStrech", &[1.0]), None);
+    }
+}

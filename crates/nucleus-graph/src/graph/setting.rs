@@ -1,0 +1,120 @@
+//! What is set on an attribute: one value for all frames, or curves.
+
+use crate::animation::Curve;
+use crate::attributes::{Attribute, Choice, Kind, Range, Value};
+
+/// What an attribute is set to.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Setting {
+    /// The same in all frames. Vectors are always [`Parts`](Self::Parts).
+    Fixed(Value),
+    /// A number, switch or word that changes with the frame.
+    Keyed(Curve),
+    /// The three parts of a vector, each for itself.
+    Parts([Channel; 3]),
+}
+
+/// One part of a vector.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Channel {
+    /// The same in all frames.
+    Fixed(f64),
+    /// Changes with the frame.
+    Keyed(Curve),
+}
+
+impl Setting {
+    /// Whether it can be set on an attribute: the right kind, within the hard range, keyed only where that
+    /// is possible.
+    pub fn fits(&self, attribute: &Attribute) -> bool {
+        let whole = |x: f64| match attribute.kind {
+            Kind::Bool => x == 0.0 || x == 1.0,
+            Kind::Int => x.fract() == 0.0,
+            Kind::Choice(words) => words.iter().any(|(index, _)| f64::from(*index) == x),
+            _ => true,
+        };
+        let within = |curve: &Curve| {
+            curve.keys().iter().all(|key| attribute.range.contains(key.value) && whole(key.value))
+        };
+        match (self, attribute.kind) {
+            (Self::Fixed(Value::Float(x)), Kind::Float) => attribute.range.contains(*x),
+            (Self::Fixed(Value::Int(x)), Kind::Int) => attribute.range.contains(*x as f64),
+            (Self::Fixed(Value::Vector(_)), _) => false,
+            (Self::Fixed(value), kind) => kind.admits(value),
+            (Self::Keyed(_), Kind::Vector(_)) => false,
+            (Self::Keyed(curve), _) => attribute.can_be_keyed() && within(curve),
+            (Self::Parts(channels), Kind::Vector(_)) => channels.iter().all(|channel| match channel {
+                Channel::Fixed(x) => attribute.range.contains(*x),
+                Channel::Keyed(curve) => attribute.keyable && within(curve),
+            }),
+            (Self::Parts(_), _) => false,
+        }
+    }
+
+    /// The value at a frame. Curves that swing out of the hard range between keys are cut off there.
+    pub fn at(&self, frame: f64, attribute: &Attribute) -> Value {
+        match self {
+            Self::Fixed(value) => value.clone(),
+            Self::Keyed(curve) => as_kind(curve.value_at(frame), attribute),
+            Self::Parts(channels) => {
+                Value::Vector([0, 1, 2].map(|part| channels[part].at(frame, attribute.range)))
+            }
+        }
+    }
+
+    /// Whether it changes from frame to frame.
+    pub fn changes(&self) -> bool {
+        let curves = match self {
+            Self::Fixed(_) => return false,
+            Self::Keyed(curve) => [Some(curve), None, None],
+            Self::Parts(channels) => channels.each_ref().map(|channel| match channel {
+                Channel::Fixed(_) => None,
+                Channel::Keyed(curve) => Some(curve),
+            }),
+        };
+        curves.into_iter().flatten().any(|curve| !curve.is_constant())
+    }
+
+    /// Whether a number is other than zero at any time.
+    pub fn is_ever_nonzero(&self) -> bool {
+        match self {
+            Self::Fixed(Value::Float(x)) => *x != 0.0,
+            Self::Fixed(Value::Int(x)) => *x != 0,
+            Self::Fixed(Value::Bool(on)) => *on,
+            Self::Fixed(_) => true,
+            Self::Keyed(curve) => curve.max_abs() != 0.0,
+            Self::Parts(channels) => channels.iter().any(|channel| match channel {
+                Channel::Fixed(x) => *x != 0.0,
+                Channel::Keyed(curve) => curve.max_abs() != 0.0,
+            }),
+        }
+    }
+}
+
+impl Channel {
+    fn at(&self, frame: f64, range: Range) -> f64 {
+        match self {
+            Self::Fixed(x) => *x,
+            Self::Keyed(curve) => range.clamp(curve.value_at(frame)),
+        }
+    }
+}
+
+impl From<Value> for Setting {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Vector(parts) => Self::Parts(parts.map(Channel::Fixed)),
+            value => Self::Fixed(value),
+        }
+    }
+}
+
+/// A curve's number as what the attribute holds.
+fn as_kind(x: f64, attribute: &Attribute) -> Value {
+    match attribute.kind {
+        Kind::Bool => Value::Bool(x >= 0.5),
+        Kind::Int => Value::Int(attribute.range.clamp(x.round()) as i64),
+        Kind::Choice(_) => Value::Choice(Choice(x.round() as i32)),
+        _ => Value::Float(attribute.range.clamp(x)),
+    }
+}

@@ -1,0 +1,193 @@
+use super::*;
+use crate::animation::{Curve, Key, Tangent};
+use crate::attributes::{
+    Choice, Component, Selection, Value, dynamic_constraint, mesh, n_cloth, n_component, n_rigid, nucleus,
+    poly_plane, transform,
+};
+
+fn keys(keys: &[(f64, f64)]) -> Curve {
+    let key = |&(frame, value)| Key { frame, value, tangent: Tangent::Linear };
+    Curve::new(keys.iter().map(key).collect()).expect("keys in order")
+}
+
+/// A nucleus, a plane and a cloth that is not wired yet.
+fn sheet() -> (Graph, NodeId, NodeId, NodeId) {
+    let mut graph = Graph::new();
+    let cloth = graph.add("cloth1", &n_cloth::N_CLOTH).expect("free");
+    let nucleus = graph.add("nucleus1", &nucleus::NUCLEUS).expect("free");
+    let plane = graph.add("sheet", &poly_plane::POLY_PLANE).expect("free");
+    (graph, cloth, nucleus, plane)
+}
+
+fn wires(graph: &Graph) -> Vec<(String, String)> {
+    graph.connections().iter().map(|wire| (graph.describe(wire.from), graph.describe(wire.to))).collect()
+}
+
+fn expect_wires(graph: &Graph, expected: &[(&str, &str)]) {
+    let mut found = wires(graph);
+    let mut expected: Vec<_> = expected.iter().map(|&(a, b)| (a.to_owned(), b.to_owned())).collect();
+    found.sort();
+    expected.sort();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_cloth_is_connected_as_maya_connects_it() {
+    let (mut graph, cloth, nucleus, plane) = sheet();
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    expect_wires(
+        &graph,
+        &[
+            ("time1.outTime", "nucleus1.currentTime"),
+            ("time1.outTime", "cloth1.currentTime"),
+            ("sheet.worldMesh[0]", "cloth1.inputMesh"),
+            ("cloth1.outputMesh", "outputCloth1.inMesh"),
+            ("cloth1.currentState", "nucleus1.inputActive[0]"),
+            ("cloth1.startState", "nucleus1.inputActiveStart[0]"),
+            ("nucleus1.outputObjects[0]", "cloth1.nextState"),
+            ("nucleus1.startFrame", "cloth1.startFrame"),
+        ],
+    );
+}
+
+#[test]
+fn a_collider_is_connected_as_maya_connects_it() {
+    let (mut graph, _, nucleus, plane) = sheet();
+    let collider = graph.add("rigid1", &n_rigid::N_RIGID).expect("free");
+    graph.create_collider(collider, plane, nucleus).expect("not wired yet");
+    expect_wires(
+        &graph,
+        &[
+            ("time1.outTime", "nucleus1.currentTime"),
+            ("time1.outTime", "rigid1.currentTime"),
+            ("sheet.worldMesh[0]", "rigid1.inputMesh"),
+            ("rigid1.currentState", "nucleus1.inputPassive[0]"),
+            ("rigid1.startState", "nucleus1.inputPassiveStart[0]"),
+            ("nucleus1.startFrame", "rigid1.startFrame"),
+        ],
+    );
+}
+
+// EVIDENCE: N2.4-3  a constraint becomes a list of elements of each of its members
+#[test]
+fn a_constraint_gets_one_component_node_per_member() {
+    let (mut graph, cloth, nucleus, plane) = sheet();
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    let before = graph.connections().len();
+    let pin = graph.add("pin", &dynamic_constraint::DYNAMIC_CONSTRAINT).expect("free");
+    let part =
+        |first, last| Component { object: "cloth1".into(), selection: Selection::Points { first, last } };
+    graph.create_constraint(pin, &[part(4, 4), part(0, 2)], nucleus).expect("not wired yet");
+    let found = &wires(&graph)[before..];
+    let expected = [
+        ("cloth1.nucleusId", "nComponent1.objectId"),
+        ("nComponent1.outComponent", "pin.componentIds[0]"),
+        ("time1.outTime", "pin.currentTime"),
+        ("pin.evalStart[0]", "nucleus1.inputStart[0]"),
+        ("pin.evalCurrent[0]", "nucleus1.inputCurrent[0]"),
+    ];
+    assert_eq!(found, expected.map(|(a, b)| (a.to_owned(), b.to_owned())));
+    let member = graph.node(graph.find("nComponent1").expect("it was made"));
+    assert_eq!(member.get(&n_component::COMPONENT_INDICES), [4, 0, 1, 2]);
+    assert_eq!(member.get(&n_component::COMPONENT_TYPE), Choice(2));
+    assert_eq!(member.made_by(), Some(pin));
+}
+
+#[test]
+fn the_next_object_takes_the_next_index_on_all_three_plugs() {
+    let (mut graph, cloth, nucleus, plane) = sheet();
+    let second = graph.add("cloth2", &n_cloth::N_CLOTH).expect("free");
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    graph.create_cloth(second, plane, nucleus).expect("not wired yet");
+    let found = wires(&graph);
+    for (from, to) in [
+        ("cloth2.currentState", "nucleus1.inputActive[1]"),
+        ("cloth2.startState", "nucleus1.inputActiveStart[1]"),
+        ("nucleus1.outputObjects[1]", "cloth2.nextState"),
+        ("cloth2.outputMesh", "outputCloth2.inMesh"),
+    ] {
+        assert!(found.contains(&(from.to_owned(), to.to_owned())), "{from} -> {to}");
+    }
+    let clocks = found.iter().filter(|(_, to)| to == "nucleus1.currentTime").count();
+    assert_eq!(clocks, 1);
+}
+
+#[test]
+fn made_nodes_step_aside_for_names_that_are_taken() {
+    let (mut graph, cloth, nucleus, plane) = sheet();
+    graph.add("outputCloth1", &mesh::MESH).expect("free");
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    assert!(wires(&graph).contains(&("cloth1.outputMesh".into(), "outputCloth2.inMesh".into())));
+}
+
+#[test]
+fn an_input_takes_one_connection() {
+    let (mut graph, cloth, nucleus, plane) = sheet();
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    let error = graph.create_cloth(cloth, plane, nucleus).expect_err("it is wired");
+    assert_eq!(error, GraphError::InputTaken { input: "cloth1.currentTime".into() });
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let (mut graph, cloth, ..) = sheet();
+    let row = &n_cloth::BEND_RESISTANCE.row;
+    for value in [Value::Bool(true), Value::Float(-1.0), Value::Float(f64::NAN), Value::Int(2)] {
+        let error = graph.set(cloth, row, Setting::Fixed(value)).expect_err("does not fit");
+        assert_eq!(error, GraphError::NotAdmitted { node: "cloth1".into(), attribute: "bendResistance" });
+    }
+    let error = graph.set(cloth, &nucleus::GRAVITY.row, Setting::Fixed(Value::Float(1.0)));
+    assert!(matches!(error, Err(GraphError::NoAttribute { .. })), "{error:?}");
+    assert!(matches!(graph.add("cloth1", &n_cloth::N_CLOTH), Err(GraphError::NameTaken { .. })));
+}
+
+#[test]
+fn parents_form_no_circle() {
+    let mut graph = Graph::new();
+    let [a, b, c] = ["a", "b", "c"].map(|name| graph.add(name, &transform::TRANSFORM).expect("free"));
+    graph.set_parent(b, a).expect("no circle");
+    graph.set_parent(c, b).expect("no circle");
+    assert!(matches!(graph.set_parent(a, c), Err(GraphError::ParentCircle { .. })));
+    assert!(matches!(graph.set_parent(a, a), Err(GraphError::ParentCircle { .. })));
+}
+
+#[test]
+fn keyed_values_are_read_as_what_the_attribute_holds() {
+    let (mut graph, cloth, nucleus, _) = sheet();
+    let ramp = Setting::Keyed(keys(&[(1.0, 1.0), (5.0, 3.0)]));
+    graph.set(nucleus, &nucleus::SUB_STEPS.row, ramp).expect("fits");
+    graph
+        .set(cloth, &n_cloth::IGNORE_SOLVER_WIND.row, Setting::Keyed(keys(&[(1.0, 0.0), (3.0, 1.0)])))
+        .expect("fits");
+    let at = |frame| graph.node(nucleus).at(&nucleus::SUB_STEPS, frame);
+    assert_eq!([at(0.0), at(3.0), at(9.0)], [1, 2, 3]);
+    let at = |frame| graph.node(cloth).at(&n_cloth::IGNORE_SOLVER_WIND, frame);
+    assert_eq!([at(1.0), at(1.5), at(2.0), at(3.0)], [false, false, true, true]);
+}
+
+#[test]
+fn a_spline_that_swings_out_of_the_hard_range_is_cut_off_there() {
+    let (mut graph, cloth, ..) = sheet();
+    let spline = |frame, value| Key { frame, value, tangent: Tangent::Spline };
+    let curve =
+        Curve::new(vec![spline(0.0, 9.0), spline(1.0, 0.0), spline(9.0, 0.0)]).expect("keys in order");
+    assert!((20..80).any(|tenth| curve.value_at(f64::from(tenth) / 10.0) < 0.0));
+    graph.set(cloth, &n_cloth::BEND_RESISTANCE.row, Setting::Keyed(curve)).expect("its keys fit");
+    for tenth in 0..90 {
+        assert!(graph.node(cloth).at(&n_cloth::BEND_RESISTANCE, f64::from(tenth) / 10.0) >= 0.0);
+    }
+}
+
+#[test]
+fn a_child_stands_where_its_parent_takes_it() {
+    let mut graph = Graph::new();
+    let arm = graph.add("arm", &transform::TRANSFORM).expect("free");
+    let hand = graph.add("hand", &transform::TRANSFORM).expect("free");
+    graph.set_parent(hand, arm).expect("no circle");
+    graph.set(hand, &transform::TRANSLATE.row, Value::Vector([2.0, 0.0, 0.0]).into()).expect("fits");
+    let turn = [Channel::Fixed(0.0), Channel::Fixed(0.0), Channel::Keyed(keys(&[(0.0, 0.0), (10.0, 90.0)]))];
+    graph.set(arm, &transform::ROTATE.row, Setting::Parts(turn)).expect("fits");
+    assert_eq!(graph.placement(hand, 0.0).offset.as_slice(), [2.0, 0.0, 0.0]);
+    assert_eq!(graph.placement(hand, 10.0).offset.as_slice(), [0.0, 2.0, 0.0]);
+    assert!(graph.moves(hand) && graph.moves(arm));
+}

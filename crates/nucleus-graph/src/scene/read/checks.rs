@@ -1,0 +1,76 @@
+//! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
+
+use crate::checks::{Check, Form};
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::syntax::{Node, Value, Word};
+
+use super::fields::{Fields, listed};
+use super::value::{found, number};
+
+/// Reads what must hold.
+pub(super) fn read(node: &Node, findings: &mut Findings) -> Vec<Check> {
+    let Value::List(items) = &node.value else {
+        let message = format!("`checks` takes a list, found {}", found(&node.value));
+        findings.error(&node.span, message).help("write `checks: [noPenetration]`");
+        return Vec::new();
+    };
+    items.iter().filter_map(|item| read_check(item, findings)).collect()
+}
+
+fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
+    let (name, span) = match &node.value {
+        Value::Word(name) => (name, &node.span),
+        Value::Tuple { name: Some(Word { text, span }), .. }
+        | Value::Record { name: Some(Word { text, span }), .. } => (text, span),
+        other => {
+            findings.error(&node.span, format!("expected a check, found {}", found(other))).help(all_names());
+            return None;
+        }
+    };
+    let Some(form) = Form::all().iter().find(|form| form.name == name) else {
+        let error = findings.error(span, format!("there is no check `{name}`"));
+        match nearest(name, Form::all().iter().map(|form| form.name)) {
+            Some(nearest) => error.did_you_mean(Some(nearest)),
+            None => error.help(all_names()),
+        };
+        return None;
+    };
+    Check::new(form.name, &arguments(form, node, findings)?)
+}
+
+fn arguments(form: &Form, node: &Node, findings: &mut Findings) -> Option<Vec<f64>> {
+    let label = |parameter: &str| format!("`{parameter}` of `{}`", form.name);
+    let values: Vec<&Node> = match &node.value {
+        Value::Record { fields, .. } => {
+            let mut fields = Fields::new(fields, node.span.clone(), findings);
+            let take =
+                |parameter: &&str| fields.take_required(parameter, &format!("`{parameter}: ...`"), findings);
+            let values: Vec<Option<&Node>> = form.parameters.iter().map(take).collect();
+            fields.refuse_rest(&format!("`{}`", form.name), form.parameters, findings);
+            values.into_iter().collect::<Option<_>>()?
+        }
+        Value::Tuple { items, .. } => items.iter().collect(),
+        _ => Vec::new(),
+    };
+    if values.len() != form.parameters.len() {
+        let takes = match form.parameters {
+            [] => "nothing".to_owned(),
+            parameters => listed(parameters),
+        };
+        findings.error(&node.span, format!("`{}` takes {takes}", form.name)).help(form.doc);
+        return None;
+    }
+    let values: Vec<Option<f64>> = form
+        .parameters
+        .iter()
+        .zip(values)
+        .map(|(parameter, value)| number(&label(parameter), value, findings))
+        .collect();
+    values.into_iter().collect()
+}
+
+fn all_names() -> String {
+    let names: Vec<&str> = Form::all().iter().map(|form| form.name).collect();
+    format!("there are {}", listed(&names))
+}

@@ -1,0 +1,100 @@
+//! The fields of a record, taken one by one; what is left over is refused.
+
+use std::ops::Range;
+
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::syntax::{Node, Value, Word};
+
+use super::value::found;
+
+/// Fields that have not been taken yet.
+pub(super) struct Fields<'a> {
+    left: Vec<(&'a Word, &'a Node)>,
+    /// Where an error about the whole record points.
+    place: Range<usize>,
+}
+
+impl<'a> Fields<'a> {
+    /// The fields of a record; a field that stands twice is an error.
+    pub(super) fn new(fields: &'a [(Word, Node)], place: Range<usize>, findings: &mut Findings) -> Self {
+        let mut left: Vec<(&Word, &Node)> = Vec::new();
+        for (word, node) in fields {
+            if let Some((first, _)) = left.iter().find(|(first, _)| first.text == word.text) {
+                let error = findings.error(&word.span, format!("`{}` stands here twice", word.text));
+                error.note_at(&first.span, "here for the first time");
+            } else {
+                left.push((word, node));
+            }
+        }
+        Self { left, place }
+    }
+
+    /// The fields of `Scene(...)`.
+    pub(super) fn of_scene(root: &'a Node, findings: &mut Findings) -> Option<Self> {
+        let help = "a scene file begins with `Scene(time: (start: 1, end: 120, fps: 24), nodes: {`";
+        let (name, fields) = match &root.value {
+            Value::Record { name, fields } => (name, fields),
+            other => {
+                findings
+                    .error(&root.span, format!("expected `Scene(...)`, found {}", found(other)))
+                    .help(help);
+                return None;
+            }
+        };
+        match name {
+            Some(word) if word.text == "Scene" => Some(Self::new(fields, word.span.clone(), findings)),
+            Some(word) => {
+                findings.error(&word.span, format!("expected `Scene`, found `{}`", word.text)).help(help);
+                Some(Self::new(fields, word.span.clone(), findings))
+            }
+            None => {
+                let start = root.span.start..root.span.start + 1;
+                findings.error(&start, "expected `Scene` before this bracket").help(help);
+                Some(Self::new(fields, start, findings))
+            }
+        }
+    }
+
+    /// Takes a field.
+    pub(super) fn take(&mut self, name: &str) -> Option<&'a Node> {
+        let at = self.left.iter().position(|(word, _)| word.text == name)?;
+        Some(self.left.remove(at).1)
+    }
+
+    /// Takes a field that must be there.
+    pub(super) fn take_required(
+        &mut self,
+        name: &str,
+        example: &str,
+        findings: &mut Findings,
+    ) -> Option<&'a Node> {
+        let node = self.take(name);
+        // A misspelt field is reported as such.
+        let misspelt = self.left.iter().any(|(word, _)| nearest(&word.text, [name]).is_some());
+        if node.is_none() && !misspelt {
+            findings.error(&self.place, format!("`{name}` is missing")).help(format!("add {example}"));
+        }
+        node
+    }
+
+    /// Refuses what has not been taken.
+    pub(super) fn refuse_rest(&self, owner: &str, names: &[&str], findings: &mut Findings) {
+        for (word, _) in &self.left {
+            let error = findings.error(&word.span, format!("{owner} has no `{}`", word.text));
+            match nearest(&word.text, names.iter().copied()) {
+                Some(name) => error.did_you_mean(Some(name)),
+                None => error.help(format!("it takes {}", listed(names))),
+            };
+        }
+    }
+}
+
+/// Words for a sentence: `a`, `b` and `c`.
+pub(super) fn listed<S: AsRef<str>>(words: &[S]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}

@@ -1,0 +1,168 @@
+//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`.
+
+use crate::animation::{Curve, Key, Tangent};
+use crate::attributes::{Attribute, Kind, Value as Held};
+use crate::graph::{Channel, Setting};
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::syntax::{Node, Value};
+
+use super::value::{expected, found, number, single, triple};
+
+/// What stands inside `keys(...)`, if that is what a value is.
+pub(super) fn keyed(node: &Node) -> Option<&Node> {
+    match &node.value {
+        Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => items.first(),
+        _ => None,
+    }
+}
+
+/// Reads the keys of an attribute; those of a vector hold three numbers each.
+pub(super) fn read(
+    label: &str,
+    row: &'static Attribute,
+    list: &Node,
+    findings: &mut Findings,
+) -> Option<Setting> {
+    if !may_be_keyed(label, row, list, findings) {
+        return None;
+    }
+    if let Kind::Vector(_) = row.kind {
+        let keys =
+            read_keys(label, row, list, findings, |node, findings| triple(label, row, node, findings))?;
+        let curves = [0, 1, 2].map(|part| {
+            let part = keys.iter().map(|&(frame, value, tangent)| Key { frame, value: value[part], tangent });
+            curve(label, part.collect(), list, findings).map(Channel::Keyed)
+        });
+        let [x, y, z] = curves;
+        return Some(Setting::Parts([x?, y?, z?]));
+    }
+    let value = |node: &Node, findings: &mut Findings| {
+        single(label, row, node, findings).map(|held| as_number(&held))
+    };
+    let keys = read_keys(label, row, list, findings, value)?;
+    let keys = keys.into_iter().map(|(frame, value, tangent)| Key { frame, value, tangent });
+    curve(label, keys.collect(), list, findings).map(Setting::Keyed)
+}
+
+/// Reads the keys of one part of a vector.
+pub(super) fn read_part(
+    label: &str,
+    row: &'static Attribute,
+    list: &Node,
+    findings: &mut Findings,
+) -> Option<Curve> {
+    if !may_be_keyed(label, row, list, findings) {
+        return None;
+    }
+    let keys = read_keys(label, row, list, findings, |node, findings| number(label, node, findings))?;
+    let keys = keys.into_iter().map(|(frame, value, tangent)| Key { frame, value, tangent });
+    curve(label, keys.collect(), list, findings)
+}
+
+fn may_be_keyed(label: &str, row: &'static Attribute, list: &Node, findings: &mut Findings) -> bool {
+    if !row.can_be_keyed() {
+        findings.error(&list.span, format!("{label} cannot be keyed: it is read once, at the start"));
+    }
+    row.can_be_keyed()
+}
+
+type Keys<T> = Vec<(f64, T, Tangent)>;
+
+fn read_keys<T>(
+    label: &str,
+    row: &'static Attribute,
+    list: &Node,
+    findings: &mut Findings,
+    mut read_value: impl FnMut(&Node, &mut Findings) -> Option<T>,
+) -> Option<Keys<T>> {
+    let Value::List(items) = &list.value else {
+        return expected(label, "a list of keys, like keys([(1, 0), (24, 1)])", list, findings);
+    };
+    if items.is_empty() {
+        findings.error(&list.span, format!("{label} has no keys")).help("give at least one key, like (1, 0)");
+        return None;
+    }
+    let before = findings.errors();
+    let mut keys: Keys<T> = Vec::with_capacity(items.len());
+    for item in items {
+        let Some((frame, value, tangent)) = parts(label, item, findings) else { continue };
+        let (frame, value) = (number("the frame of a key", frame, findings), read_value(value, findings));
+        let tangent = tangent.map_or(Some(usual_tangent(row)), |word| read_tangent(word, findings));
+        let (Some(frame), Some(value), Some(tangent)) = (frame, value, tangent) else { continue };
+        match keys.last() {
+            Some(&(previous, ..)) if frame <= previous => {
+                let message =
+                    format!("the keys of {label} are not in order: frame {frame} after frame {previous}");
+                findings.error(&item.span, message);
+            }
+            _ => keys.push((frame, value, tangent)),
+        }
+    }
+    (findings.errors() == before).then_some(keys)
+}
+
+/// Frame, value and tangent of a key.
+fn parts<'a>(
+    label: &str,
+    item: &'a Node,
+    findings: &mut Findings,
+) -> Option<(&'a Node, &'a Node, Option<&'a Node>)> {
+    let Value::Tuple { name: None, items } = &item.value else {
+        return expected(label, "keys of (frame, value)", item, findings);
+    };
+    match items.as_slice() {
+        [frame, value] => Some((frame, value, None)),
+        [frame, value, tangent] => Some((frame, value, Some(tangent))),
+        _ => {
+            let message =
+                format!("a key is (frame, value) or (frame, value, tangent), found {} parts", items.len());
+            findings.error(&item.span, message);
+            None
+        }
+    }
+}
+
+/// Switches and words jump from key to key, numbers move.
+fn usual_tangent(row: &Attribute) -> Tangent {
+    match row.kind {
+        Kind::Bool | Kind::Choice(_) => Tangent::Stepped,
+        _ => Tangent::Linear,
+    }
+}
+
+fn read_tangent(node: &Node, findings: &mut Findings) -> Option<Tangent> {
+    let tangents = [("stepped", Tangent::Stepped), ("linear", Tangent::Linear), ("spline", Tangent::Spline)];
+    if let Value::Word(word) = &node.value {
+        if let Some((_, tangent)) = tangents.iter().find(|(name, _)| name == word) {
+            return Some(*tangent);
+        }
+        let error = findings.error(&node.span, format!("there is no tangent `{word}`"));
+        match nearest(word, tangents.iter().map(|(name, _)| *name)) {
+            Some(near) => error.did_you_mean(Some(near)),
+            None => error.help("a tangent is `stepped`, `linear` or `spline`"),
+        };
+        return None;
+    }
+    let error = findings.error(&node.span, format!("a tangent is a word, found {}", found(&node.value)));
+    error.help("a tangent is `stepped`, `linear` or `spline`");
+    None
+}
+
+fn curve(label: &str, keys: Vec<Key>, list: &Node, findings: &mut Findings) -> Option<Curve> {
+    let curve = Curve::new(keys);
+    if let Err(error) = &curve {
+        findings.error(&list.span, format!("the keys of {label} make no curve: {error}"));
+    }
+    curve.ok()
+}
+
+fn as_number(value: &Held) -> f64 {
+    match value {
+        Held::Bool(on) => f64::from(u8::from(*on)),
+        Held::Int(number) => *number as f64,
+        Held::Float(number) => *number,
+        Held::Choice(choice) => f64::from(choice.0),
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,113 @@
+//! From text to a scene, with everything there is to say about it.
+//!
+//! | You want to know...                                  | Read            |
+//! |------------------------------------------------------|-----------------|
+//! | in which order a file is read                        | this file       |
+//! | what stands inside `Scene(...)`                      | `top.rs`        |
+//! | how one node is read                                 | `nodes.rs`      |
+//! | how an attribute's value is read, keyed or not       | `value.rs`, `keys.rs` |
+//! | what `"cloth1.vtx[0:8]"` means                       | `component.rs`  |
+//! | how names become connections                         | `links.rs`      |
+
+mod checks;
+mod component;
+mod fields;
+mod keys;
+mod links;
+mod nodes;
+mod time;
+mod value;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use crate::compile;
+use crate::graph::NodeId;
+
+use super::diagnostic::Diagnostic;
+use super::document::{Record, Scene, TimeSpan};
+use super::findings::Findings;
+use super::source::Source;
+use super::syntax::{self, Node};
+
+use fields::Fields;
+
+/// Reads a scene file. With the scene come warnings: what is set and has no effect.
+///
+/// # Errors
+/// All mistakes that can be found, with warnings among them, in the order of the file.
+pub fn read_scene(path: impl AsRef<Path>) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let path = path.as_ref();
+    let mut findings = Findings::new(path.to_owned());
+    let message = match fs::read(path) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => return read_scene_text(&text, path),
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                findings.error(&(at..at), "this is not text: scenes are UTF-8");
+                return Err(findings.in_order());
+            }
+        },
+        Err(error) => format!("cannot read `{}`: {error}", path.display()),
+    };
+    findings.error(&(0..0), message);
+    Err(findings.in_order())
+}
+
+/// Reads a scene from text. `file` is what diagnostics name, and where relative paths begin.
+///
+/// # Errors
+/// All mistakes that can be found, with warnings among them, in the order of the text.
+pub fn read_scene_text(text: &str, file: &Path) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let mut findings = Findings::new(file.to_owned());
+    let root = match syntax::parse(text) {
+        Ok(root) => root,
+        Err(errors) => {
+            for error in errors {
+                findings.error(&error.span, error.message).help = error.help;
+            }
+            return Err(findings.in_order());
+        }
+    };
+    let read = read_root(&root, file, &mut findings);
+    if findings.errors() == 0
+        && let Some((scene, _)) = read
+    {
+        return Ok((scene, findings.in_order()));
+    }
+    // Mistakes that only show when meshes are there are worth telling in the same go.
+    if let Some((scene, broken)) = read {
+        findings.extend(compile::survey(&scene, &broken));
+    }
+    Err(findings.in_order())
+}
+
+/// The scene as far as it can be read, and the nodes on which something could not.
+fn read_root(root: &Node, file: &Path, findings: &mut Findings) -> Option<(Scene, BTreeSet<NodeId>)> {
+    let mut fields = Fields::of_scene(root, findings)?;
+    let time =
+        time::read(fields.take_required("time", "`time: (start: 1, end: 120, fps: 24)`", findings), findings);
+    let record = fields.take("record").and_then(|node| read_record(node, findings));
+    let checks = fields.take("checks").map(|node| checks::read(node, findings));
+    let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
+    fields.refuse_rest("a scene", &["time", "record", "nodes", "checks"], findings);
+    let mut source = Source::new(file);
+    let (graph, broken) = nodes::read_nodes(nodes?, &mut source, findings);
+    let time = time.unwrap_or(TimeSpan { start: 1, end: 1, fps: 24.0 });
+    let record = record.unwrap_or_default();
+    Some((Scene { time, record, graph, checks: checks.unwrap_or_default(), source }, broken))
+}
+
+fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
+    match &node.value {
+        syntax::Value::Word(word) if word == "frames" => Some(Record::Frames),
+        syntax::Value::Word(word) if word == "substeps" => Some(Record::Substeps),
+        other => {
+            let error =
+                findings.error(&node.span, format!("`record` takes a word, found {}", value::found(other)));
+            error.help("write `record: frames` or `record: substeps`");
+            None
+        }
+    }
+}

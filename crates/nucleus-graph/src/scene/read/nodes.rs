@@ -1,0 +1,285 @@
+//! `nodes: {"cloth1": nCloth(inputMesh: "sheet", friction: 0.4)}`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use crate::attributes::{Attribute, Effect, Kind, NodeType, Value as Held, node_type, node_types};
+use crate::graph::{Channel, Graph, NodeId, Setting};
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::source::Source;
+use crate::scene::syntax::{Node, Value, Word};
+
+use super::component;
+use super::links::{self, Links, Reference};
+use super::value::{expected, found, read, read_part, single, text};
+
+/// A node as it is written.
+struct Draft<'a> {
+    name: &'a str,
+    span: &'a Range<usize>,
+    node_type: &'static NodeType,
+    fields: &'a [(Word, Node)],
+}
+
+/// Reads all nodes and connects them. Also returns the nodes on which something could not be read.
+pub(super) fn read_nodes(
+    node: &Node,
+    source: &mut Source,
+    findings: &mut Findings,
+) -> (Graph, BTreeSet<NodeId>) {
+    let mut graph = Graph::new();
+    let mut broken = BTreeSet::new();
+    let Value::Map(entries) = &node.value else {
+        expected::<()>("`nodes`", "names and nodes, like {\"cloth1\": nCloth()}", node, findings);
+        return (graph, broken);
+    };
+    let (mut drafts, names) = drafts(entries, findings);
+    // The order of nodes in a file must not matter to a run.
+    drafts.sort_by_key(|draft| draft.name);
+    let mut links = Links { names, references: Vec::new() };
+    for draft in &drafts {
+        let Ok(id) = graph.add(draft.name, draft.node_type) else { continue };
+        source.note(draft.name.to_owned(), draft.span);
+        links.names.insert(draft.name.to_owned(), Some(id));
+        let before = findings.errors();
+        NodeReader { graph: &mut graph, id, draft, source, findings, links: &mut links, set: Vec::new() }
+            .fields();
+        if findings.errors() > before {
+            broken.insert(id);
+        }
+    }
+    links::connect(&mut graph, &links, source, findings);
+    (graph, broken)
+}
+
+/// The nodes that have a name and a type, and the names of all.
+fn drafts<'a>(
+    entries: &'a [(Node, Node)],
+    findings: &mut Findings,
+) -> (Vec<Draft<'a>>, BTreeMap<String, Option<NodeId>>) {
+    let mut seen: BTreeMap<&str, &Range<usize>> = BTreeMap::new();
+    let mut drafts = Vec::new();
+    let mut names = BTreeMap::new();
+    for (key, body) in entries {
+        let Some(name) = text("the name of a node", key, findings) else { continue };
+        names.insert(name.to_owned(), None);
+        if let Some(first) = seen.insert(name, &key.span) {
+            let error = findings.error(&key.span, format!("there are two nodes `{name}`"));
+            error.note_at(first, "the other one is here").help("give one of them another name");
+            continue;
+        }
+        if !is_a_name(name) {
+            let error = findings.error(&key.span, format!("`{name}` is not a name"));
+            error.help("names are made of letters, digits, `_`, `-` and `:`");
+            continue;
+        }
+        let Some((node_type, fields)) = typed(name, body, findings) else { continue };
+        drafts.push(Draft { name, span: &key.span, node_type, fields });
+    }
+    (drafts, names)
+}
+
+fn is_a_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | ':'))
+}
+
+fn typed<'a>(
+    name: &str,
+    body: &'a Node,
+    findings: &mut Findings,
+) -> Option<(&'static NodeType, &'a [(Word, Node)])> {
+    let (word, span, fields): (&str, _, &[_]) = match &body.value {
+        Value::Record { name: Some(word), fields } => (&word.text, &word.span, fields),
+        Value::Tuple { name: Some(word), .. } => {
+            let error = findings.error(&body.span, format!("the attributes of `{name}` need names"));
+            error.help(format!("write `{}(attribute: value)`", word.text));
+            return None;
+        }
+        Value::Word(word) => {
+            let error = findings.error(&body.span, format!("`{name}` needs brackets after its type"));
+            error.help(format!("write `{word}()`"));
+            return None;
+        }
+        other => {
+            let error =
+                findings.error(&body.span, format!("`{name}` needs a type of node, found {}", found(other)));
+            error.help(format!("write `\"{name}\": nCloth(...)`"));
+            return None;
+        }
+    };
+    let node_type = node_type(word);
+    if node_type.is_none() {
+        let near = nearest(word, node_types().iter().map(|node_type| node_type.name));
+        findings.error(span, format!("there is no type of node `{word}`")).did_you_mean(near);
+    }
+    Some((node_type?, fields))
+}
+
+/// Reads the attributes of one node.
+struct NodeReader<'a, 'b> {
+    graph: &'a mut Graph,
+    id: NodeId,
+    draft: &'a Draft<'b>,
+    source: &'a mut Source,
+    findings: &'a mut Findings,
+    links: &'a mut Links,
+    /// What has been set so far: attribute, part of it, place.
+    set: Vec<(&'static str, Option<usize>, &'a Range<usize>)>,
+}
+
+impl NodeReader<'_, '_> {
+    fn fields(&mut self) {
+        for (word, node) in self.draft.fields {
+            let node_type = self.draft.node_type;
+            if let Some(row) = node_type.attribute(&word.text) {
+                self.attribute(word, row, node);
+            } else if let Some((row, part)) = node_type.part(&word.text) {
+                self.part(word, row, part, node);
+            } else {
+                self.unknown(word);
+            }
+        }
+    }
+
+    fn attribute(&mut self, word: &Word, row: &'static Attribute, node: &Node) {
+        if let Kind::Together(parts) = row.kind {
+            return self.together(word, row, parts, node);
+        }
+        if !self.first_time(word, row.name, None) {
+            return;
+        }
+        let label = format!("`{}` of `{}`", row.name, self.draft.name);
+        self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
+        match row.kind {
+            Kind::Node => {
+                let Some(name) = text(&label, node, self.findings) else { return };
+                let (node_id, name, span) = (self.id, name.to_owned(), node.span.clone());
+                self.links.references.push(Reference { node: node_id, row, name, span });
+            }
+            Kind::Components => self.components(&label, row, node),
+            _ => {
+                if let Some(setting) = read(&label, row, node, self.findings) {
+                    self.store(word, row, setting);
+                }
+            }
+        }
+    }
+
+    /// One part of a vector: `translateY: 3`.
+    fn part(&mut self, word: &Word, row: &'static Attribute, part: usize, node: &Node) {
+        if !self.first_time(word, row.name, Some(part)) {
+            return;
+        }
+        let label = format!("`{}` of `{}`", word.text, self.draft.name);
+        let Some(channel) = read_part(&label, row, node, self.findings) else { return };
+        let mut channels = match (self.graph.node(self.id).settings().get(row.name), &row.default) {
+            (Some(Setting::Parts(channels)), _) => channels.clone(),
+            (_, Some(Held::Vector(default))) => default.map(Channel::Fixed),
+            _ => return,
+        };
+        channels[part] = channel;
+        self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
+        self.store(word, row, Setting::Parts(channels));
+    }
+
+    /// Several attributes in one go: `subdivisions: (64, 64)`.
+    fn together(
+        &mut self,
+        word: &Word,
+        row: &'static Attribute,
+        parts: &'static [&'static str],
+        node: &Node,
+    ) {
+        let label = format!("`{}` of `{}`", row.name, self.draft.name);
+        let items: &[Node] = match &node.value {
+            Value::Tuple { name: None, items } | Value::List(items) => items,
+            _ => {
+                expected::<()>(&label, &format!("{} numbers", parts.len()), node, self.findings);
+                return;
+            }
+        };
+        if items.len() != parts.len() {
+            let message = format!("{label} takes {} numbers, found {}", parts.len(), items.len());
+            self.findings.error(&node.span, message);
+            return;
+        }
+        for (name, item) in parts.iter().zip(items) {
+            let Some(row) = self.draft.node_type.attribute(name) else { continue };
+            if !self.first_time(word, row.name, None) {
+                continue;
+            }
+            self.source.note(format!("{}.{}", self.draft.name, row.name), &item.span);
+            if let Some(value) = single(&label, row, item, self.findings) {
+                self.store(word, row, Setting::Fixed(value));
+            }
+        }
+    }
+
+    fn components(&mut self, label: &str, row: &'static Attribute, node: &Node) {
+        let Value::List(items) = &node.value else {
+            let example = format!("a list, like [\"{}\"]", "cloth1.vtx[0]");
+            expected::<()>(label, &example, node, self.findings);
+            return;
+        };
+        let mut components = Vec::with_capacity(items.len());
+        for item in items {
+            let Some(text) = text(label, item, self.findings) else { continue };
+            match component::read(text) {
+                Ok(component) => {
+                    let place = format!("{}.{}[{}]", self.draft.name, row.name, components.len());
+                    self.source.note(place, &item.span);
+                    components.push(component);
+                }
+                Err(message) => {
+                    let error = self.findings.error(&item.span, message);
+                    error.help("write `cloth1.vtx[3]`, `cloth1.vtx[0:8]` or `cloth1.vtx[*]`");
+                }
+            }
+        }
+        let setting = Setting::Fixed(Held::Components(components));
+        if let Err(error) = self.graph.set(self.id, row, setting) {
+            self.findings.error(&node.span, error.to_string());
+        }
+    }
+
+    /// Keeps what has been read, and says so if it does nothing.
+    fn store(&mut self, word: &Word, row: &'static Attribute, setting: Setting) {
+        if let Err(error) = self.graph.set(self.id, row, setting) {
+            self.findings.error(&word.span, error.to_string());
+        }
+        if row.effect == Effect::NotYet {
+            let message = format!("`{}` of `{}` has no effect yet", row.name, self.draft.name);
+            self.findings.warning(&word.span, message);
+        }
+    }
+
+    /// Notes that something is set; whether it is the first time.
+    fn first_time(&mut self, word: &Word, name: &'static str, part: Option<usize>) -> bool {
+        let again = |(set, set_part, _): &&(&str, Option<usize>, _)| {
+            *set == name && (part.is_none() || set_part.is_none() || *set_part == part)
+        };
+        if let Some((.., first)) = self.set.iter().find(again) {
+            let message = format!("`{}` of `{}` is set twice", name, self.draft.name);
+            self.findings.error(&word.span, message).note_at(first, "here for the first time");
+            return false;
+        }
+        let place = self.draft.fields.iter().find(|(field, _)| field.span == word.span);
+        if let Some((field, _)) = place {
+            self.set.push((name, part, &field.span));
+        }
+        true
+    }
+
+    fn unknown(&mut self, word: &Word) {
+        let Draft { name, node_type, .. } = self.draft;
+        let rows = node_type.attributes();
+        let parts: Vec<String> =
+            rows.iter().filter_map(|row| row.parts()).flatten().map(|(long, _)| long).collect();
+        let settable = rows.iter().filter(|row| row.kind != Kind::Plug).map(|row| row.name);
+        let near = nearest(&word.text, settable.chain(parts.iter().map(String::as_str)));
+        let message =
+            format!("`{name}` is of type {}, which has no attribute `{}`", node_type.name, word.text);
+        self.findings.error(&word.span, message).did_you_mean(near);
+    }
+}

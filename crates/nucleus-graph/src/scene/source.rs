@@ -1,0 +1,40 @@
+//! Where a scene comes from: its file, and where in it everything stands.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The file of a scene.
+#[derive(Debug, Clone, Default)]
+pub struct Source {
+    file: PathBuf,
+    places: BTreeMap<String, Range<usize>>,
+}
+
+impl Source {
+    /// A file in which nothing has a known place.
+    pub fn new(file: impl Into<PathBuf>) -> Self {
+        Self { file: file.into(), places: BTreeMap::new() }
+    }
+
+    /// Its path, as it was given.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// A path that the scene names, seen from where the scene's file is.
+    pub fn path(&self, relative: &str) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).join(relative)
+    }
+
+    /// Where something stands: `cloth1`, `cloth1.friction`, `pin.components[2]`. What has no place of its
+    /// own is where its node is, and that is `0..0` if it comes from no file.
+    pub fn place(&self, name: &str) -> Range<usize> {
+        let node = name.split('.').next().unwrap_or_default();
+        self.places.get(name).or_else(|| self.places.get(node)).cloned().unwrap_or_default()
+    }
+
+    pub(super) fn note(&mut self, name: String, span: &Range<usize>) {
+        self.places.entry(name).or_insert_with(|| span.clone());
+    }
+}

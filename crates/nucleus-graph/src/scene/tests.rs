@@ -1,0 +1,144 @@
+use std::path::Path;
+
+use super::*;
+use crate::attributes::{
+    Choice, Component, Selection, dynamic_constraint, n_base, n_cloth, nucleus, poly_plane,
+};
+use crate::graph::{Channel, Setting};
+
+mod mistakes;
+mod round_trip;
+
+/// A cloth, a collider and a pin.
+const SHEET: &str = r#"Scene(
+    time: (start: 1, end: 24, fps: 24),
+    nodes: {
+        "nucleus1": nucleus(spaceScale: 0.01, windSpeed: keys([(1, 0), (12, 3, spline), (24, 0)])),
+        "sheet": polyPlane(width: 150, height: 150, subdivisions: (4, 4), translate: (0, 90, 0)),
+        "cloth1": nCloth(inputMesh: "sheet", bendResistance: 0.4, frc: 0),
+        "ball": polySphere(radius: 20, translateY: keys([(1, 0), (24, 10)])),
+        "rigid1": nRigid(inputMesh: "ball", friction: 0.4),
+        "pin": dynamicConstraint(constraintType: transform, components: ["cloth1.vtx[0]", "cloth1.vtx[3:4]"]),
+    },
+    checks: [noPenetration, maxStretch(0.02), restsBy(frame: 20, speed: 0.5)],
+)
+"#;
+
+fn sheet() -> String {
+    SHEET.replace("frc: 0", "fron: 0.3")
+}
+
+fn scene(text: &str) -> Scene {
+    match read_scene_text(text, Path::new("test.ron")) {
+        Ok((scene, _)) => scene,
+        Err(diagnostics) => panic!("{diagnostics:#?}"),
+    }
+}
+
+/// A scene of one nucleus and these nodes.
+fn with_nodes(nodes: &str) -> String {
+    format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{\"nucleus1\": nucleus(), {nodes}}})")
+}
+
+#[test]
+fn everything_in_a_scene_is_read() {
+    let scene = scene(&sheet());
+    assert_eq!(scene.time, TimeSpan { start: 1, end: 24, fps: 24.0 });
+    assert_eq!(scene.record, Record::Frames);
+    let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
+    assert_eq!(checks, ["noPenetration", "maxStretch(0.02)", "restsBy(frame: 20, speed: 0.5)"]);
+    let node = |name| scene.graph.node(scene.graph.find(name).expect(name));
+    assert_eq!(node("cloth1").get(&n_cloth::BEND_RESISTANCE), 0.4);
+    assert_eq!(node("cloth1").get(&n_base::FRICTION), 0.3);
+    assert_eq!(node("nucleus1").at(&nucleus::WIND_SPEED, 12.0), 3.0);
+    assert_eq!(node("sheet").get(&poly_plane::SUBDIVISIONS_HEIGHT), 4);
+    let part =
+        |first, last| Component { object: "cloth1".into(), selection: Selection::Points { first, last } };
+    assert_eq!(node("pin").get(&dynamic_constraint::COMPONENTS), [part(0, 0), part(3, 4)]);
+}
+
+#[test]
+fn the_short_form_makes_the_connections() {
+    let scene = scene(&sheet());
+    let wires: Vec<String> = scene.graph.connections().iter().map(|c| scene.graph.describe(c.to)).collect();
+    for input in
+        ["cloth1.inputMesh", "nucleus1.inputActive[0]", "nucleus1.inputPassive[0]", "nucleus1.inputStart[0]"]
+    {
+        assert!(wires.iter().any(|wire| wire == input), "{input}: {wires:?}");
+    }
+}
+
+#[test]
+fn vectors_can_be_keyed_as_one_or_part_by_part() {
+    let keyed = with_nodes(
+        r#""a": transform(translate: keys([(1, (0, 1, 2)), (3, (2, 1, 0), stepped)])),
+           "b": transform(ty: 1, tx: keys([(1, 0), (3, 2, stepped)]), translateZ: keys([(1, 2), (3, 0, stepped)]))"#,
+    );
+    let scene = scene(&keyed);
+    let [a, b] = ["a", "b"].map(|name| scene.graph.find(name).expect(name));
+    assert_eq!(scene.graph.placement(a, 2.0).offset.as_slice(), [1.0, 1.0, 1.0]);
+    assert_eq!(scene.graph.placement(a, 2.0), scene.graph.placement(b, 2.0));
+    let parts = scene.graph.node(b).settings().get("translate");
+    assert!(matches!(
+        parts,
+        Some(Setting::Parts([Channel::Keyed(_), Channel::Fixed(1.0), Channel::Keyed(_)]))
+    ));
+}
+
+#[test]
+fn words_of_an_enum_are_ours_or_mayas_or_an_index() {
+    for written in ["objectSpace", "\"Object Space\"", "\"objectSpace\"", "1"] {
+        let text = with_nodes(&format!(
+            "\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", scalingRelation: {written})"
+        ));
+        let scene = scene(&text);
+        let cloth = scene.graph.node(scene.graph.find("c").expect("it is there"));
+        assert_eq!(cloth.get(&n_cloth::SCALING_RELATION), Choice(1), "{written}");
+    }
+}
+
+#[test]
+fn switches_and_words_jump_between_keys_and_numbers_move() {
+    let text = with_nodes(
+        r#""p": polyPlane(), "c": nCloth(inputMesh: "p", drag: keys([(1, 0), (3, 1)]),
+           collide: keys([(1, false), (3, true)]))"#,
+    );
+    let scene = scene(&text);
+    let cloth = scene.graph.node(scene.graph.find("c").expect("it is there"));
+    assert_eq!(cloth.at(&n_cloth::DRAG, 2.0), 0.5);
+    assert_eq!([2.9, 3.0].map(|frame| cloth.at(&n_base::COLLIDE, frame)), [false, true]);
+}
+
+#[test]
+fn soft_ranges_may_be_exceeded() {
+    let text =
+        with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", stretchResistance: 3000, friction: 2)"#);
+    let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
+    assert_eq!(warnings, []);
+}
+
+#[test]
+fn what_has_no_effect_yet_is_a_warning_at_its_place() {
+    let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", rigidity: 1)"#);
+    let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
+    let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
+    assert_eq!(warning.severity, Severity::Warning);
+    assert_eq!(warning.message, "`rigidity` of `c` has no effect yet");
+    assert_eq!(&text[warning.span.clone()], "rigidity");
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    let plain = scene(&sheet());
+    assert_eq!(scene(&format!("\u{feff}{}", sheet())), plain);
+}
+
+#[test]
+fn a_node_follows_its_parent() {
+    let text = with_nodes(
+        r#""arm": transform(translate: (0, 5, 0)), "hand": polyCube(parent: "arm", translate: (1, 0, 0))"#,
+    );
+    let scene = scene(&text);
+    let hand = scene.graph.find("hand").expect("it is there");
+    assert_eq!(scene.graph.placement(hand, 1.0).offset.as_slice(), [1.0, 5.0, 0.0]);
+}

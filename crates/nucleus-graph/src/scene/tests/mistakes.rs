@@ -1,0 +1,296 @@
+//! What is refused: where it points, what it says, and what it advises.
+
+use std::fs;
+
+use super::*;
+
+/// Severity, what is pointed at, message and help of everything there is to say.
+fn said(text: &str) -> Vec<(String, String, Option<String>)> {
+    said_of(text, Path::new("test.ron"))
+}
+
+fn said_of(text: &str, file: &Path) -> Vec<(String, String, Option<String>)> {
+    let diagnostics = read_scene_text(text, file).map(|_| ()).expect_err(text);
+    let errors = diagnostics.into_iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
+    errors.map(|error| (text[error.span].to_owned(), error.message, error.help)).collect()
+}
+
+#[track_caller]
+fn expect(text: &str, expected: &[(&str, &str, &str)]) {
+    let found = said(text);
+    let found: Vec<_> = found
+        .iter()
+        .map(|(at, message, help)| (at.as_str(), message.as_str(), help.as_deref().unwrap_or("")))
+        .collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn the_nearest_attribute_is_suggested() {
+    expect(
+        &with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", bendResistence: 0.4)"#),
+        &[(
+            "bendResistence",
+            "`c` is of type nCloth, which has no attribute `bendResistence`",
+            "did you mean `bendResistance`?",
+        )],
+    );
+}
+
+#[test]
+fn all_mistakes_are_told_in_one_go_and_in_order() {
+    let text = r#"Scene(
+        time: (start: 10, end: 1, fps: 24),
+        nodes: {
+            "nucleus1": nucleus(subSteps: 0, gravity: "much"),
+            "sheet": polyPlan(),
+            "cloth1": nCloth(inputMesh: "shet", drag: true, scalingRelation: objectSpce),
+        },
+        checks: [noPenetrations],
+    )"#;
+    let found = said(text);
+    let found: Vec<(&str, &str)> =
+        found.iter().map(|(at, message, _)| (at.as_str(), message.as_str())).collect();
+    let expected = [
+        ("1", "the run starts at frame 10 and ends before it, at 1"),
+        ("0", "`subSteps` of `nucleus1` must be between 1 and 100000, found 0"),
+        ("\"much\"", "`gravity` of `nucleus1` takes a number, found text"),
+        ("polyPlan", "there is no type of node `polyPlan`"),
+        ("\"shet\"", "there is no node `shet`"),
+        ("true", "`drag` of `cloth1` takes a number, found true or false"),
+        ("objectSpce", "`scalingRelation` of `cloth1` has no word `objectSpce`"),
+        ("noPenetrations", "there is no check `noPenetrations`"),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn the_nearest_type_and_the_nearest_word_are_suggested() {
+    let found = said(&with_nodes(r#""a": ncloth(inputMesh: "p"), "p": polyPlane()"#));
+    assert_eq!(found[0].2.as_deref(), Some("did you mean `nCloth`?"));
+    let found =
+        said(&with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", scalingRelation: worldspace)"#));
+    assert_eq!(found[0].2.as_deref(), Some("did you mean `worldSpace`?"));
+}
+
+#[test]
+fn two_nodes_of_one_name_are_both_shown() {
+    let text = with_nodes(r#""a": transform(), "a": polyCube()"#);
+    let errors = read_scene_text(&text, Path::new("test.ron")).map(|_| ()).expect_err("two of one name");
+    assert_eq!((errors.len(), errors[0].message.as_str()), (1, "there are two nodes `a`"));
+    let first = errors[0].notes[0].span.clone().expect("it has a place");
+    assert!(first.end < errors[0].span.start);
+    assert_eq!(&text[first], "\"a\"");
+}
+
+#[test]
+fn what_is_missing_is_named_with_an_example() {
+    expect(
+        "Scene(nodes: {})",
+        &[("Scene", "`time` is missing", "add `time: (start: 1, end: 120, fps: 24)`")],
+    );
+    expect(
+        "Scene(time: (start: 1, end: 2))",
+        &[
+            ("Scene", "`nodes` is missing", "add `nodes: {\"nucleus1\": nucleus()}`"),
+            ("(start: 1, end: 2)", "`fps` is missing", "add `fps: 24`, the frames per second"),
+        ],
+    );
+    expect(
+        "Scene(tiem: (start: 1, end: 2, fps: 24), nodes: {})",
+        &[("tiem", "a scene has no `tiem`", "did you mean `time`?")],
+    );
+}
+
+#[test]
+fn an_empty_file_and_broken_ron_point_at_their_place() {
+    assert_eq!(said("")[0].1, "there is nothing in this file");
+    assert_eq!(said("Scene(time: 1.2.3)")[0].0, "1.2.3");
+    assert_eq!(said("[1, 2]")[0].1, "expected `Scene(...)`, found a list");
+}
+
+#[test]
+fn a_cloth_needs_a_mesh_and_a_nucleus() {
+    expect(
+        &with_nodes(r#""c": nCloth()"#),
+        &[("\"c\"", "`c` has no `inputMesh`", "add `inputMesh: \"...\"`, the name of a mesh node")],
+    );
+    expect(
+        r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {"p": polyPlane(), "c": nCloth(inputMesh: "p")})"#,
+        &[("\"c\"", "there is no nucleus that `c` could belong to", "add `\"nucleus1\": nucleus()`")],
+    );
+    expect(
+        &with_nodes(r#""c": nCloth(inputMesh: "nucleus1")"#),
+        &[("\"nucleus1\"", "`inputMesh` of `c` takes a mesh, but `nucleus1` is of type nucleus", "")],
+    );
+}
+
+#[test]
+fn a_second_nucleus_is_refused() {
+    expect(
+        &with_nodes(r#""other": nucleus()"#),
+        &[("\"other\"", "a scene can have only one nucleus so far", "")],
+    );
+}
+
+#[test]
+fn an_attribute_is_set_once() {
+    for fields in ["drag: 1, drag: 2", "drag: 1, drg: 2"] {
+        let found =
+            said(&with_nodes(&format!("\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", {fields})")));
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].1, "`drag` of `c` is set twice");
+    }
+    for fields in ["translate: (0, 0, 0), ty: 1", "ty: 1, translate: (0, 0, 0)", "ty: 1, translateY: 1"] {
+        let found = said(&with_nodes(&format!("\"t\": transform({fields})")));
+        assert_eq!(found[0].1, "`translate` of `t` is set twice", "{fields}");
+    }
+    let found = said(&with_nodes("\"p\": polyPlane(subdivisions: (2, 2), sw: 3)"));
+    assert_eq!(found[0].1, "`subdivisionsWidth` of `p` is set twice");
+}
+
+#[test]
+fn keys_have_an_order_a_shape_and_a_tangent() {
+    let keyed = |keys: &str| with_nodes(&format!("\"t\": transform(tx: keys({keys}))"));
+    expect(
+        &keyed("[(5, 0), (1, 2)]"),
+        &[("(1, 2)", "the keys of `tx` of `t` are not in order: frame 1 after frame 5", "")],
+    );
+    expect(
+        &keyed("[(5, 0), (5, 2)]"),
+        &[("(5, 2)", "the keys of `tx` of `t` are not in order: frame 5 after frame 5", "")],
+    );
+    expect(&keyed("[]"), &[("[]", "`tx` of `t` has no keys", "give at least one key, like (1, 0)")]);
+    expect(&keyed("[3]"), &[("3", "`tx` of `t` takes keys of (frame, value), found a number", "")]);
+    expect(
+        &keyed("[(1, 2, linaer)]"),
+        &[("linaer", "there is no tangent `linaer`", "did you mean `linear`?")],
+    );
+    expect(
+        &with_nodes("\"p\": polyPlane(width: keys([(1, 2)]))"),
+        &[("[(1, 2)]", "`width` of `p` cannot be keyed: it is read once, at the start", "")],
+    );
+    expect(
+        &with_nodes("\"t\": transform(translate: keys([(1, (0, 0))]))"),
+        &[("(0, 0)", "`translate` of `t` takes three numbers, found 2", "")],
+    );
+}
+
+#[test]
+fn values_have_a_type_and_a_range() {
+    for (field, message) in [
+        ("subSteps: 2.5", "`subSteps` of `n` takes a whole number, found 2.5"),
+        ("usePlane: 1", "`usePlane` of `n` takes true or false, found a number"),
+        (
+            "gravityDirection: 1",
+            "`gravityDirection` of `n` takes three numbers, like (0, 1, 0), found a number",
+        ),
+        ("gravityDirection: (0, 1)", "`gravityDirection` of `n` takes three numbers, found 2"),
+        ("resistanceModel: true", "`resistanceModel` of `n` takes one of its words, found true or false"),
+        ("resistanceModel: 7", "`resistanceModel` of `n` takes one of its words, found a number"),
+        ("inputActive: 1", "`inputActive` of `n` can be connected, but not set"),
+        ("airDensity: -1", "`airDensity` of `n` must be at least 0, found -1"),
+        ("gravity: keys([(1, fast)])", "`gravity` of `n` takes a number, found the word `fast`"),
+        ("airDensity: keys([(1, -1)])", "`airDensity` of `n` must be at least 0, found -1"),
+    ] {
+        let text = format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus({field})}})");
+        assert_eq!(said(&text)[0].1, message);
+    }
+}
+
+#[test]
+fn names_can_be_told_from_components() {
+    let found = said(&with_nodes("\"a.b\": transform(), \"\": transform()"));
+    assert_eq!(found[0].1, "`a.b` is not a name");
+    assert_eq!(found[1].1, "`` is not a name");
+}
+
+#[test]
+fn pins_hold_points_of_cloth_that_are_there() {
+    let pinned = |component: &str| {
+        with_nodes(&format!(
+            r#""p": polyPlane(subdivisions: (2, 2)), "c1": nCloth(inputMesh: "p"),
+               "pin": dynamicConstraint(components: ["{component}"])"#
+        ))
+    };
+    expect(&pinned("c2.vtx[0]"), &[("\"c2.vtx[0]\"", "there is no node `c2`", "did you mean `c1`?")]);
+    expect(
+        &pinned("p.vtx[0]"),
+        &[(
+            "\"p.vtx[0]\"",
+            "only points of cloth can be held, but `p` is of type polyPlane",
+            "did you mean `c1.vtx[0]`?",
+        )],
+    );
+    assert_eq!(said(&pinned("c1.e[0]"))[0].1, "only points can be named so far, not `e`");
+    // Found when it is compiled.
+    let (scene, _) = read_scene_text(&pinned("c1.vtx[0:9]"), Path::new("test.ron")).expect("it reads");
+    let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("there is no point 9");
+    assert_eq!(errors[0].message, "`c1` has no point 9");
+    assert_eq!(errors[0].help.as_deref(), Some("its points are numbered 0 to 8"));
+    // Or together with a mistake elsewhere.
+    let both = pinned("c1.vtx[9]").replace("end: 24", "end: 0");
+    assert_eq!(said(&both).len(), 2);
+}
+
+#[test]
+fn parents_in_a_circle_are_refused() {
+    let found = said(&with_nodes(r#""a": transform(parent: "b"), "b": transform(parent: "a")"#));
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].1, "`b` cannot hang from `a`, which hangs from it");
+}
+
+#[test]
+fn missing_and_broken_files_are_named_with_their_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    fs::write(folder.path().join("broken.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").expect("written");
+    fs::write(folder.path().join("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").expect("written");
+    let text = with_nodes(
+        r#""a": mesh(file: "missing.obj"), "b": mesh(file: "broken.obj"), "f": mesh(file: "flat.obj"), "m": mesh(),
+           "c1": nCloth(inputMesh: "a"), "c2": nCloth(inputMesh: "b"), "c3": nCloth(inputMesh: "f"),
+           "c4": nCloth(inputMesh: "m", damp: oops)"#,
+    );
+    let found = said_of(&text, &file);
+    assert!(found[0].1.contains("missing.obj") && found[0].0 == "\"missing.obj\"", "{found:?}");
+    assert!(found[1].1.contains("broken.obj") && found[1].1.contains("line 4"), "{found:?}");
+    assert_eq!(found[2].1, "`f` has no face with an area");
+    assert_eq!(found[3].1, "`damp` of `c4` takes a number, found the word `oops`");
+    assert_eq!(found.len(), 4);
+    let only = with_nodes(r#""m": mesh(), "c": nCloth(inputMesh: "m")"#);
+    let (scene, _) = read_scene_text(&only, &file).expect("it reads");
+    let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("there is no file");
+    assert_eq!(errors[0].message, "`m` has no `file`");
+}
+
+#[test]
+fn a_file_that_is_not_there_or_not_text_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = read_scene(folder.path().join("none.ron")).map(|_| ()).expect_err("it is missing");
+    assert!(missing[0].message.starts_with("cannot read `"), "{missing:?}");
+    let binary = folder.path().join("binary.ron");
+    fs::write(&binary, [b'S', 0xff, 0xfe]).expect("written");
+    let binary = read_scene(binary).map(|_| ()).expect_err("it is not text");
+    assert_eq!(
+        (binary[0].span.clone(), binary[0].message.as_str()),
+        (1..1, "this is not text: scenes are UTF-8")
+    );
+}
+
+#[test]
+fn checks_take_what_they_take() {
+    let with_checks = |checks: &str| {
+        format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: {checks})")
+    };
+    assert_eq!(said(&with_checks("[maxStretch]"))[0].1, "`maxStretch` takes `strain`");
+    assert_eq!(said(&with_checks("[noPenetration(1)]"))[0].1, "`noPenetration` takes nothing");
+    assert_eq!(said(&with_checks("[restsBy(frame: 3, sped: 1)]"))[0].1, "`restsBy` has no `sped`");
+    assert_eq!(
+        said(&with_checks("noPenetration"))[0].1,
+        "`checks` takes a list, found the word `noPenetration`"
+    );
+    assert_eq!(
+        said(&with_checks("[maxStretch(true)]"))[0].1,
+        "`strain` of `maxStretch` takes a number, found true or false"
+    );
+}

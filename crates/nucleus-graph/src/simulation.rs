@@ -1,0 +1,86 @@
+//! The loop over frames: evaluates the animation, calls the solver.
+
+use nucleus_core::{Real, Solver, StateView, StepObserver, StepReport};
+
+use crate::compile::{Grips, Object, Program};
+
+/// A run of a program, at some frame of it.
+///
+/// It begins at the start frame with everything in its initial state. Every [`advance`](Self::advance)
+/// solves one frame more (N3.1-6).
+pub struct Simulation<R: Real = f32> {
+    program: Program,
+    solver: Solver<R>,
+    grips: Grips,
+    frame: i64,
+}
+
+/// What the solver says about a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameReport {
+    /// The frame that was reached.
+    pub frame: i64,
+    /// What happened on the way there.
+    pub report: StepReport,
+}
+
+impl<R: Real> Simulation<R> {
+    /// A run at its start frame. `threads` is the number of cores to use; it never changes a bit of the result.
+    pub fn new(program: &Program, threads: usize) -> Self {
+        Self {
+            solver: Solver::new(program.model().clone(), threads),
+            grips: Grips::default(),
+            frame: program.time().start,
+            program: program.clone(),
+        }
+    }
+
+    /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
+    pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
+        let frame = self.frame + 1;
+        let solver = &self.solver;
+        let position = |cloth, point: nucleus_core::PointId| solver.point(cloth, point.index());
+        let input = self.program.input(frame, &mut self.grips, &position);
+        let report = self.solver.step(&input, watch);
+        self.frame = frame;
+        FrameReport { frame, report }
+    }
+
+    /// The frame it is at.
+    pub fn frame(&self) -> i64 {
+        self.frame
+    }
+
+    /// Whether the last frame has been reached.
+    pub fn is_done(&self) -> bool {
+        self.frame >= self.program.time().end
+    }
+
+    /// All objects: cloths, then colliders, each in the order of their ids.
+    pub fn objects(&self) -> &[Object] {
+        self.program.objects()
+    }
+
+    /// Scene units in a metre.
+    pub fn units_per_metre(&self) -> f64 {
+        self.program.units_per_metre()
+    }
+
+    /// The state as it is, at the start frame too.
+    pub fn state(&self) -> &dyn StateView {
+        &self.solver
+    }
+
+    /// The solver.
+    pub fn solver(&self) -> &Solver<R> {
+        &self.solver
+    }
+
+    /// What it runs.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+}
+
+#[cfg(test)]
+mod tests;

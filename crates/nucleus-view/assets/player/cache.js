@@ -1,0 +1,173 @@
+// A run: its objects, its frames, and the state of all objects at any recorded moment.
+
+import { readChunk } from "./chunk.js";
+import { openIndex } from "./mcap.js";
+import { readPoints, readTopology } from "./points.js";
+import { Trouble } from "./trouble.js";
+
+// Unpacked frames are kept up to this many bytes.
+const KEPT_BYTES = 384e6;
+const FRAMES_AHEAD = 6;
+
+export class Cache {
+  static async open(source, onProgress) {
+    const cache = new Cache(source, await openIndex(source, onProgress));
+    await cache.readObjects();
+    return cache;
+  }
+
+  constructor(source, index) {
+    this.source = source;
+    this.complete = index.complete;
+    this.channels = index.channels;
+    this.run = readRun(index.metadata);
+    this.objects = objectsOf(index.channels);
+    this.chunks = index.chunks;
+    const points = this.objects.map((object) => object.points);
+    // A frame is a chunk in which something moves; the meshes may lie in a chunk of their own.
+    this.frames = index.chunks.filter((chunk) => points.some((id) => chunk.channels.has(id)));
+    this.unpacked = new Map(); // chunk to promise of its moments, the longest unused first
+    this.bytes = 0;
+    if (this.objects.length === 0 || this.frames.length === 0) {
+      throw this.complete
+        ? new Trouble("There is no Nucleus run in this file.", "It is an MCAP file, but of something else.")
+        : new Trouble("The file breaks off before its first whole frame.", "Was the run stopped at once?");
+    }
+  }
+
+  // Frame number of the frame at `index`, from its time.
+  frameNumber(index) {
+    return this.run.start + Math.round((this.frames[index].end / 1e9) * this.run.fps);
+  }
+
+  // Seconds from the start of the run to the end of the frame at `index`.
+  time(index) {
+    return this.frames[index].end / 1e9;
+  }
+
+  // The state at a moment of the frame at `index`; its last moment if `moment` is not given.
+  async state(index, moment = Infinity) {
+    const { moments, report } = await this.unpack(this.frames[index]);
+    const last = Math.min(moment, moments.length - 1);
+    const positions = await Promise.all(this.objects.map((_, k) => this.positionsOf(k, index, last)));
+    const { frame, substep, substeps, time } = moments[last];
+    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions };
+  }
+
+  // Unpacks the frames that playing will need next. A damaged one is told of when it is shown.
+  async prefetch(index) {
+    for (let ahead = 1; ahead <= FRAMES_AHEAD; ahead += 1) {
+      const chunk = this.frames[(index + ahead) % this.frames.length];
+      if (!this.unpacked.has(chunk)) {
+        await this.unpack(chunk).catch(() => {});
+      }
+    }
+  }
+
+  // An object that did not move has no message: its last one holds.
+  async positionsOf(object, index, moment) {
+    const { points } = this.objects[object];
+    for (let k = index; k >= 0; k -= 1) {
+      if (!this.frames[k].channels.has(points)) {
+        continue;
+      }
+      const { moments } = await this.unpack(this.frames[k]);
+      const from = k === index ? moment : moments.length - 1;
+      for (let m = from; m >= 0; m -= 1) {
+        const positions = moments[m].positions.get(points);
+        if (positions) {
+          return positions;
+        }
+      }
+    }
+    return this.objects[object].topology.rest;
+  }
+
+  unpack(chunk) {
+    const known = this.unpacked.get(chunk);
+    this.unpacked.delete(chunk);
+    const moments = known ?? this.readMoments(chunk);
+    this.unpacked.set(chunk, moments);
+    moments.catch(() => this.unpacked.delete(chunk)); // the next try may go better
+    return moments;
+  }
+
+  async readMoments(chunk) {
+    const { messages } = await readChunk(this.source, chunk);
+    const moments = new Map();
+    let report = null;
+    for (const { channel, time, data } of messages) {
+      const { topic, encoding } = this.channels.get(channel) ?? {};
+      if (encoding === "nucleus.points.v1") {
+        const { positions, ...stamp } = readPoints(data);
+        const moment = moments.get(time) ?? { ...stamp, positions: new Map() };
+        moments.set(time, moment);
+        moment.positions.set(channel, positions);
+        this.bytes += positions.byteLength;
+        chunk.bytes = (chunk.bytes ?? 0) + positions.byteLength;
+      } else if (topic === "/report") {
+        report = readReport(data);
+      }
+    }
+    this.forget();
+    return { moments: [...moments.values()].sort((a, b) => a.time - b.time), report };
+  }
+
+  forget() {
+    for (const chunk of this.unpacked.keys()) {
+      if (this.bytes <= KEPT_BYTES || this.unpacked.size <= FRAMES_AHEAD + 2) {
+        return;
+      }
+      this.unpacked.delete(chunk);
+      this.bytes -= chunk.bytes ?? 0;
+      chunk.bytes = 0;
+    }
+  }
+
+  async readObjects() {
+    for (const object of this.objects) {
+      const chunk = this.chunks.find(({ channels }) => channels.has(object.mesh));
+      const messages = chunk ? (await readChunk(this.source, chunk)).messages : [];
+      const message = messages.find(({ channel }) => channel === object.mesh);
+      if (!message) {
+        throw new Trouble(`The mesh of “${object.name}” is missing.`, "The file is damaged at its beginning.");
+      }
+      object.topology = readTopology(message.data);
+    }
+  }
+}
+
+function objectsOf(channels) {
+  const all = [...channels.values()];
+  return all
+    .filter(({ encoding }) => encoding === "nucleus.topology.v1")
+    .map(({ id, topic }) => {
+      const name = topic.replace(/^\//, "").replace(/\/topology$/, "");
+      return { name, mesh: id, points: all.find((channel) => channel.topic === `/${name}/points`)?.id };
+    })
+    .filter(({ points }) => points !== undefined);
+}
+
+function readRun(metadata) {
+  const run = metadata.get("nucleus.run") ?? new Map();
+  const scene = metadata.get("nucleus.scene") ?? new Map();
+  const number = (key, otherwise) => {
+    const value = Number(run.get(key) ?? NaN);
+    return Number.isFinite(value) ? value : otherwise;
+  };
+  return {
+    start: number("start", 0),
+    end: number("end", null),
+    fps: Math.max(number("fps", 24), 1e-3),
+    version: run.get("version") ?? "",
+    scene: scene.get("path") ?? "",
+  };
+}
+
+function readReport(data) {
+  try {
+    return JSON.parse(new TextDecoder().decode(data));
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,95 @@
+// What the page tells in words and numbers: objects, figures of the frame, legend, messages.
+
+import { STRAIN, css } from "./colours.js";
+
+const percent = (x) => `${(x * 100).toFixed(Math.abs(x) < 0.0995 ? 2 : 1)} %`;
+const plain = (x) => (Number.isInteger(x) ? x.toLocaleString("en") : x.toPrecision(4));
+
+// Figures of a report: what to call them, how to write them, and when they are bad news.
+const FIGURES = {
+  max_strain: ["Largest strain", percent],
+  strain_99: ["Strain, 99 %", percent],
+  min_gap: ["Smallest gap / thickness", (x) => x.toFixed(3), (x) => x < 0],
+  contacts: ["Contacts", plain],
+  pairs: ["Pairs tested", plain],
+  caught: ["Caught and carried back", plain, (x) => x > 0],
+  crossed: ["Crossed", plain, (x) => x > 0],
+  kinetic_energy: ["Kinetic energy, J", plain],
+};
+// Told elsewhere, or of interest to the solver's makers only.
+const UNTOLD = ["frame", "broad_phases"];
+
+export const byId = (id) => document.getElementById(id);
+
+function element(tag, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+}
+
+// A line per object, to switch it on and off.
+export function showObjects(things, onChange) {
+  byId("objects").replaceChildren(...things.map((thing) => {
+    const box = element("input", { type: "checkbox", checked: thing.isShown });
+    box.addEventListener("change", () => {
+      thing.isShown = box.checked;
+      box.blur(); // else the space bar would switch it again
+      onChange();
+    });
+    const swatch = element("i", { className: "swatch" });
+    swatch.style.background = css(thing.colour.map((x) => x * 1.3));
+    const count = element("small", { textContent: `${thing.mesh.kind} · ${plain(thing.points)} points` });
+    return element("label", {}, box, swatch, element("span", { textContent: thing.name }), count);
+  }));
+}
+
+// The report of a frame, and how many points are not finite.
+export function showFigures(report, lostPoints) {
+  const keys = [...new Set([...Object.keys(FIGURES), ...Object.keys(report ?? {})])];
+  const rows = keys
+    .map((key) => [key, report?.[key]])
+    .filter(([key, value]) => typeof value === "number" && !UNTOLD.includes(key))
+    .map(([key, value]) => {
+      const [label, write, isBad] = FIGURES[key] ?? [key.replaceAll("_", " "), plain];
+      return [label, write(value), isBad?.(value)];
+    });
+  if (lostPoints > 0) {
+    rows.push(["Points that are not finite", plain(lostPoints), true]);
+  }
+  byId("figures").replaceChildren(...rows.flatMap(([label, value, isBad]) => [
+    element("dt", { textContent: label }),
+    element("dd", { textContent: value, className: isBad ? "bad" : "" }),
+  ]));
+  byId("figures").hidden = rows.length === 0;
+}
+
+export function showLegend({ strain, fullScale }) {
+  byId("legend").hidden = !strain;
+  byId("ramp").style.background = `linear-gradient(to right, ${STRAIN.map(css).join(", ")})`;
+  const write = (x) => `${Number((x * 100).toPrecision(3))} %`;
+  byId("shorter").textContent = `−${write(fullScale)}`;
+  byId("longer").textContent = `+${write(fullScale)}`;
+}
+
+export function showMoment(cache, { index, frame, substep, substeps, moment, moments, time }) {
+  const share = moments > 1 ? ` · substep ${substep} of ${substeps}` : "";
+  byId("now").textContent = `frame ${frame}`;
+  byId("of").textContent = `of ${cache.frameNumber(cache.frames.length - 1)}${share} · ${time.toFixed(3)} s`;
+  byId("frames").value = index;
+  byId("moments").hidden = moments < 2;
+  Object.assign(byId("moments"), { max: moments - 1, value: moment });
+  Object.assign(document.body.dataset, { frame, substep });
+}
+
+// What one may do now: "empty", "loading", "ready" or "error".
+export function showState(state, message = "", hint = "") {
+  document.body.dataset.state = state;
+  byId("message").textContent = message;
+  byId("hint").textContent = hint;
+}
+
+// A line at the top that does not stop the show; empty takes it away.
+export function showNotice(text) {
+  byId("notice").textContent = text;
+  byId("notice").hidden = text === "";
+}

@@ -1,0 +1,42 @@
+// The two messages of an object: its mesh, once, and its positions, every frame.
+
+import { Reader } from "./bytes.js";
+
+export const KINDS = ["cloth", "collider", "particles"];
+
+// A mesh: kind, number of points, faces as `starts` into `corners`, and positions at rest.
+export function readTopology(data) {
+  const reader = new Reader(data);
+  const [kind, points, faces, corners] = [reader.u32(), reader.u32(), reader.u32(), reader.u32()];
+  return {
+    kind: KINDS[kind] ?? "collider",
+    points,
+    starts: words(reader, faces + 1, Uint32Array),
+    corners: words(reader, corners, Uint32Array),
+    rest: words(reader, 3 * points, Float32Array),
+  };
+}
+
+// Positions at one moment of a frame.
+export function readPoints(data) {
+  const reader = new Reader(data);
+  const [frame, substep, substeps, count] = [reader.i32(), reader.u32(), reader.u32(), reader.u32()];
+  reader.take(8); // flags, zero
+  const time = reader.f64();
+  return { frame, substep, substeps, time, positions: unshuffle(reader.take(12 * count), 3 * count) };
+}
+
+// Four planes of bytes, lowest byte of every float first, back to floats.
+function unshuffle(planes, count) {
+  const bits = new Uint32Array(count);
+  const [second, third, fourth] = [count, 2 * count, 3 * count];
+  for (let k = 0; k < count; k += 1) {
+    bits[k] = planes[k] | (planes[second + k] << 8) | (planes[third + k] << 16) | (planes[fourth + k] << 24);
+  }
+  return new Float32Array(bits.buffer);
+}
+
+// Messages do not begin at multiples of four, so the words are copied out.
+function words(reader, count, Type) {
+  return new Type(reader.take(4 * count).slice().buffer);
+}

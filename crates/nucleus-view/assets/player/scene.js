@@ -1,0 +1,188 @@
+// Draws the objects of a run in the state they were last given.
+
+import { STRAIN, objectColours } from "./colours.js";
+import { VertexArray, context, depthTarget, program } from "./gl.js";
+import { Mesh } from "./mesh.js";
+import { cross, multiply, normalise, orthographic, scale, view } from "./matrix.js";
+import { DEPTH, FLOOR, LINES, PARTICLES, SURFACE } from "./shaders.js";
+
+const BACKGROUND = [0.0075, 0.0085, 0.0105];
+const [TRIANGLES, EDGES] = [0, 1];
+const [POSITION, NORMAL, STRAINED] = [0, 1, 2];
+
+export class Scene {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.gl = context(canvas);
+    const make = ({ vertex, fragment }) => program(this.gl, vertex, fragment);
+    this.programs = {
+      surface: make(SURFACE), lines: make(LINES), particles: make(PARTICLES), floor: make(FLOOR), depth: make(DEPTH),
+    };
+    this.shadow = depthTarget(this.gl, 2048);
+    this.empty = this.gl.createVertexArray();
+    this.things = [];
+    this.look = { wireframe: false, strain: false, fullScale: 0.05 };
+  }
+
+  // Replaces the objects. `stage` is the box of all that moves, over the run; the floor lies under it.
+  setObjects(objects, stage, floor) {
+    this.things.forEach(({ vertices }) => vertices.delete());
+    const colours = objectColours(objects);
+    this.things = objects.map(({ name, topology }, k) => ({
+      name, mesh: new Mesh(topology), colour: colours[k], isShown: true,
+      vertices: new VertexArray(this.gl, [3, 3, 1]),
+    }));
+    this.stage = stage;
+    this.floor = floor;
+  }
+
+  // Takes the positions of a moment, one array for each object.
+  update(positions) {
+    this.things.forEach(({ mesh, vertices }, k) => {
+      if (mesh.update(positions[k])) {
+        vertices.set(POSITION, mesh.positions);
+        vertices.set(NORMAL, mesh.normals);
+        vertices.setIndices([mesh.drawnTriangles, mesh.drawnEdges]);
+      }
+    });
+  }
+
+  // The box round all shown objects that move, or round all shown ones; null if nothing is shown.
+  bounds() {
+    const shown = this.things.filter(({ isShown }) => isShown);
+    const moving = shown.filter(({ mesh }) => mesh.kind !== "collider");
+    return boxOf((moving.length > 0 ? moving : shown).map(({ mesh }) => mesh.bounds));
+  }
+
+  get lostPoints() {
+    return this.things.reduce((sum, { mesh }) => sum + (mesh.lost ?? 0), 0);
+  }
+
+  get aspect() {
+    return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
+  }
+
+  draw(camera) {
+    const { gl } = this;
+    const light = this.light();
+    this.drawShadow(light);
+    this.fit();
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clearColor(...BACKGROUND.map(Math.sqrt), 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const eye = { ...camera.matrices(this.aspect), eye: camera.eye, ...light };
+    this.drawFloor(eye);
+    gl.enable(gl.DEPTH_TEST);
+    this.things.filter(({ isShown }) => isShown).forEach((thing) => this.drawThing(thing, eye));
+    gl.bindVertexArray(null);
+  }
+
+  fit() {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight].map((side) => Math.round(side * ratio));
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      [this.canvas.width, this.canvas.height] = [Math.max(1, width), Math.max(1, height)];
+    }
+  }
+
+  // The key light stands still over the stage, so that shadows do not swim.
+  light() {
+    const { low, high } = this.stage;
+    const centre = low.map((x, axis) => (x + high[axis]) / 2);
+    const reach = Math.max(1e-6, Math.hypot(...low.map((x, axis) => high[axis] - x)) * 0.8);
+    const toKey = normalise([-0.35, 1, 0.65]);
+    const right = normalise(cross([0, 1, 0], toKey));
+    const matrix = multiply(orthographic(reach), view(centre, right, cross(toKey, right), toKey));
+    return { light: matrix, toKey, cell: (2 * reach) / this.shadow.side, centre, reach };
+  }
+
+  drawShadow(light) {
+    const { gl, programs, shadow } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, shadow.frame);
+    gl.viewport(0, 0, shadow.side, shadow.side);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    // Surfaces are pushed away from the light, or their own cells would stripe them.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(2.5, 8);
+    this.use(programs.depth, light);
+    for (const { mesh, vertices, isShown } of this.things) {
+      if (isShown && mesh.kind !== "particles") {
+        vertices.draw(gl.TRIANGLES, TRIANGLES);
+      }
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.bindTexture(gl.TEXTURE_2D, shadow.texture);
+  }
+
+  drawFloor(eye) {
+    const { gl } = this;
+    gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    const centre = [eye.centre[0], this.floor, eye.centre[2]];
+    const floor = { centre, reach: eye.reach * 9, spacing: roundLength(eye.reach / 4), background: BACKGROUND };
+    this.use(this.programs.floor, { ...eye, ...floor });
+    gl.bindVertexArray(this.empty);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    gl.disable(gl.BLEND);
+  }
+
+  drawThing({ mesh, vertices, colour }, eye) {
+    const { gl, programs, look } = this;
+    if (mesh.kind === "particles") {
+      const pixels = this.canvas.height;
+      this.use(programs.particles, { ...eye, colour, radius: eye.reach * 0.008, pixels });
+      gl.bindVertexArray(vertices.array);
+      gl.drawArrays(gl.POINTS, 0, mesh.count);
+      return;
+    }
+    const isColoured = look.strain && mesh.kind === "cloth";
+    if (isColoured && mesh.strainOf !== mesh.shown) {
+      mesh.updateStrain();
+      mesh.strainOf = mesh.shown;
+      vertices.set(STRAINED, mesh.strain);
+    } else if (!mesh.hasStrain) {
+      vertices.set(STRAINED, mesh.strain); // zeros: an attribute without data cannot be drawn
+    }
+    mesh.hasStrain = true;
+    this.use(programs.surface, { ...eye, colour, "ramp[0]": STRAIN.flat(), fullScale: isColoured ? look.fullScale : 0 });
+    vertices.draw(gl.TRIANGLES, TRIANGLES);
+    if (look.wireframe) {
+      gl.enable(gl.BLEND);
+      this.use(programs.lines, eye);
+      vertices.draw(gl.LINES, EDGES);
+      gl.disable(gl.BLEND);
+    }
+  }
+
+  // Makes a program current and gives it those of the values that it asks for.
+  use({ made, uniforms }, values) {
+    const { gl } = this;
+    gl.useProgram(made);
+    for (const [name, place] of Object.entries(uniforms)) {
+      const value = values[name];
+      if (typeof value === "number") {
+        gl.uniform1f(place, value);
+      } else if (value?.length === 16) {
+        gl.uniformMatrix4fv(place, false, value);
+      } else if (value) {
+        gl.uniform3fv(place, value);
+      }
+    }
+  }
+}
+
+// The box round boxes; null round none. Empty boxes are infinite the wrong way round and add nothing.
+export function boxOf(boxes) {
+  const low = [0, 1, 2].map((axis) => Math.min(...boxes.map((box) => box.low[axis])));
+  const high = [0, 1, 2].map((axis) => Math.max(...boxes.map((box) => box.high[axis])));
+  return low.every((x, axis) => x <= high[axis]) ? { low, high } : null;
+}
+
+// The nearest of 1, 2, 5, 10 ... that is not below a length.
+function roundLength(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= length * 0.999) ?? length;
+}

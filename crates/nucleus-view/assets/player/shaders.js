@@ -1,0 +1,136 @@
+// The programs that run on the graphics card: matt surfaces, particles, lines and the floor.
+
+const HEAD = `#version 300 es
+precision highp float;
+precision highp sampler2DShadow;
+uniform mat4 view, projection, light;
+uniform vec3 eye, toKey;
+`;
+
+// The share of the key light that reaches a point, smoothed over a few cells.
+const SHADOW = `
+uniform sampler2DShadow depths;
+uniform float cell;
+float keyReaches(vec3 at, vec3 normal) {
+  vec3 inLight = (light * vec4(at + normal * cell * 2.5, 1.0)).xyz * 0.5 + 0.5;
+  if (any(lessThan(inLight, vec3(0.0))) || any(greaterThan(inLight, vec3(1.0)))) return 1.0;
+  vec2 step = 1.25 / vec2(textureSize(depths, 0));
+  float sum = 0.0;
+  for (int y = -2; y <= 2; y++)
+    for (int x = -2; x <= 2; x++)
+      sum += texture(depths, vec3(inLight.xy + vec2(x, y) * step, inLight.z));
+  return sum / 25.0;
+}
+vec3 matt(vec3 colour, vec3 normal, float key) {
+  vec3 sky = vec3(0.29, 0.31, 0.35) * (0.62 + 0.38 * normal.y);
+  vec3 below = vec3(0.06, 0.055, 0.05) * (0.5 - 0.5 * normal.y);
+  return colour * (vec3(1.04, 1.0, 0.94) * max(dot(normal, toKey), 0.0) * key + sky + below);
+}
+`;
+
+export const SURFACE = {
+  vertex: `${HEAD}
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in float strain;
+out vec3 at, facing;
+out float strained;
+void main() {
+  at = position; facing = normal; strained = strain;
+  gl_Position = projection * view * vec4(position, 1.0);
+}`,
+  fragment: `${HEAD}${SHADOW}
+uniform vec3 colour, ramp[5];
+uniform float fullScale;
+in vec3 at, facing;
+in float strained;
+out vec4 shown;
+vec3 strainColour() {
+  float place = clamp(strained / fullScale, -1.0, 1.0) * 2.0 + 2.0;
+  int low = min(int(place), 3);
+  return mix(ramp[low], ramp[low + 1], place - float(low));
+}
+void main() {
+  vec3 ray = normalize(at - eye);
+  vec3 normal = normalize(facing);
+  bool isBack = !gl_FrontFacing;
+  if (isBack) normal = -normal;
+  vec3 base = fullScale > 0.0 ? strainColour() : colour;
+  if (isBack) base *= 0.72;
+  float key = keyReaches(at, normal);
+  float grazing = 1.0 - min(abs(dot(ray, normal)), 1.0);
+  vec3 sheen = (base * 0.5 + 0.03) * grazing * grazing * grazing * (0.25 + 0.75 * key) * 0.5;
+  shown = vec4(sqrt(matt(base, normal, key) + sheen), 1.0);
+}`,
+};
+
+export const LINES = {
+  vertex: `${HEAD}
+layout(location = 0) in vec3 position;
+void main() {
+  gl_Position = projection * view * vec4(position, 1.0);
+  gl_Position.z -= 2e-4 * gl_Position.w; // in front of the faces they belong to
+}`,
+  fragment: `${HEAD}
+out vec4 shown;
+void main() { shown = vec4(0.0, 0.0, 0.0, 0.5); }`,
+};
+
+export const PARTICLES = {
+  vertex: `${HEAD}
+layout(location = 0) in vec3 position;
+uniform float radius, pixels;
+void main() {
+  gl_Position = projection * view * vec4(position, 1.0);
+  gl_PointSize = max(2.0, radius * projection[1][1] * pixels / gl_Position.w);
+}`,
+  fragment: `${HEAD}
+uniform vec3 colour;
+out vec4 shown;
+void main() {
+  vec2 from = gl_PointCoord * 2.0 - 1.0;
+  float bulge = 1.0 - dot(from, from);
+  if (bulge < 0.0) discard;
+  vec3 normal = transpose(mat3(view)) * vec3(from.x, -from.y, sqrt(bulge));
+  float sky = 0.3 * (0.7 + 0.3 * normal.y);
+  shown = vec4(sqrt(colour * (max(dot(normal, toKey), 0.0) + sky)), 1.0);
+}`,
+};
+
+// The floor is one large square; it fades into the background, so that it has no horizon.
+export const FLOOR = {
+  vertex: `${HEAD}
+uniform vec3 centre;
+uniform float reach;
+out vec3 at;
+void main() {
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+  at = centre + vec3(corner.x, 0.0, corner.y) * reach;
+  gl_Position = projection * view * vec4(at, 1.0);
+}`,
+  fragment: `${HEAD}${SHADOW}
+uniform vec3 centre, background;
+uniform float reach, spacing;
+in vec3 at;
+out vec4 shown;
+void main() {
+  vec2 place = at.xz / spacing;
+  vec2 width = fwidth(place);
+  vec2 off = abs(fract(place - 0.5) - 0.5) / max(width, 0.012);
+  float line = max(1.0 - off.x, 1.0 - off.y) * clamp(0.12 / max(width.x, width.y), 0.0, 1.0);
+  float far = length(at.xz - centre.xz) / reach;
+  vec3 colour = matt(vec3(0.05, 0.053, 0.058), vec3(0.0, 1.0, 0.0), keyReaches(at, vec3(0.0, 1.0, 0.0)));
+  colour *= 1.0 + 0.6 * clamp(line, 0.0, 1.0);
+  float solid = 1.0 - smoothstep(0.12, 0.9, far);
+  // From below one looks through the floor.
+  shown = vec4(sqrt(mix(background, colour, solid)), eye.y < at.y ? solid * 0.3 : solid);
+}`,
+};
+
+export const DEPTH = {
+  vertex: `${HEAD}
+layout(location = 0) in vec3 position;
+void main() { gl_Position = light * vec4(position, 1.0); }`,
+  fragment: `${HEAD}
+void main() {}`,
+};

@@ -1,0 +1,129 @@
+//! The pictures of a recorded run.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use nucleus_cache::{ObjectKind, Playback};
+
+use super::{AnimationWriter, Bounds, Camera, Ground, Image, Kind, Object, Style, draw};
+use crate::ViewError;
+
+/// A run as pictures that all have one camera and one floor, so that nothing but the scene moves.
+///
+/// ```no_run
+/// use nucleus_view::{Film, Style};
+///
+/// let mut cache = nucleus_cache::Playback::open("hang.mcap")?;
+/// let mut film = Film::of(&mut cache, 1, Style::default())?;
+/// film.picture(film.len() - 1)?.write_png("last.png")?;
+/// film.write("hang.png")?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Film<'a, R> {
+    cache: &'a mut Playback<R>,
+    /// The moments that are shown, by their place in the cache.
+    moments: Vec<usize>,
+    fps: f64,
+    camera: Camera,
+    style: Style,
+}
+
+impl<'a, R: Read + Seek> Film<'a, R> {
+    /// The ends of every `every`th frame of a run, framed so that the cloth is always in the picture.
+    ///
+    /// # Errors
+    /// If a frame that is needed to find the camera is damaged, or if there is none.
+    pub fn of(cache: &'a mut Playback<R>, every: usize, style: Style) -> Result<Self, ViewError> {
+        let every = every.max(1);
+        let ends = (0..cache.moments().len()).filter(|moment| cache.moments()[*moment].ends_frame());
+        let moments: Vec<usize> = ends.step_by(every).collect();
+        if moments.is_empty() {
+            return Err(ViewError::NoMoment);
+        }
+        let (stage, floor) = survey(cache, &moments)?;
+        let camera = Camera::framing(&stage, style.size);
+        let ground = if style.ground == Ground::Below { floor } else { style.ground };
+        let fps = cache.run().frames_per_second / every as f64;
+        Ok(Self { cache, moments, fps, camera, style: Style { ground, ..style } })
+    }
+
+    /// The same, seen by another camera.
+    pub fn seen_by(self, camera: Camera) -> Self {
+        Self { camera, ..self }
+    }
+
+    /// The number of pictures, at least one.
+    #[expect(clippy::len_without_is_empty, reason = "it never is")]
+    pub fn len(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// The picture at a place in the film; the last one past its end.
+    ///
+    /// # Errors
+    /// If its frame is damaged.
+    pub fn picture(&mut self, place: usize) -> Result<Image, ViewError> {
+        let moment = self.moments[place.min(self.moments.len() - 1)];
+        self.moment(moment)
+    }
+
+    /// The picture of any recorded moment, by its place in the cache.
+    ///
+    /// # Errors
+    /// If there is no such moment, or its frame is damaged.
+    pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
+        let positions = positions(self.cache, moment)?;
+        Ok(draw(&objects(self.cache, &positions), &self.camera, &self.style))
+    }
+
+    /// Writes all pictures as one animated PNG that plays as fast as the run was.
+    ///
+    /// # Errors
+    /// If a frame is damaged or the file cannot be written.
+    pub fn write(&mut self, path: impl AsRef<Path>) -> Result<(), ViewError> {
+        let mut file = AnimationWriter::create(path, self.style.size, self.fps)?;
+        for place in 0..self.len() {
+            file.push(&self.picture(place)?)?;
+        }
+        file.finish()
+    }
+}
+
+/// The box of what moves over all these moments, and a floor below everything.
+fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<(Bounds, Ground), ViewError> {
+    let (mut stage, mut all) = (Bounds::default(), Bounds::default());
+    for moment in moments {
+        let positions = positions(cache, *moment)?;
+        let objects = objects(cache, &positions);
+        stage.merge(&Bounds::of_interest(&objects));
+        objects.iter().for_each(|object| all.include(object.positions));
+    }
+    Ok((stage, Ground::At(super::floor_below(&all, &stage))))
+}
+
+/// Positions of every object at a moment.
+fn positions<R: Read + Seek>(
+    cache: &mut Playback<R>,
+    moment: usize,
+) -> Result<Vec<Vec<[f32; 3]>>, ViewError> {
+    let objects = 0..cache.objects().len();
+    let read = |object| cache.positions(object, moment).map_err(|source| ViewError::Read { source });
+    objects.map(read).collect()
+}
+
+fn objects<'a, R: Read + Seek>(cache: &'a Playback<R>, positions: &'a [Vec<[f32; 3]>]) -> Vec<Object<'a>> {
+    let objects = cache.objects().iter().zip(positions);
+    objects
+        .map(|(object, positions)| Object {
+            name: &object.name,
+            kind: match object.kind {
+                ObjectKind::Cloth => Kind::Cloth,
+                ObjectKind::Collider => Kind::Collider,
+                ObjectKind::Particles => Kind::Particles,
+            },
+            faces: &object.faces,
+            positions,
+            rest: Some(&object.rest),
+        })
+        .collect()
+}

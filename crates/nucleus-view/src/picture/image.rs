@@ -1,0 +1,77 @@
+//! A picture in memory, and as a PNG file.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use super::Vec3;
+use crate::ViewError;
+
+/// A picture of 8 bits per colour, row by row from the top left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    /// Red, green and blue of each pixel.
+    bytes: Vec<u8>,
+}
+
+impl Image {
+    /// Width and height are never more than this, in pixels.
+    pub const LARGEST_SIDE: u32 = 8192;
+
+    pub(super) fn new(width: u32, height: u32) -> Self {
+        Self { width, height, bytes: vec![0; 3 * width as usize * height as usize] }
+    }
+
+    /// Width and height, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Red, green and blue of every pixel, row by row from the top left.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Red, green and blue of one pixel; black outside the picture.
+    pub fn pixel(&self, column: u32, row: u32) -> [u8; 3] {
+        if column >= self.width || row >= self.height {
+            return [0; 3];
+        }
+        let first = self.index(column, row);
+        [self.bytes[first], self.bytes[first + 1], self.bytes[first + 2]]
+    }
+
+    /// Writes the picture as a PNG file.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
+        let path = path.as_ref();
+        let file = File::create(path).map_err(|source| ViewError::Create { path: path.into(), source })?;
+        let encoded = self.encode(BufWriter::new(file));
+        encoded.map_err(|source| ViewError::Encode { path: path.into(), source })
+    }
+
+    fn encode(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(to, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_compression(png::Compression::High);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.bytes)?;
+        writer.finish()
+    }
+
+    /// Sets a pixel inside the picture to a linear colour.
+    ///
+    /// A square root stands for the sRGB curve: it is within a few levels of it and, unlike a power,
+    /// the same to the last bit on every machine.
+    pub(super) fn set(&mut self, column: u32, row: u32, linear: &Vec3) {
+        let first = self.index(column, row);
+        for channel in 0..3 {
+            self.bytes[first + channel] = (linear[channel].clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8;
+        }
+    }
+
+    fn index(&self, column: u32, row: u32) -> usize {
+        3 * (row as usize * self.width as usize + column as usize)
+    }
+}

@@ -1,0 +1,122 @@
+//! Which cells of a grid a triangle covers: the one inner loop of the camera and of all lights.
+
+/// How much may be filled, so that a mesh that has blown up cannot take for ever.
+pub(super) struct Budget {
+    cells_left: usize,
+    small: usize,
+}
+
+impl Budget {
+    /// Enough for any sane picture of this size: every cell covered some hundred times.
+    pub fn of(size: [u32; 2]) -> Self {
+        let cells = size[0] as usize * size[1] as usize;
+        Self { cells_left: cells.saturating_mul(200), small: cells / 256 }
+    }
+
+    /// Takes the cost of a triangle; once all is spent only small triangles may still be drawn.
+    fn allows(&mut self, cells: usize) -> bool {
+        self.cells_left = self.cells_left.saturating_sub(cells);
+        self.cells_left > 0 || cells <= self.small
+    }
+}
+
+/// Calls `visit` with the index of every cell whose centre is inside the triangle, and the weights
+/// of its three corners there. Triangles without area or with corners that are not finite cover nothing.
+pub(super) fn cover(
+    corners: [[f32; 2]; 3],
+    size: [u32; 2],
+    budget: &mut Budget,
+    mut visit: impl FnMut(usize, [f32; 3]),
+) {
+    let [a, b, c] = corners;
+    let area = cross(a, b, c);
+    let (columns, rows) = (span(corners.map(|p| p[0]), size[0]), span(corners.map(|p| p[1]), size[1]));
+    if !area.is_finite() || area == 0.0 || !budget.allows(columns.len() * rows.len()) {
+        return;
+    }
+    // Neighbours share an edge but not its rounding: a hair of overlap closes the gap between them.
+    const OVERLAP: f32 = -1e-5;
+    let (step_b, step_c) = ((c[1] - a[1]) / area, (a[1] - b[1]) / area);
+    let first_column = columns.start as f32 + 0.5;
+    for row in rows {
+        let start = [first_column, row as f32 + 0.5];
+        let (at_b, at_c) = (cross(a, start, c) / area, cross(a, b, start) / area);
+        for column in columns.clone() {
+            let steps = (column - columns.start) as f32;
+            let (wb, wc) = (at_b + steps * step_b, at_c + steps * step_c);
+            let wa = 1.0 - wb - wc;
+            if wa >= OVERLAP && wb >= OVERLAP && wc >= OVERLAP {
+                visit(row as usize * size[0] as usize + column as usize, [wa, wb, wc]);
+            }
+        }
+    }
+}
+
+/// Twice the signed area of a triangle.
+fn cross(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> f32 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The cells of one axis that the numbers span. Casts saturate, so wild numbers give a valid range.
+fn span(at: [f32; 3], size: u32) -> std::ops::Range<u32> {
+    let low = at[0].min(at[1]).min(at[2]).floor() as u32;
+    let high = at[0].max(at[1]).max(at[2]).ceil() as u32;
+    low.min(size)..high.min(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const SIZE: [u32; 2] = [32, 24];
+
+    fn covered(corners: [[f32; 2]; 3]) -> Vec<(usize, [f32; 3])> {
+        let mut cells = Vec::new();
+        cover(corners, SIZE, &mut Budget::of(SIZE), |cell, weights| cells.push((cell, weights)));
+        cells
+    }
+
+    proptest! {
+        #[test]
+        fn the_weights_give_back_the_centre_of_the_cell(
+            corners in prop::array::uniform3(prop::array::uniform2(-10.0f32..40.0)),
+        ) {
+            prop_assume!(cross(corners[0], corners[1], corners[2]).abs() > 1.0);
+            for (cell, weights) in covered(corners) {
+                let centre = [(cell % 32) as f32 + 0.5, (cell / 32) as f32 + 0.5];
+                for axis in 0..2 {
+                    let at: f32 = (0..3).map(|k| corners[k][axis] * weights[k]).sum();
+                    prop_assert!((at - centre[axis]).abs() < 0.01, "{at} for {}", centre[axis]);
+                }
+            }
+        }
+
+        #[test]
+        fn two_triangles_of_a_square_leave_no_cell_between_them(
+            x in 0.0f32..8.0, y in 0.0f32..8.0, side in 2.0f32..14.0,
+        ) {
+            let [a, b, c, d] = [[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
+            let mut cells: Vec<usize> =
+                covered([a, b, c]).into_iter().chain(covered([a, c, d])).map(|(cell, _)| cell).collect();
+            cells.sort_unstable();
+            cells.dedup();
+            let inside = |at: f32, low: f32| at > low && at < low + side;
+            let expected = (0..32 * 24).filter(|cell| {
+                inside((cell % 32) as f32 + 0.5, x) && inside((cell / 32) as f32 + 0.5, y)
+            });
+            for cell in expected {
+                prop_assert!(cells.contains(&cell));
+            }
+        }
+    }
+
+    #[test]
+    fn wild_corners_cover_nothing_outside_the_grid() {
+        for wild in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30] {
+            let cells = covered([[wild, 3.0], [5.0, wild], [20.0, 20.0]]);
+            assert!(cells.iter().all(|(cell, _)| *cell < 32 * 24));
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The player: a page in the browser, and the little server that gives it the page and the cache.
+
+mod page;
+mod range;
+mod request;
+mod response;
+mod server;
+
+pub use server::{Player, serve};

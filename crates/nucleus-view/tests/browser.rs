@@ -1,0 +1,187 @@
+//! The player in a real browser. Where no Chromium is installed these tests say so and pass.
+
+mod sample;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nucleus_view::serve;
+use sample::Sample;
+
+/// A page that takes longer than this hangs.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// What a browser shows of a cache.
+struct Seen {
+    /// The document, after its scripts have run.
+    page: String,
+    /// Red, green and blue of the screen.
+    pixels: Vec<[u8; 3]>,
+}
+
+impl Seen {
+    fn share(&self, is_wanted: impl Fn(&[u8; 3]) -> bool) -> f64 {
+        self.pixels.iter().filter(|pixel| is_wanted(pixel)).count() as f64 / self.pixels.len() as f64
+    }
+
+    /// The share of the screen in the red of the first cloth.
+    fn cloth(&self) -> f64 {
+        self.share(|[red, green, blue]| *red > 80 && *red / 2 > *green && *red / 2 > *blue)
+    }
+}
+
+/// Where Chromium is; `None`, with a word about it, if it is not installed.
+fn chromium() -> Option<&'static Path> {
+    let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let found = places.map(Path::new).into_iter().find(|path| path.exists());
+    if found.is_none() {
+        eprintln!("no Chromium here: the player was not tested in a browser");
+    }
+    found
+}
+
+/// Serves the cache and looks at it; `wish` is what stands behind the # of the address.
+fn look(chromium: &Path, cache: &Path, wish: &str) -> Seen {
+    let player = serve(cache, 0).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let screen = folder.path().join("screen.png");
+    let page = folder.path().join("page.html");
+    let mut child = Command::new(chromium)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
+        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
+        .args(["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+        .args(["--window-size=800,500", "--virtual-time-budget=5000", "--dump-dom"])
+        .arg(format!("--screenshot={}", screen.display()))
+        .arg(format!("{}#{wish}", player.url()))
+        .stdout(std::fs::File::create(&page).unwrap())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begun.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("the page hangs");
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    Seen { page: std::fs::read_to_string(page).unwrap(), pixels: pixels(&screen) }
+}
+
+fn pixels(png: &Path) -> Vec<[u8; 3]> {
+    let mut decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(png).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    bytes.chunks_exact(info.color_type.samples()).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+}
+
+fn written(folder: &Path, sample: Sample) -> PathBuf {
+    let path = folder.join("run.mcap");
+    sample::write(&path, sample);
+    path
+}
+
+#[test]
+fn a_cache_opens_at_the_frame_that_is_asked_for() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let seen =
+        look(chromium, &written(folder.path(), Sample { substeps: true, ..Sample::default() }), "frame=12");
+    assert!(seen.page.contains(r#"data-state="ready" data-frame="12" data-substep="4""#), "{}", seen.page);
+    assert!(seen.page.contains("of 24 · substep 4 of 4 · 0.458 s"), "{}", seen.page);
+    for figure in ["<dd class=\"\">1.23&nbsp;%", "0.980", "4,321", "scenes/sample.ron", "flag"] {
+        assert!(seen.page.replace(" %", "&nbsp;%").contains(figure), "{figure}");
+    }
+    assert!(seen.cloth() > 0.03, "the cloth fills {} of the screen", seen.cloth());
+}
+
+#[test]
+fn colouring_by_strain_takes_the_colour_of_the_cloth_away() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=1&strain=4&wireframe");
+    assert!(seen.page.contains("+400 %"), "{}", seen.page);
+    assert!(seen.cloth() < 0.01, "{} of the screen is red", seen.cloth());
+    let pale = seen.share(|[red, green, blue]| *red > 120 && red.abs_diff(*green) < 40 && *blue > 90);
+    assert!(pale > 0.03, "hardly strained cloth is pale: {pale}");
+}
+
+#[test]
+fn a_run_that_was_killed_plays_as_far_as_it_came() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("killed.mcap");
+    let mut recorder = sample::begin(&path, Sample::default());
+    (2..=9).for_each(|frame| sample::step(&mut recorder, Sample::default(), frame));
+    // As after a kill: the last frame half written, and no index.
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &bytes[..bytes.len() - 5000]).unwrap();
+    std::mem::forget(recorder);
+    let seen = look(chromium, &path, "frame=24");
+    assert!(seen.page.contains(r#"data-frame="8""#), "{}", seen.page);
+    assert!(seen.page.contains("The run was cut short: frames 1 to 8 are shown."), "{}", seen.page);
+    assert!(seen.cloth() > 0.03);
+}
+
+#[test]
+fn points_that_are_no_numbers_are_counted_and_the_rest_is_shown() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample { broken: true, ..Sample::default() });
+    let seen = look(chromium, &path, "frame=20&strain");
+    assert!(seen.page.contains(r#"data-frame="20""#), "{}", seen.page);
+    assert!(seen.page.contains("Points that are not finite</dt><dd class=\"bad\">22<"), "{}", seen.page);
+    let shown = look(chromium, &path, "frame=20").cloth();
+    assert!(shown > 0.02, "the cloth fills {shown} of the screen");
+}
+
+#[test]
+fn a_damaged_frame_is_named_and_the_others_play() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    let mut bytes = std::fs::read(&path).unwrap();
+    let chunks = chunk_starts(&bytes);
+    bytes[chunks[6] + 2000] ^= 0xFF; // the seventh chunk: frame 7
+    std::fs::write(&path, bytes).unwrap();
+    let seen = look(chromium, &path, "frame=7");
+    assert!(seen.page.contains("Frame 7: A frame of the file is damaged."), "{}", seen.page);
+    let seen = look(chromium, &path, "frame=8");
+    assert!(seen.page.contains(r#"data-frame="8""#), "{}", seen.page);
+}
+
+/// Where the chunks of an MCAP file begin.
+fn chunk_starts(bytes: &[u8]) -> Vec<usize> {
+    let mut starts = Vec::new();
+    let mut at = 8;
+    while at + 9 < bytes.len() {
+        if bytes[at] == 0x06 {
+            starts.push(at);
+        }
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    }
+    starts
+}
+
+#[test]
+fn what_is_no_cache_is_refused_in_plain_words() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("holiday.mcap");
+    let whole = std::fs::read(written(folder.path(), Sample::default())).unwrap();
+    for (bytes, message) in [
+        (&b"This is a letter, not a cache."[..], "This is not a cache."),
+        (&[][..], "The file is empty."),
+        (&whole[..1000], "The file breaks off before its first whole frame."),
+    ] {
+        std::fs::write(&path, bytes).unwrap();
+        let seen = look(chromium, &path, "");
+        assert!(seen.page.contains(r#"data-state="error""#), "{message}: {}", seen.page);
+        assert!(seen.page.contains(message), "{message}: {}", seen.page);
+    }
+}

@@ -1,0 +1,199 @@
+//! What a picture must hold, whatever is drawn.
+
+use std::fs::File;
+use std::io::BufReader;
+
+use nucleus_core::Faces;
+use nucleus_view::{
+    AnimationWriter, Bounds, Camera, Colouring, Ground, Image, Kind, Object, Style, ViewError, draw,
+};
+use proptest::prelude::*;
+
+const FROM_ABOVE: Camera = Camera { eye: [0.0, 10.0, 0.0], target: [0.0; 3], field_of_view: 40.0 };
+
+fn small() -> Style {
+    Style { size: [64, 48], samples: 1, ground: Ground::None, ..Style::default() }
+}
+
+/// A level square at a height, seen from above as its front.
+fn square(height: f32, half: f32) -> Vec<[f32; 3]> {
+    [[-half, half], [half, half], [half, -half], [-half, -half]].map(|[x, z]| [x, height, z]).to_vec()
+}
+
+fn one_face() -> Faces {
+    Faces::from_iter([&[0u32, 1, 2, 3][..]])
+}
+
+fn object<'a>(kind: Kind, faces: &'a Faces, positions: &'a [[f32; 3]]) -> Object<'a> {
+    Object { name: "thing", kind, faces, positions, rest: None }
+}
+
+fn brightness(pixel: [u8; 3]) -> u32 {
+    pixel.iter().map(|channel| u32::from(*channel)).sum()
+}
+
+/// Any number a broken run might leave behind.
+fn wild() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => -3.0f32..3.0,
+        1 => prop::sample::select(vec![f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30, 1e-40, 1e8]),
+    ]
+}
+
+fn kind() -> impl Strategy<Value = Kind> {
+    prop::sample::select(vec![Kind::Cloth, Kind::Collider, Kind::Particles])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn nothing_that_is_drawn_can_stop_a_picture(
+        kind in kind(),
+        positions in prop::collection::vec(prop::array::uniform3(wild()), 0..12),
+        rest in prop::collection::vec(prop::array::uniform3(wild()), 0..12),
+        faces in prop::collection::vec(prop::collection::vec(0u32..14, 0..6), 0..8),
+        eye in prop::array::uniform3(wild()),
+        target in prop::array::uniform3(wild()),
+        field_of_view in wild(),
+        ground in prop_oneof![Just(Ground::None), Just(Ground::Below), wild().prop_map(Ground::At)],
+        full_scale in wild(),
+    ) {
+        let faces: Faces = faces.iter().map(Vec::as_slice).collect();
+        let object = Object { name: "wild", kind, faces: &faces, positions: &positions, rest: Some(&rest) };
+        let style = Style { colouring: Colouring::Strain { full_scale }, wireframe: true, ground, ..small() };
+        for camera in [
+            Camera { eye, target, field_of_view },
+            Camera::framing(&Bounds::of_interest(&[object]), style.size),
+        ] {
+            prop_assert_eq!(draw(&[object], &camera, &style).size(), style.size);
+        }
+    }
+}
+
+#[test]
+fn the_nearer_of_two_objects_is_seen_in_either_order() {
+    let faces = one_face();
+    let (low, high) = (square(0.0, 2.0), square(1.0, 1.0));
+    let (cloth, collider) = (object(Kind::Cloth, &faces, &high), object(Kind::Collider, &faces, &low));
+    let picture = draw(&[cloth, collider], &FROM_ABOVE, &small());
+    assert_eq!(picture, draw(&[collider, cloth], &FROM_ABOVE, &small()));
+    let [red, green, _] = picture.pixel(32, 24);
+    assert!(red > 2 * green, "the cloth is red, and on top: {red}, {green}");
+}
+
+#[test]
+fn a_lost_point_takes_only_its_own_faces_with_it() {
+    let mut positions = square(0.0, 2.0);
+    positions.extend(square(0.0, 1.0).iter().map(|[x, y, z]| [x + 1.5, *y, *z]));
+    positions[0][1] = f32::NAN;
+    let both = Faces::from_iter([&[0u32, 1, 2, 3][..], &[4, 5, 6, 7]]);
+    let rest = Faces::from_iter([&[4u32, 5, 6, 7][..]]);
+    let picture = |faces: &Faces| draw(&[object(Kind::Cloth, faces, &positions)], &FROM_ABOVE, &small());
+    assert_eq!(picture(&both), picture(&rest));
+    assert_ne!(picture(&rest), picture(&Faces::default()));
+}
+
+#[test]
+fn a_sheet_darkens_the_floor_below_it_and_not_far_from_it() {
+    let style = Style { ground: Ground::At(0.0), size: [96, 96], ..small() };
+    let faces = one_face();
+    let camera = Camera { eye: [0.0, 4.0, 9.0], ..FROM_ABOVE };
+    let sheet = square(1.0, 1.0);
+    let with = draw(&[object(Kind::Cloth, &faces, &sheet)], &camera, &style);
+    let without = draw(&[], &camera, &style);
+    // The key light falls from the left: the shadow lies a little to the right of the sheet.
+    let darkened = |row: u32| brightness(without.pixel(56, row)).abs_diff(brightness(with.pixel(56, row)));
+    assert!(darkened(50) > 100, "under the sheet: {}", darkened(50));
+    assert!(darkened(94) < 12, "in front of it: {}", darkened(94));
+}
+
+#[test]
+fn moving_scene_and_camera_together_leaves_the_picture_as_it_was() {
+    let faces = one_face();
+    let far = |by: f32| square(0.5, 1.0).into_iter().map(|[x, y, z]| [x + by, y, z]).collect::<Vec<_>>();
+    let picture = |by: f32| {
+        let camera = Camera { eye: [by + 3.0, 4.0, 5.0], target: [by, 0.0, 0.0], field_of_view: 40.0 };
+        draw(&[object(Kind::Cloth, &faces, &far(by))], &camera, &small())
+    };
+    assert_eq!(picture(0.0), picture(256.0), "a power of two is exact in f32");
+}
+
+#[test]
+fn strain_is_shown_only_where_a_rest_shape_is_known() {
+    let faces = one_face();
+    let (rest, pulled) = (square(0.0, 1.0), square(0.0, 1.2));
+    let style = Style { colouring: Colouring::Strain { full_scale: 0.2 }, ..small() };
+    let shown = Object { rest: Some(&rest), ..object(Kind::Cloth, &faces, &pulled) };
+    let [red, _, blue] = draw(&[shown], &FROM_ABOVE, &style).pixel(32, 24);
+    assert!(red > 2 * blue, "20 % longer is the deepest red: {red}, {blue}");
+    let pressed = square(0.0, 0.8);
+    let shown = Object { rest: Some(&rest), ..object(Kind::Cloth, &faces, &pressed) };
+    let [red, _, blue] = draw(&[shown], &FROM_ABOVE, &style).pixel(32, 24);
+    assert!(blue > 2 * red, "20 % shorter is the deepest blue: {red}, {blue}");
+}
+
+#[test]
+fn a_png_file_gives_back_every_pixel() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("still.png");
+    let (faces, positions) = (one_face(), square(0.0, 1.0));
+    let image = draw(&[object(Kind::Cloth, &faces, &positions)], &FROM_ABOVE, &small());
+    image.write_png(&path).unwrap();
+    let mut reader = png::Decoder::new(BufReader::new(File::open(&path).unwrap())).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(bytes, image.bytes());
+}
+
+/// Plays an animated PNG as a browser does: each part is laid over the frame before.
+fn play(path: &std::path::Path) -> Vec<Vec<u8>> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    let frames = reader.info().animation_control.unwrap().num_frames;
+    let mut canvas = vec![0; reader.output_buffer_size().unwrap()];
+    let row_bytes = 3 * reader.info().width as usize;
+    let mut shown = Vec::new();
+    for _ in 0..frames {
+        let mut part = vec![0; canvas.len()];
+        let read = reader.next_frame(&mut part).unwrap();
+        let place = *reader.info().frame_control.as_ref().unwrap();
+        for row in 0..read.height as usize {
+            let start = (place.y_offset as usize + row) * row_bytes + 3 * place.x_offset as usize;
+            canvas[start..start + 3 * read.width as usize]
+                .copy_from_slice(&part[row * read.line_size..row * read.line_size + 3 * read.width as usize]);
+        }
+        shown.push(canvas.clone());
+    }
+    shown
+}
+
+#[test]
+fn an_animation_plays_every_frame_as_it_was_pushed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.png");
+    let faces = one_face();
+    let frame = |height: f32| -> Image {
+        draw(&[object(Kind::Cloth, &faces, &square(height, 1.0))], &FROM_ABOVE, &small())
+    };
+    let images = [frame(0.0), frame(1.0), frame(1.0), frame(2.0), frame(-1.0)];
+    let mut film = AnimationWriter::create(&path, small().size, 24.0).unwrap();
+    images.iter().for_each(|image| film.push(image).unwrap());
+    film.finish().unwrap();
+    let shown = play(&path);
+    assert_eq!(shown.len(), images.len());
+    for (frame, image) in images.iter().enumerate() {
+        assert_eq!(shown[frame], image.bytes(), "frame {frame}");
+    }
+}
+
+#[test]
+fn an_animation_refuses_frames_of_another_size_and_none_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.png");
+    let image = draw(&[], &FROM_ABOVE, &small());
+    let mut film = AnimationWriter::create(&path, [10, 10], 24.0).unwrap();
+    assert!(matches!(film.push(&image), Err(ViewError::FrameSize { found: [64, 48], .. })));
+    assert!(matches!(film.finish(), Err(ViewError::NoFrame { .. })));
+    let nowhere = folder.path().join("missing").join("still.png");
+    assert!(matches!(image.write_png(nowhere), Err(ViewError::Create { .. })));
+}

@@ -1,0 +1,149 @@
+//! A small run made by a formula: a flag of cloth that waves, a ball that starts to roll later, and a
+//! cube that stands still.
+
+#![allow(dead_code)] // each test uses a part of it
+
+use std::f32::consts::{PI, TAU};
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorded, Recorder, RunInfo, Source};
+use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver, StepReport};
+
+pub const FRAMES: i32 = 24;
+/// The first frame in which the ball has moved.
+pub const ROLLS: i32 = 10;
+/// Points along a side of the cloth.
+const SIDE: u32 = 33;
+const BALL: ColliderId = ColliderId(0);
+const SUBSTEPS: u32 = 4;
+
+/// What makes a sample different from a sound run of frames.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Sample {
+    /// Record every substep.
+    pub substeps: bool,
+    /// From the middle of the run on, one point in fifty is not a number.
+    pub broken: bool,
+}
+
+/// Writes a sample. Its last frame is [`FRAMES`], its first 1.
+pub fn write(path: &Path, sample: Sample) -> Recorded {
+    let mut recorder = begin(path, sample);
+    for frame in 2..=FRAMES {
+        step(&mut recorder, sample, frame);
+    }
+    recorder.finish().unwrap()
+}
+
+/// Starts a recording and records the start.
+pub fn begin(path: &Path, sample: Sample) -> Recorder {
+    let run = RunInfo {
+        scene_path: "scenes/sample.ron".into(),
+        end: FRAMES,
+        detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
+        ..RunInfo::default()
+    };
+    let mut recorder = Recorder::create(path, &run, objects()).unwrap();
+    recorder.record_start(&State { time: 0.0, frame: 1, broken: false }).unwrap();
+    recorder
+}
+
+/// Records one frame.
+pub fn step(recorder: &mut Recorder, sample: Sample, frame: i32) {
+    let mut watching = recorder.frame(frame).unwrap();
+    for substep in 1..=SUBSTEPS {
+        let time = (frame - 2) as f32 + substep as f32 / SUBSTEPS as f32;
+        let broken = sample.broken && frame > FRAMES / 2;
+        watching.substep(Moment { substep, substeps: SUBSTEPS }, &State { time, frame, broken });
+    }
+    let report = StepReport { max_strain: 0.0123, min_gap: 0.98, contacts: 4321, ..StepReport::default() };
+    let report = [("max_strain", report.max_strain), ("min_gap", report.min_gap), ("contacts", 4321.0)];
+    recorder.end_frame(&std::collections::BTreeMap::from(report)).unwrap();
+}
+
+struct State {
+    /// Frames since the start.
+    time: f32,
+    frame: i32,
+    broken: bool,
+}
+
+impl StateView for State {
+    fn positions(&self, _: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
+        *out = flag(self.time);
+        if self.broken {
+            out.iter_mut().step_by(50).for_each(|point| point[1] = f32::NAN);
+        }
+    }
+    fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
+    fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
+        *out = if collider == BALL { sphere().1 } else { cube().1 };
+        if collider == BALL {
+            out.iter_mut().for_each(|point| point[0] += (self.time - (ROLLS - 2) as f32).max(0.0) * 0.04);
+        }
+    }
+    fn collider_moved(&self, collider: ColliderId) -> bool {
+        collider == BALL && self.frame >= ROLLS
+    }
+    fn point(&self, _: ClothId, _: usize) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+}
+
+fn objects() -> Vec<(Source, ObjectInfo)> {
+    let [(sphere, at_start), (cube, corners)] = [sphere(), cube()];
+    let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
+    let object = |name: &str, kind, faces, rest| ObjectInfo { name: name.into(), kind, faces, rest };
+    vec![
+        (Source::Cloth(ClothId(0)), object("flag", cloth, grid(), sheet(|x, y| [x, y, 0.0]))),
+        (Source::Collider(BALL), object("ball", collider, sphere, at_start)),
+        (Source::Collider(ColliderId(1)), object("cube", collider, cube, corners)),
+    ]
+}
+
+fn flag(time: f32) -> Vec<[f32; 3]> {
+    sheet(|x, y| {
+        let wave = 0.16 * x * (5.0 * x - 0.5 * time + y).sin() + 0.04 * x * (13.0 * x - time).sin();
+        [x * 0.97, y - 0.08 * x * x, wave]
+    })
+}
+
+fn sheet(at: impl Fn(f32, f32) -> [f32; 3]) -> Vec<[f32; 3]> {
+    let place = |k: u32| k as f32 / (SIDE - 1) as f32;
+    (0..SIDE * SIDE).map(|k| at(2.0 * place(k % SIDE), 0.6 + 1.4 * place(k / SIDE))).collect()
+}
+
+fn grid() -> Faces {
+    let mut faces = Faces::default();
+    for k in (0..SIDE * (SIDE - 1)).filter(|k| k % SIDE + 1 < SIDE) {
+        faces.push(&[k, k + 1, k + 1 + SIDE, k + SIDE]);
+    }
+    faces
+}
+
+fn sphere() -> (Faces, Vec<[f32; 3]>) {
+    let (rows, columns) = (16u32, 32u32);
+    let (mut faces, mut points) = (Faces::default(), Vec::new());
+    for row in 0..=rows {
+        for column in 0..columns {
+            let (down, around) = (row as f32 / rows as f32 * PI, column as f32 / columns as f32 * TAU);
+            let out = [down.sin() * around.cos(), down.cos(), -down.sin() * around.sin()];
+            points.push([0.3 + 0.35 * out[0], 0.35 + 0.35 * out[1], 0.9 + 0.35 * out[2]]);
+            let (a, b) = (row * columns + column, row * columns + (column + 1) % columns);
+            if row < rows {
+                faces.push(&[a, a + columns, b + columns, b]);
+            }
+        }
+    }
+    (faces, points)
+}
+
+fn cube() -> (Faces, Vec<[f32; 3]>) {
+    let sides = [[0u32, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let corner = |k: usize| {
+        let side = |axis: usize| if k >> axis & 1 == 1 { 0.4 } else { 0.0 };
+        [1.5 + side(0), side(1), -0.8 + side(2)]
+    };
+    (sides.iter().map(|side| &side[..]).collect(), (0..8).map(corner).collect())
+}
