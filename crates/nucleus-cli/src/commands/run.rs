@@ -103,7 +103,7 @@ fn close(recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
     match recorder.finish() {
         Ok(recorded) => Some(recorded.bytes),
         Err(error) => {
-            *ending = Ending::Lost(error);
+            *ending = Ending::Lost(error.into());
             None
         }
     }

@@ -94,6 +94,15 @@ fn a_file_that_is_no_cache_is_not_overwritten() {
 }
 
 #[test]
+fn a_cache_that_cannot_be_made_is_refused_with_the_reason_once() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "no/such/x.mcap"]);
+    assert_refused(&output, "cannot write `no/such/x.mcap`: No such file");
+    assert_eq!(stderr(&output).matches("No such file").count(), 1);
+}
+
+#[test]
 fn nonsense_on_the_command_line_is_refused() {
     let folder = folder();
     scene(folder.path(), 5, "");
