@@ -71,6 +71,10 @@ fn escapes_without_meaning_are_all_reported() {
     let text = r#"["C:\maya", "\u{110000}", "\xe9"]"#;
     let places: Vec<_> = errors(text).iter().map(|e| at(text, e).to_owned()).collect();
     assert_eq!(places, [r"\m", r"\u", r"\x"]);
+    for escape in [r"\x+4", r"\x4", r"\u{0000041}", r"\u{+41}", r"\u{}", r"\u{41", r"\u41", r"\ü", r"\"] {
+        let text = format!("[\"{escape}\"]");
+        assert!(parse(&text).is_err() && ron::from_str::<ron::Value>(&text).is_err(), "{text}");
+    }
 }
 
 #[test]

@@ -1,0 +1,130 @@
+//! Everything that must hold before a change goes in, in order, stopping at the first failure.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+use std::{env, fs, thread};
+
+use anyhow::{Context, bail, ensure};
+
+use crate::{files, readme, tidy};
+
+/// How long a command of the README that never ends by itself has to stay up.
+const SERVES_FOR: Duration = Duration::from_secs(3);
+
+/// Runs all steps, each under a heading and with its time.
+pub fn run(root: &Path) -> anyhow::Result<()> {
+    let start = Instant::now();
+    step("format", || cargo(root, &["fmt", "--all", "--check"], &[]))?;
+    step("lints", || cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[]))?;
+    step("docs", || cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")]))?;
+    step("tests", || cargo(root, &["test", "--release", "--workspace"], &[]))?;
+    step("tidy", || tidy::run(root))?;
+    step("build", || cargo(root, &["build", "--release", "--package", "nucleus-cli"], &[]))?;
+    step("readme", || readme_commands(root))?;
+    step("scenes", || scenes(root))?;
+    println!("\nall fine after {:.1} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn step(name: &str, run: impl FnOnce() -> anyhow::Result<()>) -> anyhow::Result<()> {
+    println!("\n== {name}");
+    let start = Instant::now();
+    run().with_context(|| format!("{name} failed after {:.1} s", start.elapsed().as_secs_f64()))?;
+    println!("== {name}: {:.1} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
+    let program = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(program);
+    command.args(arguments).envs(environment.iter().copied()).current_dir(root);
+    succeed(command, &format!("cargo {}", arguments.join(" ")))
+}
+
+/// Runs what the README says, word by word, so that it cannot become untrue.
+fn readme_commands(root: &Path) -> anyhow::Result<()> {
+    let commands = readme::commands(&fs::read_to_string(root.join("README.md")).context("README.md")?);
+    ensure!(!commands.is_empty(), "README.md has no block of shell commands");
+    for text in commands {
+        println!("-- {text}");
+        let mut words = text.split_whitespace();
+        let mut command = Command::new(words.next().unwrap_or_default());
+        command.args(words).current_dir(root);
+        if text.split_whitespace().any(|word| word == "play") {
+            serve(command, &text)?;
+        } else {
+            succeed(command, &text)?;
+        }
+    }
+    Ok(())
+}
+
+/// Every scene with its own checks.
+fn scenes(root: &Path) -> anyhow::Result<()> {
+    let program = built(root).join("nucleus");
+    let all = files::below(&root.join("scenes"))?;
+    let scenes: Vec<_> = all.iter().filter(|path| path.extension().is_some_and(|end| end == "ron")).collect();
+    ensure!(!scenes.is_empty(), "there are no scenes");
+    for scene in scenes {
+        let name = files::name(root, scene);
+        let start = Instant::now();
+        let mut command = Command::new(&program);
+        command.arg("run").arg(scene).args(["--record", "none"]).current_dir(root);
+        succeed(command, &name)?;
+        println!("-- {name}: {:.1} s", start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}
+
+/// Where cargo puts optimised programs.
+fn built(root: &Path) -> PathBuf {
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    target.join("release")
+}
+
+fn succeed(mut command: Command, name: &str) -> anyhow::Result<()> {
+    let status = command.status().with_context(|| format!("`{name}` cannot be started"))?;
+    ensure!(status.success(), "`{name}`: {status}");
+    Ok(())
+}
+
+/// Starts what runs until it is stopped, and stops it when it has stayed up for a while.
+fn serve(mut command: Command, name: &str) -> anyhow::Result<()> {
+    let mut child = command.spawn().with_context(|| format!("`{name}` cannot be started"))?;
+    let result = stays_up(&mut child, name);
+    // It may have ended by itself in the meantime; then there is nothing to stop.
+    let _ = child.kill();
+    child.wait()?;
+    result
+}
+
+fn stays_up(child: &mut Child, name: &str) -> anyhow::Result<()> {
+    let start = Instant::now();
+    while start.elapsed() < SERVES_FOR {
+        match child.try_wait()? {
+            Some(status) if !status.success() => bail!("`{name}`: {status}"),
+            Some(_) => return Ok(()),
+            None => thread::sleep(Duration::from_millis(50)),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_server_is_fine_while_it_stays_up_and_a_failure_is_not() {
+        let shell = |script: &str| {
+            let mut command = Command::new("sh");
+            command.args(["-c", script]);
+            command
+        };
+        assert!(serve(shell("exec sleep 60"), "sleep").is_ok());
+        assert!(serve(shell("exit 0"), "done").is_ok());
+        assert!(serve(shell("exit 3"), "broken").is_err());
+        assert!(succeed(shell("exit 3"), "broken").is_err());
+    }
+}

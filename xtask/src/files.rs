@@ -1,0 +1,52 @@
+//! Which files belong to the repository.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// All files below `folder`, in order of their paths; none if there is no such folder.
+///
+/// Passed over are what is built (`target`) and what is hidden, apart from the folders that hold rules of
+/// the repository.
+pub fn below(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    if folder.is_dir() {
+        collect(folder, &mut found)?;
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The folders directly in `folder` that [`below`] looks into, by name; none that are hidden.
+pub fn folders(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if entry.file_type()?.is_dir() && !name.starts_with('.') && name != "target" {
+            names.push(name);
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// A path as it is printed: from the root, with slashes.
+pub fn name(root: &Path, path: &Path) -> String {
+    path.strip_prefix(root).unwrap_or(path).to_string_lossy().replace('\\', "/")
+}
+
+fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let kind = entry.file_type()?;
+        let hidden = name.starts_with('.') && !matches!(name.as_str(), ".ci" | ".cargo" | ".gitignore");
+        if kind.is_dir() && !hidden && name != "target" {
+            collect(&entry.path(), found)?;
+        } else if kind.is_file() && !hidden {
+            found.push(entry.path());
+        }
+    }
+    Ok(())
+}

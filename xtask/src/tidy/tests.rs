@@ -1,0 +1,91 @@
+//! Trees made for the purpose, and this repository.
+
+use super::*;
+use tempfile::TempDir;
+
+const PAGE: &str = "## Code map\n| `crates/` | one |\n| `docs/` | words |\n### `crates/one`\n| `step` | a frame |\n| `graph` | nodes |\n";
+
+/// A repository of one crate with two modules, as [`PAGE`] has it, and more files.
+fn tree(page: &str, more: &[(&str, &str)]) -> TempDir {
+    let root = tempfile::tempdir().unwrap();
+    let files = [
+        ("ARCHITECTURE.md", page),
+        ("docs/book.md", "# Book\n"),
+        ("target/debug/junk.rs", "junk"),
+        ("crates/one/Cargo.toml", "[package]\n"),
+        ("crates/one/src/lib.rs", "mod step;\n"),
+        ("crates/one/src/step.rs", "\n"),
+        ("crates/one/src/graph/mod.rs", "\n"),
+        ("crates/one/src/graph/node.rs", "\n"),
+        ("crates/one/src/tests.rs", "\n"),
+    ];
+    for (name, text) in files.iter().chain(more) {
+        let path = root.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    root
+}
+
+fn found(page: &str, more: &[(&str, &str)]) -> Vec<String> {
+    problems(tree(page, more).path()).unwrap()
+}
+
+#[test]
+fn a_map_that_fits_its_tree_is_tidy() {
+    assert_eq!(found(PAGE, &[]), [""; 0]);
+}
+
+#[test]
+fn what_is_there_and_not_named_is_found() {
+    let more = [("crates/two/Cargo.toml", ""), ("crates/one/src/new.rs", ""), ("scenes/a.ron", "")];
+    assert_eq!(
+        found(PAGE, &more),
+        [
+            "ARCHITECTURE.md: the folder `scenes` is not named",
+            "ARCHITECTURE.md: the crate `crates/two` is not named",
+            "ARCHITECTURE.md: the module `crates/one/src/new` is not named",
+        ]
+    );
+}
+
+#[test]
+fn what_is_named_and_not_there_is_found() {
+    let page = format!("{PAGE}| `step` | again |\n| `old` | gone |\n### `crates/gone`\n");
+    assert_eq!(
+        found(&page, &[]),
+        [
+            "ARCHITECTURE.md:9: there is no crate `crates/gone`",
+            "ARCHITECTURE.md:7: the module `crates/one/src/step` is named twice",
+            "ARCHITECTURE.md:8: there is no module `crates/one/src/old`",
+        ]
+    );
+}
+
+#[test]
+fn long_files_are_found_unless_they_are_tables() {
+    let long = "\n".repeat(601);
+    let table = format!("{TABLES}nucleus.rs");
+    let all = found(PAGE, &[("crates/one/src/step.rs", &long), (&table, &long)]);
+    assert!(
+        all.contains(&"crates/one/src/step.rs: 601 lines, more than 600; split it by its nouns".to_owned())
+    );
+    assert!(!all.iter().any(|problem| problem.starts_with(TABLES)), "{all:?}");
+}
+
+#[test]
+fn paths_of_one_machine_are_found_with_their_line() {
+    let path = MACHINE_PATHS[0];
+    let text = format!("fine\nsee {path}main\n");
+    assert_eq!(
+        found(PAGE, &[("docs/notes.md", &text)]),
+        [format!("docs/notes.md:2: `{path}` is a path of one machine")]
+    );
+}
+
+#[test]
+fn a_missing_map_is_one_problem() {
+    let root = tree(PAGE, &[]);
+    fs::remove_file(root.path().join("ARCHITECTURE.md")).unwrap();
+    assert_eq!(problems(root.path()).unwrap(), ["ARCHITECTURE.md: there is none"]);
+}
