@@ -4,10 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
 
+use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
-use crate::collision::pairs::{Cover, foresee, is_foreseen};
+use crate::collision::foresee::{foresee, is_foreseen, is_within};
 use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, resolve};
+use crate::collision::search::Search;
 use crate::columns::Shared;
 use crate::frame::FrameInput;
 use crate::scalar::Real;
@@ -16,8 +18,23 @@ use crate::solver::Solver;
 
 /// Thickness in metres below which none is kept: contact needs some room to prove that nothing passed.
 const LEAST_THICKNESS: f64 = 1e-5;
-/// Share of the thickness by which a point may stray from what is foreseen before pairs are found anew.
-const STRAY: f64 = 0.5;
+/// Shares of the thickness by which a point may stray from what is foreseen, in a window and in a substep.
+const STRAY_NEAR: f64 = 0.05;
+const STRAY_FAR: f64 = 0.5;
+/// Time steps for which active pairs are picked.
+const WINDOW: f64 = 8.0;
+
+/// Where in the frame a step is, in shares of it.
+#[derive(Clone, Copy)]
+struct Times {
+    step: [f64; 2],
+    end_of_substep: f64,
+}
+
+/// The sum of two thicknesses in metres.
+fn thickness(frame: &FrameInput, cloth: usize, collider: usize) -> f64 {
+    (frame.cloths[cloth].thickness + frame.colliders[collider].thickness).max(LEAST_THICKNESS)
+}
 
 impl<R: Real> Solver<R> {
     /// One pass over all contacts: the ground plane, then colliders.
@@ -32,77 +49,140 @@ impl<R: Real> Solver<R> {
         let steps = f64::from(schedule.substeps * schedule.steps);
         let time = [f64::from(step) / steps, f64::from(step + 1) / steps];
         let end_of_substep = f64::from(step / schedule.steps + 1) / f64::from(schedule.substeps);
-        for index in 0..self.pairs.len() {
-            let (cloth, collider) = (self.pairs[index].cloth, self.pairs[index].collider);
-            if !(frame.cloths[cloth].collide && frame.colliders[collider].collide) {
-                self.pairs[index].clear();
+        for cloth in 0..self.cloths.len() {
+            if !self.can_touch(frame, cloth) {
                 continue;
             }
-            let span = [time[0], end_of_substep];
-            if time[1] > self.pairs[index].span[1] || self.has_strayed(cloth) {
-                self.find_pairs(frame, cloth, schedule, span, tally);
+            self.watch_pairs(frame, cloth, schedule, Times { step: time, end_of_substep }, tally);
+            let Self { state, collider_states, pairs, team, .. } = self;
+            for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
+                let collider = list.collider;
+                let view = StepParts { frame, cloth, collider, h: schedule.h, time, span: list.span };
+                resolve(list, &view.of(state, &collider_states[collider]), team, tally);
             }
-            let Self { cloths: _, state, collider_states, pairs, team, .. } = self;
-            let list = &mut pairs[index];
-            let view = StepParts { frame, cloth, collider, h: schedule.h, time, span: list.span };
-            let step = view.of(state, &collider_states[collider]);
-            resolve(list, &step, team, tally);
         }
     }
 
-    /// Finds the pairs of a cloth with every collider, for what is foreseen from now to the end of the span.
+    /// Whether a cloth meets any collider in this frame.
+    fn can_touch(&self, frame: &FrameInput, cloth: usize) -> bool {
+        frame.cloths[cloth].collide && frame.colliders.iter().any(|collider| collider.collide)
+    }
+
+    /// Makes sure that the active pairs of a cloth are all that can touch in this step. As long as every
+    /// point stays where it was foreseen to, nothing needs to be done.
+    fn watch_pairs(
+        &mut self,
+        frame: &FrameInput,
+        cloth: usize,
+        schedule: &Schedule<R>,
+        times: Times,
+        tally: &mut Tally,
+    ) {
+        let Times { step, end_of_substep } = times;
+        if step[1] <= self.windows[cloth][1] && !self.has_strayed(cloth) {
+            return;
+        }
+        let window = [step[0], end_of_substep.min(step[0] + (step[1] - step[0]) * WINDOW)];
+        if step[1] > self.spans[cloth][1] {
+            self.spans[cloth] = [step[0], end_of_substep];
+            let points = self.cloths[cloth].points();
+            self.strayed[points.start as usize..points.end as usize].fill(true);
+        }
+        let rest = [step[0], end_of_substep];
+        if self.foresee_points(frame, cloth, schedule, [window, rest]) {
+            self.find_pairs(frame, cloth, schedule, step[0], tally);
+        }
+        self.windows[cloth] = window;
+        let Self { cloths, pairs, near, .. } = self;
+        for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
+            let thickness = thickness(frame, cloth, list.collider);
+            list.activate(near, window, R::from_f64(thickness), &cloths[cloth].blocks);
+        }
+    }
+
+    /// Finds the pairs of a cloth with every collider, for all points of which something new is foreseen.
     fn find_pairs(
         &mut self,
         frame: &FrameInput,
         cloth: usize,
         schedule: &Schedule<R>,
-        span: [f64; 2],
+        now: f64,
         tally: &mut Tally,
     ) {
-        self.foresee_points(frame, cloth, schedule, span);
-        let Self { cloths, colliders, state, collider_states, pairs, cover, .. } = self;
-        for list in
-            pairs.iter_mut().filter(|list| list.cloth == cloth && frame.colliders[list.collider].collide)
-        {
+        let Self { cloths, colliders, state, collider_states, pairs, far, spans, strayed, .. } = self;
+        let span = spans[cloth];
+        for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let collider = list.collider;
-            let view = StepParts { frame, cloth, collider, h: schedule.h, time: [span[0]; 2], span };
-            collider_states[collider].fit(&colliders[collider].skin, span);
-            let step = view.of(state, &collider_states[collider]);
-            list.find(&cloths[cloth], (&colliders[collider], &collider_states[collider]), cover, &step);
+            if !frame.colliders[collider].collide {
+                list.clear();
+                continue;
+            }
+            list.span = span;
+            collider_states[collider].fit(&colliders[collider], span);
+            let state_of = &collider_states[collider];
+            let view = StepParts { frame, cloth, collider, h: schedule.h, time: [now; 2], span };
+            let step = &view.of(state, state_of);
+            let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
+            let unproven = &tally.unproven;
+            Search { cloth, collider, state: state_of, cover: far, strayed, unproven, step }.run(list);
             *tally.pairs.get_mut() += list.len() as u64;
         }
         *tally.broad_phases.get_mut() += 1;
+        let points = cloths[cloth].points();
+        strayed[points.start as usize..points.end as usize].fill(false);
     }
 
-    /// Writes the cover of a cloth's points.
-    fn foresee_points(&mut self, frame: &FrameInput, cloth: usize, schedule: &Schedule<R>, span: [f64; 2]) {
-        let Self { cloths, state, cover, team, .. } = self;
-        let left = (span[1] - span[0]) * frame.duration;
-        let margin =
-            frame.gravity.norm() * left * left + STRAY * frame.cloths[cloth].thickness.max(LEAST_THICKNESS);
-        let (margin, h) = (R::from_f64(margin), R::from_f64(schedule.h));
-        let steps_left = R::from_f64(left / schedule.h - 1.0);
-        let columns = Shared::new(cover);
+    /// Writes what is foreseen for a cloth's points in a window, and for those that are new, or that may
+    /// stray in it from what was foreseen for the rest of the substep, that too. Whether there were any.
+    fn foresee_points(
+        &mut self,
+        frame: &FrameInput,
+        cloth: usize,
+        schedule: &Schedule<R>,
+        [window, rest]: [[f64; 2]; 2],
+    ) -> bool {
+        let Self { cloths, state, near, far, strayed, team, .. } = self;
+        let thickness = frame.cloths[cloth].thickness.max(LEAST_THICKNESS);
+        let most = R::from_f64(cloths[cloth].edge_length);
+        let reach = |time: [f64; 2], stray: f64| {
+            let left = (time[1] - time[0]) * frame.duration;
+            let margin = frame.gravity.norm() * left * left / 2.0 + stray * thickness;
+            (R::from_f64(left / schedule.h - 1.0), [R::from_f64(margin), most])
+        };
+        let (soon, late) = (reach(window, STRAY_NEAR), reach(rest, STRAY_FAR));
+        let h = R::from_f64(schedule.h);
+        let (near, far, strayed) = (Shared::new(near), Shared::new(far), Shared::new(strayed));
+        let any = AtomicBool::new(false);
         let blocks = &cloths[cloth].blocks;
         team.phase(blocks.len(), |block| {
-            // SAFETY: blocks do not overlap.
-            #[allow(unsafe_code)]
-            let run: &mut [Cover<R>] = unsafe { columns.run(blocks.range(block)) };
-            for (cover, row) in run.iter_mut().zip(blocks.range(block)) {
+            for row in blocks.range(block) {
                 let (p, v) = (state.predicted[row as usize].0, state.velocity[row as usize].0);
                 let start = std::array::from_fn(|axis| p[axis] - v[axis] * h);
-                *cover = foresee(start, state.displacement[row as usize].xyz(), steps_left, margin);
+                let now = state.displacement[row as usize].xyz();
+                let cover = foresee(start, now, soon.0, soon.1);
+                // SAFETY: blocks do not overlap.
+                #[allow(unsafe_code)]
+                unsafe {
+                    near.set(row, cover);
+                    if strayed.get(row) || !is_within(&cover, &far.get(row)) {
+                        far.set(row, foresee(start, now, late.0, late.1));
+                        strayed.set(row, true);
+                        any.store(true, Ordering::Relaxed);
+                    }
+                }
             }
         });
+        any.into_inner()
     }
 
     /// Whether a point of the cloth is not where it was foreseen to be.
     fn has_strayed(&self, cloth: usize) -> bool {
+        let foreseen =
+            |row: u32| is_foreseen(&self.near[row as usize], self.state.displacement[row as usize].xyz());
         let strayed = AtomicBool::new(false);
         let blocks = &self.cloths[cloth].blocks;
         self.team.phase(blocks.len(), |block| {
-            let mut rows = blocks.range(block).map(|row| row as usize);
-            if !rows.all(|row| is_foreseen(&self.cover[row], self.state.displacement[row].xyz())) {
+            if !blocks.range(block).all(foreseen) {
                 strayed.store(true, Ordering::Relaxed);
             }
         });
@@ -111,7 +191,8 @@ impl<R: Real> Solver<R> {
 
     /// Pairs no longer hold; the next pass finds them anew.
     pub(crate) fn forget_pairs(&mut self) {
-        self.pairs.iter_mut().for_each(|list| list.span = [0.0, 0.0]);
+        self.spans.fill([0.0, 0.0]);
+        self.windows.fill([0.0, 0.0]);
     }
 
     fn lift_from_ground(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
@@ -153,7 +234,7 @@ impl StepParts<'_> {
     pub(crate) fn of<'s, R: Real>(
         &self,
         state: &'s mut crate::state::State<R>,
-        collider: &'s crate::collision::pairs::ColliderState,
+        collider: &'s ColliderState,
     ) -> Step<'s, R> {
         let (cloth, theirs) = (&self.frame.cloths[self.cloth], &self.frame.colliders[self.collider]);
         Step {
@@ -165,7 +246,7 @@ impl StepParts<'_> {
             time: self.time,
             span: self.span,
             h: R::from_f64(self.h),
-            thickness: R::from_f64((cloth.thickness + theirs.thickness).max(LEAST_THICKNESS)),
+            thickness: R::from_f64(thickness(self.frame, self.cloth, self.collider)),
             friction: R::from_f64(cloth.friction + theirs.friction),
         }
     }

@@ -1,5 +1,7 @@
 //! What a frame is reported to have done.
 
+use std::sync::atomic::Ordering::Relaxed;
+
 use crate::collide::StepParts;
 use crate::collision::resolve::Tally;
 use crate::frame::FrameInput;
@@ -21,11 +23,12 @@ impl<R: Real> Solver<R> {
             max_strain,
             strain_99,
             min_gap: self.smallest_gap(frame, schedule),
-            contacts: tally.contacts.load(std::sync::atomic::Ordering::Relaxed),
-            pairs: tally.pairs.load(std::sync::atomic::Ordering::Relaxed),
-            broad_phases: tally.broad_phases.load(std::sync::atomic::Ordering::Relaxed) as u32,
-            caught: tally.caught.load(std::sync::atomic::Ordering::Relaxed),
-            crossed: tally.crossed.load(std::sync::atomic::Ordering::Relaxed),
+            contacts: tally.contacts.load(Relaxed),
+            pairs: tally.pairs.load(Relaxed),
+            broad_phases: tally.broad_phases.load(Relaxed) as u32,
+            caught: tally.caught.load(Relaxed),
+            crossed: tally.crossed.load(Relaxed),
+            unproven: tally.unproven.load(Relaxed),
             kinetic_energy,
             finite,
         }

@@ -22,6 +22,9 @@ pub struct StepReport {
     /// Points that ended a substep on the far side of a collider after all. Always 0 unless the
     /// start was already tangled.
     pub crossed: u64,
+    /// Small neighbourhoods of cloth that motion or stretch had spread so wide that only their points were
+    /// kept out of colliders, not their edges and faces; over all runs of the broad phase.
+    pub unproven: u64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -39,6 +42,7 @@ impl Default for StepReport {
             broad_phases: 0,
             caught: 0,
             crossed: 0,
+            unproven: 0,
             kinetic_energy: 0.0,
             finite: true,
         }

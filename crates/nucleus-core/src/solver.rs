@@ -3,7 +3,9 @@
 use nalgebra::Vector3;
 
 use crate::builder::ModelBuilder;
-use crate::collision::pairs::{ColliderState, Cover, PairList};
+use crate::collision::collider::ColliderState;
+use crate::collision::foresee::Cover;
+use crate::collision::pairs::PairList;
 use crate::ids::{ClothId, ColliderId};
 use crate::model::{ClothModel, ColliderModel};
 use crate::observe::StateView;
@@ -19,8 +21,15 @@ pub struct Solver<R: Real = f32> {
     pub(crate) collider_states: Vec<ColliderState>,
     /// Pairs that can touch, per cloth and collider.
     pub(crate) pairs: Vec<PairList<R>>,
-    /// What is foreseen for each point; empty where the scene has no collider.
-    pub(crate) cover: Vec<Cover<R>>,
+    /// The span that the pairs of each cloth hold for, and the window that the active ones do, as shares of
+    /// the frame.
+    pub(crate) spans: Vec<[f64; 2]>,
+    pub(crate) windows: Vec<[f64; 2]>,
+    /// What is foreseen for each point in the window and in the span; empty where the scene has no collider.
+    pub(crate) near: Vec<Cover<R>>,
+    pub(crate) far: Vec<Cover<R>>,
+    /// Points for which something new is foreseen, so that their pairs are to be found again.
+    pub(crate) strayed: Vec<bool>,
     /// Heights of anchors above the ground plane; empty where the scene uses none.
     pub(crate) heights: Vec<R>,
     pub(crate) team: Team,
@@ -40,9 +49,14 @@ impl<R: Real> Solver<R> {
         let state = State::new(&cloths, &models);
         drop(cloths);
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
+        let covered = if collides { state.anchor.len() } else { 0 };
         let both = |cloth| (0..colliders.len()).map(move |collider| PairList::new(cloth, collider));
         Self {
-            cover: vec![[Row4::ZERO; 2]; if collides { state.anchor.len() } else { 0 }],
+            spans: vec![[0.0; 2]; models.len()],
+            windows: vec![[0.0; 2]; models.len()],
+            near: vec![[Row4::ZERO; 2]; covered],
+            far: vec![[Row4::ZERO; 2]; covered],
+            strayed: vec![false; covered],
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
             cloths: models,
@@ -84,9 +98,9 @@ impl<R: Real> StateView for Solver<R> {
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let state = &self.collider_states[collider.index()];
-        let at = |(start, end): (&Vector3<f64>, &Vector3<f64>)| start + (end - start) * state.now;
         out.clear();
-        let scaled = state.start.iter().zip(&state.end).map(at).map(|p| p * units_per_metre);
+        let scaled =
+            (0..state.start.len() as u32).map(|point| state.point(point, state.now) * units_per_metre);
         out.extend(scaled.map(|p| [p.x as f32, p.y as f32, p.z as f32]));
     }
 

@@ -8,6 +8,7 @@
 
 use nalgebra::Vector3;
 
+use super::foresee::{Cover, spread};
 use super::friction::{Push, rub};
 use super::narrow::{closest_on_segments, closest_on_triangle};
 use crate::columns::Shared;
@@ -18,6 +19,9 @@ type Point = Vector3<f64>;
 /// Parts in a million of the thickness that count as touching: without it a contact at rest would push
 /// for ever at its last bit.
 const TOUCH: f64 = 1e-6;
+/// Least mobility of an element, in that of its most mobile point: no point moves farther than 1 / this times
+/// the depth of a contact.
+const LEAST_ARM: f64 = 0.25;
 /// A contact's plane is good for motion along it up to this share of the thickness (its error is then
 /// below 1/128 of the thickness, and none on flat faces).
 const PLANE_REACH: f64 = 1.0 / 8.0;
@@ -30,6 +34,8 @@ pub struct Pair<R, const N: usize, const M: usize> {
     pub points: [u32; N],
     /// The collider's points.
     pub collider_points: [u32; M],
+    /// The group of the cloth's skin that the pair was found for.
+    pub group: u32,
     normal: [R; 3],
     /// n·q less n·anchor for each cloth point, at the start and at the end of the span the pair was found for.
     plane: [[R; N]; 2],
@@ -80,15 +86,27 @@ pub struct Step<'a, R> {
 
 impl<R: Real> Step<'_, R> {
     /// The cloth's points at the start and at the end of the step.
+    #[inline]
     fn cloth<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
-        let at = |point: u32, row: [R; 3]| {
-            let [x, y, z] = row.map(R::to_f64);
-            Point::from(self.anchors[point as usize]) + Point::new(x, y, z)
-        };
-        [
-            points.map(|point| at(point, self.start(point))),
-            points.map(|point| at(point, self.moved(point).xyz())),
-        ]
+        let end = std::array::from_fn(|k| self.place(points[k], self.moved(points[k]).xyz()));
+        [self.cloth_at_start(points), end]
+    }
+
+    #[inline]
+    fn cloth_at_start<const N: usize>(&self, points: [u32; N]) -> [Point; N] {
+        std::array::from_fn(|k| self.place(points[k], self.start(points[k])))
+    }
+
+    #[inline(always)]
+    fn place(&self, point: u32, [x, y, z]: [R; 3]) -> Point {
+        Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
+    }
+
+    /// How far a point of the collider goes in the span.
+    #[inline]
+    fn way(&self, point: u32) -> f64 {
+        let [start, end] = self.collider.map(|points| points[point as usize]);
+        (end - start).norm() * (self.span[1] - self.span[0])
     }
 
     #[allow(unsafe_code)]
@@ -108,12 +126,14 @@ impl<R: Real> Step<'_, R> {
     }
 
     /// The collider's points at the start and at the end of the step.
+    #[inline]
     fn surface<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
-        self.time.map(|t| points.map(|point| self.surface_point(point, t)))
+        std::array::from_fn(|end| std::array::from_fn(|k| self.surface_point(points[k], self.time[end])))
     }
 
     /// A point of the collider at a time of the frame.
-    pub fn surface_point(&self, point: u32, time: f64) -> Point {
+    #[inline]
+    fn surface_point(&self, point: u32, time: f64) -> Point {
         let [start, end] = self.collider.map(|points| points[point as usize]);
         start + (end - start) * time
     }
@@ -126,41 +146,65 @@ impl<R: Real> Step<'_, R> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
-    /// A pair whose plane stands across the shortest line between the two where they are at the start of the step.
-    pub fn new(points: [u32; N], collider_points: [u32; M], step: &Step<'_, R>) -> Self {
+    /// A pair whose plane stands across the shortest line between the two where they are at the start of the
+    /// step; nothing if they cannot touch within the span, by what is foreseen for the cloth's points.
+    #[inline]
+    pub fn find(
+        points: [u32; N],
+        collider_points: [u32; M],
+        group: u32,
+        step: &Step<'_, R>,
+        cover: &[Cover<R>],
+    ) -> Option<Self> {
+        let (x, q) = (step.cloth_at_start(points), step.surface(collider_points)[0]);
+        let (b, c) = closest(x, q);
+        let line = weigh(x, b) - weigh(q, c);
+        // Neither side can come nearer than its longest way allows.
+        let ours =
+            points.map(|point| spread(&cover[point as usize]).to_f64()).into_iter().fold(0.0, f64::max);
+        let theirs = collider_points.map(|q| step.way(q)).into_iter().fold(0.0, f64::max);
+        if line.norm() > step.thickness.to_f64() + ours + theirs {
+            return None;
+        }
+        let touching = || across(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
+        let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
         let zero = [R::ZERO; 3];
         let mut pair = Self {
             points,
             collider_points,
+            group,
             normal: zero,
             plane: [[R::ZERO; N]; 2],
             weights: [R::ZERO; N],
             surface_motion: zero,
             found_at: zero,
         };
-        let (x, q) = (step.cloth(points)[0], step.surface(collider_points)[0]);
-        let (b, c) = closest(x, q);
-        let line = weigh(x, b) - weigh(q, c);
-        let touching = || across(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
-        let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
         pair.turn_to(normal, (b, c), step);
-        pair
+        let gap = pair.least_gap([R::ZERO, R::ONE], |point| cover[point as usize]);
+        (gap < step.thickness).then_some(pair)
     }
 
-    /// The smallest gap of the pair's plane over a box of possible displacements per cloth point, over the
-    /// whole span: where it is above the thickness the pair cannot touch.
-    pub fn least_gap(&self, boxes: impl Fn(u32) -> [Row4<R>; 2]) -> R {
-        let mut least = R::from_f64(f64::INFINITY.min(1e30));
+    /// The smallest gap of the pair's plane over a box of possible displacements per cloth point, over a
+    /// window given as shares of the span: where it is above the thickness the pair cannot touch.
+    #[inline(always)]
+    pub fn least_gap(&self, window: [R; 2], boxes: impl Fn(u32) -> [Row4<R>; 2]) -> R {
+        let mut least = R::from_f64(f64::from(f32::MAX));
         for k in 0..N {
             let [low, high] = boxes(self.points[k]);
             let corner = |axis: usize| if self.normal[axis] > R::ZERO { low.0[axis] } else { high.0[axis] };
             let reach = dot(self.normal, [corner(0), corner(1), corner(2)]);
-            for plane in self.plane {
-                let gap = reach - plane[k];
+            for share in window {
+                let gap = reach - self.plane_at(k, share);
                 least = if gap < least { gap } else { least };
             }
         }
         least
+    }
+
+    /// The plane's offset for a point, at a share of the span.
+    #[inline(always)]
+    fn plane_at(&self, k: usize, share: R) -> R {
+        self.plane[0][k] + (self.plane[1][k] - self.plane[0][k]) * share
     }
 
     /// The distance between the two elements at the end of the step, in metres.
@@ -197,8 +241,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let mut at_contact = R::ZERO;
         let mut least = R::ZERO;
         for k in 0..N {
-            let plane = self.plane[0][k] + (self.plane[1][k] - self.plane[0][k]) * share;
-            let gap = dot(self.normal, displacement[k]) - plane;
+            let gap = dot(self.normal, displacement[k]) - self.plane_at(k, share);
             at_contact += self.weights[k] * gap;
             least = if k == 0 || gap < least { gap } else { least };
         }
@@ -241,7 +284,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             };
             if gap < 0.0 {
                 self.turn_to(normal, at_start, step);
-                self.push(step, R::from_f64(thickness - gap), R::ZERO);
+                self.carry(step, R::from_f64(thickness - gap));
                 return Outcome::Caught;
             }
             proof = Some(normal);
@@ -282,6 +325,10 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     fn push(&self, step: &Step<'_, R>, depth: R, before: R) {
         let rows = self.points.map(|point| step.moved(point));
         let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
+        // Beside a pinned point the arm is short, and what is free would be flung.
+        let least = rows.iter().fold(R::ZERO, |most, row| if row.0[3] > most { row.0[3] } else { most });
+        let least = least * R::from_f64(LEAST_ARM);
+        let mobility = if mobility < least { least } else { mobility };
         if mobility <= R::ZERO {
             return;
         }
@@ -295,6 +342,34 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
                 row.0[axis] += mobile * (along[axis] + rub[axis]);
             }
             self.write(step, self.points[k], row, self.normal.map(|n| n * push.led * mobile));
+        }
+    }
+
+    /// Moves all of the cloth's element along the plane's normal: no point of it is behind the plane then.
+    fn carry(&self, step: &Step<'_, R>, depth: R) {
+        for point in self.points {
+            let mut row = step.moved(point);
+            if row.0[3] > R::ZERO {
+                for axis in 0..3 {
+                    row.0[axis] += self.normal[axis] * depth;
+                }
+                self.write(step, point, row, [R::ZERO; 3]);
+            }
+        }
+    }
+
+    /// Takes the cloth's element along with the surface, as it was at the start of the step.
+    pub fn ride(&self, step: &Step<'_, R>) {
+        let passed = R::from_f64(step.time[1] - step.time[0]);
+        for point in self.points {
+            let mut row = step.moved(point);
+            if row.0[3] > R::ZERO {
+                let start = step.start(point);
+                for axis in 0..3 {
+                    row.0[axis] = start[axis] + self.surface_motion[axis] * passed;
+                }
+                self.write(step, point, row, [R::ZERO; 3]);
+            }
         }
     }
 

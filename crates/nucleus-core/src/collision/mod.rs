@@ -2,20 +2,24 @@
 //!
 //! | Stage | Read |
 //! |---|---|
-//! | boxes over a collider through a span of time | [`tree`] |
+//! | where each point is foreseen to be | [`foresee`] |
+//! | a collider's motion, and boxes over it through a span of time | [`collider`], [`tree`] |
 //! | elements of one object, in groups | [`skin`] |
-//! | broad phase: which elements can touch in this span | [`pairs`] |
+//! | broad phase: which elements can touch in this span | [`search`], [`pairs`] |
 //! | narrow phase: how close two elements are | [`narrow`] |
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
 //! | the ground plane | [`plane`] |
 //! | one collision pass | [`resolve`] |
 
+pub mod collider;
 pub mod contact;
+pub mod foresee;
 pub mod friction;
 pub mod narrow;
 pub mod pairs;
 pub mod plane;
 pub mod resolve;
+pub mod search;
 pub mod skin;
 pub mod tree;

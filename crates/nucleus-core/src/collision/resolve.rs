@@ -20,6 +20,8 @@ pub struct Tally {
     pub caught: AtomicU64,
     /// Pairs for which no plane held.
     pub crossed: AtomicU64,
+    /// Groups that were too far spread for edges and faces to be proven.
+    pub unproven: AtomicU64,
     /// Pairs found by the broad phase.
     pub pairs: AtomicU64,
     /// Runs of the broad phase.
@@ -38,32 +40,49 @@ impl Tally {
     }
 }
 
-/// Keeps every pair of the list apart once.
+/// Keeps every active pair of the list apart once.
 pub fn resolve<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team, tally: &Tally) {
-    for pair in &mut list.edge_edge {
-        tally.count(pair.resolve(step));
+    let PairList { point_face, edge_edge, face_point, active, .. } = list;
+    for &pair in &active.edge_edge {
+        tally.count(edge_edge[pair as usize].resolve(step));
     }
-    for pair in &mut list.face_point {
-        tally.count(pair.resolve(step));
+    for &pair in &active.face_point {
+        tally.count(face_point[pair as usize].resolve(step));
     }
-    let runs = &list.runs;
-    let pairs = Shared::new(&mut list.point_face);
-    team.phase(runs.len(), |block| {
-        // SAFETY: the runs of two blocks do not overlap, and neither do their points.
+    let pairs = Shared::new(point_face);
+    team.phase(active.runs.len(), |block| {
+        let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];
+        // SAFETY: the runs of two blocks share no pair, and no point.
         #[allow(unsafe_code)]
-        let run = unsafe { pairs.run(runs[block].clone()) };
-        run.chunk_by_mut(|a, b| a.points == b.points).for_each(|pairs| settle_point(pairs, step, tally));
+        let point = |pair: u32| unsafe { pairs.get(pair).points };
+        for of_point in run.chunk_by(|&a, &b| point(a) == point(b)) {
+            settle_point(pairs, of_point, step, tally);
+        }
     });
 }
 
-/// Goes through the pairs of one point until none pushes it any more.
-fn settle_point<R: Real>(pairs: &mut [Pair<R, 1, 3>], step: &Step<'_, R>, tally: &Tally) {
-    for _ in 0..ROUNDS {
-        let mut pushed = 0;
-        for pair in pairs.iter_mut() {
-            pushed += usize::from(tally.count(pair.resolve(step)));
+/// Goes through the pairs of one point until none pushes it any more. A point that is still being caught then
+/// rides along with the face that caught it: what moves with a rigid surface passes no part of it.
+fn settle_point<R: Real>(
+    pairs: Shared<'_, Pair<R, 1, 3>>,
+    of_point: &[u32],
+    step: &Step<'_, R>,
+    tally: &Tally,
+) {
+    for round in 1..=ROUNDS {
+        let (mut pushed, mut caught) = (0, false);
+        for &index in of_point {
+            // SAFETY: the pairs of a point belong to the task of its block.
+            #[allow(unsafe_code)]
+            let [pair] = (unsafe { pairs.run(index..index + 1) }) else { continue };
+            let outcome = pair.resolve(step);
+            pushed += usize::from(tally.count(outcome));
+            caught |= outcome == Outcome::Caught;
+            if round == ROUNDS && outcome == Outcome::Caught {
+                return pair.ride(step);
+            }
         }
-        if pushed == 0 || pairs.len() == 1 {
+        if pushed == 0 || (of_point.len() == 1 && !caught) {
             return;
         }
     }

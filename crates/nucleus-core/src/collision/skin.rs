@@ -3,7 +3,6 @@
 //! Each point and each edge is owned by one triangle, so that walking over pairs of triangles meets every
 //! pair of lower elements once: whenever two elements are near, so are the triangles that own them.
 
-use super::tree::Aabb;
 use crate::model::triangle_edges;
 use std::ops::Range;
 
@@ -93,9 +92,4 @@ impl Skin {
             triangles,
         }
     }
-}
-
-/// The box round the boxes of some points.
-pub fn bound(points: &[u32], boxes: impl Fn(u32) -> Aabb) -> Aabb {
-    points.iter().fold(Aabb::EMPTY, |all, &point| all.union(boxes(point)))
 }

@@ -41,6 +41,8 @@ pub struct ClothModel<R> {
     pub skin: Skin,
     /// `pointMass`, as a number: air forces are divided by it.
     pub weight: f64,
+    /// Mean length of an edge at rest in metres; nought without edges.
+    pub edge_length: f64,
     /// Whether velocities are ever damped.
     pub damps: bool,
 }
@@ -61,6 +63,7 @@ impl<R: Real> ClothModel<R> {
             triangles: Vec::new(),
             skin: Skin::default(),
             weight,
+            edge_length: 0.0,
             damps: cloth.lists.damp,
         };
         let places = model.order.places().to_vec();
@@ -80,6 +83,7 @@ impl<R: Real> ClothModel<R> {
         if collides {
             let triangles = surface.faces.triangles().map(|t| t.map(place)).collect();
             model.skin = Skin::new(triangles, model.points());
+            model.edge_length = mean_length(surface);
         }
         model
     }
@@ -145,6 +149,11 @@ fn hinge_rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<Hin
         points
     });
     rows
+}
+
+fn mean_length(surface: &Surface) -> f64 {
+    let links = edge_links(surface);
+    links.iter().map(|link| link.rest_length).sum::<f64>() / links.len().max(1) as f64
 }
 
 /// Each block's triangles: all that touch one of its points, so that a block's normals need no other's work.

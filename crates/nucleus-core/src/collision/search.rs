@@ -1,0 +1,150 @@
+//! Broad phase: finds the pairs of elements that can touch within a span of time.
+//!
+//! It runs once per substep, on where each point is and where it is heading, with a margin. All passes of the
+//! substep use its list. Should a point leave what was foreseen for it, its neighbourhood is searched again.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use nalgebra::Vector3;
+
+use super::collider::{Boxes, ColliderState};
+use super::contact::{Pair, Step};
+use super::foresee::Cover;
+use super::pairs::PairList;
+use super::skin::Group;
+use super::tree::Aabb;
+use crate::model::{ClothModel, ColliderModel};
+use crate::scalar::{Real, Row4};
+
+/// What is searched: a cloth and a collider, whose boxes are fitted to the span.
+pub struct Search<'a, R> {
+    /// The cloth.
+    pub cloth: &'a ClothModel<R>,
+    /// The collider.
+    pub collider: &'a ColliderModel,
+    /// Its motion.
+    pub state: &'a ColliderState,
+    /// What is foreseen for the cloth's points.
+    pub cover: &'a [Cover<R>],
+    /// Whether that is new, by point.
+    pub strayed: &'a [bool],
+    /// Counts groups that are too wide.
+    pub unproven: &'a AtomicU64,
+    /// Where both are.
+    pub step: &'a Step<'a, R>,
+}
+
+/// A group of the cloth's elements with its boxes.
+struct Near<'a> {
+    index: u32,
+    group: &'a Group,
+    boxes: &'a Boxes,
+    around: &'a Aabb,
+    /// Too wide for its edges and faces to be looked at: it would meet everything.
+    wide: bool,
+}
+
+/// A group of eight triangles is two or three edges wide at rest. One that motion or stretch has made wider
+/// than this many collides with its points alone, and is counted.
+const WIDEST: f32 = 24.0;
+
+impl<R: Real> Search<'_, R> {
+    /// Replaces the pairs of those groups of the cloth for which something new is foreseen.
+    pub fn run(&self, found: &mut PairList<R>) {
+        let is_new = |group: &Group| {
+            let skin = &self.cloth.skin;
+            let corners = skin.triangles[group.triangles.clone()].iter().flatten();
+            corners.chain(&skin.points[group.points.clone()]).any(|&point| self.strayed[point as usize])
+        };
+        let mut again = std::mem::take(&mut found.searched);
+        again.clear();
+        again.extend(self.cloth.skin.groups().map(|group| is_new(&group)));
+        found.point_face.retain(|pair| !again[pair.group as usize]);
+        found.edge_edge.retain(|pair| !again[pair.group as usize]);
+        found.face_point.retain(|pair| !again[pair.group as usize]);
+        let mut boxes = std::mem::take(&mut found.boxes);
+        for (index, group) in self.cloth.skin.groups().enumerate().filter(|&(index, _)| again[index]) {
+            let around = self.bound_group(&group, &mut boxes);
+            let wide = around.size() > WIDEST * self.cloth.edge_length as f32;
+            self.unproven.fetch_add(u64::from(wide), Ordering::Relaxed);
+            let near = Near { index: index as u32, group: &group, boxes: &boxes, around: &around, wide };
+            self.state.tree.query(&around, |triangle| self.meet(&near, triangle, found));
+        }
+        (found.searched, found.boxes) = (again, boxes);
+        let PairList { point_face, by_point, .. } = found;
+        by_point.clear();
+        by_point.extend(0..point_face.len() as u32);
+        by_point.sort_unstable_by_key(|&pair| {
+            let pair = &point_face[pair as usize];
+            (pair.points, pair.collider_points)
+        });
+    }
+
+    /// Writes the boxes of a group's elements, with the thickness; the box round them all.
+    fn bound_group(&self, group: &Group, boxes: &mut Boxes) -> Aabb {
+        let skin = &self.cloth.skin;
+        let thickness = self.step.thickness.to_f64() as f32 * (1.0 + 1e-6);
+        let bound = |points: &[u32]| {
+            points.iter().map(|&point| self.reach(point)).fold(Aabb::EMPTY, Aabb::union).inflate(thickness)
+        };
+        boxes.triangles.clear();
+        boxes
+            .triangles
+            .extend(skin.triangles[group.triangles.clone()].iter().map(|triangle| bound(triangle)));
+        boxes.edges.clear();
+        boxes.edges.extend(skin.edges[group.edges.clone()].iter().map(|edge| bound(edge)));
+        boxes.points.clear();
+        boxes.points.extend(skin.points[group.points.clone()].iter().map(|&point| bound(&[point])));
+        boxes.triangles.iter().chain(&boxes.points).copied().fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// Every pair of an element of the group and an element owned by one triangle of the collider.
+    fn meet(&self, near: &Near<'_>, triangle: u32, found: &mut PairList<R>) {
+        let (skin, theirs, boxes) = (&self.cloth.skin, &self.collider.skin, &self.state.boxes);
+        let Near { index, group, boxes: ours, around, wide } = near;
+        let face = &boxes.triangles[triangle as usize];
+        if !face.meets(around) {
+            return;
+        }
+        let corners = theirs.triangles[triangle as usize];
+        let points = skin.points[group.points.clone()].iter().zip(&ours.points);
+        for (&point, _) in points.filter(|(_, reach)| reach.meets(face)) {
+            self.pair([point], corners, *index, &mut found.point_face);
+        }
+        if *wide {
+            return;
+        }
+        let owned = theirs.owned(triangle as usize);
+        for edge in owned.edges.filter(|&edge| boxes.edges[edge].meets(around)) {
+            let edges = skin.edges[group.edges.clone()].iter().zip(&ours.edges);
+            for (&ends, _) in edges.filter(|(_, reach)| reach.meets(&boxes.edges[edge])) {
+                self.pair(ends, theirs.edges[edge], *index, &mut found.edge_edge);
+            }
+        }
+        for point in owned.points.filter(|&point| boxes.points[point].meets(around)) {
+            let faces = skin.triangles[group.triangles.clone()].iter().zip(&ours.triangles);
+            for (&face, _) in faces.filter(|(_, reach)| reach.meets(&boxes.points[point])) {
+                self.pair(face, [theirs.points[point]], *index, &mut found.face_point);
+            }
+        }
+    }
+
+    /// Keeps a pair if it can touch.
+    fn pair<const N: usize, const M: usize>(
+        &self,
+        ours: [u32; N],
+        theirs: [u32; M],
+        group: u32,
+        found: &mut Vec<Pair<R, N, M>>,
+    ) {
+        found.extend(Pair::find(ours, theirs, group, self.step, self.cover));
+    }
+
+    /// The box round all that is foreseen for a point of the cloth.
+    fn reach(&self, point: u32) -> Aabb {
+        let anchor = Vector3::from(self.step.anchors[point as usize]) - self.state.origin;
+        let corner = |row: Row4<R>| anchor + Vector3::from(row.xyz().map(R::to_f64));
+        let [low, high] = self.cover[point as usize];
+        Aabb::new(corner(low), corner(high))
+    }
+}

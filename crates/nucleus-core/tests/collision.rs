@@ -1,0 +1,220 @@
+//! Contact: nothing passes, everything rests at its thickness.
+
+mod scenes;
+
+use nucleus_core::{
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane, Moment,
+    ResistanceModel, Solver, StateView, StepObserver, Surface,
+};
+use scenes::{INSCRIBED, LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, sphere, still};
+
+const CLOTH: ClothId = ClothId(0);
+
+fn ground(friction: f64) -> Option<GroundPlane> {
+    Some(GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction })
+}
+
+// EVIDENCE: N2.3-2  contact is at the thickness
+#[test]
+fn cloth_rests_on_the_ground_at_its_thickness_without_sinking_or_jitter() {
+    for resistance in [ResistanceModel::Classic, physical(96.0)] {
+        let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
+        sheet.positions.iter_mut().for_each(|p| p.y = 0.3);
+        let mut solver = Solver::<f32>::new(one_cloth(sheet, LINKS), 1);
+        let cloths = vec![ClothFrame { thickness: 0.21803, ..still() }];
+        let input = FrameInput { plane: ground(0.1), cloths, ..frame(3, resistance) };
+        for step in 0..67 {
+            solver.step(&input, &mut ());
+            if step > 12 {
+                let lowest = (0..81).map(|k| solver.point(CLOTH, k).y).fold(f64::INFINITY, f64::min);
+                assert!((lowest - 0.21803).abs() < 1e-5, "{resistance:?}, frame {step}: {lowest}");
+            }
+        }
+    }
+}
+
+// EVIDENCE: N2.3-3  surface against surface is point-face plus edge-edge
+#[test]
+fn cloth_rests_on_a_mesh_at_the_sum_of_the_thicknesses() {
+    for resistance in [ResistanceModel::Classic, physical(96.0)] {
+        let mut sheet = grid(9, 9, Vec3::x() * 0.5, Vec3::z() * 0.5);
+        sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.25, 0.05, -0.25));
+        let mut builder = one_cloth(sheet, LINKS);
+        let mut table = grid(4, 4, Vec3::x() * 2.0, Vec3::z() * 2.0);
+        table.positions.iter_mut().for_each(|p| *p -= Vec3::new(1.0, 0.0, 1.0));
+        builder.collider(Collider { surface: table }).expect("a good mesh");
+        let colliders =
+            vec![ColliderFrame { collide: true, thickness: 0.01, friction: 0.1, ..Default::default() }];
+        let cloths = vec![ClothFrame { thickness: 0.02, ..still() }];
+        let input = FrameInput { cloths, colliders, ..frame(3, resistance) };
+        let mut solver = Solver::<f32>::new(builder, 1);
+        for step in 0..48 {
+            solver.step(&input, &mut ());
+            if step > 12 {
+                let heights = (0..81).map(|k| solver.point(CLOTH, k).y);
+                assert!(
+                    heights.clone().all(|y| (y - 0.03).abs() < 1e-5),
+                    "{:?}",
+                    heights.collect::<Vec<_>>()
+                );
+            }
+        }
+    }
+}
+
+/// Watches a ball of radius 0.15 m that flies along z. No point of the sheet may ever be inside it; and when its
+/// centre has just passed the sheet's plane, what was in its way must be before it, not behind. (Later the
+/// sheet wraps round it, and its rim trails behind with every right.)
+struct Wrong {
+    from: f64,
+    speed: f64,
+    steps: u32,
+    points: usize,
+    wrong: usize,
+    passed_plane: bool,
+}
+
+impl StepObserver for Wrong {
+    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+        self.steps += 1;
+        let time = f64::from(self.steps) / f64::from(moment.substeps) / 24.0;
+        let centre = Vec3::new(0.5, -0.5, self.from + self.speed * time);
+        let passes = centre.z > 0.0 && !std::mem::replace(&mut self.passed_plane, centre.z > 0.0);
+        let columns = (self.points as f64).sqrt() as usize;
+        for k in 0..self.points {
+            let at_rest =
+                Vec3::new((k % columns) as f64, -((k / columns) as f64), 0.0) / (columns - 1) as f64;
+            let away = state.point(CLOTH, k) - centre;
+            let in_its_way = (at_rest - centre).xy().norm() < 0.1;
+            self.wrong +=
+                usize::from(away.norm() < 0.15 * INSCRIBED || (passes && in_its_way && away.z < 0.0));
+        }
+    }
+}
+
+// EVIDENCE: N2.4-8  even one substep sees the motion of the collider's points
+// EVIDENCE: N2.3-4  a collision is the meeting of thickened elements in space and time
+#[test]
+fn a_fast_ball_never_gets_through_a_hanging_sheet() {
+    let settings = [ResistanceModel::Classic, physical(10.0), physical(96.0)];
+    let speed = 10.0;
+    for resistance in settings {
+        for substeps in [1, 3] {
+            let sheet = grid(33, 33, Vec3::x(), -Vec3::y());
+            let held = pins(&sheet, [0, 32]);
+            let mut builder = one_cloth(sheet, LINKS);
+            let from = -0.25;
+            let ball = sphere(0.15, Vec3::new(0.5, -0.5, from));
+            builder.collider(Collider { surface: ball.clone() }).expect("a good mesh");
+            let mut solver = Solver::<f32>::new(builder, 1);
+            let mut watch = Wrong { from, speed, steps: 0, points: 33 * 33, wrong: 0, passed_plane: false };
+            for step in 0..6 {
+                let at = |frame: f64| {
+                    ball.positions.iter().map(|p| p + Vec3::z() * (speed * frame / 24.0)).collect()
+                };
+                let start: Vec<Vec3> = at(f64::from(step));
+                let end = at(f64::from(step + 1));
+                let moving =
+                    ColliderFrame { start, end, collide: true, thickness: 0.002, friction: 0.3, bounce: 0.0 };
+                let cloths = vec![ClothFrame { thickness: 0.003, ..still() }];
+                let input = FrameInput {
+                    colliders: vec![moving],
+                    cloths,
+                    pins: held.clone(),
+                    ..frame(substeps, resistance)
+                };
+                let report = solver.step(&input, &mut watch);
+                assert!(report.finite);
+                assert_eq!(
+                    watch.wrong, 0,
+                    "{speed} m/s, {resistance:?}, {substeps} substeps, frame {step}: {report:?}"
+                );
+            }
+            assert!(watch.passed_plane);
+        }
+    }
+}
+
+// EVIDENCE: N2.2-4  the last pass of a step is collision: nothing is left inside
+// EVIDENCE: N2.2-5  stretch near collisions goes away with more evaluations
+#[test]
+fn a_sheet_draped_on_a_sphere_is_almost_unstretched_and_not_inside() {
+    let (builder, input) = drape(41, 384.0);
+    let mut solver = Solver::<f32>::new(builder, 2);
+    let mut last = None;
+    for _ in 0..60 {
+        last = Some(solver.step(&input, &mut ()));
+    }
+    let report = last.expect("sixty frames");
+    assert!(report.strain_99 < 0.01, "{report:?}");
+    assert!(report.crossed == 0 && report.caught == 0, "{report:?}");
+    assert!((0..1681).all(|k| solver.point(CLOTH, k).norm() > 0.31 * INSCRIBED), "a point is inside");
+    println!("draped at 384 evaluations: {report:?}");
+}
+
+// EVIDENCE: N1.3-3  more substeps cure stretch near collisions
+#[test]
+fn more_evaluations_leave_less_stretch_on_a_sphere() {
+    let strain = [24.0, 96.0].map(|evaluations| {
+        let (builder, input) = drape(33, evaluations);
+        let mut solver = Solver::<f32>::new(builder, 1);
+        (0..48).map(|_| solver.step(&input, &mut ()).strain_99).last().expect("frames")
+    });
+    assert!(strain[1] < 0.6 * strain[0], "{strain:?}");
+}
+
+#[test]
+fn friction_holds_on_a_slope_up_to_its_angle_and_not_beyond() {
+    // mu = 0.5 holds up to atan 0.5 = 26.57 degrees.
+    let slid = |degrees: f64| {
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        let mut patch: Surface = grid(5, 5, Vec3::x() * 0.2, Vec3::z() * 0.2);
+        patch.positions.iter_mut().for_each(|p| p.y = 0.0101);
+        let mut builder = one_cloth(patch, LINKS);
+        let mut slope = grid(2, 2, Vec3::x() * 40.0, Vec3::z() * 4.0);
+        slope.positions.iter_mut().for_each(|p| *p -= Vec3::new(20.0, 0.0, 2.0));
+        builder.collider(Collider { surface: slope }).expect("a good mesh");
+        // Gravity is tilted instead of the slope.
+        let gravity = Vec3::new(9.81 * sin, -9.81 * cos, 0.0);
+        let colliders = vec![ColliderFrame { collide: true, friction: 0.25, ..Default::default() }];
+        let cloths = vec![ClothFrame { thickness: 0.01, friction: 0.25, ..still() }];
+        let input = FrameInput { gravity, colliders, cloths, ..frame(3, physical(96.0)) };
+        let mut solver = Solver::<f32>::new(builder, 1);
+        (0..24).for_each(|_| {
+            solver.step(&input, &mut ());
+        });
+        solver.point(CLOTH, 12).x - 0.1
+    };
+    assert!(slid(26.3).abs() < 1e-3, "held: {}", slid(26.3));
+    let steep = f64::to_radians(35.0);
+    let exact = 9.81 / 2.0 * (steep.sin() - 0.5 * steep.cos());
+    assert!((slid(35.0) / exact - 1.0).abs() < 0.02, "slid {} for {exact}", slid(35.0));
+}
+
+#[test]
+fn cloth_that_starts_too_close_is_led_out_without_a_jump() {
+    let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
+    sheet.positions.iter_mut().for_each(|p| p.y = 0.002);
+    let mut solver = Solver::<f32>::new(one_cloth(sheet, LINKS), 1);
+    let cloths = vec![ClothFrame { thickness: 0.05, ..still() }];
+    let input = FrameInput { plane: ground(0.1), cloths, ..frame(3, physical(96.0)) };
+    let highest = (0..24).map(|_| {
+        solver.step(&input, &mut ());
+        solver.point(CLOTH, 40).y
+    });
+    assert!(highest.fold(0.0, f64::max) < 0.0501);
+    assert!((solver.point(CLOTH, 40).y - 0.05).abs() < 1e-5);
+}
+
+#[test]
+fn a_cloth_that_does_not_collide_has_no_collision_pass() {
+    let (builder, mut input) = drape(9, 24.0);
+    input.cloths[0].collide = false;
+    let mut solver = Solver::<f32>::new(builder, 1);
+    assert!(solver.passes(&input).iter().all(|pass| pass.name != "collide"));
+    assert_eq!(solver.step(&input, &mut ()).broad_phases, 0);
+    let lists = ClothLists { bend: false, ..LINKS };
+    let bare = Solver::<f32>::new(one_cloth(grid(5, 5, Vec3::x(), Vec3::z()), lists), 1);
+    let names: Vec<_> = bare.passes(&frame(3, physical(24.0))).iter().map(|pass| pass.name).collect();
+    assert_eq!(names, ["predict", "stretch"]);
+}
