@@ -1,0 +1,82 @@
+//! What is recorded is what was solved, on any number of threads.
+
+use nucleus_cache::Detail;
+use nucleus_core::{ClothId, ColliderId};
+use nucleus_graph::compile::Program;
+use nucleus_tests::gallery::program_of;
+use nucleus_tests::record;
+
+/// A sheet on four substeps that falls on a ball that rises; 2 601 points, so that threads share them.
+fn drape() -> Program {
+    program_of(
+        r#""nucleus1": nucleus(spaceScale: 0.01, subSteps: 4, windSpeed: 2, usePlane: true),
+           "sheet": polyPlane(width: 100, height: 100, subdivisions: (50, 50), translate: (0, 32, 0)),
+           "cloth": nCloth(inputMesh: "sheet", pointMass: 0.2, bendResistance: 0.5, thickness: 0.5),
+           "sphere": polySphere(radius: 20, translateY: keys([(1, 10), (12, 20)])),
+           "ball": nRigid(inputMesh: "sphere")"#,
+    )
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes_every_time() {
+    let program = drape();
+    let [first, second] = [1, 2].map(|_| record(&program, 12, 1, Detail::Frames).cache);
+    assert!(first == second);
+}
+
+#[test]
+fn one_thread_and_two_and_three_give_the_same_bytes() {
+    let program = drape();
+    let recordings = [1, 2, 3].map(|threads| record(&program, 12, threads, Detail::Frames));
+    let contacts: u64 = recordings[0].reports.iter().map(|report| report.contacts).sum();
+    assert!(contacts > 0, "nothing has touched, so little has been shown");
+    assert!(recordings.iter().all(|recording| recording.cache == recordings[0].cache));
+}
+
+#[test]
+fn the_positions_in_the_cache_are_those_of_the_solver() {
+    let recording = record(&drape(), 12, 1, Detail::Frames);
+    let (state, units) = (recording.simulation.state(), recording.simulation.units_per_metre());
+    let (mut cloth, mut ball) = (Vec::new(), Vec::new());
+    state.positions(ClothId(0), units, &mut cloth);
+    state.collider_positions(ColliderId(0), units, &mut ball);
+    let mut cache = recording.play();
+    let last = cache.moments().len() - 1;
+    assert_eq!(last, 12);
+    let names: Vec<String> = cache.objects().iter().map(|object| object.name.clone()).collect();
+    for (name, expected) in [("cloth", cloth), ("ball", ball)] {
+        let object = names.iter().position(|found| found == name).expect(name);
+        assert_eq!(cache.positions(object, last).expect("it was recorded"), expected, "{name}");
+    }
+}
+
+#[test]
+fn recording_substeps_gives_every_substep() {
+    let recording = record(&drape(), 3, 1, Detail::Substeps);
+    let cache = recording.play();
+    let moments: Vec<_> = cache.moments().iter().map(|moment| (moment.frame, moment.substep)).collect();
+    let expected = (2..=4).flat_map(|frame| (1..=4).map(move |substep| (frame, substep)));
+    assert_eq!(moments, [(1, 0)].into_iter().chain(expected).collect::<Vec<_>>());
+}
+
+// EVIDENCE: N2.4-6, N2.4-7  what turns by 90 degrees in a frame takes the chord of that turn, not the arc
+#[test]
+fn inside_a_frame_a_collider_moves_along_straight_lines() {
+    let program = program_of(
+        r#""nucleus1": nucleus(subSteps: 2),
+           "cube": polyCube(rotateY: keys([(1, 0), (2, 90)])), "wall": nRigid(inputMesh: "cube"),
+           "sheet": polyPlane(translate: (0, 9, 0)), "cloth": nCloth(inputMesh: "sheet")"#,
+    );
+    let recording = record(&program, 1, 1, Detail::Substeps);
+    let mut cache = recording.play();
+    let wall = cache.objects().iter().position(|object| object.name == "wall").expect("it is there");
+    let [start, middle, end] =
+        [0, 1, 2].map(|moment| cache.positions(wall, moment).expect("it was recorded"));
+    for ((a, b), m) in start.iter().zip(&end).zip(&middle) {
+        for axis in 0..3 {
+            assert!((f64::from(a[axis]) / 2.0 + f64::from(b[axis]) / 2.0 - f64::from(m[axis])).abs() < 1e-6);
+        }
+    }
+    let radius = |point: &[f32; 3]| point[0].hypot(point[2]);
+    assert!(radius(&middle[0]) < 0.75 * radius(&start[0]), "the arc would keep its distance from the axis");
+}
