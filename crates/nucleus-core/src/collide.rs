@@ -11,8 +11,8 @@ use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, resolve};
 use crate::collision::search::Search;
 use crate::columns::Shared;
-use crate::frame::FrameInput;
-use crate::scalar::Real;
+use crate::frame::{ColliderFrame, FrameInput};
+use crate::scalar::{Real, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
 
@@ -21,6 +21,8 @@ const LEAST_THICKNESS: f64 = 1e-5;
 /// Shares of the thickness by which a point may stray from what is foreseen, in a window and in a substep.
 const STRAY_NEAR: f64 = 0.05;
 const STRAY_FAR: f64 = 0.5;
+/// Edge lengths that anything may go while one list of pairs holds.
+const FARTHEST: f64 = 2.0;
 /// Time steps for which active pairs are picked.
 const WINDOW: f64 = 8.0;
 
@@ -78,17 +80,15 @@ impl<R: Real> Solver<R> {
         times: Times,
         tally: &mut Tally,
     ) {
-        let Times { step, end_of_substep } = times;
-        if step[1] <= self.windows[cloth][1] && !self.has_strayed(cloth) {
+        let Times { step, .. } = times;
+        if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth) {
             return;
         }
-        let window = [step[0], end_of_substep.min(step[0] + (step[1] - step[0]) * WINDOW)];
-        if step[1] > self.spans[cloth][1] {
-            self.spans[cloth] = [step[0], end_of_substep];
-            let points = self.cloths[cloth].points();
-            self.strayed[points.start as usize..points.end as usize].fill(true);
+        if step[1] > self.spans[cloth][1] + 1e-9 {
+            self.begin_span(frame, cloth, times);
         }
-        let rest = [step[0], end_of_substep];
+        let rest = [step[0], self.spans[cloth][1].min(self.horizon(frame, cloth, times))];
+        let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW)];
         if self.foresee_points(frame, cloth, schedule, [window, rest]) {
             self.find_pairs(frame, cloth, schedule, step[0], tally);
         }
@@ -97,6 +97,40 @@ impl<R: Real> Solver<R> {
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let thickness = thickness(frame, cloth, list.collider);
             list.activate(near, window, R::from_f64(thickness), &cloths[cloth].blocks);
+        }
+    }
+
+    /// Sets the span that pairs are found for. A collider on its way needs a new list for each stretch of it;
+    /// around colliders at rest a pair holds for as long as its points stay where they are foreseen.
+    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: Times) {
+        let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
+        let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
+        if colliders.any(|(collider, _)| collider.moves) {
+            self.spans[cloth] = [times.step[0], self.horizon(frame, cloth, times)];
+            let points = self.cloths[cloth].points();
+            self.strayed[points.start as usize..points.end as usize].fill(true);
+        } else {
+            self.spans[cloth] = [0.0, 1.0];
+        }
+    }
+
+    /// How far ahead is foreseen: to the end of the substep, or as long as nothing goes farther than a few
+    /// edges. Boxes over a longer way would meet everything on it.
+    fn horizon(&self, frame: &FrameInput, cloth: usize, Times { step, end_of_substep }: Times) -> f64 {
+        let model = &self.cloths[cloth];
+        let points = model.points();
+        let rows = &self.state.velocity[points.start as usize..points.end as usize];
+        let squares = rows.iter().map(|row| dot(row.xyz(), row.xyz()).to_f64());
+        let fastest = squares.fold(0.0, f64::max).sqrt() * frame.duration;
+        let ways = self.collider_states.iter().zip(&frame.colliders).filter(|(_, theirs)| theirs.collide);
+        let farthest = ways.map(|(collider, _)| collider.way).fold(fastest, f64::max);
+        let length = step[1] - step[0];
+        let steps = (FARTHEST * model.edge_length / (farthest * length)).floor().max(1.0);
+        // A step more than it takes to the end is no step.
+        if step[0] + steps * length >= end_of_substep - length / 2.0 {
+            end_of_substep
+        } else {
+            step[0] + steps * length
         }
     }
 
@@ -189,10 +223,31 @@ impl<R: Real> Solver<R> {
         strayed.into_inner()
     }
 
-    /// Pairs no longer hold; the next pass finds them anew.
-    pub(crate) fn forget_pairs(&mut self) {
-        self.spans.fill([0.0, 0.0]);
+    /// Takes pairs over into a new frame, before anchors move; they are found anew if a collider moved or will
+    /// move, or if what touches has changed.
+    pub(crate) fn take_over_pairs(&mut self, frame: &FrameInput) {
         self.windows.fill([0.0, 0.0]);
+        self.spans.fill([0.0, 0.0]);
+        let terms = |(collide, thickness): (bool, f64)| if collide { thickness } else { f64::INFINITY };
+        let cloths = frame.cloths.iter().map(|cloth| (cloth.collide, cloth.thickness));
+        let colliders = frame.colliders.iter().map(|collider| (collider.collide, collider.thickness));
+        let same = cloths.clone().chain(colliders.clone()).map(terms).eq(self.terms.iter().copied());
+        let moves =
+            frame.colliders.iter().any(|collider| !collider.start.is_empty() || !collider.end.is_empty());
+        let moved = self.collider_states.iter().any(|collider| collider.moves);
+        if !same || moves || moved {
+            self.terms = cloths.chain(colliders).map(terms).collect();
+            self.strayed.fill(true);
+            return;
+        }
+        let Self { pairs, state, far, .. } = self;
+        for ([low, high], moved) in far.iter_mut().zip(&state.displacement) {
+            for axis in 0..3 {
+                low.0[axis] -= moved.0[axis];
+                high.0[axis] -= moved.0[axis];
+            }
+        }
+        pairs.iter_mut().for_each(|list| list.move_anchors(&state.displacement));
     }
 
     fn lift_from_ground(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {

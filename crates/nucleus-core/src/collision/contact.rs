@@ -201,6 +201,19 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         least
     }
 
+    /// Follows anchors that move to where the points are; the collider is at rest.
+    pub fn move_anchors(&mut self, moved: &[Row4<R>]) {
+        for k in 0..N {
+            let by = moved[self.points[k] as usize].xyz();
+            let along = dot(self.normal, by);
+            self.plane[0][k] -= along;
+            self.plane[1][k] -= along;
+            for axis in 0..3 {
+                self.found_at[axis] -= self.weights[k] * by[axis];
+            }
+        }
+    }
+
     /// The plane's offset for a point, at a share of the span.
     #[inline(always)]
     fn plane_at(&self, k: usize, share: R) -> R {

@@ -7,7 +7,7 @@ use super::collider::Boxes;
 use super::contact::Pair;
 use super::foresee::Cover;
 use crate::model::Blocks;
-use crate::scalar::Real;
+use crate::scalar::{Real, Row4};
 
 /// The pairs of one cloth and one collider, and the span they hold for.
 #[derive(Debug, Clone)]
@@ -80,6 +80,13 @@ impl<R: Real> PairList<R> {
         self.active.runs.clear();
         self.active.edge_edge.clear();
         self.active.face_point.clear();
+    }
+
+    /// Follows anchors that move to where the points are.
+    pub fn move_anchors(&mut self, moved: &[Row4<R>]) {
+        self.point_face.iter_mut().for_each(|pair| pair.move_anchors(moved));
+        self.edge_edge.iter_mut().for_each(|pair| pair.move_anchors(moved));
+        self.face_point.iter_mut().for_each(|pair| pair.move_anchors(moved));
     }
 
     /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
