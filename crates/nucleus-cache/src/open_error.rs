@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum OpenError {
     /// The system does not let us read it.
-    #[error("cannot read `{}`: {source}", path.display())]
+    #[error("cannot read `{}`", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -16,7 +16,7 @@ pub enum OpenError {
         source: io::Error,
     },
     /// Reading stopped half-way.
-    #[error("reading failed: {0}")]
+    #[error("reading failed")]
     Read(#[from] io::Error),
     /// It is a folder.
     #[error("`{}` is a folder, not a cache", path.display())]
@@ -108,6 +108,6 @@ pub enum ReadError {
         frame: i32,
     },
     /// The system failed to read.
-    #[error("reading failed: {0}")]
+    #[error("reading failed")]
     Io(#[from] io::Error),
 }

@@ -22,7 +22,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// The file cannot be made.
-    #[error("cannot write `{}`: {source}", path.display())]
+    #[error("cannot write `{}`", path.display())]
     Create {
         /// The file.
         path: PathBuf,
@@ -60,7 +60,7 @@ pub enum RecordError {
         last: i32,
     },
     /// The report of a frame has no JSON form.
-    #[error("the report of frame {frame} cannot be written as JSON: {source}")]
+    #[error("the report of frame {frame} cannot be written as JSON")]
     Report {
         /// The frame.
         frame: i32,
@@ -68,9 +68,7 @@ pub enum RecordError {
         source: serde_json::Error,
     },
     /// Writing failed on the way: a full disk, most likely.
-    #[error(
-        "writing the cache failed: {source}; {frames} frames ({bytes} bytes) were written and can be played"
-    )]
+    #[error("writing the cache failed; {frames} frames ({bytes} bytes) were written and can be played")]
     Write {
         /// Whole frames in the file, the initial state among them.
         frames: u32,

@@ -20,7 +20,7 @@ pub enum Ending {
     /// What comes after a number that is not finite means nothing.
     NotFinite,
     /// The cache could not be written.
-    Lost(RecordError),
+    Lost(anyhow::Error),
 }
 
 /// Advances to the last frame. `tell` is shown each frame with the account so far.
@@ -39,7 +39,7 @@ pub fn simulate(
         let frame = i32::try_from(simulation.frame() + 1).context("there are too many frames")?;
         let figures = match advance(simulation, frame, recorder, judge) {
             Ok(figures) => figures,
-            Err(error) => return Ok((account, Ending::Lost(error))),
+            Err(error) => return Ok((account, Ending::Lost(error.into()))),
         };
         account.add(&figures, begin.elapsed());
         tell(&figures, &account)?;

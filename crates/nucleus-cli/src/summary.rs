@@ -69,7 +69,7 @@ impl Summary<'_> {
             Ending::NotFinite => {
                 format!("ended at frame {last}: a position or velocity is not a finite number\n")
             }
-            Ending::Lost(error) => format!("ended at frame {last}: {error}\n"),
+            Ending::Lost(error) => format!("ended at frame {last}: {error:#}\n"),
         }
     }
 
@@ -93,7 +93,7 @@ impl Summary<'_> {
             Ending::Done => ("done", None),
             Ending::Interrupted => ("interrupted", None),
             Ending::NotFinite => ("not finite", None),
-            Ending::Lost(error) => ("lost", Some(error.to_string())),
+            Ending::Lost(error) => ("lost", Some(format!("{error:#}"))),
         };
         json!({ "summary": {
             "ending": ending,

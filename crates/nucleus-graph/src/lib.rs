@@ -1,4 +1,22 @@
-//! To come.
+//! Maya's nodes without Maya: scenes, their graph, and the loop that runs them.
+//!
+//! ```text
+//! scene.ron ─read_scene─▶ Scene ─compile─▶ Program ─Simulation::advance─▶ solver
+//! ```
+//!
+//! | You want to know...                              | Read                       |
+//! |--------------------------------------------------|----------------------------|
+//! | how a scene is written and read                  | [`scene::read_scene`]      |
+//! | which attributes a node type has                 | [`attributes::node_types`] |
+//! | what is connected to what, and why               | [`graph::Graph`]           |
+//! | what the solver is given                         | [`compile::compile`]       |
+//! | what happens when time changes                   | [`Simulation::advance`]    |
+//! | what a scene demands of its run                  | [`checks::Judge`]          |
+//! | how values change with time                      | [`animation::Curve`]       |
+//! | where meshes come from                           | [`mesh::read_obj`]         |
+//!
+//! **Invariant:** nodes carry data to the solver and never act themselves (§1.1). The same scene gives the
+//! same program, in whatever order its nodes stand.
 
 pub mod animation;
 pub mod attributes;

@@ -1,22 +1,20 @@
-//! `nucleus info`: what a cache holds.
+//! `nucleus info`: what a scene or a cache holds.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Playback};
-use serde_json::json;
 
+use super::{cache_info, scene_info};
 use crate::outcome::Outcome;
-use crate::{cache_file, figures, output};
+use crate::{cache_file, output, scene_file};
 
-/// Tells what a cache holds: run, objects, channels, and what is lost.
+/// Tells what a scene compiles to, or what a cache holds and has lost.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// The cache (.mcap).
+    /// The scene (.ron) or the cache (.mcap).
     file: PathBuf,
-    /// Read every frame and check it.
+    /// Read every frame of the cache and check it.
     #[arg(long)]
     verify: bool,
     /// Print one JSON object.
@@ -25,135 +23,32 @@ pub struct Info {
 }
 
 impl Info {
-    /// Prints it. Losses are trouble.
+    /// Prints it. Frames that are lost are trouble.
     pub fn run(self) -> Result<Outcome> {
+        if cache_file::is_cache(&self.file) { self.cache() } else { self.scene() }
+    }
+
+    fn cache(&self) -> Result<Outcome> {
         let mut cache = cache_file::open(&self.file)?;
         if self.verify {
             cache.verify()?;
         }
         match self.json {
-            true => output::print_json(&as_json(&cache))?,
-            false => output::print(&as_text(&self.file.display().to_string(), &cache)?)?,
+            true => output::print_json(&cache_info::as_json(&cache))?,
+            false => output::print(&cache_info::as_text(&self.file.display().to_string(), &cache)?)?,
         }
         Ok(if cache.loss().is_none() { Outcome::Fine } else { Outcome::Trouble })
     }
-}
 
-fn as_text(name: &str, cache: &Playback) -> Result<String> {
-    let run = cache.run();
-    let mut text = String::new();
-    let scene = if run.scene_path.is_empty() { "an unnamed scene" } else { &run.scene_path };
-    writeln!(text, "{name}: a run of {scene}")?;
-    writeln!(text, "  written by  {}", cache.library())?;
-    writeln!(text, "  frames      {}", frames(cache))?;
-    writeln!(text, "  recorded    {}", detail(cache))?;
-    writeln!(text, "  units       {} to the metre", figures::number(run.units_per_metre))?;
-    writeln!(text, "  size        {}", figures::bytes(cache.bytes()))?;
-    writeln!(text, "  lost        {}", cache.loss())?;
-    for (key, value) in &run.extra {
-        writeln!(text, "  {key:<11} {value}")?;
+    fn scene(&self) -> Result<Outcome> {
+        let Some((scene, program, _)) = scene_file::open(&self.file, None)?.told()? else {
+            return Ok(Outcome::Refused);
+        };
+        let info = scene_info::SceneInfo::of(&scene, &program);
+        match self.json {
+            true => output::print_json(&info.as_json())?,
+            false => output::print(&info.as_text(&self.file.display().to_string())?)?,
+        }
+        Ok(Outcome::Fine)
     }
-    for object in cache.objects() {
-        let [x, y, z] = size(object, run.units_per_metre).map(figures::number);
-        let points = figures::count(object.rest.len(), "point");
-        let faces = figures::count(object.faces.len(), "face");
-        writeln!(
-            text,
-            "object {}: {}, {points}, {faces}, {x} x {y} x {z} m",
-            object.name,
-            kind(object.kind)
-        )?;
-    }
-    for (topic, encoding, messages) in cache.channels() {
-        writeln!(text, "channel {topic}: {encoding}, {}", figures::count(messages, "message"))?;
-    }
-    Ok(text)
-}
-
-fn as_json(cache: &Playback) -> serde_json::Value {
-    let run = cache.run();
-    let objects: Vec<_> = cache
-        .objects()
-        .iter()
-        .map(|object| {
-            json!({
-                "name": object.name,
-                "kind": kind(object.kind),
-                "points": object.rest.len(),
-                "faces": object.faces.len(),
-                "size_metres": size(object, run.units_per_metre),
-            })
-        })
-        .collect();
-    let channels: Vec<_> = cache
-        .channels()
-        .map(|(topic, encoding, messages)| json!({ "topic": topic, "encoding": encoding, "messages": messages }))
-        .collect();
-    let loss = cache.loss();
-    json!({
-        "scene": run.scene_path,
-        "written_by": cache.library(),
-        "version": run.version,
-        "frames": {
-            "start": run.start,
-            "end": run.end,
-            "last": cache.moments().last().map(|moment| moment.frame),
-            "per_second": run.frames_per_second,
-        },
-        "moments": cache.moments().len(),
-        "record": detail(cache),
-        "velocities": run.velocities,
-        "units_per_metre": run.units_per_metre,
-        "bytes": cache.bytes(),
-        "loss": {
-            "none": loss.is_none(),
-            "cut_off": loss.cut_off,
-            "index": loss.index,
-            "scene": loss.scene,
-            "bytes": loss.bytes,
-            "frames": loss.frames,
-            "text": loss.to_string(),
-        },
-        "extra": run.extra,
-        "objects": objects,
-        "channels": channels,
-    })
-}
-
-/// `1 to 48 at 24 a second; 120 was asked for`.
-fn frames(cache: &Playback) -> String {
-    let run = cache.run();
-    let Some((first, last)) = cache.moments().first().zip(cache.moments().last()) else {
-        return "none".to_owned();
-    };
-    let rate = figures::number(run.frames_per_second);
-    let text = format!("{} to {} at {rate} a second", first.frame, last.frame);
-    match last.frame < run.end {
-        true => format!("{text}; {} was asked for", run.end),
-        false => text,
-    }
-}
-
-fn detail(cache: &Playback) -> &'static str {
-    match cache.run().detail {
-        Detail::Frames => "frames",
-        Detail::Substeps => "substeps",
-    }
-}
-
-fn kind(kind: ObjectKind) -> &'static str {
-    match kind {
-        ObjectKind::Cloth => "cloth",
-        ObjectKind::Collider => "collider",
-        ObjectKind::Particles => "particles",
-    }
-}
-
-/// Length of the box round an object at rest along each axis, in metres.
-fn size(object: &ObjectInfo, units_per_metre: f64) -> [f64; 3] {
-    [0, 1, 2].map(|axis| {
-        let along = object.rest.iter().map(|point| f64::from(point[axis]));
-        let (low, high) = along.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
-        (high - low).max(0.0) / units_per_metre
-    })
 }

@@ -1,11 +1,13 @@
 //! One file per subcommand.
 
 mod attrs;
+mod cache_info;
 mod check;
 mod info;
 mod play;
 mod render;
 mod run;
+mod scene_info;
 
 use anyhow::Result;
 use clap::Subcommand;

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::Playback;
-use nucleus_view::{Colouring, Film, Image, Style};
+use nucleus_cache::{ObjectKind, Playback};
+use nucleus_view::{Bounds, Camera, Colouring, Film, Image, Style};
 
 use crate::outcome::Outcome;
 use crate::{cache_file, figures, output};
@@ -60,9 +60,10 @@ impl Render {
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = cache_file::moment(cache, self.frame)?;
         let frame = cache.moments()[moment].frame;
-        // The camera holds the whole run, found from a few of its frames.
+        let camera = camera(cache, moment, self.size)?;
+        // The floor is that of the whole run, found from a few of its frames.
         let every = cache.moments().len() / 24;
-        Film::of(cache, every, self.style())?.moment(moment)?.write_png(out)?;
+        Film::of(cache, every, self.style())?.seen_by(camera).moment(moment)?.write_png(out)?;
         Ok(format!("frame {frame}"))
     }
 
@@ -79,6 +80,19 @@ impl Render {
         };
         Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
     }
+}
+
+/// A camera that holds what is simulated as it is at this moment; all objects, if nothing is.
+fn camera(cache: &mut Playback, moment: usize, size: [u32; 2]) -> Result<Camera> {
+    let (mut stage, mut all) = (Bounds::default(), Bounds::default());
+    for object in 0..cache.objects().len() {
+        let positions = cache.positions(object, moment)?;
+        all.include(&positions);
+        if cache.objects()[object].kind != ObjectKind::Collider {
+            stage.include(&positions);
+        }
+    }
+    Ok(Camera::framing(if stage.is_empty() { &all } else { &stage }, size))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

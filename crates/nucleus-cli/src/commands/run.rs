@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::Recorded;
+use nucleus_cache::Recorder;
 use nucleus_graph::Simulation;
 use nucleus_graph::checks::Judge;
 use serde_json::json;
@@ -65,14 +65,13 @@ impl Run {
         let Some((_, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
             return Ok(Outcome::Refused);
         };
+        interrupt::listen()?;
         let (start, end) = recording::frames(&program)?;
         let mut simulation = Simulation::new(&program, self.threads());
         let mut judge = Judge::new(program.checks(), program.mass());
         let record = Record::of(self.record, &program);
         let out = self.out()?;
         let mut recorder = recording::begin(&simulation, record, &out, (&self.scene, &text))?;
-        interrupt::listen()?;
-
         let mut progress = Progress::new(end.abs_diff(start));
         let mut tell = |figures: &FrameFigures, account: &Account| {
             progress.show(account);
@@ -80,16 +79,7 @@ impl Run {
         };
         let (account, mut ending) = simulate(&mut simulation, &mut recorder, &mut judge, &mut tell)?;
         progress.end();
-        let recorded = match recorder.filter(|_| !matches!(ending, Ending::Lost(_))) {
-            None => None,
-            Some(recorder) => match recorder.finish() {
-                Ok(Recorded { bytes, .. }) => Some((out, bytes)),
-                Err(error) => {
-                    ending = Ending::Lost(error);
-                    None
-                }
-            },
-        };
+        let recorded = close(recorder, &mut ending).map(|bytes| (out, bytes));
         interrupt::run_is_over();
         let last = simulation.frame();
         let summary =
@@ -104,6 +94,18 @@ impl Run {
     fn threads(&self) -> usize {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
         self.threads.map_or_else(all, usize::from)
+    }
+}
+
+/// Closes the cache; gives its size in bytes, if there is one and it could be written to its end.
+fn close(recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
+    let recorder = recorder.filter(|_| !matches!(ending, Ending::Lost(_)))?;
+    match recorder.finish() {
+        Ok(recorded) => Some(recorded.bytes),
+        Err(error) => {
+            *ending = Ending::Lost(error.into());
+            None
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::sample::{END, assert_refused, cache, folder, nucleus, stderr, stdout};
+use crate::sample::{END, assert_refused, cache, folder, nucleus, scene, stderr, stdout};
 
 #[test]
 fn a_cache_tells_its_run_and_its_objects() {
@@ -51,4 +51,19 @@ fn what_cannot_be_opened_is_named_with_the_reason() {
     assert_refused(&info("empty.mcap"), "cannot open `empty.mcap`: the file is empty");
     assert_refused(&info("text.mcap"), "cannot open `text.mcap`: this is not an MCAP file");
     assert_refused(&info("folder.mcap"), "`folder.mcap` is a folder");
+}
+
+#[test]
+fn a_scene_tells_its_nodes_and_what_its_passes_cost() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    let said = stdout(&nucleus(folder.path(), &["info", "drape.ron"]));
+    assert!(said.contains("node cloth1: nCloth"), "{said}");
+    // Seven by seven points: 2 * 6 * 7 edges, 6 * 6 faces.
+    assert!(said.contains("object cloth1: cloth, 49 points, 84 edges, 36 faces, 0.5 x 0 x 0.5 m"), "{said}");
+    let output = nucleus(folder.path(), &["info", "drape.ron", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let passes = said["passes"].as_array().unwrap();
+    let stretch = passes.iter().find(|pass| pass["name"] == "stretch").expect("cloth has links");
+    assert_eq!(stretch["rows"], 84);
 }

@@ -1,6 +1,10 @@
 //! The built binary, as a shell sees it: what it prints, and the code it ends with.
 
 mod attrs;
+mod check;
 mod info;
+mod interrupted;
+mod play;
 mod render;
+mod run;
 mod sample;

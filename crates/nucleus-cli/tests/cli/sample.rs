@@ -78,3 +78,22 @@ fn input() -> FrameInput {
         pins: Vec::new(),
     }
 }
+
+/// A sheet that falls on a ball, written as `drape.ron`. With so many frames, and these checks.
+pub fn scene(folder: &Path, frames: u32, checks: &str) {
+    let text = format!(
+        r#"Scene(
+    time: (start: 1, end: {frames}, fps: 24),
+    nodes: {{
+        "nucleus1": nucleus(spaceScale: 0.01, subSteps: 2),
+        "sheet": polyPlane(width: 50, height: 50, subdivisions: (6, 6), translate: (0, 25, 0)),
+        "cloth1": nCloth(inputMesh: "sheet", thickness: 1),
+        "ball": polySphere(radius: 20),
+        "rigid1": nRigid(inputMesh: "ball"),
+    }},
+    checks: [{checks}],
+)
+"#
+    );
+    std::fs::write(folder.join("drape.ron"), text).unwrap();
+}

@@ -61,7 +61,7 @@ node_table! {
     "Time Attributes" {
         /// The time it solves for; driven by `time1.outTime`.
         CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
-        /// The frame at which everything is in its initial state; a run begins here if the scene's time begins earlier.
+        /// The frame at which everything is in its initial state, and where a run begins. Left out, it is the first frame of the scene.
         START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("simulation").fixed();
         /// How many frames a single evaluation may leap over and still be solved.
         FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0);

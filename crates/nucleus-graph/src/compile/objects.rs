@@ -115,19 +115,21 @@ impl<'a> Compiler<'a> {
         self.check_pinned_points();
     }
 
-    /// The run begins where both the scene's time and the nucleus have begun.
+    /// The run begins where the scene's time and, if it says so, the nucleus have begun.
     fn start(&mut self) {
         let Some(node) = self.nucleus.map(|id| self.scene.graph.node(id)) else { return };
+        if node.setting(&nucleus::START_FRAME).is_none() {
+            return;
+        }
         let start_frame = node.get(&nucleus::START_FRAME);
         let place = self.scene.source.place(&format!("{}.startFrame", node.name()));
         let TimeSpan { start, end, .. } = self.scene.time;
         if start_frame > end as f64 {
-            let message =
-                format!("`{}` starts at frame {start_frame}, after the last frame, {end}", node.name());
+            let message = format!("`startFrame` of `{}` comes after the last frame, {end}", node.name());
             self.findings.error(&place, message);
         } else if start_frame > start as f64 {
             self.time.start = start_frame.ceil() as i64;
-        } else if start_frame < start as f64 && node.setting(&nucleus::START_FRAME).is_some() {
+        } else if start_frame < start as f64 {
             let message = format!("frames before {start}, where the scene's time begins, are not solved");
             self.findings.warning(&place, message);
         }

@@ -1,1 +1,325 @@
+use std::path::Path;
 
+use nalgebra::Vector3;
+use nucleus_core::{ClothFrame, ClothId, FrameInput, PointId, ResistanceModel};
+use proptest::prelude::*;
+
+use super::*;
+use crate::attributes::{NodeType, n_cloth, n_rigid, nucleus, particle};
+use crate::graph::Setting;
+use crate::scene::read_scene_text;
+
+/// A scene of these nodes, over frames 1 to 24.
+fn scene(nodes: &str) -> Scene {
+    let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
+    match read_scene_text(&text, Path::new("test.ron")) {
+        Ok((scene, _)) => scene,
+        Err(diagnostics) => panic!("{diagnostics:#?}"),
+    }
+}
+
+fn program(nodes: &str) -> Program {
+    compile(&scene(nodes)).unwrap_or_else(|diagnostics| panic!("{diagnostics:#?}"))
+}
+
+fn refused(nodes: &str) -> String {
+    compile(&scene(nodes)).map(|_| ()).expect_err(nodes)[0].message.clone()
+}
+
+/// A sheet of four points, 2 m wide.
+fn sheet(nucleus: &str, cloth: &str) -> String {
+    format!(
+        r#""nucleus1": nucleus({nucleus}), "sheet": polyPlane(width: 2, height: 2, subdivisions: (1, 1)),
+           "cloth1": nCloth(inputMesh: "sheet", {cloth}),"#
+    )
+}
+
+/// The model as text, which has every bit of every number in it.
+fn model(program: &Program) -> String {
+    format!("{:?}", program.model())
+}
+
+/// The input of a frame when nothing has moved since the start.
+fn input(program: &Program, frame: i64) -> FrameInput {
+    let start = |cloth: ClothId, point: PointId| program.cloths[cloth.index()].start[point.index()];
+    program.input(frame, &mut Grips::default(), &start)
+}
+
+fn lists(cloth: &str) -> String {
+    let text = model(&program(&sheet("", cloth)));
+    let lists = text.split("ClothLists { ").nth(1).and_then(|rest| rest.split(" }").next());
+    lists.expect("a cloth has lists").to_owned()
+}
+
+// EVIDENCE: N1.1-3  nodes only set up relations and carry data: what the solver gets is plain numbers
+// EVIDENCE: N1.3-1  scene units are read as metres through spaceScale
+#[test]
+fn lengths_are_scaled_and_accelerations_are_not() {
+    let centimetres = program(
+        r#""n": nucleus(spaceScale: 0.01, usePlane: true, planeOrigin: (0, -50, 0), windSpeed: 3),
+           "p": polyPlane(width: 200, height: 200, translate: (0, 100, 0)),
+           "c": nCloth(inputMesh: "p", thickness: 2)"#,
+    );
+    let input = centimetres.first_input();
+    assert_eq!(input.gravity, Vector3::new(0.0, -9.8, 0.0));
+    assert_eq!(input.wind, Vector3::new(3.0, 0.0, 0.0));
+    assert_eq!(input.plane.map(|plane| plane.origin), Some(Vector3::new(0.0, -0.5, 0.0)));
+    assert_eq!(input.cloths[0].thickness, 0.02);
+    assert_eq!(centimetres.cloths[0].start[0], Vector3::new(-1.0, 1.0, 1.0));
+    assert_eq!(centimetres.units_per_metre(), 100.0);
+}
+
+// EVIDENCE: N2.2-7  cloth is broken into simple lists, and only into those it has a use for
+#[test]
+fn a_list_is_on_only_if_its_attribute_is_ever_other_than_zero() {
+    let nothing =
+        "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
+    assert_eq!(lists(nothing), "stretch: false, shear: false, bend: false, air: false, damp: false");
+    assert_eq!(lists(""), "stretch: true, shear: false, bend: true, air: true, damp: true");
+    for (cloth, list) in [
+        ("bendResistance: keys([(1, 0), (20, 1)])", "bend: true"),
+        ("bendResistance: keys([(1, 0), (20, 0)])", "bend: false"),
+        ("shearResistance: 2", "shear: true"),
+        ("stretchResistance: 0", "stretch: true"),
+        ("drag: 0", "air: true"),
+        ("stretchDamp: 0, damp: 1", "damp: true"),
+    ] {
+        assert!(lists(cloth).contains(list), "{cloth}: {}", lists(cloth));
+    }
+}
+
+#[test]
+fn there_is_no_air_list_in_a_vacuum() {
+    assert!(model(&program(&sheet("airDensity: 0", ""))).contains("air: false"));
+}
+
+// EVIDENCE: N2.2-8  a number is a count in 1/24 s: it is handed on as it is, whatever a frame lasts
+#[test]
+fn counts_do_not_depend_on_frame_rate_or_time_scale() {
+    let mut scene = scene(&sheet("timeScale: 0.5", "stretchResistance: 30"));
+    let at_24 = compile(&scene).expect("valid").first_input();
+    scene.time.fps = 48.0;
+    let at_48 = compile(&scene).expect("valid").first_input();
+    assert_eq!((at_24.duration, at_48.duration), (0.5 / 24.0, 0.5 / 48.0));
+    assert_eq!((at_24.cloths[0].stretch_resistance, at_24.collision_iterations), (30.0, 4.0));
+    assert_eq!(FrameInput { duration: at_24.duration, ..at_48 }, at_24);
+}
+
+#[test]
+fn mass_is_by_point_or_by_area() {
+    let classic = program(&sheet("resistanceModel: classic", "pointMass: 0.5"));
+    assert!(model(&classic).contains("PerPoint(0.5)"));
+    assert_eq!((classic.mass(), classic.first_input().resistance), (2.0, ResistanceModel::Classic));
+    let physical = program(&sheet("evaluations: 48", "pointMass: 0.5"));
+    assert!(model(&physical).contains("PerArea(0.5)"));
+    assert_eq!(physical.mass(), 2.0);
+    assert_eq!(physical.first_input().resistance, ResistanceModel::Physical { evaluations: 48.0 });
+}
+
+#[test]
+fn every_attribute_of_cloth_reaches_its_place() {
+    let set = "stretchResistance: 1, compressionResistance: 2, shearResistance: 3, bendResistance: 4, \
+        restLengthScale: 5, stretchDamp: 6, damp: 7, drag: 8, tangentialDrag: 9, lift: 10, \
+        ignoreSolverGravity: true, ignoreSolverWind: true, localForce: (11, 12, 13), localWind: (14, 15, 16), \
+        collide: false, thickness: 17, friction: 18, bounce: 19";
+    let expected = ClothFrame {
+        stretch_resistance: 1.0,
+        compression_resistance: 2.0,
+        shear_resistance: 3.0,
+        bend_resistance: 4.0,
+        rest_length_scale: 5.0,
+        stretch_damp: 6.0,
+        damp: 7.0,
+        drag: 8.0,
+        tangential_drag: 9.0,
+        lift: 10.0,
+        feels_gravity: false,
+        feels_wind: false,
+        local_force: Vector3::new(11.0, 12.0, 13.0),
+        local_wind: Vector3::new(14.0, 15.0, 16.0),
+        collide: false,
+        thickness: 17.0,
+        friction: 18.0,
+        bounce: 19.0,
+    };
+    assert_eq!(program(&sheet("", set)).first_input().cloths, [expected]);
+}
+
+#[test]
+fn a_cloth_on_which_nothing_is_set_has_the_solvers_own_defaults() {
+    let cloths = program(&sheet("", "")).first_input().cloths;
+    let expected = ClothFrame { thickness: cloths[0].thickness, ..ClothFrame::default() };
+    assert_eq!(cloths, [expected]);
+    // Two sides of 2 by 2; one face. 0.5 % of sqrt(8).
+    assert!((cloths[0].thickness - 0.005 * 8f64.sqrt()).abs() < 1e-15);
+}
+
+// EVIDENCE: N2.4-6  animation is evaluated once per frame: a key between two frames is not seen
+// EVIDENCE: N2.4-7  inside a frame there are only its two ends, for the solver to go between
+#[test]
+fn a_collider_moves_from_frame_to_frame() {
+    let moving = program(
+        r#""n": nucleus(), "arm": transform(tx: keys([(1, 0), (1.5, 9), (2, 2), (4, 2), (5, 4)])),
+           "box": polyCube(parent: "arm", translateY: 1), "c": nRigid(inputMesh: "box")"#,
+    );
+    let end = |frame| input(&moving, frame).colliders[0].end.first().copied();
+    assert_eq!(end(2), Some(Vector3::new(1.5, 0.5, 0.5)));
+    assert_eq!(end(3), None);
+    assert_eq!(end(5), Some(Vector3::new(3.5, 0.5, 0.5)));
+}
+
+#[test]
+fn a_collider_that_never_moves_has_no_positions() {
+    let still =
+        program(r#""n": nucleus(), "box": polyCube(tx: 3), "c": nRigid(inputMesh: "box", friction: 0.7)"#);
+    let collider = &still.first_input().colliders[0];
+    assert!(collider.start.is_empty() && collider.end.is_empty() && collider.collide);
+    assert_eq!(collider.friction, 0.7);
+    assert!(model(&still).contains("3.5"));
+}
+
+#[test]
+fn pins_are_carried_by_their_transform() {
+    let pinned = program(
+        &(sheet("spaceScale: 0.1", "")
+            + r#""pin": dynamicConstraint(components: ["cloth1.vtx[1]"], tx: 5,
+             rotateY: keys([(1, 0), (3, 90)]), ty: keys([(1, 0), (2, 0), (3, 2)]))"#),
+    );
+    // Point 1 is at (1, 0, 1), which is (-4, 0, 1) from the pin; a quarter about y makes that (1, 0, 4).
+    let mut grips = Grips::default();
+    let start = |cloth: ClothId, point: PointId| pinned.cloths[cloth.index()].start[point.index()];
+    let first = pinned.input(2, &mut grips, &start).pins;
+    let second = pinned.input(3, &mut grips, &start).pins;
+    assert_eq!((first.len(), first[0].cloth, first[0].point), (1, ClothId(0), PointId(1)));
+    assert_eq!(first[0].start, Vector3::new(0.1, 0.0, 0.1));
+    assert_eq!(first[0].end, second[0].start);
+    assert!((second[0].end - Vector3::new(0.6, 0.2, 0.4)).norm() < 1e-15);
+}
+
+// EVIDENCE: N2.4-5  a constraint that is switched on takes hold of things where they are then
+#[test]
+fn a_constraint_that_is_switched_on_takes_hold_where_points_are() {
+    let hand = program(
+        &(sheet("", "")
+            + r#""hand": dynamicConstraint(components: ["cloth1.vtx[0]"], tx: keys([(1, 0), (11, 10)]),
+             enable: keys([(1, false), (3, true), (5, false), (7, true)]))"#),
+    );
+    let mut grips = Grips::default();
+    let mut pins = |frame, at: Vector3<f64>| hand.input(frame, &mut grips, &|_, _| at).pins;
+    let (here, there) = (Vector3::new(7.0, 8.0, 9.0), Vector3::new(0.0, -5.0, 0.0));
+    assert_eq!(pins(2, here), []);
+    let held = pins(3, here);
+    assert_eq!((held[0].start, held[0].end), (here, here + Vector3::x()));
+    let held = pins(4, there);
+    assert_eq!((held[0].start, held[0].end), (here + Vector3::x(), here + Vector3::x() * 2.0));
+    assert_eq!(pins(5, there), []);
+    assert_eq!(pins(6, there), []);
+    assert_eq!(pins(7, there)[0].start, there);
+}
+
+#[test]
+fn a_point_is_held_once() {
+    let twice = program(
+        &(sheet("", "")
+            + r#""a": dynamicConstraint(components: ["cloth1.vtx[0:2]", "cloth1.vtx[1]", "cloth1"]),
+             "b": dynamicConstraint(components: ["cloth1.vtx[*]"], tx: keys([(1, 0), (2, 5)]))"#),
+    );
+    let points: Vec<u32> = twice.first_input().pins.iter().map(|pin| pin.point.0).collect();
+    assert_eq!(points, [0, 1, 2, 3]);
+    assert_eq!(twice.warnings()[0].message, "`b` takes hold of points that another constraint may hold");
+}
+
+#[test]
+fn the_nucleus_turns_what_it_gives() {
+    let turned =
+        "rotate: (0, 0, 90), ty: 3, scale: (2, 1, 1), usePlane: true, windSpeed: 2, planeOrigin: (1, 0, 0)";
+    let own = program(&sheet(turned, "")).first_input();
+    assert!((own.gravity - Vector3::new(9.8, 0.0, 0.0)).norm() < 1e-15);
+    assert!((own.wind - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-15);
+    let plane = own.plane.expect("it is used");
+    assert!((plane.origin - Vector3::new(0.0, 5.0, 0.0)).norm() < 1e-15);
+    assert!((plane.normal - Vector3::new(-1.0, 0.0, 0.0)).norm() < 1e-15);
+    let world = program(&sheet(&format!("useTransform: false, {turned}"), "")).first_input();
+    assert_eq!(world.gravity, Vector3::new(0.0, -9.8, 0.0));
+    assert_eq!(world.plane.map(|plane| plane.normal), Some(Vector3::y()));
+}
+
+#[test]
+fn the_length_of_a_direction_does_not_matter_and_zero_is_none() {
+    let gravity = |direction: &str| {
+        program(&sheet(&format!("gravityDirection: {direction}"), "")).first_input().gravity
+    };
+    assert!((gravity("(0, -3, 4)") - Vector3::new(0.0, -9.8 * 0.6, 9.8 * 0.8)).norm() < 1e-14);
+    assert_eq!(gravity("(0, 0, 0)"), Vector3::zeros());
+}
+
+// EVIDENCE: N2.4-1  what is built, is built from the start frame
+#[test]
+fn a_run_begins_at_the_start_frame_with_things_where_they_are_then() {
+    let moving = r#""p": polyPlane(tx: keys([(1, 0), (11, 10)])), "c": nCloth(inputMesh: "p")"#;
+    let late = program(&format!(r#""n": nucleus(startFrame: 5), {moving}"#));
+    assert_eq!((late.time().start, late.cloths[0].start[0].x), (5, 3.5));
+    assert_eq!(program(&format!(r#""n": nucleus(), {moving}"#)).time().start, 1);
+    let never = refused(&format!(r#""n": nucleus(startFrame: 25), {moving}"#));
+    assert_eq!(never, "`startFrame` of `n` comes after the last frame, 24");
+}
+
+#[test]
+fn what_could_not_run_is_refused() {
+    assert_eq!(refused(r#""t": transform()"#), "there is nothing to solve: the scene has no nucleus");
+    assert_eq!(
+        refused(r#""n": nucleus(), "p": polyPlane(scale: (0, 1, 1)), "c": nCloth(inputMesh: "p")"#),
+        "`c` cannot be made from `p`: the mesh has no area"
+    );
+    assert_eq!(refused(&sheet("", "pointMass: 0")), "`pointMass` of `cloth1` must be above 0, found 0");
+    let pin =
+        r#""pin": dynamicConstraint(components: ["cloth1"], scale: (0, 1, 1), tx: keys([(1, 0), (9, 1)]))"#;
+    assert_eq!(refused(&(sheet("", "") + pin)), "`pin` is scaled to nothing at the start");
+}
+
+#[test]
+fn an_attribute_at_its_default_equals_the_attribute_left_out() {
+    let scene = scene(&(sheet("", "") + r#""box": polyCube(ty: -3), "rigid1": nRigid(inputMesh: "box")"#));
+    let plain = compile(&scene).expect("valid");
+    let types: [&'static NodeType; 3] = [&nucleus::NUCLEUS, &n_cloth::N_CLOTH, &n_rigid::N_RIGID];
+    let mut compared = 0;
+    for node_type in types {
+        let (id, _) = scene.graph.of_type(node_type).next().expect("one of each");
+        for row in node_type.attributes() {
+            // These are worked out when they are left out.
+            if ["thickness", "startFrame"].contains(&row.name) {
+                continue;
+            }
+            let Some(default) = row.default.clone() else { continue };
+            let mut set = scene.clone();
+            set.graph.set(id, row, Setting::from(default)).expect("a default fits");
+            let set = compile(&set).expect("valid");
+            assert_eq!(model(&set), model(&plain), "{}", row.name);
+            assert_eq!(set.first_input(), plain.first_input(), "{}", row.name);
+            compared += 1;
+        }
+    }
+    assert!(compared > 250, "{compared}");
+    assert!(n_cloth::N_CLOTH.is_a(&particle::PARTICLE));
+}
+
+proptest! {
+    #[test]
+    fn the_order_of_nodes_in_a_file_does_not_matter(order in Just((0..7).collect::<Vec<usize>>()).prop_shuffle()) {
+        let nodes = [
+            r#""n": nucleus(windSpeed: 2)"#,
+            r#""p1": polyPlane(subdivisions: (2, 3), ty: 2)"#,
+            r#""p2": polyPlane(subdivisions: (3, 1))"#,
+            r#""z": nCloth(inputMesh: "p2", damp: 1)"#,
+            r#""a": nCloth(inputMesh: "p1")"#,
+            r#""r": nRigid(inputMesh: "p2")"#,
+            r#""pin": dynamicConstraint(components: ["z.vtx[1]", "a.vtx[2:4]"])"#,
+        ];
+        let text = |order: &[usize]| order.iter().map(|&k| nodes[k]).collect::<Vec<_>>().join(", ");
+        let (given, sorted) = (program(&text(&order)), program(&text(&[0, 1, 2, 3, 4, 5, 6])));
+        prop_assert_eq!(&given.graph, &sorted.graph);
+        prop_assert_eq!(model(&given), model(&sorted));
+        prop_assert_eq!(given.objects(), sorted.objects());
+        prop_assert_eq!(given.first_input(), sorted.first_input());
+    }
+}

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 
 use crate::animation::{Curve, Tangent};
-use crate::attributes::{Attribute, Choice, Kind, Value, n_base};
+use crate::attributes::{Attribute, Choice, Kind, RampPoint, Value, n_base};
 use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
 use super::document::{Record, Scene, TimeSpan};
+use super::read::INTERPOLATIONS;
 
 /// Writes a scene as RON that reads back to the same scene, to the bit.
 ///
@@ -83,9 +84,7 @@ fn held(value: &Value, row: &Attribute) -> String {
         Value::Ints(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Floats(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Vectors(vectors) => list(vectors.iter().map(|vector| triple(*vector))),
-        Value::Ramp(points) => {
-            list(points.iter().map(|point| format!("({}, {})", point.position, point.value)))
-        }
+        Value::Ramp(points) => list(points.iter().map(ramp_point)),
         Value::Components(parts) => list(parts.iter().map(|part| quoted(&part.to_string()))),
     }
 }
@@ -139,6 +138,14 @@ fn key(frame: f64, value: String, tangent: Tangent, row: &Attribute) -> String {
         Tangent::Stepped => format!("({frame}, {value}, stepped)"),
         Tangent::Linear => format!("({frame}, {value}, linear)"),
         Tangent::Spline => format!("({frame}, {value}, spline)"),
+    }
+}
+
+fn ramp_point(point: &RampPoint) -> String {
+    let RampPoint { position, value, interpolation } = point;
+    match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
+        Some(&"linear") | None => format!("({position}, {value})"),
+        Some(word) => format!("({position}, {value}, {word})"),
     }
 }
 

@@ -32,6 +32,7 @@ use super::source::Source;
 use super::syntax::{self, Node};
 
 use fields::Fields;
+pub(super) use value::INTERPOLATIONS;
 
 /// Reads a scene file. With the scene come warnings: what is set and has no effect.
 ///

@@ -224,14 +224,24 @@ fn list<T>(
     read.into_iter().collect()
 }
 
-/// `(0.5, 1)`: a point of a ramp, straight on to the next.
+/// How Maya goes from one point of a ramp to the next, by its index.
+pub(in crate::scene) const INTERPOLATIONS: [&str; 4] = ["none", "linear", "smooth", "spline"];
+
+/// `(0.5, 1)` or `(0.5, 1, smooth)`: a point of a ramp, straight on to the next unless a word says how.
 fn ramp_point(label: &str, node: &Node, findings: &mut Findings) -> Option<RampPoint> {
-    const LINEAR: Choice = Choice(1);
-    match &node.value {
-        Value::Tuple { name: None, items } if items.len() == 2 => {
-            let [position, value] = [0, 1].map(|k| number(label, &items[k], findings));
-            Some(RampPoint { position: position?, value: value?, interpolation: LINEAR })
-        }
-        _ => expected(label, "points of (position, value)", node, findings),
-    }
+    let (position, value, word) = match &node.value {
+        Value::Tuple { name: None, items } => match items.as_slice() {
+            [position, value] => (position, value, "linear"),
+            [position, value, Node { value: Value::Word(word), .. }] => (position, value, word.as_str()),
+            _ => return expected(label, "points of (position, value)", node, findings),
+        },
+        _ => return expected(label, "points of (position, value)", node, findings),
+    };
+    let [position, value] = [position, value].map(|item| number(label, item, findings));
+    let Some(index) = INTERPOLATIONS.iter().position(|name| *name == word) else {
+        let error = findings.error(&node.span, format!("{label} has no interpolation `{word}`"));
+        error.help(format!("it takes {}", listed(&INTERPOLATIONS)));
+        return None;
+    };
+    Some(RampPoint { position: position?, value: value?, interpolation: Choice(index as i32) })
 }

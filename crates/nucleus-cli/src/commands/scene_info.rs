@@ -1,0 +1,181 @@
+//! `nucleus info` of a scene: its nodes, and the program it compiles to with its cost.
+
+use std::collections::HashSet;
+use std::fmt::Write;
+
+use nucleus_core::{FrameInput, PassCost, ResistanceModel, STIFFNESS_PER_RESISTANCE, classic_stiffness};
+use nucleus_graph::Simulation;
+use nucleus_graph::compile::{Object, ObjectKind, Program};
+use nucleus_graph::scene::{Scene, TimeSpan};
+use serde_json::{Value, json};
+
+use crate::figures;
+
+/// What there is to say about a scene.
+pub struct SceneInfo {
+    time: TimeSpan,
+    /// Name and type of each node.
+    nodes: Vec<(String, &'static str)>,
+    objects: Vec<ObjectFacts>,
+    input: FrameInput,
+    passes: Vec<PassCost>,
+}
+
+struct ObjectFacts {
+    name: String,
+    kind: &'static str,
+    points: usize,
+    edges: usize,
+    faces: usize,
+    /// Of the box round it at the start, in metres.
+    size: [f64; 3],
+    /// What its stretch resistance amounts to in the first frame, in N/m; nothing for colliders.
+    stiffness: Option<f64>,
+}
+
+impl SceneInfo {
+    /// Looks at the first frame of a scene.
+    pub fn of(scene: &Scene, program: &Program) -> Self {
+        let simulation: Simulation = Simulation::new(program, 1);
+        let input = program.first_input();
+        let nodes =
+            scene.graph.iter().map(|(_, node)| (node.name().to_owned(), node.node_type().name)).collect();
+        let passes = simulation.solver().passes(&input).into_iter().filter(|pass| pass.evaluations() > 0.0);
+        Self {
+            time: program.time(),
+            nodes,
+            objects: program
+                .objects()
+                .iter()
+                .map(|object| facts(object, program, &simulation, &input))
+                .collect(),
+            passes: passes.collect(),
+            input,
+        }
+    }
+
+    /// For people.
+    pub fn as_text(&self, name: &str) -> Result<String, std::fmt::Error> {
+        let TimeSpan { start, end, fps } = self.time;
+        let mut text = format!("{name}: frames {start} to {end} at {} a second\n", figures::number(fps));
+        let reading = match self.input.resistance {
+            ResistanceModel::Classic => "classic: resistances are counts".to_owned(),
+            ResistanceModel::Physical { evaluations } => {
+                format!("physical: {} evaluations in 1/24 s", figures::number(evaluations))
+            }
+        };
+        writeln!(text, "{} a frame; {reading}", figures::count(self.input.substeps as usize, "substep"))?;
+        for (name, node_type) in &self.nodes {
+            writeln!(text, "node {name}: {node_type}")?;
+        }
+        for object in &self.objects {
+            writeln!(text, "object {}", object.line())?;
+        }
+        let total: f64 = self.passes.iter().map(PassCost::evaluations).sum();
+        for pass in &self.passes {
+            let (sweeps, evaluations) = (figures::number(pass.sweeps), figures::number(pass.evaluations()));
+            let share = figures::percent((100.0 * pass.evaluations() / total).round() / 100.0);
+            writeln!(
+                text,
+                "pass {:<9} {:>8} rows x {sweeps:>5} sweeps = {evaluations:>9} a frame, {share}",
+                pass.name, pass.rows
+            )?;
+        }
+        Ok(text)
+    }
+
+    /// For machines.
+    pub fn as_json(&self) -> Value {
+        let pass = |pass: &PassCost| {
+            json!({
+                "name": pass.name, "rows": pass.rows, "sweeps": pass.sweeps, "evaluations": pass.evaluations(),
+            })
+        };
+        let node = |(name, node_type): &(String, &str)| json!({ "name": name, "type": node_type });
+        let evaluations = match self.input.resistance {
+            ResistanceModel::Classic => None,
+            ResistanceModel::Physical { evaluations } => Some(evaluations),
+        };
+        json!({
+            "frames": { "start": self.time.start, "end": self.time.end, "per_second": self.time.fps },
+            "substeps": self.input.substeps,
+            "evaluations": evaluations,
+            "nodes": self.nodes.iter().map(node).collect::<Vec<_>>(),
+            "objects": self.objects.iter().map(ObjectFacts::as_json).collect::<Vec<_>>(),
+            "passes": self.passes.iter().map(pass).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl ObjectFacts {
+    fn line(&self) -> String {
+        let [x, y, z] = self.size.map(figures::number);
+        let counts = [(self.points, "point"), (self.edges, "edge"), (self.faces, "face")];
+        let counts = counts.map(|(number, noun)| figures::count(number, noun)).join(", ");
+        let line = format!("{}: {}, {counts}, {x} x {y} x {z} m", self.name, self.kind);
+        match self.stiffness {
+            Some(stiffness) => format!("{line}, stretch about {} N/m", figures::number(stiffness)),
+            None => line,
+        }
+    }
+
+    fn as_json(&self) -> Value {
+        json!({
+            "name": self.name, "kind": self.kind, "points": self.points, "edges": self.edges, "faces": self.faces,
+            "size_metres": self.size, "stretch_stiffness": self.stiffness,
+        })
+    }
+}
+
+fn facts(object: &Object, program: &Program, simulation: &Simulation, input: &FrameInput) -> ObjectFacts {
+    let mut positions = Vec::new();
+    let (kind, stiffness) = match object.kind {
+        ObjectKind::Cloth(id) => {
+            simulation.state().positions(id, 1.0, &mut positions);
+            let resistance = input.cloths[id.index()].stretch_resistance;
+            ("cloth", Some(stretch_stiffness(resistance, program, input)))
+        }
+        ObjectKind::Collider(id) => {
+            simulation.state().collider_positions(id, 1.0, &mut positions);
+            ("collider", None)
+        }
+    };
+    ObjectFacts {
+        name: object.name.clone(),
+        kind,
+        points: object.points,
+        edges: edges(object),
+        faces: object.faces.len(),
+        size: size(&positions),
+        stiffness,
+    }
+}
+
+/// N/m. The Classic reading takes the mean mass of all points of the scene.
+fn stretch_stiffness(resistance: f64, program: &Program, input: &FrameInput) -> f64 {
+    let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
+    let points: usize = program.objects().iter().filter(is_cloth).map(|object| object.points).sum();
+    let substep = input.duration / f64::from(input.substeps);
+    match input.resistance {
+        ResistanceModel::Classic => classic_stiffness(resistance, substep, program.mass() / points as f64),
+        ResistanceModel::Physical { .. } => STIFFNESS_PER_RESISTANCE * resistance,
+    }
+}
+
+/// Edges of the faces, each counted once.
+fn edges(object: &Object) -> usize {
+    let around = |face: &[u32]| -> Vec<[u32; 2]> {
+        let ends = face.iter().zip(face.iter().cycle().skip(1));
+        ends.map(|(&a, &b)| [a.min(b), a.max(b)]).collect()
+    };
+    object.faces.iter().flat_map(around).collect::<HashSet<_>>().len()
+}
+
+/// Length along each axis of the box round some points.
+fn size(positions: &[[f32; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| {
+        let along = positions.iter().map(|point| f64::from(point[axis]));
+        let (low, high) = along.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+        (high - low).max(0.0)
+    })
+}

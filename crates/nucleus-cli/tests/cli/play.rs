@@ -1,0 +1,66 @@
+//! `nucleus play`.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, ChildStdout, Command, Stdio};
+
+use crate::sample::{assert_refused, cache, folder, nucleus, scene};
+
+/// A player that is ended with the test, and where it listens.
+struct Player(Child, String, #[expect(dead_code, reason = "an open pipe")] BufReader<ChildStdout>);
+
+impl Player {
+    fn start(folder: &Path, file: &str) -> Self {
+        let mut play = Command::new(env!("CARGO_BIN_EXE_nucleus"));
+        play.args(["play", file, "--no-open"]).current_dir(folder);
+        let mut child = play.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut said = BufReader::new(child.stdout.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("http://") {
+            line.clear();
+            assert_ne!(said.read_line(&mut line).unwrap(), 0, "no address was printed");
+        }
+        let address = line.split("http://").nth(1).unwrap().split('/').next().unwrap().to_owned();
+        Self(child, address, said)
+    }
+
+    fn get(&self, path: &str) -> String {
+        let mut server = TcpStream::connect(&self.1).unwrap();
+        write!(server, "GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", self.1).unwrap();
+        let mut answer = Vec::new();
+        server.read_to_end(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+}
+
+impl Drop for Player {
+    fn drop(&mut self) {
+        self.0.kill().unwrap();
+        self.0.wait().unwrap();
+    }
+}
+
+#[test]
+fn a_cache_is_served_on_the_address_that_is_printed() {
+    let folder = folder();
+    cache(folder.path());
+    let answer = Player::start(folder.path(), "fall.mcap").get("/");
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    assert!(answer.contains("<html"), "{answer}");
+}
+
+#[test]
+fn a_scene_is_run_first() {
+    let folder = folder();
+    scene(folder.path(), 3, "");
+    let answer = Player::start(folder.path(), "drape.ron").get("/");
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    assert!(folder.path().join("drape.mcap").exists());
+}
+
+#[test]
+fn what_cannot_be_played_is_refused() {
+    let folder = folder();
+    assert_refused(&nucleus(folder.path(), &["play", "none.mcap"]), "cannot read `none.mcap`");
+}

@@ -1,0 +1,113 @@
+//! `nucleus run`.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
+
+#[test]
+fn a_run_records_a_cache_and_tells_how_to_watch_it() {
+    let folder = folder();
+    scene(folder.path(), 5, "noPenetration, finite");
+    let output = nucleus(folder.path(), &["run", "drape.ron"]);
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}{}", stderr(&output));
+    assert!(said.starts_with("frames 1 to 5 in "), "{said}");
+    assert!(said.contains("check noPenetration: passed") && said.contains("check finite: passed"), "{said}");
+    assert!(said.contains("`nucleus play drape.mcap`"), "{said}");
+    let cache = nucleus_cache::Playback::open(folder.path().join("drape.mcap")).unwrap();
+    assert!(cache.loss().is_none());
+    assert_eq!((cache.moments().len(), cache.run().scene_path.as_str()), (5, "drape.ron"));
+    let names: Vec<_> = cache.objects().iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["cloth1", "rigid1"]);
+}
+
+#[test]
+fn the_cache_holds_the_scene_it_was_made_from() {
+    let folder = folder();
+    scene(folder.path(), 2, "");
+    nucleus(folder.path(), &["run", "drape.ron", "-o", "x.mcap"]);
+    let cache = nucleus_cache::Playback::open(folder.path().join("x.mcap")).unwrap();
+    assert_eq!(cache.run().scene_text, fs::read_to_string(folder.path().join("drape.ron")).unwrap());
+}
+
+#[test]
+fn a_check_that_fails_is_trouble_and_says_by_how_much() {
+    let folder = folder();
+    scene(folder.path(), 5, "restsBy(frame: 3, speed: 0)");
+    let output = nucleus(folder.path(), &["run", "drape.ron"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("FAILED with "), "{}", stdout(&output));
+}
+
+#[test]
+fn json_is_an_object_for_each_frame_and_one_for_the_run() {
+    let folder = folder();
+    scene(folder.path(), 5, "finite");
+    let output = nucleus(folder.path(), &["run", "drape.ron", "--json"]);
+    let lines: Vec<Value> =
+        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect();
+    let frames: Vec<_> = lines.iter().filter_map(|line| line["frame"].as_i64()).collect();
+    assert_eq!(frames, [2, 3, 4, 5]);
+    let summary = &lines[4]["summary"];
+    assert_eq!((&summary["ending"], &summary["last"]), (&Value::from("done"), &Value::from(5)));
+    assert_eq!(summary["checks"][0]["passed"], true);
+}
+
+#[test]
+fn frames_and_what_is_recorded_can_be_chosen() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    let moments = |arguments: &[&str]| {
+        let output = nucleus(folder.path(), &[&["run", "drape.ron", "-o", "x.mcap"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        nucleus_cache::Playback::open(folder.path().join("x.mcap")).unwrap().moments().len()
+    };
+    assert_eq!(moments(&["--frames", "3"]), 3);
+    assert_eq!(moments(&["--frames", "2..9"]), 8);
+    assert_eq!(moments(&["--frames", "3", "--record", "substeps"]), 1 + 2 * 2);
+    let output = nucleus(folder.path(), &["run", "drape.ron", "--record", "none", "-o", "none.mcap"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(!folder.path().join("none.mcap").exists());
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_file() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    let file = |threads: &str| {
+        nucleus(folder.path(), &["run", "drape.ron", "--threads", threads, "-o", "x.mcap"]);
+        fs::read(folder.path().join("x.mcap")).unwrap()
+    };
+    assert!(file("1") == file("3"));
+}
+
+#[test]
+fn a_file_that_is_no_cache_is_not_overwritten() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    fs::write(folder.path().join("drape.mcap"), "something dear").unwrap();
+    let output = nucleus(folder.path(), &["run", "drape.ron"]);
+    assert_refused(&output, "`drape.mcap` exists and is not a nucleus cache");
+    assert_eq!(fs::read_to_string(folder.path().join("drape.mcap")).unwrap(), "something dear");
+}
+
+#[test]
+fn a_cache_that_cannot_be_made_is_refused_with_the_reason_once() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "no/such/x.mcap"]);
+    assert_refused(&output, "cannot write `no/such/x.mcap`: No such file");
+    assert_eq!(stderr(&output).matches("No such file").count(), 1);
+}
+
+#[test]
+fn nonsense_on_the_command_line_is_refused() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    for arguments in [["--frames", "0"], ["--frames", "9..3"], ["--threads", "0"], ["--record", "all"]] {
+        let output = nucleus(folder.path(), &[&["run", "drape.ron"], arguments.as_slice()].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
