@@ -12,6 +12,7 @@ use crate::collision::resolve::{Tally, resolve};
 use crate::collision::search::Search;
 use crate::columns::Shared;
 use crate::frame::{ColliderFrame, FrameInput};
+use crate::observe::{Stage, StepObserver};
 use crate::scalar::{Real, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
@@ -46,7 +47,9 @@ impl<R: Real> Solver<R> {
         schedule: &Schedule<R>,
         step: u32,
         tally: &mut Tally,
+        watch: &mut dyn StepObserver,
     ) {
+        watch.enter(Stage::FindPairs);
         self.lift_from_ground(frame, schedule, tally);
         let steps = f64::from(schedule.substeps * schedule.steps);
         let time = [f64::from(step) / steps, f64::from(step + 1) / steps];
@@ -56,6 +59,7 @@ impl<R: Real> Solver<R> {
                 continue;
             }
             self.watch_pairs(frame, cloth, schedule, Times { step: time, end_of_substep }, tally);
+            watch.enter(Stage::Collide);
             let Self { state, collider_states, pairs, team, .. } = self;
             for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
                 let collider = list.collider;
