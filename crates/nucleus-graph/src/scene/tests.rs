@@ -113,6 +113,7 @@ fn soft_ranges_may_be_exceeded() {
     assert_eq!(warnings, []);
 }
 
+// EVIDENCE: N3.1-10  what is inherited, or set, and not supported is said
 #[test]
 fn what_has_no_effect_yet_is_a_warning_at_its_place() {
     let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", rigidity: 1)"#);
@@ -121,6 +122,9 @@ fn what_has_no_effect_yet_is_a_warning_at_its_place() {
     assert_eq!(warning.severity, Severity::Warning);
     assert_eq!(warning.message, "`rigidity` of `c` has no effect yet");
     assert_eq!(&text[warning.span.clone()], "rigidity");
+    let inherited = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", lifespanRandom: 1)"#);
+    let (_, warnings) = read_scene_text(&inherited, Path::new("test.ron")).expect("a valid scene");
+    assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect yet");
 }
 
 #[test]
