@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
 
+use crate::collision::bounce::{Bounce, Hit};
 use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
 use crate::collision::foresee::{foresee, is_foreseen, is_within};
@@ -11,9 +12,9 @@ use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, resolve};
 use crate::collision::search::Search;
 use crate::columns::Shared;
-use crate::frame::{ColliderFrame, FrameInput};
+use crate::frame::{ColliderFrame, FrameInput, GroundPlane};
 use crate::observe::{Stage, StepObserver};
-use crate::scalar::{Real, dot};
+use crate::scalar::{Real, Row4, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
 
@@ -254,6 +255,76 @@ impl<R: Real> Solver<R> {
         pairs.iter_mut().for_each(|list| list.move_anchors(&state.displacement));
     }
 
+    /// Gives back, after the step, part of the speed to the points that hit something that bounces.
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32) {
+        for cloth in 0..self.cloths.len() {
+            if let Some(ground) = frame.plane.filter(|_| frame.cloths[cloth].collide) {
+                self.bounce_off_ground(frame, schedule, cloth, &ground);
+            }
+            if self.can_touch(frame, cloth) {
+                self.bounce_off_colliders(frame, schedule, step, cloth);
+            }
+        }
+    }
+
+    fn bounce_off_ground(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        cloth: usize,
+        ground: &GroundPlane,
+    ) {
+        let settings = &frame.cloths[cloth];
+        let Some(bounce) = bounce_of(frame, schedule, settings.bounce.max(ground.bounce)) else { return };
+        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        let normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+        let thickness = R::from_f64(settings.thickness);
+        for row in self.cloths[cloth].points().map(|row| row as usize) {
+            let hit = self.hit(row);
+            if Bounce::touches(self.heights[row] + dot(normal, hit.displacement), thickness) {
+                self.set_velocity(row, bounce.off(&hit, normal, [R::ZERO; 3]));
+            }
+        }
+    }
+
+    fn bounce_off_colliders(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32, cloth: usize) {
+        for index in 0..self.pairs.len() {
+            if self.pairs[index].cloth != cloth {
+                continue;
+            }
+            let collider = self.pairs[index].collider;
+            let bounce = frame.cloths[cloth].bounce.max(frame.colliders[collider].bounce);
+            let Some(bounce) = bounce_of(frame, schedule, bounce) else { continue };
+            let end = f64::from(step + 1) / f64::from(schedule.substeps * schedule.steps);
+            for active in 0..self.pairs[index].active.point_face.len() {
+                let Self { state, collider_states, pairs, .. } = self;
+                let pair = pairs[index].point_face[pairs[index].active.point_face[active] as usize];
+                let span = pairs[index].span;
+                let view = StepParts { frame, cloth, collider, h: schedule.h, time: [end; 2], span };
+                let touch = pair.touch(&view.of(state, &collider_states[collider]), frame.duration);
+                if let Some((normal, surface)) = touch {
+                    let row = pair.points[0] as usize;
+                    self.set_velocity(row, bounce.off(&self.hit(row), normal, surface));
+                }
+            }
+        }
+    }
+
+    fn hit(&self, row: usize) -> Hit<R> {
+        Hit {
+            predicted: self.state.predicted[row].xyz(),
+            displacement: self.state.displacement[row].xyz(),
+            velocity: self.state.velocity[row].xyz(),
+        }
+    }
+
+    /// Sets the velocity of a point that is not pinned.
+    fn set_velocity(&mut self, row: usize, [x, y, z]: [R; 3]) {
+        if self.state.displacement[row].0[3] > R::ZERO {
+            self.state.velocity[row] = Row4([x, y, z, R::ZERO]);
+        }
+    }
+
     fn lift_from_ground(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
         let Some(ground) = &frame.plane else { return };
         let Self { cloths, state, heights, team, .. } = self;
@@ -277,6 +348,13 @@ impl<R: Real> Solver<R> {
             });
         }
     }
+}
+
+/// How things bounce in a frame; nothing where they do not.
+fn bounce_of<R: Real>(frame: &FrameInput, schedule: &Schedule<R>, bounce: f64) -> Option<Bounce<R>> {
+    let slowest = 2.0 * frame.gravity.norm() * schedule.h;
+    let (bounce, slowest, h) = (R::from_f64(bounce), R::from_f64(slowest), R::from_f64(schedule.h));
+    (bounce > R::ZERO).then_some(Bounce { bounce, slowest, h })
 }
 
 /// What a [`Step`] is made of, besides the state.

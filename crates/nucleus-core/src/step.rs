@@ -43,6 +43,7 @@ impl<R: Real> Solver<R> {
                 }
                 watch.enter(Stage::Velocity);
                 self.follow_positions(&schedule);
+                self.bounce(frame, &schedule, step);
             }
             self.damp(frame, &schedule);
             self.set_time(f64::from(substep) / f64::from(schedule.substeps));
