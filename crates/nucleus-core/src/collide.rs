@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
 
+use crate::collision::bounce::{Bounce, Hit};
 use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
 use crate::collision::foresee::{foresee, is_foreseen, is_within};
@@ -11,8 +12,9 @@ use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, resolve};
 use crate::collision::search::Search;
 use crate::columns::Shared;
-use crate::frame::FrameInput;
-use crate::scalar::Real;
+use crate::frame::{ColliderFrame, FrameInput, GroundPlane};
+use crate::observe::{Stage, StepObserver};
+use crate::scalar::{Real, Row4, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
 
@@ -21,6 +23,8 @@ const LEAST_THICKNESS: f64 = 1e-5;
 /// Shares of the thickness by which a point may stray from what is foreseen, in a window and in a substep.
 const STRAY_NEAR: f64 = 0.05;
 const STRAY_FAR: f64 = 0.5;
+/// Edge lengths that anything may go while one list of pairs holds.
+const FARTHEST: f64 = 2.0;
 /// Time steps for which active pairs are picked.
 const WINDOW: f64 = 8.0;
 
@@ -44,7 +48,9 @@ impl<R: Real> Solver<R> {
         schedule: &Schedule<R>,
         step: u32,
         tally: &mut Tally,
+        watch: &mut dyn StepObserver,
     ) {
+        watch.enter(Stage::FindPairs);
         self.lift_from_ground(frame, schedule, tally);
         let steps = f64::from(schedule.substeps * schedule.steps);
         let time = [f64::from(step) / steps, f64::from(step + 1) / steps];
@@ -54,6 +60,7 @@ impl<R: Real> Solver<R> {
                 continue;
             }
             self.watch_pairs(frame, cloth, schedule, Times { step: time, end_of_substep }, tally);
+            watch.enter(Stage::Collide);
             let Self { state, collider_states, pairs, team, .. } = self;
             for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
                 let collider = list.collider;
@@ -78,17 +85,15 @@ impl<R: Real> Solver<R> {
         times: Times,
         tally: &mut Tally,
     ) {
-        let Times { step, end_of_substep } = times;
-        if step[1] <= self.windows[cloth][1] && !self.has_strayed(cloth) {
+        let Times { step, .. } = times;
+        if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth) {
             return;
         }
-        let window = [step[0], end_of_substep.min(step[0] + (step[1] - step[0]) * WINDOW)];
-        if step[1] > self.spans[cloth][1] {
-            self.spans[cloth] = [step[0], end_of_substep];
-            let points = self.cloths[cloth].points();
-            self.strayed[points.start as usize..points.end as usize].fill(true);
+        if step[1] > self.spans[cloth][1] + 1e-9 {
+            self.begin_span(frame, cloth, times);
         }
-        let rest = [step[0], end_of_substep];
+        let rest = [step[0], self.spans[cloth][1].min(self.horizon(frame, cloth, times))];
+        let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW)];
         if self.foresee_points(frame, cloth, schedule, [window, rest]) {
             self.find_pairs(frame, cloth, schedule, step[0], tally);
         }
@@ -97,6 +102,40 @@ impl<R: Real> Solver<R> {
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let thickness = thickness(frame, cloth, list.collider);
             list.activate(near, window, R::from_f64(thickness), &cloths[cloth].blocks);
+        }
+    }
+
+    /// Sets the span that pairs are found for. A collider on its way needs a new list for each stretch of it;
+    /// around colliders at rest a pair holds for as long as its points stay where they are foreseen.
+    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: Times) {
+        let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
+        let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
+        if colliders.any(|(collider, _)| collider.moves) {
+            self.spans[cloth] = [times.step[0], self.horizon(frame, cloth, times)];
+            let points = self.cloths[cloth].points();
+            self.strayed[points.start as usize..points.end as usize].fill(true);
+        } else {
+            self.spans[cloth] = [0.0, 1.0];
+        }
+    }
+
+    /// How far ahead is foreseen: to the end of the substep, or as long as nothing goes farther than a few
+    /// edges. Boxes over a longer way would meet everything on it.
+    fn horizon(&self, frame: &FrameInput, cloth: usize, Times { step, end_of_substep }: Times) -> f64 {
+        let model = &self.cloths[cloth];
+        let points = model.points();
+        let rows = &self.state.velocity[points.start as usize..points.end as usize];
+        let squares = rows.iter().map(|row| dot(row.xyz(), row.xyz()).to_f64());
+        let fastest = squares.fold(0.0, f64::max).sqrt() * frame.duration;
+        let ways = self.collider_states.iter().zip(&frame.colliders).filter(|(_, theirs)| theirs.collide);
+        let farthest = ways.map(|(collider, _)| collider.way).fold(fastest, f64::max);
+        let length = step[1] - step[0];
+        let steps = (FARTHEST * model.edge_length / (farthest * length)).floor().max(1.0);
+        // A step more than it takes to the end is no step.
+        if step[0] + steps * length >= end_of_substep - length / 2.0 {
+            end_of_substep
+        } else {
+            step[0] + steps * length
         }
     }
 
@@ -189,10 +228,101 @@ impl<R: Real> Solver<R> {
         strayed.into_inner()
     }
 
-    /// Pairs no longer hold; the next pass finds them anew.
-    pub(crate) fn forget_pairs(&mut self) {
-        self.spans.fill([0.0, 0.0]);
+    /// Takes pairs over into a new frame, before anchors move; they are found anew if a collider moved or will
+    /// move, or if what touches has changed.
+    pub(crate) fn take_over_pairs(&mut self, frame: &FrameInput) {
         self.windows.fill([0.0, 0.0]);
+        self.spans.fill([0.0, 0.0]);
+        let terms = |(collide, thickness): (bool, f64)| if collide { thickness } else { f64::INFINITY };
+        let cloths = frame.cloths.iter().map(|cloth| (cloth.collide, cloth.thickness));
+        let colliders = frame.colliders.iter().map(|collider| (collider.collide, collider.thickness));
+        let same = cloths.clone().chain(colliders.clone()).map(terms).eq(self.terms.iter().copied());
+        let moves =
+            frame.colliders.iter().any(|collider| !collider.start.is_empty() || !collider.end.is_empty());
+        let moved = self.collider_states.iter().any(|collider| collider.moves);
+        if !same || moves || moved {
+            self.terms = cloths.chain(colliders).map(terms).collect();
+            self.strayed.fill(true);
+            return;
+        }
+        let Self { pairs, state, far, .. } = self;
+        for ([low, high], moved) in far.iter_mut().zip(&state.displacement) {
+            for axis in 0..3 {
+                low.0[axis] -= moved.0[axis];
+                high.0[axis] -= moved.0[axis];
+            }
+        }
+        pairs.iter_mut().for_each(|list| list.move_anchors(&state.displacement));
+    }
+
+    /// Gives back, after the step, part of the speed to the points that hit something that bounces.
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32) {
+        for cloth in 0..self.cloths.len() {
+            if let Some(ground) = frame.plane.filter(|_| frame.cloths[cloth].collide) {
+                self.bounce_off_ground(frame, schedule, cloth, &ground);
+            }
+            if self.can_touch(frame, cloth) {
+                self.bounce_off_colliders(frame, schedule, step, cloth);
+            }
+        }
+    }
+
+    fn bounce_off_ground(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        cloth: usize,
+        ground: &GroundPlane,
+    ) {
+        let settings = &frame.cloths[cloth];
+        let Some(bounce) = bounce_of(frame, schedule, settings.bounce.max(ground.bounce)) else { return };
+        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        let normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+        let thickness = R::from_f64(settings.thickness);
+        for row in self.cloths[cloth].points().map(|row| row as usize) {
+            let hit = self.hit(row);
+            if Bounce::touches(self.heights[row] + dot(normal, hit.displacement), thickness) {
+                self.set_velocity(row, bounce.off(&hit, normal, [R::ZERO; 3]));
+            }
+        }
+    }
+
+    fn bounce_off_colliders(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32, cloth: usize) {
+        for index in 0..self.pairs.len() {
+            if self.pairs[index].cloth != cloth {
+                continue;
+            }
+            let collider = self.pairs[index].collider;
+            let bounce = frame.cloths[cloth].bounce.max(frame.colliders[collider].bounce);
+            let Some(bounce) = bounce_of(frame, schedule, bounce) else { continue };
+            let end = f64::from(step + 1) / f64::from(schedule.substeps * schedule.steps);
+            for active in 0..self.pairs[index].active.point_face.len() {
+                let Self { state, collider_states, pairs, .. } = self;
+                let pair = pairs[index].point_face[pairs[index].active.point_face[active] as usize];
+                let span = pairs[index].span;
+                let view = StepParts { frame, cloth, collider, h: schedule.h, time: [end; 2], span };
+                let touch = pair.touch(&view.of(state, &collider_states[collider]), frame.duration);
+                if let Some((normal, surface)) = touch {
+                    let row = pair.points[0] as usize;
+                    self.set_velocity(row, bounce.off(&self.hit(row), normal, surface));
+                }
+            }
+        }
+    }
+
+    fn hit(&self, row: usize) -> Hit<R> {
+        Hit {
+            predicted: self.state.predicted[row].xyz(),
+            displacement: self.state.displacement[row].xyz(),
+            velocity: self.state.velocity[row].xyz(),
+        }
+    }
+
+    /// Sets the velocity of a point that is not pinned.
+    fn set_velocity(&mut self, row: usize, [x, y, z]: [R; 3]) {
+        if self.state.displacement[row].0[3] > R::ZERO {
+            self.state.velocity[row] = Row4([x, y, z, R::ZERO]);
+        }
     }
 
     fn lift_from_ground(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
@@ -218,6 +348,13 @@ impl<R: Real> Solver<R> {
             });
         }
     }
+}
+
+/// How things bounce in a frame; nothing where they do not.
+fn bounce_of<R: Real>(frame: &FrameInput, schedule: &Schedule<R>, bounce: f64) -> Option<Bounce<R>> {
+    let slowest = 2.0 * frame.gravity.norm() * schedule.h;
+    let (bounce, slowest, h) = (R::from_f64(bounce), R::from_f64(slowest), R::from_f64(schedule.h));
+    (bounce > R::ZERO).then_some(Bounce { bounce, slowest, h })
 }
 
 /// What a [`Step`] is made of, besides the state.

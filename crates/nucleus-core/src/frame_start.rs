@@ -9,6 +9,7 @@ use crate::solver::Solver;
 impl<R: Real> Solver<R> {
     /// Takes up what a frame brings.
     pub(crate) fn begin_frame(&mut self, frame: &FrameInput) {
+        self.take_over_pairs(frame);
         self.move_anchors();
         for pin in &frame.pins {
             self.hold(pin, frame.duration);
@@ -17,8 +18,6 @@ impl<R: Real> Solver<R> {
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);
         }
-        // Foreseen places are displacements from anchors that have just moved.
-        self.forget_pairs();
         self.heights.clear();
         if let Some(ground) = &frame.plane {
             let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
@@ -41,7 +40,12 @@ impl<R: Real> Solver<R> {
     /// A pinned point is one of endless mass on its way.
     fn hold(&mut self, pin: &Pin, duration: f64) {
         let row = self.cloths[pin.cloth.index()].place(pin.point.index()) as usize;
-        self.state.anchor[row] = pin.start.into();
+        let start: [f64; 3] = pin.start.into();
+        // Put somewhere else, it is foreseen nowhere.
+        if self.state.anchor[row] != start && !self.strayed.is_empty() {
+            self.strayed[row] = true;
+        }
+        self.state.anchor[row] = start;
         self.state.displacement[row].0[3] = R::ZERO;
         self.state.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
     }

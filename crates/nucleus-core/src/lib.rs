@@ -46,7 +46,7 @@ mod velocity;
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder};
 pub use frame::{COUNT_PERIOD, ClothFrame, ColliderFrame, FrameInput, GroundPlane, Pin, ResistanceModel};
 pub use ids::{ClothId, ColliderId, PointId};
-pub use observe::{Moment, StateView, StepObserver};
+pub use observe::{Moment, Stage, StateView, StepObserver};
 pub use passes::PassCost;
 pub use report::StepReport;
 pub use resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, classic_stiffness};

@@ -38,6 +38,35 @@ pub trait StateView {
 pub trait StepObserver {
     /// Called once after each substep.
     fn substep(&mut self, moment: Moment, state: &dyn StateView);
+
+    /// Called when the solver turns to another stage of its work. The solver has no clock; who wants to know
+    /// how long a stage takes looks at one here.
+    fn enter(&mut self, stage: Stage) {
+        let _ = stage;
+    }
+}
+
+/// The stages of a frame, in the order in which they come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Animation is taken up; anchors, rows and trees follow it.
+    FrameStart,
+    /// Normals for the air.
+    Normals,
+    /// Forces, inertia, and the velocities of the step before.
+    Predict,
+    /// Sweeps over links and hinges.
+    Relax,
+    /// The broad phase, and the ground plane.
+    FindPairs,
+    /// Contacts.
+    Collide,
+    /// Velocities, damping.
+    Velocity,
+    /// Showing the state to the observer.
+    Watch,
+    /// The account of the frame.
+    Report,
 }
 
 impl StepObserver for () {

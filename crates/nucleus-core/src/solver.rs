@@ -30,6 +30,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) far: Vec<Cover<R>>,
     /// Points for which something new is foreseen, so that their pairs are to be found again.
     pub(crate) strayed: Vec<bool>,
+    /// What the pairs were found under: the thickness of each cloth and collider, endless where it does not collide.
+    pub(crate) terms: Vec<f64>,
     /// Heights of anchors above the ground plane; empty where the scene uses none.
     pub(crate) heights: Vec<R>,
     pub(crate) team: Team,
@@ -56,7 +58,8 @@ impl<R: Real> Solver<R> {
             windows: vec![[0.0; 2]; models.len()],
             near: vec![[Row4::ZERO; 2]; covered],
             far: vec![[Row4::ZERO; 2]; covered],
-            strayed: vec![false; covered],
+            strayed: vec![true; covered],
+            terms: Vec::new(),
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
             cloths: models,

@@ -7,7 +7,7 @@ use crate::collision::resolve::Tally;
 use crate::columns::Shared;
 use crate::constraints::damp::{self, DampStrength};
 use crate::frame::FrameInput;
-use crate::observe::{Moment, StepObserver};
+use crate::observe::{Moment, Stage, StepObserver};
 use crate::predict::{self, Columns, Drive, gravity_kick};
 use crate::relax;
 use crate::report::StepReport;
@@ -23,24 +23,34 @@ impl<R: Real> Solver<R> {
     pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
         let schedule = Schedule::new(frame);
         let mut tally = Tally::default();
+        watch.enter(Stage::FrameStart);
         self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
         let fastest = self.fastest(frame);
         for substep in 1..=schedule.substeps {
+            watch.enter(Stage::Normals);
             self.find_normals();
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
+                watch.enter(Stage::Predict);
                 self.predict(frame, &schedule, &fastest, step); // gravity, wind, drag; inertia
                 for round in schedule.rounds(step) {
                     match round {
-                        Round::Relax(sweeps) => relax::sweep(self, &schedule.sweeps[sweeps.clone()]),
-                        Round::Collide => self.collide(frame, &schedule, step, &mut tally), // the last word
+                        Round::Relax(sweeps) => {
+                            watch.enter(Stage::Relax);
+                            relax::sweep(self, &schedule.sweeps[sweeps.clone()]);
+                        }
+                        Round::Collide => self.collide(frame, &schedule, step, &mut tally, watch), // the last word
                     }
                 }
+                watch.enter(Stage::Velocity);
                 self.follow_positions(&schedule);
+                self.bounce(frame, &schedule, step);
             }
             self.damp(frame, &schedule);
             self.set_time(f64::from(substep) / f64::from(schedule.substeps));
+            watch.enter(Stage::Watch);
             watch.substep(Moment { substep, substeps: schedule.substeps }, self);
         }
+        watch.enter(Stage::Report);
         self.report(frame, &schedule, &tally)
     }
 

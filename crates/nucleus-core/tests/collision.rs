@@ -192,6 +192,37 @@ fn friction_holds_on_a_slope_up_to_its_angle_and_not_beyond() {
 }
 
 #[test]
+fn what_bounces_rises_to_the_square_of_its_bounce() {
+    for on_mesh in [false, true] {
+        let mut patch = grid(3, 3, Vec3::x() * 0.2, Vec3::z() * 0.2);
+        patch.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.1, 1.01, -0.1));
+        let mut builder = one_cloth(patch, LINKS);
+        let mut input = FrameInput { plane: ground(0.0), ..frame(3, physical(384.0)) };
+        input.cloths = vec![ClothFrame { thickness: 0.01, bounce: 0.7, ..still() }];
+        if on_mesh {
+            let mut table = grid(2, 2, Vec3::x() * 2.0, Vec3::z() * 2.0);
+            table.positions.iter_mut().for_each(|p| *p -= Vec3::new(1.0, 0.0, 1.0));
+            builder.collider(Collider { surface: table }).expect("a good mesh");
+            input.colliders = vec![ColliderFrame { collide: true, ..Default::default() }];
+            input.plane = None;
+        }
+        let mut solver = Solver::<f32>::new(builder, 1);
+        // Let go 1 m above the thickness, it is back on its way down after the second half of a second.
+        let fall = (2.0f64 / 9.81).sqrt();
+        let frames = (24.0 * fall * (1.0 + 2.0 * 0.7)) as usize;
+        let heights: Vec<f64> = (0..frames)
+            .map(|_| {
+                solver.step(&input, &mut ());
+                solver.point(CLOTH, 4).y - 0.01
+            })
+            .collect();
+        let apex = heights[(24.0 * fall) as usize + 1..].iter().copied().fold(0.0, f64::max);
+        // A frame may miss the very top by 2 mm.
+        assert!((apex - 0.49).abs() < 0.006, "on a mesh: {on_mesh}: {apex}");
+    }
+}
+
+#[test]
 fn cloth_that_starts_too_close_is_led_out_without_a_jump() {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| p.y = 0.002);

@@ -44,6 +44,15 @@ fn chromium() -> Option<&'static Path> {
 
 /// Serves the cache and looks at it; `wish` is what stands behind the # of the address.
 fn look(chromium: &Path, cache: &Path, wish: &str) -> Seen {
+    look_with(
+        chromium,
+        cache,
+        wish,
+        &["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    )
+}
+
+fn look_with(chromium: &Path, cache: &Path, wish: &str, graphics: &[&str]) -> Seen {
     let player = serve(cache, 0).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let screen = folder.path().join("screen.png");
@@ -51,7 +60,7 @@ fn look(chromium: &Path, cache: &Path, wish: &str) -> Seen {
     let mut child = Command::new(chromium)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
-        .args(["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        .args(graphics)
         .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
         .args(["--window-size=800,500", "--virtual-time-budget=5000", "--dump-dom"])
         .arg(format!("--screenshot={}", screen.display()))
@@ -166,6 +175,30 @@ fn chunk_starts(bytes: &[u8]) -> Vec<usize> {
         at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
     }
     starts
+}
+
+#[test]
+fn a_damaged_index_costs_no_frame() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    let mut bytes = std::fs::read(&path).unwrap();
+    let in_summary = bytes.len() - 500;
+    bytes[in_summary] ^= 0xFF;
+    std::fs::write(&path, bytes).unwrap();
+    let seen = look(chromium, &path, "frame=24");
+    assert!(seen.page.contains(r#"data-frame="24""#), "{}", seen.page);
+    assert!(seen.page.contains("its index is damaged"), "{}", seen.page);
+}
+
+#[test]
+fn a_browser_without_webgl2_is_told_what_it_lacks() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    let seen = look_with(chromium, &path, "", &["--disable-3d-apis"]);
+    assert!(seen.page.contains(r#"data-state="error""#), "{}", seen.page);
+    assert!(seen.page.contains("This browser offers no WebGL2."), "{}", seen.page);
 }
 
 #[test]

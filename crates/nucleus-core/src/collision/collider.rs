@@ -15,6 +15,8 @@ pub struct ColliderState {
     pub end: Vec<Vector3<f64>>,
     /// Whether any point moves in this frame.
     pub moves: bool,
+    /// The farthest that any point goes in this frame, in metres.
+    pub way: f64,
     /// The time of the frame that the solver has come to, as a share of it.
     pub now: f64,
     /// What the boxes are relative to.
@@ -47,6 +49,7 @@ impl ColliderState {
             start: model.positions.clone(),
             end: model.positions.clone(),
             moves: false,
+            way: 0.0,
             now: 0.0,
             origin: model.positions.first().copied().unwrap_or_default(),
             boxes: Boxes::default(),
@@ -67,6 +70,8 @@ impl ColliderState {
             self.end.clone_from_slice(next);
             self.fitted = None;
             self.moves = self.start != self.end;
+            let ways = self.start.iter().zip(&self.end).map(|(start, end)| (end - start).norm());
+            self.way = ways.fold(0.0, f64::max);
         }
     }
 

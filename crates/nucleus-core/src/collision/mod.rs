@@ -10,8 +10,10 @@
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
 //! | the ground plane | [`plane`] |
+//! | bounce, once velocities are known | [`bounce`] |
 //! | one collision pass | [`resolve`] |
 
+pub mod bounce;
 pub mod collider;
 pub mod contact;
 pub mod foresee;

@@ -7,7 +7,7 @@ use super::collider::Boxes;
 use super::contact::Pair;
 use super::foresee::Cover;
 use crate::model::Blocks;
-use crate::scalar::Real;
+use crate::scalar::{Real, Row4};
 
 /// The pairs of one cloth and one collider, and the span they hold for.
 #[derive(Debug, Clone)]
@@ -24,8 +24,8 @@ pub struct PairList<R> {
     pub edge_edge: Vec<Pair<R, 2, 2>>,
     /// Faces of the cloth near points of the collider.
     pub face_point: Vec<Pair<R, 3, 1>>,
-    /// The order of `point_face` by point.
-    pub by_point: Vec<u32>,
+    /// `point_face` in the order of points: the point in the upper half, the index in the lower.
+    pub by_point: Vec<u64>,
     /// Those of the pairs that can touch within the next few time steps.
     pub active: Active,
     /// Which groups the last search went through.
@@ -82,13 +82,27 @@ impl<R: Real> PairList<R> {
         self.active.face_point.clear();
     }
 
+    /// Follows anchors that move to where the points are.
+    pub fn move_anchors(&mut self, moved: &[Row4<R>]) {
+        self.point_face.iter_mut().for_each(|pair| pair.move_anchors(moved));
+        self.edge_edge.iter_mut().for_each(|pair| pair.move_anchors(moved));
+        self.face_point.iter_mut().for_each(|pair| pair.move_anchors(moved));
+    }
+
     /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
     pub fn activate(&mut self, cover: &[Cover<R>], window: [f64; 2], thickness: R, blocks: &Blocks) {
         let Self { span, point_face, edge_edge, face_point, by_point, active, .. } = self;
         let share = |time: f64| if span[1] > span[0] { (time - span[0]) / (span[1] - span[0]) } else { 0.0 };
         let window = window.map(|time| R::from_f64(share(time)));
         let all = |pairs: usize| 0..pairs as u32;
-        pick(point_face, by_point.iter().copied(), &mut active.point_face, cover, window, thickness);
+        pick(
+            point_face,
+            by_point.iter().map(|&key| key as u32),
+            &mut active.point_face,
+            cover,
+            window,
+            thickness,
+        );
         pick(edge_edge, all(edge_edge.len()), &mut active.edge_edge, cover, window, thickness);
         pick(face_point, all(face_point.len()), &mut active.face_point, cover, window, thickness);
         let place = |end: u32| {

@@ -40,15 +40,27 @@ impl Tally {
     }
 }
 
-/// Keeps every active pair of the list apart once.
+/// Keeps every active pair of the list apart once. Points go first: on a smooth surface they carry the cloth,
+/// and edges and faces, which would lift one end when the other is low, find nothing left to do. Where they do
+/// find something, points have the last word.
 pub fn resolve<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team, tally: &Tally) {
-    let PairList { point_face, edge_edge, face_point, active, .. } = list;
+    settle_points(list, step, team, tally);
+    let PairList { edge_edge, face_point, active, .. } = list;
+    let mut pushed = 0;
     for &pair in &active.edge_edge {
-        tally.count(edge_edge[pair as usize].resolve(step));
+        pushed += usize::from(tally.count(edge_edge[pair as usize].resolve(step)));
     }
     for &pair in &active.face_point {
-        tally.count(face_point[pair as usize].resolve(step));
+        pushed += usize::from(tally.count(face_point[pair as usize].resolve(step)));
     }
+    if pushed > 0 {
+        settle_points(list, step, team, tally);
+    }
+}
+
+/// Goes through points against faces, block by block.
+fn settle_points<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team, tally: &Tally) {
+    let PairList { point_face, active, .. } = list;
     let pairs = Shared::new(point_face);
     team.phase(active.runs.len(), |block| {
         let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];

@@ -73,11 +73,9 @@ impl<R: Real> Search<'_, R> {
         (found.searched, found.boxes) = (again, boxes);
         let PairList { point_face, by_point, .. } = found;
         by_point.clear();
-        by_point.extend(0..point_face.len() as u32);
-        by_point.sort_unstable_by_key(|&pair| {
-            let pair = &point_face[pair as usize];
-            (pair.points, pair.collider_points)
-        });
+        let key = |(index, pair): (u64, &Pair<R, 1, 3>)| u64::from(pair.points[0]) << 32 | index;
+        by_point.extend((0..).zip(point_face.iter()).map(key));
+        by_point.sort_unstable();
     }
 
     /// Writes the boxes of a group's elements, with the thickness; the box round them all.

@@ -2,7 +2,7 @@ use super::*;
 use crate::animation::{Curve, Key, Tangent};
 use crate::attributes::{
     Choice, Component, Selection, Value, dynamic_constraint, mesh, n_cloth, n_component, n_rigid, nucleus,
-    poly_plane, transform,
+    particle, poly_plane, transform,
 };
 
 fn keys(keys: &[(f64, f64)]) -> Curve {
@@ -139,6 +139,16 @@ fn what_does_not_fit_is_refused() {
     let error = graph.set(cloth, &nucleus::GRAVITY.row, Setting::Fixed(Value::Float(1.0)));
     assert!(matches!(error, Err(GraphError::NoAttribute { .. })), "{error:?}");
     assert!(matches!(graph.add("cloth1", &n_cloth::N_CLOTH), Err(GraphError::NameTaken { .. })));
+}
+
+// EVIDENCE: N3.1-9  an inherited attribute that cloth does not show can be set and read all the same
+#[test]
+fn what_a_type_does_not_show_can_still_be_set_and_read() {
+    let (mut graph, cloth, ..) = sheet();
+    let row = &particle::LIFESPAN_MODE.row;
+    assert!(graph.node(cloth).node_type().keeps_from_view(row));
+    graph.set(cloth, row, Setting::Fixed(Value::Choice(Choice(2)))).expect("it can be written");
+    assert_eq!(graph.node(cloth).get(&particle::LIFESPAN_MODE), Choice(2));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 import { readChunk } from "./chunk.js";
 import { openIndex } from "./mcap.js";
 import { readPoints, readTopology } from "./points.js";
-import { Trouble } from "./trouble.js";
+import { Damage, Trouble } from "./trouble.js";
 
 // Unpacked frames are kept up to this many bytes.
 const KEPT_BYTES = 384e6;
@@ -50,6 +50,9 @@ export class Cache {
     const { moments, report } = await this.unpack(this.frames[index]);
     const last = Math.min(moment, moments.length - 1);
     const positions = await Promise.all(this.objects.map((_, k) => this.positionsOf(k, index, last)));
+    if (moments.length === 0) {
+      throw new Damage();
+    }
     const { frame, substep, substeps, time } = moments[last];
     return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions };
   }
@@ -94,7 +97,7 @@ export class Cache {
 
   async readMoments(chunk) {
     const { messages } = await readChunk(this.source, chunk);
-    const moments = new Map();
+    const moments = new Map(); // by time
     let report = null;
     for (const { channel, time, data } of messages) {
       const { topic, encoding } = this.channels.get(channel) ?? {};
@@ -126,13 +129,16 @@ export class Cache {
 
   async readObjects() {
     for (const object of this.objects) {
-      const chunk = this.chunks.find(({ channels }) => channels.has(object.mesh));
-      const messages = chunk ? (await readChunk(this.source, chunk)).messages : [];
-      const message = messages.find(({ channel }) => channel === object.mesh);
-      if (!message) {
-        throw new Trouble(`The mesh of “${object.name}” is missing.`, "The file is damaged at its beginning.");
+      try {
+        const chunk = this.chunks.find(({ channels }) => channels.has(object.mesh));
+        const { messages } = await readChunk(this.source, chunk);
+        object.topology = readTopology(messages.find(({ channel }) => channel === object.mesh).data);
+      } catch (error) {
+        if (error instanceof Trouble && !(error instanceof Damage)) {
+          throw error;
+        }
+        throw new Trouble(`The mesh of “${object.name}” cannot be read.`, "The file is damaged at its beginning.");
       }
-      object.topology = readTopology(message.data);
     }
   }
 }

@@ -2,22 +2,22 @@
 
 import { decompress } from "../vendor/fzstd.mjs";
 import { Reader } from "./bytes.js";
+import { crc32 } from "./crc.js";
 import { OP, readChannel, records } from "./records.js";
-import { Trouble } from "./trouble.js";
+import { Damage, Trouble } from "./trouble.js";
 
 const LARGEST = 2 ** 30;
 
 // The channels that a chunk introduces and its messages: { channel, time, data }.
 export async function readChunk(source, { offset, length }) {
-  const damaged = () => new Trouble("A frame of the file is damaged.", "The frames before and after it can still be shown.");
   if (length > LARGEST) {
-    throw damaged();
+    throw new Damage();
   }
   const record = new Reader(await source.read(offset, length));
   try {
     return unpack(record);
   } catch (error) {
-    throw error instanceof Trouble ? error : damaged();
+    throw error instanceof Trouble ? error : new Damage();
   }
 }
 
@@ -62,20 +62,4 @@ function expand(bytes, compression, size) {
     throw new RangeError("wrong length");
   }
   return expanded;
-}
-
-const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let sum = byte;
-  for (let bit = 0; bit < 8; bit += 1) {
-    sum = sum & 1 ? (sum >>> 1) ^ 0xedb88320 : sum >>> 1;
-  }
-  return sum;
-});
-
-function crc32(bytes) {
-  let sum = -1;
-  for (let k = 0; k < bytes.length; k += 1) {
-    sum = CRC_TABLE[(sum ^ bytes[k]) & 255] ^ (sum >>> 8);
-  }
-  return ~sum >>> 0;
 }

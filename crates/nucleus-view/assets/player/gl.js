@@ -3,7 +3,7 @@
 import { Trouble } from "./trouble.js";
 
 export function context(canvas) {
-  const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
   if (!gl) {
     throw new Trouble("This browser offers no WebGL2.", "Try a current browser, or switch on hardware acceleration.");
   }

@@ -1,11 +1,14 @@
 // Finds what an MCAP file holds without reading all of it: footer, then summary, then chunk indexes.
 
 import { Reader } from "./bytes.js";
+import { crc32 } from "./crc.js";
 import { MAGIC, OP, readChannel, readChunkIndex, readMetadata, records } from "./records.js";
 import { scan } from "./scan.js";
 import { Trouble } from "./trouble.js";
 
 const FOOTER_LENGTH = 9 + 20 + MAGIC.length;
+// The part of the footer that the checksum of the summary covers: all before the sum itself.
+const GUARDED_FOOTER = 9 + 16;
 const LARGEST_SUMMARY = 256e6;
 
 // What a file holds: `channels` by id, `chunks` in order of time, `metadata` by name, and
@@ -32,13 +35,13 @@ function startsWithMagic(bytes) {
   return MAGIC.every((byte, k) => bytes[k] === byte);
 }
 
-// The summary at the end of the file, or null if the file was never finished.
+// The summary at the end of the file, or null if the file was never finished or its summary is damaged.
 async function readSummary(source) {
   if (source.size < FOOTER_LENGTH + MAGIC.length) {
     return null;
   }
   const footer = new Reader(await source.read(source.size - FOOTER_LENGTH, FOOTER_LENGTH));
-  const [op, , start] = [footer.u8(), footer.u64(), footer.u64()];
+  const [op, , start, , sum] = [footer.u8(), footer.u64(), footer.u64(), footer.u64(), footer.u32()];
   const length = source.size - FOOTER_LENGTH - start;
   if (op !== OP.footer || !startsWithMagic(footer.bytes.subarray(29)) || start === 0) {
     return null;
@@ -46,7 +49,24 @@ async function readSummary(source) {
   if (!(length >= 0 && length <= LARGEST_SUMMARY)) {
     return null;
   }
-  return parseSummary(source, await source.read(start, length));
+  const bytes = await source.read(start, length + FOOTER_LENGTH);
+  const guarded = bytes.subarray(0, length + GUARDED_FOOTER);
+  if (sum !== 0 && crc32(guarded) !== sum) {
+    return null;
+  }
+  try {
+    return await parseSummary(source, bytes.subarray(0, length));
+  } catch (error) {
+    return unlessTrouble(error);
+  }
+}
+
+// What a damaged record throws means "not there"; a server that is gone is still to be told of.
+function unlessTrouble(error) {
+  if (error instanceof Trouble) {
+    throw error;
+  }
+  return null;
 }
 
 async function parseSummary(source, bytes) {
@@ -61,6 +81,10 @@ async function parseSummary(source, bytes) {
     } else if (op === OP.metadataIndex) {
       places.push({ offset: body.u64(), length: body.u64() });
     }
+  }
+  const isInside = ({ offset, length }) => offset + length <= source.size;
+  if (!index.chunks.every(isInside) || !places.every(isInside)) {
+    return null;
   }
   for (const { offset, length } of places.filter(({ length }) => length <= LARGEST_SUMMARY)) {
     for (const { op, body } of records(await source.read(offset, length))) {

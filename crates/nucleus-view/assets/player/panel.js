@@ -28,11 +28,11 @@ function element(tag, properties = {}, ...children) {
 }
 
 // A line per object, to switch it on and off.
-export function showObjects(things, onChange) {
-  byId("objects").replaceChildren(...things.map((thing) => {
+export function showObjects(scene, onChange) {
+  byId("objects").replaceChildren(...scene.things.map((thing) => {
     const box = element("input", { type: "checkbox", checked: thing.isShown });
     box.addEventListener("change", () => {
-      thing.isShown = box.checked;
+      scene.setShown(thing, box.checked);
       box.blur(); // else the space bar would switch it again
       onChange();
     });

@@ -19,7 +19,14 @@ export async function scan(source, onProgress = () => {}) {
     if (op === OP.dataEnd || op === OP.footer || at + HEAD + length > source.size) {
       break;
     }
-    await take(index, source, window, { op, at, length });
+    try {
+      await take(index, window, { op, at, length });
+    } catch (error) {
+      if (!(error instanceof RangeError)) {
+        throw error;
+      }
+      // A damaged record; the next one may be whole.
+    }
     at += HEAD + length;
     onProgress(at / source.size);
   }
@@ -27,7 +34,7 @@ export async function scan(source, onProgress = () => {}) {
   return index;
 }
 
-async function take(index, source, window, { op, at, length }) {
+async function take(index, window, { op, at, length }) {
   const body = async (most) => new Reader(await window.read(at + HEAD, Math.min(length, most)));
   if (op === OP.chunk) {
     const times = await body(16);

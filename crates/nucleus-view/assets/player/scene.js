@@ -24,27 +24,42 @@ export class Scene {
     this.look = { wireframe: false, strain: false, fullScale: 0.05 };
   }
 
-  // Replaces the objects. `stage` is the box of all that moves, over the run; the floor lies under it.
-  setObjects(objects, stage, floor) {
+  // Replaces the objects.
+  setObjects(objects) {
     this.things.forEach(({ vertices }) => vertices.delete());
     const colours = objectColours(objects);
     this.things = objects.map(({ name, topology }, k) => ({
-      name, mesh: new Mesh(topology), colour: colours[k], isShown: true,
+      name, points: topology.points, mesh: new Mesh(topology), colour: colours[k], isShown: true,
       vertices: new VertexArray(this.gl, [3, 3, 1]),
     }));
+  }
+
+  // `stage` is the box of all that moves, over the run; the floor lies under it.
+  setStage(stage, floor) {
     this.stage = stage;
     this.floor = floor;
+    this.hasOldShadow = true;
   }
 
   // Takes the positions of a moment, one array for each object.
   update(positions) {
     this.things.forEach(({ mesh, vertices }, k) => {
+      const before = mesh.drawnTriangles;
       if (mesh.update(positions[k])) {
         vertices.set(POSITION, mesh.positions);
         vertices.set(NORMAL, mesh.normals);
-        vertices.setIndices([mesh.drawnTriangles, mesh.drawnEdges]);
+        if (mesh.drawnTriangles !== before) {
+          vertices.setIndices([mesh.drawnTriangles, mesh.drawnEdges]);
+        }
+        this.hasOldShadow = true;
       }
     });
+  }
+
+  // Shows or hides an object.
+  setShown(thing, isShown) {
+    thing.isShown = isShown;
+    this.hasOldShadow = true;
   }
 
   // The box round all shown objects that move, or round all shown ones; null if nothing is shown.
@@ -65,7 +80,10 @@ export class Scene {
   draw(camera) {
     const { gl } = this;
     const light = this.light();
-    this.drawShadow(light);
+    if (this.hasOldShadow) {
+      this.drawShadow(light);
+      this.hasOldShadow = false;
+    }
     this.fit();
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(...BACKGROUND.map(Math.sqrt), 1);

@@ -14,12 +14,12 @@ uniform float cell;
 float keyReaches(vec3 at, vec3 normal) {
   vec3 inLight = (light * vec4(at + normal * cell * 2.5, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(inLight, vec3(0.0))) || any(greaterThan(inLight, vec3(1.0)))) return 1.0;
-  vec2 step = 1.25 / vec2(textureSize(depths, 0));
+  vec2 step = 1.5 / vec2(textureSize(depths, 0));
   float sum = 0.0;
-  for (int y = -2; y <= 2; y++)
-    for (int x = -2; x <= 2; x++)
+  for (int y = -1; y <= 1; y++)
+    for (int x = -1; x <= 1; x++)
       sum += texture(depths, vec3(inLight.xy + vec2(x, y) * step, inLight.z));
-  return sum / 25.0;
+  return sum / 9.0;
 }
 vec3 matt(vec3 colour, vec3 normal, float key) {
   vec3 sky = vec3(0.29, 0.31, 0.35) * (0.62 + 0.38 * normal.y);

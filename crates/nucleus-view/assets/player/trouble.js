@@ -5,3 +5,9 @@ export class Trouble extends Error {
     this.hint = hint;
   }
 }
+
+export class Damage extends Trouble {
+  constructor() {
+    super("A frame of the file is damaged.", "The frames before and after it can still be shown.");
+  }
+}

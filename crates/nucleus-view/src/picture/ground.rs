@@ -19,6 +19,8 @@ pub(super) struct Ground {
     /// Distance between two lines of the grid, in scene units.
     spacing: f32,
     open: Vec<f32>,
+    /// Toward the key light.
+    key: Vec3,
 }
 
 impl Ground {
@@ -30,7 +32,14 @@ impl Ground {
         let open = (0..SIDE * SIDE)
             .map(|k| light.openness(&(centre + Vec3::new(at(k % SIDE), 0.0, at(k / SIDE))), &Vec3::y()))
             .collect();
-        Self { height, centre, reach, spacing: round_length(lens.reach() / 6.0), open }
+        Self {
+            height,
+            centre,
+            reach,
+            spacing: round_length(lens.reach() / 6.0),
+            open,
+            key: Light::key_direction(lens),
+        }
     }
 
     /// Whether the floor is between the eye and a point that is more than `slack` behind it.
@@ -54,10 +63,11 @@ impl Ground {
         let near = 1.0 - shade::ramp(0.75, 1.0, far); // shade fades out before its maps end
         let key = 1.0 - near * (1.0 - light.key_reaches(&point, &Vec3::y()));
         let open = 1.0 - near * (1.0 - self.openness(&point));
-        let width = depth / lens.scale * ray.norm() / ray.normalize().y.abs().max(0.05);
+        let length = ray.norm();
+        let width = depth / lens.scale * length / (ray.y.abs() / length).max(0.05);
         let lines = self.lines(&point, width) * (1.0 - shade::ramp(0.4, 1.6, far));
         let colour = Vec3::from(FLOOR) * (1.0 - lines * (1.0 - LINE_DARKER));
-        Some((shade::matt(&colour, &Vec3::y(), key, open, &Light::key_direction(lens)), solid))
+        Some((shade::matt(&colour, &Vec3::y(), key, open, &self.key), solid))
     }
 
     fn openness(&self, point: &Vec3) -> f32 {

@@ -2,7 +2,9 @@
 
 use std::fs::File;
 use std::io::BufWriter;
+use std::num::NonZero;
 use std::path::Path;
+use std::thread;
 
 use super::Vec3;
 use crate::ViewError;
@@ -61,17 +63,41 @@ impl Image {
     }
 
     /// Sets a pixel inside the picture to a linear colour.
-    ///
-    /// A square root stands for the sRGB curve: it is within a few levels of it and, unlike a power,
-    /// the same to the last bit on every machine.
     pub(super) fn set(&mut self, column: u32, row: u32, linear: &Vec3) {
         let first = self.index(column, row);
-        for channel in 0..3 {
-            self.bytes[first + channel] = (linear[channel].clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8;
-        }
+        self.bytes[first..first + 3].copy_from_slice(&encoded(linear));
+    }
+
+    /// Sets every pixel to what `colour` says of its column and row. Rows are shared among all
+    /// cores; as no pixel knows of another, their number changes nothing.
+    pub(super) fn fill_rows(&mut self, colour: impl Fn(u32, u32) -> Vec3 + Sync) {
+        let cores = thread::available_parallelism().map_or(1, NonZero::get);
+        let row_bytes = 3 * self.width as usize;
+        // More bands than cores: some bands show only the sky and are done at once.
+        let band_rows = (self.height as usize).div_ceil(4 * cores);
+        let colour = &colour;
+        thread::scope(|scope| {
+            for (band, bytes) in self.bytes.chunks_mut(band_rows * row_bytes).enumerate() {
+                scope.spawn(move || {
+                    for (place, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                        let row = band * band_rows + 3 * place / row_bytes;
+                        let column = place % (row_bytes / 3);
+                        pixel.copy_from_slice(&encoded(&colour(column as u32, row as u32)));
+                    }
+                });
+            }
+        });
     }
 
     fn index(&self, column: u32, row: u32) -> usize {
         3 * (row as usize * self.width as usize + column as usize)
     }
+}
+
+/// A linear colour as bytes.
+///
+/// A square root stands for the sRGB curve: it is within a few levels of it and, unlike a power,
+/// the same to the last bit on every machine.
+fn encoded(linear: &Vec3) -> [u8; 3] {
+    [0, 1, 2].map(|channel| (linear[channel].clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8)
 }

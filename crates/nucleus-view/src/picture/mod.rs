@@ -3,6 +3,7 @@
 mod animation;
 mod bounds;
 mod camera;
+mod depth_map;
 mod film;
 mod glyphs;
 mod ground;

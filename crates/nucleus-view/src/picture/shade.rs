@@ -42,17 +42,15 @@ pub(super) fn picture(mesh: &Mesh, visible: &[Sample], lens: &Lens, light: &Ligh
     };
     let [width, height] = lens.size.map(|side| side / samples);
     let mut image = Image::new(width, height);
-    for row in 0..height {
-        for column in 0..width {
-            let mut sum = Vec3::zeros();
-            for sample in 0..samples * samples {
-                let x = column * samples + sample % samples;
-                let y = row * samples + sample / samples;
-                sum += scene.colour(&visible[(y * lens.size[0] + x) as usize], [x, y]);
-            }
-            image.set(column, row, &(sum / (samples * samples) as f32));
+    image.fill_rows(|column, row| {
+        let mut sum = Vec3::zeros();
+        for sample in 0..samples * samples {
+            let x = column * samples + sample % samples;
+            let y = row * samples + sample / samples;
+            sum += scene.colour(&visible[(y * lens.size[0] + x) as usize], [x, y]);
         }
-    }
+        sum / (samples * samples) as f32
+    });
     image
 }
 

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::attributes::{
-    Attribute, Choice, NodeType, dynamic_constraint, n_base, n_cloth, nucleus, surface_shape, transform,
+    Attribute, Choice, Component, NodeType, dynamic_constraint, n_base, n_cloth, nucleus, surface_shape,
+    transform,
 };
 use crate::graph::{Graph, GraphError, NodeId};
 use crate::scene::findings::Findings;
@@ -175,8 +176,9 @@ fn check_components(
             .warning(&place, format!("constraints of this type have no effect yet: `{name}` does nothing"));
     }
     let components = node.get(&dynamic_constraint::COMPONENTS);
-    if components.is_empty() {
-        let place = source.place(name);
+    let place = source.place(name);
+    // One that could not be read has been reported already.
+    if components.is_empty() && source.place(&format!("{name}.components")) == place {
         findings.warning(&place, format!("`{name}` does nothing: it has no `components`"));
     }
     let mut reported = BTreeSet::new();
@@ -184,25 +186,39 @@ fn check_components(
         let object = component.object.as_str();
         let place = source.place(&format!("{name}.components[{k}]"));
         match links.names.get(object) {
-            Some(&Some(id)) if graph.node(id).node_type().is_a(&n_cloth::N_CLOTH) => {}
+            Some(&Some(id)) if is_cloth(graph, id) => {}
+            // It could not be read, and that has been said.
             Some(None) => {}
             _ if !reported.insert(object) => {}
-            Some(&Some(id)) => {
-                let found = graph.node(id).node_type().name;
-                let message = format!("only points of cloth can be held, but `{object}` is of type {found}");
-                let cloth = graph.targets(id, &surface_shape::WORLD_MESH).next();
-                let error = findings.error(&place, message);
-                if let Some(cloth) = cloth {
-                    let selected = component.to_string().replacen(object, graph.node(cloth.node).name(), 1);
-                    error.did_you_mean(Some(&selected));
-                }
-            }
+            Some(&Some(id)) => refuse_object(graph, id, component, &place, findings),
             None => {
                 let cloths = graph.of_type(&n_cloth::N_CLOTH).map(|(_, node)| node.name());
                 let near = nearest(object, cloths);
                 findings.error(&place, format!("there is no node `{object}`")).did_you_mean(near);
             }
         }
+    }
+}
+
+fn is_cloth(graph: &Graph, node: NodeId) -> bool {
+    graph.node(node).node_type().is_a(&n_cloth::N_CLOTH)
+}
+
+/// Says that something is not cloth; if it is the mesh of a cloth, that was probably meant.
+fn refuse_object(
+    graph: &Graph,
+    id: NodeId,
+    component: &Component,
+    place: &Range<usize>,
+    findings: &mut Findings,
+) {
+    let (object, found) = (&component.object, graph.node(id).node_type().name);
+    let message = format!("only points of cloth can be held, but `{object}` is of type {found}");
+    let error = findings.error(place, message);
+    let mut fed = graph.targets(id, &surface_shape::WORLD_MESH).map(|plug| plug.node);
+    if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {
+        let meant = Component { object: graph.node(cloth).name().to_owned(), ..component.clone() };
+        error.did_you_mean(Some(&meant.to_string()));
     }
 }
 

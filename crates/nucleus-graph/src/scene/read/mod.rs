@@ -3,14 +3,15 @@
 //! | You want to know...                                  | Read            |
 //! |------------------------------------------------------|-----------------|
 //! | in which order a file is read                        | this file       |
-//! | what stands inside `Scene(...)`                      | `top.rs`        |
-//! | how one node is read                                 | `nodes.rs`      |
+//! | how the fields of a record are taken                 | `fields.rs`     |
+//! | which nodes there are, and how one is read           | `drafts.rs`, `nodes.rs` |
 //! | how an attribute's value is read, keyed or not       | `value.rs`, `keys.rs` |
 //! | what `"cloth1.vtx[0:8]"` means                       | `component.rs`  |
 //! | how names become connections                         | `links.rs`      |
 
 mod checks;
 mod component;
+mod drafts;
 mod fields;
 mod keys;
 mod links;

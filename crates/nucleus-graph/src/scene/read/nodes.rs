@@ -1,9 +1,9 @@
 //! `nodes: {"cloth1": nCloth(inputMesh: "sheet", friction: 0.4)}`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Effect, Kind, NodeType, Value as Held, node_type, node_types};
+use crate::attributes::{Attribute, Effect, Kind, Value as Held};
 use crate::graph::{Channel, Graph, NodeId, Setting};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
@@ -11,16 +11,9 @@ use crate::scene::source::Source;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::component;
+use super::drafts::{Draft, drafts};
 use super::links::{self, Links, Reference};
-use super::value::{expected, found, read, read_part, single, text};
-
-/// A node as it is written.
-struct Draft<'a> {
-    name: &'a str,
-    span: &'a Range<usize>,
-    node_type: &'static NodeType,
-    fields: &'a [(Word, Node)],
-}
+use super::value::{expected, read, read_part, single, text};
 
 /// Reads all nodes and connects them. Also returns the nodes on which something could not be read.
 pub(super) fn read_nodes(
@@ -51,69 +44,6 @@ pub(super) fn read_nodes(
     }
     links::connect(&mut graph, &links, source, findings);
     (graph, broken)
-}
-
-/// The nodes that have a name and a type, and the names of all.
-fn drafts<'a>(
-    entries: &'a [(Node, Node)],
-    findings: &mut Findings,
-) -> (Vec<Draft<'a>>, BTreeMap<String, Option<NodeId>>) {
-    let mut seen: BTreeMap<&str, &Range<usize>> = BTreeMap::new();
-    let mut drafts = Vec::new();
-    let mut names = BTreeMap::new();
-    for (key, body) in entries {
-        let Some(name) = text("the name of a node", key, findings) else { continue };
-        names.insert(name.to_owned(), None);
-        if let Some(first) = seen.insert(name, &key.span) {
-            let error = findings.error(&key.span, format!("there are two nodes `{name}`"));
-            error.note_at(first, "the other one is here").help("give one of them another name");
-            continue;
-        }
-        if !is_a_name(name) {
-            let error = findings.error(&key.span, format!("`{name}` is not a name"));
-            error.help("names are made of letters, digits, `_`, `-` and `:`");
-            continue;
-        }
-        let Some((node_type, fields)) = typed(name, body, findings) else { continue };
-        drafts.push(Draft { name, span: &key.span, node_type, fields });
-    }
-    (drafts, names)
-}
-
-fn is_a_name(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | ':'))
-}
-
-fn typed<'a>(
-    name: &str,
-    body: &'a Node,
-    findings: &mut Findings,
-) -> Option<(&'static NodeType, &'a [(Word, Node)])> {
-    let (word, span, fields): (&str, _, &[_]) = match &body.value {
-        Value::Record { name: Some(word), fields } => (&word.text, &word.span, fields),
-        Value::Tuple { name: Some(word), .. } => {
-            let error = findings.error(&body.span, format!("the attributes of `{name}` need names"));
-            error.help(format!("write `{}(attribute: value)`", word.text));
-            return None;
-        }
-        Value::Word(word) => {
-            let error = findings.error(&body.span, format!("`{name}` needs brackets after its type"));
-            error.help(format!("write `{word}()`"));
-            return None;
-        }
-        other => {
-            let error =
-                findings.error(&body.span, format!("`{name}` needs a type of node, found {}", found(other)));
-            error.help(format!("write `\"{name}\": nCloth(...)`"));
-            return None;
-        }
-    };
-    let node_type = node_type(word);
-    if node_type.is_none() {
-        let near = nearest(word, node_types().iter().map(|node_type| node_type.name));
-        findings.error(span, format!("there is no type of node `{word}`")).did_you_mean(near);
-    }
-    Some((node_type?, fields))
 }
 
 /// Reads the attributes of one node.

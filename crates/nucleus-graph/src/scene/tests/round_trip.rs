@@ -81,7 +81,7 @@ fn settings(row: &'static Attribute) -> BoxedStrategy<Setting> {
 
 /// The scene of the other tests with anything set on any of its nodes.
 fn scenes() -> impl Strategy<Value = Scene> {
-    let plain = scene(&sheet());
+    let plain = scene(SHEET);
     let nodes: Vec<_> = plain.graph.iter().filter(|(_, node)| node.made_by().is_none()).collect();
     let rows =
         nodes.iter().flat_map(|(id, node)| node.node_type().attributes().into_iter().map(|row| (*id, row)));
@@ -124,7 +124,7 @@ proptest! {
     fn a_damaged_scene_is_refused_at_a_place_or_runs(
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0..5, any::<prop::sample::Index>()), 1..4),
     ) {
-        let mut tokens: Vec<String> = tokens(&sheet());
+        let mut tokens: Vec<String> = tokens(SHEET);
         for (at, change, other) in changes {
             damage(&mut tokens, at, change, other);
         }

@@ -1,0 +1,62 @@
+use super::*;
+
+fn judge(check: &str, arguments: &[f64], reports: &[StepReport]) -> Outcome {
+    let check = Check::new(check, arguments).expect("a known check");
+    let mut judge = Judge::new(&[check], 2.0);
+    for (frame, report) in (2..).zip(reports) {
+        judge.see(&FrameReport { frame, report: *report });
+    }
+    judge.outcomes()[0].clone()
+}
+
+#[test]
+fn the_worst_figure_decides_and_its_first_frame_is_named() {
+    let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
+    let outcome = judge("maxStretch", &[0.02], &[strain(0.01), strain(0.03), strain(0.03), strain(0.02)]);
+    assert_eq!((outcome.passed, outcome.worst), (false, Some((0.03, 3))));
+    assert!(judge("maxStretch", &[0.02], &[strain(0.02)]).passed);
+}
+
+#[test]
+fn a_gap_must_not_be_smaller() {
+    let gap = |min_gap| StepReport { min_gap, ..StepReport::default() };
+    let outcome = judge("minGap", &[0.9], &[gap(f64::INFINITY), gap(0.95), gap(0.99)]);
+    assert_eq!((outcome.passed, outcome.worst), (true, Some((0.95, 3))));
+    assert!(!judge("minGap", &[0.9], &[gap(0.89)]).passed);
+}
+
+#[test]
+fn one_crossing_is_a_penetration() {
+    let crossed = StepReport { crossed: 1, ..StepReport::default() };
+    assert!(!judge("noPenetration", &[], &[StepReport::default(), crossed, StepReport::default()]).passed);
+    assert!(judge("noPenetration", &[], &[StepReport::default()]).passed);
+}
+
+#[test]
+fn nan_never_passes_and_stays() {
+    let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
+    let outcome = judge("maxStretch", &[0.02], &[strain(f64::NAN), strain(0.0)]);
+    assert!(!outcome.passed && outcome.worst.is_some_and(|(worst, frame)| worst.is_nan() && frame == 2));
+}
+
+#[test]
+fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
+    // 4 J in 2 kg are 2 m/s.
+    let moving = |kinetic_energy| StepReport { kinetic_energy, ..StepReport::default() };
+    let outcome = judge("restsBy", &[3.0, 2.0], &[moving(100.0), moving(4.0), moving(1.0)]);
+    assert_eq!((outcome.passed, outcome.worst), (true, Some((2.0, 3))));
+    assert!(!judge("restsBy", &[3.0, 1.9], &[moving(0.0), moving(4.0)]).passed);
+}
+
+#[test]
+fn a_check_that_never_came_up_has_not_passed() {
+    let outcome = judge("restsBy", &[100.0, 1.0], &[StepReport::default()]);
+    assert_eq!((outcome.passed, outcome.worst), (false, None));
+}
+
+#[test]
+fn names_and_numbers_of_arguments_must_be_right() {
+    assert_eq!(Check::new("noPenetration", &[1.0]), None);
+    assert_eq!(Check::new("maxStretch", &[]), None);
+    assert_eq!(Check::new("maxStrech", &[1.0]), None);
+}

@@ -1,0 +1,83 @@
+//! Nodes as they are written: a name, a type, fields.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::attributes::{NodeType, node_type, node_types};
+use crate::graph::NodeId;
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::syntax::{Node, Value, Word};
+
+use super::value::{found, text};
+
+/// A node as it is written.
+pub(super) struct Draft<'a> {
+    pub(super) name: &'a str,
+    pub(super) span: &'a Range<usize>,
+    pub(super) node_type: &'static NodeType,
+    pub(super) fields: &'a [(Word, Node)],
+}
+
+/// The nodes that have a name and a type, and the names of all.
+pub(super) fn drafts<'a>(
+    entries: &'a [(Node, Node)],
+    findings: &mut Findings,
+) -> (Vec<Draft<'a>>, BTreeMap<String, Option<NodeId>>) {
+    let mut seen: BTreeMap<&str, &Range<usize>> = BTreeMap::new();
+    let mut drafts = Vec::new();
+    let mut names = BTreeMap::new();
+    for (key, body) in entries {
+        let Some(name) = text("the name of a node", key, findings) else { continue };
+        names.insert(name.to_owned(), None);
+        if let Some(first) = seen.insert(name, &key.span) {
+            let error = findings.error(&key.span, format!("there are two nodes `{name}`"));
+            error.note_at(first, "the other one is here").help("give one of them another name");
+            continue;
+        }
+        if !is_a_name(name) {
+            let error = findings.error(&key.span, format!("`{name}` is not a name"));
+            error.help("names are made of letters, digits, `_`, `-` and `:`");
+            continue;
+        }
+        let Some((node_type, fields)) = typed(name, body, findings) else { continue };
+        drafts.push(Draft { name, span: &key.span, node_type, fields });
+    }
+    (drafts, names)
+}
+
+fn is_a_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | ':'))
+}
+
+fn typed<'a>(
+    name: &str,
+    body: &'a Node,
+    findings: &mut Findings,
+) -> Option<(&'static NodeType, &'a [(Word, Node)])> {
+    let (word, span, fields): (&str, _, &[_]) = match &body.value {
+        Value::Record { name: Some(word), fields } => (&word.text, &word.span, fields),
+        Value::Tuple { name: Some(word), .. } => {
+            let error = findings.error(&body.span, format!("the attributes of `{name}` need names"));
+            error.help(format!("write `{}(attribute: value)`", word.text));
+            return None;
+        }
+        Value::Word(word) => {
+            let error = findings.error(&body.span, format!("`{name}` needs brackets after its type"));
+            error.help(format!("write `{word}()`"));
+            return None;
+        }
+        other => {
+            let error =
+                findings.error(&body.span, format!("`{name}` needs a type of node, found {}", found(other)));
+            error.help(format!("write `\"{name}\": nCloth(...)`"));
+            return None;
+        }
+    };
+    let node_type = node_type(word);
+    if node_type.is_none() {
+        let near = nearest(word, node_types().iter().map(|node_type| node_type.name));
+        findings.error(span, format!("there is no type of node `{word}`")).did_you_mean(near);
+    }
+    Some((node_type?, fields))
+}
