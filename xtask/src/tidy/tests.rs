@@ -89,3 +89,8 @@ fn a_missing_map_is_one_problem() {
     fs::remove_file(root.path().join("ARCHITECTURE.md")).unwrap();
     assert_eq!(problems(root.path()).unwrap(), ["ARCHITECTURE.md: there is none"]);
 }
+
+#[test]
+fn this_repository_is_tidy() {
+    assert_eq!(problems(&crate::root()).unwrap(), [""; 0]);
+}
