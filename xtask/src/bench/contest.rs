@@ -96,9 +96,18 @@ mod tests {
             lower_edge: 0.0,
         };
         let spent = Spent { wall: ms / 1e3, processor: ms / 1e3 };
-        let trial = Trial { workload: Workload::Drape, size: 9, setting, threads: 1, frames: 1 };
-        let shares = Default::default();
-        Outcome { trial, spent, median_frame: spent, build: 0.0, shares, evaluations: 1.0, accuracy, hash: 0 }
+        Outcome {
+            trial: Trial { workload: Workload::Drape, size: 9, setting, threads: 1, frames: 1 },
+            spent,
+            median_frame: spent,
+            build: 0.0,
+            shares: Default::default(),
+            evaluations: 1.0,
+            searches: 1.0,
+            crossed: 0,
+            accuracy,
+            hash: 0,
+        }
     }
 
     #[test]

@@ -37,6 +37,10 @@ pub struct Outcome {
     pub shares: [f64; STAGES.len()],
     /// Link evaluations in a frame.
     pub evaluations: f64,
+    /// Runs of the broad phase in a frame.
+    pub searches: f64,
+    /// Points that ended a substep on the wrong side of the ball, over all frames.
+    pub crossed: u64,
     /// How wrong it is.
     pub accuracy: Accuracy,
     /// The solver's fingerprint after the last frame.
@@ -86,13 +90,16 @@ impl Trial {
         let (build, mut solver) = Spent::on(|| Solver::<f32>::new(builder, self.threads as usize));
         let mut stages = StageClock::default();
         let mut frames = Vec::with_capacity(self.frames as usize);
+        let (mut searches, mut crossed) = (0.0, 0);
         for _ in 0..self.frames {
-            let (spent, _) = Spent::on(|| {
+            let (spent, account) = Spent::on(|| {
                 let report = solver.step(&frame, &mut stages);
                 stages.stop();
                 report
             });
             frames.push(spent);
+            searches += f64::from(account.broad_phases) / f64::from(self.frames);
+            crossed += account.crossed;
             meter.frame(&solver);
         }
         Ok(Outcome {
@@ -102,6 +109,8 @@ impl Trial {
             build: build.wall,
             shares: stages.shares(),
             evaluations: link_evaluations(&solver, &frame),
+            searches,
+            crossed,
             accuracy: meter.finish(),
             hash: solver.state_hash(),
         })
