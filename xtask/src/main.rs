@@ -1,10 +1,11 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence` and `tidy`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy` and `bench`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
 //! | what must hold before a change goes in, in order      | [`ci`]          |
 //! | which claim of the paper is shown by which test       | [`evidence`]    |
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
+//! | how fast and how exact the solver is, beside others  | [`mod@bench`]   |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -13,6 +14,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+mod bench;
 mod ci;
 mod evidence;
 mod files;
@@ -30,6 +32,8 @@ enum Chore {
     Evidence,
     /// Holds ARCHITECTURE.md against the tree, and looks for files too long and paths of one machine.
     Tidy,
+    /// Times the solver and measures its error, beside the figures of other solvers.
+    Bench(bench::Options),
 }
 
 fn main() -> ExitCode {
@@ -38,6 +42,7 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(&root),
         Chore::Evidence => evidence::print(&root),
         Chore::Tidy => tidy::run(&root),
+        Chore::Bench(options) => bench::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -44,7 +44,7 @@ struct Near<'a> {
     wide: bool,
 }
 
-/// A group of eight triangles is two or three edges wide at rest. One that motion or stretch has made wider
+/// A group of triangles is an edge or two wide at rest. One that motion or stretch has made wider
 /// than this many collides with its points alone, and is counted.
 const WIDEST: f32 = 24.0;
 

@@ -1,0 +1,108 @@
+//! `cargo xtask bench`: how long the solver takes and how wrong it is, beside other solvers on the same workloads.
+//!
+//! | You want to know...                              | Read          |
+//! |--------------------------------------------------|---------------|
+//! | what is simulated                                | [`workload`]  |
+//! | how error is measured                            | [`accuracy`]  |
+//! | how time is measured, and stages                 | [`clock`]     |
+//! | one run                                          | [`trial`]     |
+//! | which settings are run                           | [`trade`]     |
+//! | what other solvers need                          | [`peers`]     |
+//! | what counts as being ahead of them               | [`contest`]   |
+//! | the cost of a link; a million points; threads    | [`growth`]    |
+//! | what is kept of a run                            | [`report`]    |
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+mod accuracy;
+mod clock;
+mod contest;
+mod csv;
+mod growth;
+mod machine;
+mod mesh;
+mod page;
+mod peers;
+mod report;
+mod table;
+mod trade;
+mod trial;
+mod workload;
+
+use report::Report;
+use workload::Workload;
+
+/// What to run, and where to leave the figures.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Options {
+    /// Points along each side of the cloth
+    #[arg(long, value_delimiter = ',', default_values_t = [33, 65, 129, 257],
+        value_parser = clap::value_parser!(u32).range(3..=2000))]
+    sizes: Vec<u32>,
+    /// Threads to compare, the first being what the others are held against
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2],
+        value_parser = clap::value_parser!(u32).range(1..=256))]
+    threads: Vec<u32>,
+    /// Parts to run [default: all]
+    #[arg(long, value_delimiter = ',')]
+    only: Vec<Part>,
+    /// Runs of everything; the one of the median time counts
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=99))]
+    repeat: u32,
+    /// Writes every run to this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Puts the tables into this page, in place of those that it has
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+}
+
+/// A part of the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// A sheet swings down from two corners: time against error
+    W1,
+    /// A sheet falls on a ball: time against error
+    W2,
+    /// A sheet hangs: its sag, and the cost of a link
+    Hang,
+    /// The same on more threads
+    Threads,
+    /// Up to a million points
+    Scale,
+}
+
+/// Runs the parts that are asked for, each table printed when it is done.
+pub fn run(options: &Options) -> anyhow::Result<()> {
+    if let Some(path) = &options.write {
+        page::check(path)?; // before an hour's work, not after it
+    }
+    let mut report = Report::new(machine::describe());
+    for part in Part::value_variants() {
+        if !options.only.is_empty() && !options.only.contains(part) {
+            continue;
+        }
+        match part {
+            Part::W1 => trade::run(Workload::Swing, &options.sizes, options.repeat, &mut report)?,
+            Part::W2 => trade::run(Workload::Drape, &options.sizes, options.repeat, &mut report)?,
+            Part::Hang => {
+                growth::sag(options.repeat, &mut report)?;
+                growth::link_cost(&options.sizes, options.repeat, &mut report)?;
+            }
+            Part::Threads => {
+                growth::threads(&options.sizes, &options.threads, options.repeat, &mut report)?;
+            }
+            Part::Scale => growth::scale(options.repeat, &mut report)?,
+        }
+    }
+    report.show_verdicts();
+    if let Some(path) = &options.csv {
+        csv::write(path, &report.runs)?;
+    }
+    if let Some(path) = &options.write {
+        page::write(path, &report)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! How wrong a run is, measured as the peers were.
+
+use nalgebra::Vector3;
+use nucleus_core::{COUNT_PERIOD, ClothId, StateView, Surface};
+
+use super::mesh;
+use super::workload::{BALL, GRAVITY};
+
+/// The frames of a second.
+const SECOND: usize = 24;
+
+/// The errors of a run. Strains are length over length at rest, less one; no number is finite once the run is not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// RMS strain of all edges, averaged over all frames.
+    pub strain: f64,
+    /// RMS of the positive strains at the last frame.
+    pub stretch: f64,
+    /// Largest strain at the last frame.
+    pub max: f64,
+    /// How deep the lowest point ever came below height 0, in metres.
+    pub sag: f64,
+    /// Change of kinetic and potential energy from the first frame to the end of the first second, in J/kg.
+    pub energy: f64,
+    /// How deep a point is inside the ball at the last frame, in metres.
+    pub depth: f64,
+    /// The same at the worst frame.
+    pub worst_depth: f64,
+    /// Height of the lower edge's middle, averaged over the last second, in metres.
+    pub lower_edge: f64,
+}
+
+/// Watches a run frame by frame.
+pub struct Meter {
+    edges: Vec<([u32; 2], f64)>,
+    points: Vec<Vector3<f64>>,
+    before: Vec<Vector3<f64>>,
+    lower_middle: usize,
+    strains: f64,
+    frames: usize,
+    energies: Vec<f64>,
+    lower_edges: Vec<f64>,
+    last: Accuracy,
+}
+
+impl Meter {
+    /// For a sheet of `n` by `n` points that starts at rest.
+    pub fn new(sheet: &Surface, n: u32) -> Self {
+        let points = sheet.positions.clone();
+        let last = Accuracy {
+            strain: 0.0,
+            stretch: 0.0,
+            max: 0.0,
+            sag: 0.0,
+            energy: 0.0,
+            depth: 0.0,
+            worst_depth: 0.0,
+            lower_edge: 0.0,
+        };
+        Self {
+            edges: mesh::edges(sheet),
+            before: points.clone(),
+            lower_middle: (n * n - n / 2 - 1) as usize,
+            points,
+            strains: 0.0,
+            frames: 0,
+            energies: Vec::new(),
+            lower_edges: Vec::new(),
+            last,
+        }
+    }
+
+    /// Takes up the state at the end of a frame.
+    pub fn frame(&mut self, state: &dyn StateView) {
+        std::mem::swap(&mut self.points, &mut self.before);
+        for (point, place) in self.points.iter_mut().enumerate() {
+            *place = state.point(ClothId(0), point);
+        }
+        self.measure_strain();
+        self.measure_energy();
+        let lowest = self.points.iter().fold(0.0, |most, point| f64::max(most, -point.y));
+        let (centre, radius) = BALL;
+        let depth = |point: &Vector3<f64>| radius - (point - Vector3::from(centre)).norm();
+        self.last.sag = self.last.sag.max(lowest);
+        self.last.depth = self.points.iter().map(depth).fold(0.0, f64::max);
+        self.last.worst_depth = self.last.worst_depth.max(self.last.depth);
+        self.lower_edges.push(self.points[self.lower_middle].y);
+    }
+
+    /// The account of the frames so far.
+    pub fn finish(self) -> Accuracy {
+        let tail = &self.lower_edges[self.lower_edges.len().saturating_sub(SECOND)..];
+        let energy = self.energies.first().zip(self.energies.get(SECOND - 1));
+        Accuracy {
+            strain: self.strains / self.frames as f64,
+            energy: energy.map_or(f64::NAN, |(start, end)| end - start),
+            lower_edge: tail.iter().sum::<f64>() / tail.len() as f64,
+            ..self.last
+        }
+    }
+
+    fn measure_strain(&mut self) {
+        let (mut squares, mut positive, mut max) = (0.0, 0.0, f64::NEG_INFINITY);
+        for &([a, b], rest) in &self.edges {
+            let strain = (self.points[b as usize] - self.points[a as usize]).norm() / rest - 1.0;
+            squares += strain * strain;
+            positive += if strain > 0.0 { strain * strain } else { 0.0 };
+            max = f64::max(max, strain);
+        }
+        let root_mean = |sum: f64| (sum / self.edges.len() as f64).sqrt();
+        // A sum keeps what is not finite; the comparisons above would lose it.
+        let lost = if squares.is_finite() { 0.0 } else { f64::INFINITY };
+        self.strains += root_mean(squares) + lost;
+        self.frames += 1;
+        (self.last.stretch, self.last.max) = (root_mean(positive) + lost, max + lost);
+    }
+
+    /// Kinetic energy from the way of the frame, potential energy in its middle.
+    fn measure_energy(&mut self) {
+        let energy = |(now, before): (&Vector3<f64>, &Vector3<f64>)| {
+            let speed = (now - before).norm() / COUNT_PERIOD;
+            0.5 * speed * speed + GRAVITY * 0.5 * (now.y + before.y)
+        };
+        let all: f64 = self.points.iter().zip(&self.before).map(energy).sum();
+        self.energies.push(all / self.points.len() as f64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::mesh::Cells;
+
+    /// A cloth whose points are where a function puts them.
+    struct Placed<F>(F);
+
+    impl<F: Fn(usize) -> Vector3<f64>> StateView for Placed<F> {
+        fn positions(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
+        fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
+        fn collider_positions(&self, _: nucleus_core::ColliderId, _: f64, _: &mut Vec<[f32; 3]>) {}
+        fn collider_moved(&self, _: nucleus_core::ColliderId) -> bool {
+            false
+        }
+        fn point(&self, _: ClothId, point: usize) -> Vector3<f64> {
+            (self.0)(point)
+        }
+    }
+
+    fn level(n: u32) -> Surface {
+        mesh::sheet(n, Cells::Triangles, Vector3::zeros(), Vector3::x(), Vector3::z())
+    }
+
+    #[test]
+    fn a_sheet_blown_up_by_a_tenth_is_strained_by_a_tenth_everywhere() {
+        let sheet = level(5);
+        let mut meter = Meter::new(&sheet, 5);
+        meter.frame(&Placed(|point| sheet.positions[point] * 1.1));
+        let found = meter.finish();
+        for strain in [found.strain, found.stretch, found.max] {
+            assert!((strain - 0.1).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn free_fall_keeps_its_energy() {
+        let sheet = level(3);
+        let mut meter = Meter::new(&sheet, 3);
+        for frame in 1..=SECOND {
+            let time = frame as f64 * COUNT_PERIOD;
+            meter.frame(&Placed(|point| {
+                sheet.positions[point] - Vector3::y() * (0.5 * GRAVITY * time * time)
+            }));
+        }
+        let found = meter.finish();
+        // Over a parabola the mean speed and the middle of a frame agree up to a constant.
+        assert!(found.energy.abs() < 1e-9, "{found:?}");
+        assert!((found.sag - 0.5 * GRAVITY).abs() < 1e-9);
+    }
+
+    #[test]
+    fn one_lost_point_makes_every_strain_endless() {
+        let sheet = level(3);
+        let mut meter = Meter::new(&sheet, 3);
+        meter.frame(&Placed(
+            |point| if point == 4 { Vector3::repeat(f64::NAN) } else { sheet.positions[point] },
+        ));
+        let found = meter.finish();
+        assert!(!found.strain.is_finite() && !found.stretch.is_finite() && !found.max.is_finite());
+    }
+
+    #[test]
+    fn a_point_at_the_centre_of_the_ball_is_a_radius_deep() {
+        let sheet = level(3);
+        let mut meter = Meter::new(&sheet, 3);
+        meter.frame(&Placed(|_| BALL.0.into()));
+        meter.frame(&Placed(|_| Vector3::repeat(5.0)));
+        let found = meter.finish();
+        assert_eq!((found.depth, found.worst_depth), (0.0, BALL.1));
+    }
+}

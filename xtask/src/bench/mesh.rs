@@ -1,0 +1,100 @@
+//! The meshes of the workloads: square sheets of triangles or quads, and a sphere.
+
+use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Vector3;
+use nucleus_core::{Faces, Surface};
+
+/// How the cells of a sheet are cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cells {
+    /// Two triangles a cell, the diagonal turning from cell to cell so that no direction is favoured.
+    Triangles,
+    /// One quad a cell.
+    Quads,
+}
+
+/// A sheet of `n` by `n` points from `origin` along `u` and `v`, in metres. Points come row by row along `u`.
+pub fn sheet(n: u32, cells: Cells, origin: Vector3<f64>, u: Vector3<f64>, v: Vector3<f64>) -> Surface {
+    let at = |k: u32| f64::from(k) / f64::from(n - 1);
+    let place = |row| (0..n).map(move |column| origin + u * at(column) + v * at(row));
+    let positions = (0..n).flat_map(place).collect();
+    let quads = (n as usize - 1).pow(2);
+    let mut faces = Faces::with_capacity(2 * quads, 6 * quads);
+    for (row, column) in (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| (row, column))) {
+        let a = row * n + column;
+        let (b, c, d) = (a + 1, a + n, a + n + 1);
+        match cells {
+            Cells::Quads => faces.push(&[a, c, d, b]),
+            Cells::Triangles if (row + column).is_multiple_of(2) => {
+                [[a, c, b], [b, c, d]].iter().for_each(|face| faces.push(face));
+            }
+            Cells::Triangles => [[a, c, d], [a, d, b]].iter().for_each(|face| faces.push(face)),
+        }
+    }
+    Surface { positions, faces }
+}
+
+/// A sphere of triangles, 64 round and 32 down, its points on the sphere itself.
+pub fn sphere(radius: f64, centre: Vector3<f64>) -> Surface {
+    const ROUND: u32 = 64;
+    const DOWN: u32 = 32;
+    let mut positions = vec![centre + Vector3::y() * radius];
+    for (j, i) in (1..DOWN).flat_map(|j| (0..ROUND).map(move |i| (j, i))) {
+        let (polar, turn) = (PI * f64::from(j) / f64::from(DOWN), TAU * f64::from(i) / f64::from(ROUND));
+        let across = Vector3::new(turn.cos(), 0.0, turn.sin()) * polar.sin();
+        positions.push(centre + (across + Vector3::y() * polar.cos()) * radius);
+    }
+    positions.push(centre - Vector3::y() * radius);
+    let last = positions.len() as u32 - 1;
+    let mut faces = Faces::default();
+    for i in 0..ROUND {
+        let next = (i + 1) % ROUND;
+        faces.push(&[0, 1 + next, 1 + i]);
+        for a in (0..DOWN - 2).map(|j| 1 + j * ROUND) {
+            faces.push(&[a + i, a + next, a + next + ROUND]);
+            faces.push(&[a + i, a + next + ROUND, a + i + ROUND]);
+        }
+        faces.push(&[last, last - ROUND + i, last - ROUND + next]);
+    }
+    Surface { positions, faces }
+}
+
+/// Every edge once, each with its length at rest in metres.
+pub fn edges(surface: &Surface) -> Vec<([u32; 2], f64)> {
+    let round = |face: &[u32]| -> Vec<[u32; 2]> {
+        let ends = |k: usize| [face[k], face[(k + 1) % face.len()]];
+        (0..face.len()).map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect()
+    };
+    let all: BTreeSet<[u32; 2]> = surface.faces.iter().flat_map(round).collect();
+    let length = |[a, b]: [u32; 2]| (surface.positions[b as usize] - surface.positions[a as usize]).norm();
+    all.into_iter().map(|ends| (ends, length(ends))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_of_triangles_has_one_diagonal_in_every_cell() {
+        let n = 5;
+        let sheet = sheet(n, Cells::Triangles, Vector3::zeros(), Vector3::x(), Vector3::z());
+        let edges = edges(&sheet);
+        assert_eq!(edges.len() as u32, 2 * n * (n - 1) + (n - 1) * (n - 1));
+        let side = 1.0 / f64::from(n - 1);
+        let diagonals = edges.iter().filter(|(_, length)| *length > 1.2 * side).count() as u32;
+        assert_eq!(diagonals, (n - 1) * (n - 1));
+    }
+
+    #[test]
+    fn a_sphere_is_closed_and_faces_outwards() {
+        let ball = sphere(0.35, Vector3::zeros());
+        // Euler: points - edges + faces = 2 for anything closed that a ball can be pressed into.
+        assert_eq!(ball.positions.len() + ball.faces.len() - edges(&ball).len(), 2);
+        for corners in ball.faces.iter() {
+            let [a, b, c] = [0, 1, 2].map(|k| ball.positions[corners[k] as usize]);
+            assert!((b - a).cross(&(c - a)).dot(&(a + b + c)) > 0.0);
+        }
+    }
+}

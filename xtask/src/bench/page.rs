@@ -1,0 +1,74 @@
+//! The page that shows the figures: tables between two marks, in place of those of the run before.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+
+use super::report::Report;
+
+const BEGIN: &str = "<!-- figures: written by `cargo xtask bench --write` -->\n";
+const END: &str = "<!-- end of figures -->\n";
+
+/// Whether the page is there and has a place for the figures.
+///
+/// # Errors
+/// When it cannot be read, or has not both marks in their order.
+pub fn check(path: &Path) -> anyhow::Result<()> {
+    put(&read(path)?, "").map(drop).with_context(|| format!("`{}`", path.display()))
+}
+
+/// Puts the figures of a report into the page.
+///
+/// # Errors
+/// As [`check`], and when the page cannot be written.
+pub fn write(path: &Path, report: &Report) -> anyhow::Result<()> {
+    let page = put(&read(path)?, &figures(report)).with_context(|| format!("`{}`", path.display()))?;
+    fs::write(path, page).with_context(|| format!("`{}` cannot be written", path.display()))
+}
+
+/// Targets first, as they are what most readers come for.
+fn figures(report: &Report) -> String {
+    let mut text = report.machine.join("\n") + "\n";
+    let (last, others) = report.tables.split_last().map_or((None, &[][..]), |(last, all)| (Some(last), all));
+    for table in last.into_iter().chain(others) {
+        text.extend(["\n", &table.to_string()]);
+    }
+    text
+}
+
+fn put(page: &str, figures: &str) -> anyhow::Result<String> {
+    let marks = page.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    ensure!(
+        marks.is_some(),
+        "has no place for figures: it wants the lines `{}` and `{}`",
+        BEGIN.trim(),
+        END.trim()
+    );
+    let (head, tail) = marks.unwrap_or_default();
+    Ok([head, BEGIN, "\n", figures, "\n", END, tail].concat())
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    fs::read_to_string(path).with_context(|| format!("`{}` cannot be read", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_take_the_place_of_those_before_and_nothing_else_changes() {
+        let page = format!("above\n{BEGIN}old\n{END}below\n");
+        let once = put(&page, "new\n").unwrap();
+        assert_eq!(once, format!("above\n{BEGIN}\nnew\n\n{END}below\n"));
+        assert_eq!(put(&once, "new\n").unwrap(), once);
+    }
+
+    #[test]
+    fn a_page_without_a_place_for_figures_is_refused() {
+        for page in ["", BEGIN, END, &format!("{END}{BEGIN}")] {
+            assert!(put(page, "").unwrap_err().to_string().contains("no place for figures"));
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Tables as Markdown, columns as wide as they have to be; read as well on a terminal.
+
+use std::fmt;
+
+/// A heading, a table, and what is to be said of it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Table {
+    /// The heading above it.
+    pub title: String,
+    /// The heads of the columns.
+    pub head: Vec<String>,
+    /// The rows, each as long as the head.
+    pub rows: Vec<Vec<String>>,
+    /// Sentences below it.
+    pub notes: Vec<String>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(title: &str, head: &[&str]) -> Self {
+        let head = head.iter().map(|&name| name.to_owned()).collect();
+        Self { title: title.to_owned(), head, ..Self::default() }
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// Adds a sentence below.
+    pub fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+}
+
+/// A number with three figures, or a word for what is none.
+pub fn figure(number: f64) -> String {
+    match number.abs() {
+        _ if number.is_nan() => "-".to_owned(),
+        size if size.is_infinite() => "lost".to_owned(),
+        0.0 => "0".to_owned(),
+        size if size < 0.01 => format!("{number:.5}"),
+        size if size < 1.0 => format!("{number:.3}"),
+        size if size < 10.0 => format!("{number:.2}"),
+        size if size < 100.0 => format!("{number:.1}"),
+        _ => format!("{number:.0}"),
+    }
+}
+
+/// Numbers stand right; a column of them holds nothing else.
+fn is_number(cell: &str) -> bool {
+    cell == "lost" || cell.chars().all(|c| c.is_ascii_digit() || ".-²".contains(c))
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = 0..self.head.len();
+        let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column));
+        let width = |column: usize| {
+            let widths = cells(column).chain([&self.head[column]]).map(|cell| cell.chars().count());
+            widths.max().unwrap_or_default().max(2)
+        };
+        let right = |column: usize| cells(column).all(|cell| is_number(cell));
+        let columns: Vec<(usize, bool)> = columns.map(|column| (width(column), right(column))).collect();
+        let line = |f: &mut fmt::Formatter<'_>, row: &[String]| {
+            for (cell, &(width, right)) in row.iter().zip(&columns) {
+                if right { write!(f, "| {cell:>width$} ")? } else { write!(f, "| {cell:<width$} ")? }
+            }
+            writeln!(f, "|")
+        };
+        writeln!(f, "### {}\n", self.title)?;
+        line(f, &self.head)?;
+        for &(width, right) in &columns {
+            write!(f, "|{:-<1$}{2}", "", width + 1, if right { ":" } else { "-" })?;
+        }
+        writeln!(f, "|")?;
+        self.rows.iter().try_for_each(|row| line(f, row))?;
+        if !self.notes.is_empty() {
+            writeln!(f)?;
+        }
+        self.notes.iter().try_for_each(|note| writeln!(f, "{note}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell_and_numbers_stand_right() {
+        let mut table = Table::new("Times", &["solver", "ms"]);
+        table.row(["2nd one".to_owned(), figure(1.234)]);
+        table.row(["another".to_owned(), figure(1234.5)]);
+        table.note("Less is better.");
+        let text = "### Times\n\n| solver  |   ms |\n|---------|-----:|\n| 2nd one | 1.23 |\n| another | 1234 |\n\n\
+            Less is better.\n";
+        assert_eq!(table.to_string(), text);
+    }
+
+    #[test]
+    fn what_is_no_number_is_said_in_words() {
+        assert_eq!([f64::NAN, f64::INFINITY, 0.0].map(figure), ["-", "lost", "0"]);
+    }
+}

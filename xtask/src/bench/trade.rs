@@ -1,0 +1,159 @@
+//! Time against error: a workload at many settings, beside what other solvers need.
+
+use super::clock::STAGES;
+use super::contest::{self, Contest};
+use super::peers::{PEERS, SOURCE};
+use super::report::Report;
+use super::table::{Table, figure};
+use super::trial::{Outcome, Trial};
+use super::workload::{Setting, Workload};
+
+/// The evaluations at which it is shown where the time goes.
+const TYPICAL: u32 = 48;
+
+/// Runs a workload at all sizes and settings, one thread.
+///
+/// # Errors
+/// When the solver refuses a scene or repeats itself with other bits.
+pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
+    let mut runs = Vec::new();
+    for &size in sizes {
+        for setting in settings(workload, size) {
+            let run = Trial::full(workload, size, setting).run(repeat)?;
+            report.keep(&run);
+            runs.push(run);
+        }
+    }
+    report.show(own_table(workload, &runs));
+    report.show(stage_table(workload, &runs));
+    let contests: Vec<Contest> = PEERS
+        .iter()
+        .filter(|peer| peer.workload == workload && sizes.contains(&peer.size))
+        .filter_map(|peer| Contest::new(peer, &runs))
+        .collect();
+    report.show(contest_table(workload, &contests));
+    judge(workload, sizes, &contests, report);
+    Ok(())
+}
+
+/// What is worth running. Large sheets need more evaluations before anything is right, and take too long at most.
+fn settings(workload: Workload, size: u32) -> Vec<Setting> {
+    let evaluations: &[u32] = match (workload, size) {
+        (Workload::Drape, 257..) => &[48, 192],
+        (Workload::Drape, _) => &[24, 48, 96, 192, 384],
+        (_, 257..) => &[48, 96, 192, 384],
+        _ => &[12, 18, 24, 48, 96, 192, 384, 768, 1536],
+    };
+    let variants: &[(f64, f64)] = match workload {
+        Workload::Swing | Workload::Hang => &[(20.0, 0.0), (200.0, 0.0), (2000.0, 0.0)],
+        Workload::Drape => &[(20.0, 0.0), (20.0, 0.1)],
+    };
+    let each = |&(resistance, bend): &(f64, f64)| {
+        evaluations.iter().map(move |&evaluations| Setting { resistance, bend, evaluations })
+    };
+    variants.iter().flat_map(each).filter(is_worth_it).collect()
+}
+
+/// Stiff cloth wants many evaluations before its stiffness is felt; soft cloth has its own strain, which more of
+/// them do not lessen. What bending costs is seen at two settings.
+fn is_worth_it(setting: &Setting) -> bool {
+    let Setting { resistance, bend, evaluations } = *setting;
+    let fits = match resistance {
+        ..100.0 => evaluations <= 384,
+        100.0..1000.0 => evaluations >= 96,
+        _ => evaluations >= 768,
+    };
+    fits && (bend == 0.0 || [48, 192].contains(&evaluations))
+}
+
+/// Our own runs.
+fn own_table(workload: Workload, runs: &[Outcome]) -> Table {
+    let errors: &[&str] = match workload {
+        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "searches", "crossed"],
+        _ => &["strain %", "stretch %", "largest %", "sag m", "energy J/kg"],
+    };
+    let head: Vec<&str> =
+        ["points", "ms", "wall"].iter().chain(errors).chain(&["setting", "hash"]).copied().collect();
+    let mut table = Table::new(&format!("{workload}: our runs"), &head);
+    for run in runs {
+        let found = &run.accuracy;
+        let errors = match workload {
+            Workload::Drape => {
+                let depths = [1e3 * found.depth, 1e3 * found.worst_depth];
+                let stretches = [1e2 * found.stretch, 1e2 * found.max];
+                [stretches, depths, [run.searches, run.crossed as f64]].concat()
+            }
+            _ => vec![1e2 * found.strain, 1e2 * found.stretch, 1e2 * found.max, found.sag, found.energy],
+        };
+        let cells = [format!("{}²", run.trial.size), figure(run.ms()), figure(1e3 * run.spent.wall)]
+            .into_iter()
+            .chain(errors.into_iter().map(figure))
+            .chain([run.trial.setting.to_string(), format!("{:016x}", run.hash)]);
+        table.row(cells);
+    }
+    table
+}
+
+/// Milliseconds by stage at a typical setting.
+fn stage_table(workload: Workload, runs: &[Outcome]) -> Table {
+    let typical: Vec<&Outcome> = runs.iter().filter(|run| run.trial.setting.evaluations == TYPICAL).collect();
+    let used: Vec<usize> =
+        (0..STAGES.len()).filter(|&k| typical.iter().any(|run| run.shares[k] > 0.002)).collect();
+    let names = used.iter().map(|&k| STAGES[k].1);
+    let head: Vec<&str> = ["points", "ms"].into_iter().chain(names).chain(["setting"]).collect();
+    let mut table = Table::new(&format!("{workload}: milliseconds a frame by stage"), &head);
+    for run in typical {
+        let stages = used.iter().map(|&k| figure(run.ms() * run.shares[k]));
+        let cells = [format!("{}²", run.trial.size), figure(run.ms())];
+        table.row(cells.into_iter().chain(stages).chain([run.trial.setting.to_string()]));
+    }
+    table
+}
+
+/// The peers, each with our answer.
+fn contest_table(workload: Workload, contests: &[Contest]) -> Table {
+    let head = ["points", "peer", "its ms", "its error %", "our ms", "our error %", "", "our setting"];
+    let mut table = Table::new(&format!("{workload}: what we need for no more error than a peer"), &head);
+    for contest in contests {
+        let peer = contest.peer;
+        let name = [peer.name, peer.version, peer.setting].join(" ");
+        let run = contest.answer.unwrap_or(contest.best);
+        let standing = match contest.lead() {
+            Some(lead) if lead > 1.0 => format!("{} x faster", figure(lead)),
+            Some(lead) => format!("missed: {} x slower", figure(1.0 / lead)),
+            None => "missed: our least error".to_owned(),
+        };
+        table.row([
+            format!("{}²", peer.size),
+            name.trim_end().to_owned(),
+            figure(peer.ms),
+            figure(peer.error),
+            figure(run.ms()),
+            figure(contest::error(run)),
+            standing,
+            run.trial.setting.to_string(),
+        ]);
+    }
+    table.note(SOURCE);
+    table
+}
+
+fn judge(workload: Workload, sizes: &[u32], contests: &[Contest], report: &mut Report) {
+    for &size in sizes {
+        let here: Vec<&Contest> = contests.iter().filter(|contest| contest.peer.size == size).collect();
+        let lost = here.iter().filter(|contest| !contest.is_won());
+        let lost: Vec<String> =
+            lost.map(|contest| format!("{} {}", contest.peer.name, contest.peer.setting)).collect();
+        let leads = here.iter().filter_map(|contest| contest.lead());
+        let least = leads.fold(f64::INFINITY, f64::min);
+        if here.is_empty() {
+            continue;
+        }
+        let found = match lost.is_empty() {
+            true => format!("{} of {}, by {} x or more", here.len(), here.len(), figure(least)),
+            false => format!("{} of {}, not {}", here.len() - lost.len(), here.len(), lost.join(", ")),
+        };
+        let target = format!("{workload} {size}²: ahead of every peer at no more error");
+        report.judge(target, found, lost.is_empty());
+    }
+}

@@ -1,0 +1,208 @@
+//! One workload run at one setting, timed and measured.
+
+use anyhow::{Context, ensure};
+use nucleus_core::{FrameInput, Solver};
+
+use super::accuracy::{Accuracy, Meter};
+use super::clock::{STAGES, Spent, StageClock};
+use super::workload::{Scene, Setting, Workload};
+
+/// What is to be run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial {
+    /// The workload.
+    pub workload: Workload,
+    /// Points along each side of the cloth.
+    pub size: u32,
+    /// What is set.
+    pub setting: Setting,
+    /// Cores to use.
+    pub threads: u32,
+    /// Frames to run.
+    pub frames: u32,
+}
+
+/// What came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// What was run.
+    pub trial: Trial,
+    /// Time in the stepping calls alone, per frame.
+    pub spent: Spent,
+    /// Time of the median frame.
+    pub median_frame: Spent,
+    /// Seconds to build the solver.
+    pub build: f64,
+    /// The share of each of [`STAGES`] in the time.
+    pub shares: [f64; STAGES.len()],
+    /// Link evaluations in a frame.
+    pub evaluations: f64,
+    /// Runs of the broad phase in a frame.
+    pub searches: f64,
+    /// Points that ended a substep on the wrong side of the ball, over all frames.
+    pub crossed: u64,
+    /// How wrong it is.
+    pub accuracy: Accuracy,
+    /// The solver's fingerprint after the last frame.
+    pub hash: u64,
+}
+
+impl Outcome {
+    /// Milliseconds a frame: of the processor with one thread, which others on the machine disturb least; on the
+    /// wall with more, where waiting counts.
+    pub fn ms(&self) -> f64 {
+        1e3 * self.of(&self.spent)
+    }
+
+    /// Whichever clock [`Outcome::ms`] goes by.
+    pub fn of(&self, spent: &Spent) -> f64 {
+        if self.trial.threads == 1 { spent.processor } else { spent.wall }
+    }
+
+    /// The share of a stage, by its name in [`STAGES`].
+    pub fn share(&self, stage: &str) -> f64 {
+        STAGES.iter().zip(self.shares).filter(|((_, name), _)| *name == stage).map(|(_, share)| share).sum()
+    }
+}
+
+impl Trial {
+    /// A full run on one thread.
+    pub fn full(workload: Workload, size: u32, setting: Setting) -> Self {
+        Self { workload, size, setting, threads: 1, frames: workload.frames() }
+    }
+
+    /// Runs `repeat` times and returns the run of the median time.
+    ///
+    /// # Errors
+    /// When the solver refuses the scene, or two runs do not end with the same bits.
+    pub fn run(&self, repeat: u32) -> anyhow::Result<Outcome> {
+        let runs: anyhow::Result<Vec<Outcome>> = (0..repeat.max(1)).map(|_| self.run_once()).collect();
+        median(runs?)
+    }
+
+    /// Runs once.
+    ///
+    /// # Errors
+    /// When the solver refuses the scene.
+    pub fn run_once(&self) -> anyhow::Result<Outcome> {
+        let Scene { sheet, builder, frame } = self.workload.scene(self.size, &self.setting)?;
+        let mut meter = Meter::new(&sheet, self.size);
+        let (build, mut solver) = Spent::on(|| Solver::<f32>::new(builder, self.threads as usize));
+        let mut stages = StageClock::default();
+        let mut frames = Vec::with_capacity(self.frames as usize);
+        let (mut searches, mut crossed) = (0.0, 0);
+        for _ in 0..self.frames {
+            let (spent, account) = Spent::on(|| {
+                let report = solver.step(&frame, &mut stages);
+                stages.stop();
+                report
+            });
+            frames.push(spent);
+            searches += f64::from(account.broad_phases) / f64::from(self.frames);
+            crossed += account.crossed;
+            meter.frame(&solver);
+        }
+        Ok(Outcome {
+            trial: *self,
+            spent: mean(&frames),
+            median_frame: median_frame(&frames),
+            build: build.wall,
+            shares: stages.shares(),
+            evaluations: link_evaluations(&solver, &frame),
+            searches,
+            crossed,
+            accuracy: meter.finish(),
+            hash: solver.state_hash(),
+        })
+    }
+}
+
+/// The run of the median time; all have to end with the same bits.
+///
+/// # Errors
+/// When there are none, or they do not.
+pub fn median(mut runs: Vec<Outcome>) -> anyhow::Result<Outcome> {
+    same_bits(&runs)?;
+    runs.sort_by(|a, b| a.ms().total_cmp(&b.ms()));
+    let middle = runs.len() / 2;
+    runs.into_iter().nth(middle).context("there was no run")
+}
+
+/// Fails unless all runs end with the same bits.
+///
+/// # Errors
+/// Names the first two hashes that differ.
+pub fn same_bits(runs: &[Outcome]) -> anyhow::Result<()> {
+    for pair in runs.windows(2) {
+        let [a, b] = [&pair[0], &pair[1]];
+        let (workload, size) = (a.trial.workload, a.trial.size);
+        ensure!(
+            a.hash == b.hash,
+            "{workload} at {size}, {}: hash {:016x} on {} threads, {:016x} on {}",
+            a.trial.setting,
+            a.hash,
+            a.trial.threads,
+            b.hash,
+            b.trial.threads
+        );
+    }
+    Ok(())
+}
+
+fn link_evaluations(solver: &Solver<f32>, frame: &FrameInput) -> f64 {
+    solver.passes(frame).iter().filter(|pass| pass.name == "stretch").map(|pass| pass.evaluations()).sum()
+}
+
+fn mean(frames: &[Spent]) -> Spent {
+    let count = frames.len().max(1) as f64;
+    let mean = |of: fn(&Spent) -> f64| frames.iter().map(of).sum::<f64>() / count;
+    Spent { wall: mean(|spent| spent.wall), processor: mean(|spent| spent.processor) }
+}
+
+fn median_frame(frames: &[Spent]) -> Spent {
+    let median = |of: fn(&Spent) -> f64| {
+        let mut all: Vec<f64> = frames.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or_default()
+    };
+    Spent { wall: median(|spent| spent.wall), processor: median(|spent| spent.processor) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small(workload: Workload, threads: u32) -> Outcome {
+        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6 };
+        Trial { workload, size: 9, setting, threads, frames: 4 }.run(2).unwrap()
+    }
+
+    #[test]
+    fn every_workload_runs_and_gives_the_same_bits_on_any_number_of_threads() {
+        for workload in [Workload::Swing, Workload::Drape, Workload::Hang] {
+            let runs = [1, 2, 3].map(|threads| small(workload, threads));
+            same_bits(&runs).unwrap();
+            assert!(runs.iter().all(|run| run.ms() > 0.0 && run.accuracy.strain.is_finite()));
+        }
+    }
+
+    #[test]
+    fn different_bits_are_an_error_that_names_both() {
+        let runs = [small(Workload::Hang, 1), small(Workload::Swing, 2)];
+        let error = same_bits(&runs).unwrap_err().to_string();
+        assert!(runs.iter().all(|run| error.contains(&format!("{:016x}", run.hash))), "{error}");
+    }
+
+    #[test]
+    fn links_are_counted_once_for_each_evaluation() {
+        // 9 by 9 points in quads: 8 links in each of 9 rows and 9 columns, 6 times.
+        assert_eq!(small(Workload::Hang, 1).evaluations, 2.0 * 8.0 * 9.0 * 6.0);
+    }
+
+    #[test]
+    fn the_shares_of_the_stages_make_a_whole() {
+        let run = small(Workload::Drape, 1);
+        assert!((run.shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        assert!(run.share("relax") > 0.0 && run.share("collide") > 0.0);
+    }
+}

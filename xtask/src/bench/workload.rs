@@ -1,0 +1,169 @@
+//! The workloads, the same that the peers were measured on: Y is up; metres, kilograms, seconds.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+use nucleus_core::{
+    BuildError, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput,
+    GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Surface,
+};
+
+use super::mesh::{self, Cells};
+
+/// The ball that W2 falls on: its centre and its radius in metres.
+pub const BALL: ([f64; 3], f64) = ([0.0, 0.5, 0.0], 0.35);
+
+/// Mass of all cloth in kg/m².
+pub const DENSITY: f64 = 0.2;
+
+/// Acceleration of gravity in m/s².
+pub const GRAVITY: f64 = 9.81;
+
+/// Cloth and what it meets touch at this distance in metres.
+const THICKNESS: f64 = 0.005;
+
+/// Friction between the two.
+const FRICTION: f64 = 0.5;
+
+/// What is simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Workload {
+    /// W1: a level sheet of 1 m, held at two corners, swings down.
+    Swing,
+    /// W2: a sheet of 1.5 m falls on a ball above the ground.
+    Drape,
+    /// A sheet of 1 m of quads hangs from its upper edge.
+    Hang,
+}
+
+impl fmt::Display for Workload {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Swing => "W1",
+            Self::Drape => "W2",
+            Self::Hang => "hang",
+        })
+    }
+}
+
+/// What is set for a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Stretch and compression resistance; 20 is 10 kN/m.
+    pub resistance: f64,
+    /// Bend resistance.
+    pub bend: f64,
+    /// Evaluations in 1/24 s, over 3 substeps.
+    pub evaluations: u32,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} evaluations, stretch {}", self.evaluations, self.resistance)?;
+        if self.bend > 0.0 { write!(f, ", bend {}", self.bend) } else { Ok(()) }
+    }
+}
+
+/// A workload made ready for the solver.
+pub struct Scene {
+    /// The cloth's mesh as it starts, which is its shape at rest.
+    pub sheet: Surface,
+    /// The objects.
+    pub builder: ModelBuilder,
+    /// The input of every frame; nothing is animated.
+    pub frame: FrameInput,
+}
+
+impl Workload {
+    /// Frames of a full run: until swing or drape is over.
+    pub fn frames(self) -> u32 {
+        match self {
+            Self::Swing => 120,
+            Self::Drape => 96,
+            Self::Hang => 60,
+        }
+    }
+
+    /// The scene with `n` by `n` points of cloth.
+    ///
+    /// # Errors
+    /// When the solver refuses a mesh.
+    pub fn scene(self, n: u32, setting: &Setting) -> Result<Scene, BuildError> {
+        let sheet = self.sheet(n);
+        let mut builder = ModelBuilder::new();
+        let lists = ClothLists {
+            stretch: true,
+            bend: setting.bend > 0.0,
+            damp: self == Self::Drape,
+            ..ClothLists::NONE
+        };
+        builder.cloth(Cloth { surface: sheet.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+        let mut frame = frame(setting);
+        let held: Vec<u32> = match self {
+            Self::Swing => vec![0, n - 1],
+            Self::Drape => Vec::new(),
+            Self::Hang => (0..n).collect(),
+        };
+        frame.pins = held.into_iter().map(|point| pin(&sheet, point)).collect();
+        if self == Self::Drape {
+            let (centre, radius) = BALL;
+            builder.collider(Collider { surface: mesh::sphere(radius, centre.into()) })?;
+            set_ball_and_ground(&mut frame);
+        }
+        Ok(Scene { sheet, builder, frame })
+    }
+
+    fn sheet(self, n: u32) -> Surface {
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        match self {
+            Self::Swing => mesh::sheet(n, Cells::Triangles, Vector3::zeros(), x, z),
+            Self::Drape => {
+                mesh::sheet(n, Cells::Triangles, Vector3::new(-0.75, 0.9, -0.75), x * 1.5, z * 1.5)
+            }
+            Self::Hang => mesh::sheet(n, Cells::Quads, Vector3::zeros(), x, -y),
+        }
+    }
+}
+
+/// Cloth that feels gravity and nothing else.
+fn frame(setting: &Setting) -> FrameInput {
+    let cloth = ClothFrame {
+        stretch_resistance: setting.resistance,
+        compression_resistance: setting.resistance,
+        bend_resistance: setting.bend,
+        stretch_damp: 0.0,
+        drag: 0.0,
+        lift: 0.0,
+        ..ClothFrame::default()
+    };
+    FrameInput {
+        duration: COUNT_PERIOD,
+        substeps: 3,
+        collision_iterations: 4.0,
+        resistance: ResistanceModel::Physical { evaluations: f64::from(setting.evaluations) },
+        gravity: -Vector3::y() * GRAVITY,
+        wind: Vector3::zeros(),
+        air_density: 1.0,
+        plane: None,
+        cloths: vec![cloth],
+        colliders: Vec::new(),
+        pins: Vec::new(),
+    }
+}
+
+/// Friction adds up over the two sides, and so does thickness; the plane has none of its own. Cloth that falls
+/// is damped as Maya's is by default.
+fn set_ball_and_ground(frame: &mut FrameInput) {
+    let (thickness, friction) = (THICKNESS / 2.0, FRICTION / 2.0);
+    for cloth in &mut frame.cloths {
+        (cloth.thickness, cloth.friction) = (thickness, friction);
+        cloth.stretch_damp = ClothFrame::default().stretch_damp;
+    }
+    frame.colliders = vec![ColliderFrame { collide: true, thickness, friction, ..ColliderFrame::default() }];
+    frame.plane = Some(GroundPlane { origin: Vector3::zeros(), normal: Vector3::y(), bounce: 0.0, friction });
+}
+
+fn pin(sheet: &Surface, point: u32) -> Pin {
+    let place = sheet.positions[point as usize];
+    Pin { cloth: ClothId(0), point: PointId(point), start: place, end: place }
+}
