@@ -41,9 +41,8 @@ impl<R: Real> Solver<R> {
         for name in ["stretch", "compress", "shear", "bend"] {
             passes.push(self.sweeps_of(name, &schedule));
         }
-        let collisions =
-            (0..steps).flat_map(|step| schedule.rounds(step)).filter(|round| **round == Round::Collide);
-        let count = collisions.count() as f64;
+        let collisions = schedule.rounds.iter().filter(|round| **round == Round::Collide);
+        let count = (collisions.count() * steps as usize) as f64;
         let touching = self
             .pairs
             .iter()
@@ -71,15 +70,9 @@ impl<R: Real> Solver<R> {
             "bend" => self.cloths[cloth].bend.len(),
             _ => self.cloths[cloth].stretch.len(),
         };
-        for step in 0..schedule.substeps * schedule.steps {
-            for round in schedule.rounds(step) {
-                let Round::Relax(sweeps) = round else { continue };
-                for sweep in schedule.sweeps[sweeps.clone()].iter().filter(|sweep| named(&sweep.effect, name))
-                {
-                    rows[sweep.cloth] = true;
-                    evaluations += length(sweep.cloth) as f64;
-                }
-            }
+        for sweep in schedule.sweeps.iter().filter(|sweep| named(&sweep.effect, name)) {
+            rows[sweep.cloth] = true;
+            evaluations += length(sweep.cloth) as f64 * f64::from(schedule.substeps * schedule.steps);
         }
         let rows = (0..self.cloths.len()).filter(|&cloth| rows[cloth]).map(length).sum::<usize>();
         PassCost { name, rows, sweeps: if rows > 0 { evaluations / rows as f64 } else { 0.0 } }

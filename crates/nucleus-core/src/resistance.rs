@@ -17,10 +17,6 @@ pub const STIFFNESS_PER_RESISTANCE: f64 = 500.0;
 /// leather (10) are then 1e-5, 4e-5 and 1e-3 N·m, as such cloths are.
 pub const BENDING_PER_RESISTANCE: f64 = 1e-4;
 
-/// In the Physical reading bending is swept once in so many time steps, each sweep standing for all of them:
-/// cloth is so much softer in bending than in stretch that more would be wasted.
-pub const STEPS_PER_BEND: u32 = 4;
-
 /// Most evaluations of one effect in a substep, whatever the scene asks for (`maxIterations`).
 const MOST_SWEEPS: f64 = 10_000.0;
 

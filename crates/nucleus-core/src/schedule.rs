@@ -7,9 +7,7 @@
 use crate::constraints::bend::BendStrength;
 use crate::constraints::stretch::{LinkStrength, Sides};
 use crate::frame::{ClothFrame, FrameInput, ResistanceModel};
-use crate::resistance::{
-    BENDING_PER_RESISTANCE, STEPS_PER_BEND, STIFFNESS_PER_RESISTANCE, Share, share, steps,
-};
+use crate::resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, Share, share, steps};
 use crate::scalar::Real;
 
 /// One pass of one effect over one cloth.
@@ -50,11 +48,10 @@ pub struct Schedule<R> {
     pub steps: u32,
     /// Length of a time step in seconds.
     pub h: f64,
-    /// All sweeps of the two kinds of time steps.
+    /// All sweeps of a time step.
     pub sweeps: Vec<Sweep<R>>,
-    /// The rounds of a time step with bending, and of one without. Classic steps are all of the first kind.
-    rounds: [Vec<Round>; 2],
-    steps_per_bend: u32,
+    /// The rounds of a time step: the same in every one, for changing sweeps would feed energy in.
+    pub rounds: Vec<Round>,
 }
 
 impl<R: Real> Schedule<R> {
@@ -67,29 +64,12 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let mut plan = Self {
-            substeps,
-            steps,
-            h,
-            sweeps: Vec::new(),
-            rounds: [Vec::new(), Vec::new()],
-            steps_per_bend: 1,
+        let mut sweeps = Vec::new();
+        let rounds = match frame.resistance {
+            ResistanceModel::Classic => classic(frame, substep, &mut sweeps),
+            ResistanceModel::Physical { .. } => physical(frame, h, &mut sweeps),
         };
-        match frame.resistance {
-            ResistanceModel::Classic => plan.rounds[0] = classic(frame, substep, &mut plan.sweeps),
-            ResistanceModel::Physical { .. } => {
-                plan.steps_per_bend = STEPS_PER_BEND.min(substeps * steps);
-                let every = plan.steps_per_bend;
-                plan.rounds =
-                    [true, false].map(|bends| physical(frame, h, bends.then_some(every), &mut plan.sweeps));
-            }
-        }
-        plan
-    }
-
-    /// The rounds of time step `step` of the frame, counted from nought.
-    pub fn rounds(&self, step: u32) -> &[Round] {
-        &self.rounds[usize::from(!step.is_multiple_of(self.steps_per_bend))]
+        Self { substeps, steps, h, sweeps, rounds }
     }
 }
 
@@ -141,14 +121,11 @@ fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, Strengthen<R>); 4] {
     ]
 }
 
-/// One sweep of every effect, then collision; bending where it is due, standing for `bend_every` steps.
-fn physical<R: Real>(
-    frame: &FrameInput,
-    h: f64,
-    bend_every: Option<u32>,
-    sweeps: &mut Vec<Sweep<R>>,
-) -> Vec<Round> {
-    let first = sweeps.len();
+/// One sweep of every effect, then collision.
+///
+/// Bending too is swept in every step, although it is soft: swept in every fourth for four, it takes away a
+/// bend at once, the velocity carries on for three steps more, and fine meshes of triangles boil.
+fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Round> {
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         let mut add = |resistance: f64, effect: Effect<R>| {
             if resistance > 0.0 {
@@ -160,15 +137,10 @@ fn physical<R: Real>(
         add(stretch, Effect::Stretch(physical_links(settings, above, settings.compression_resistance, h)));
         let shear = settings.shear_resistance;
         add(shear, Effect::Shear(physical_links(settings, shear, shear, h)));
-        if let Some(every) = bend_every {
-            // A sweep that stands for n steps gives n steps' worth of momentum: 1/(B n h · h).
-            let compliance =
-                1.0 / (BENDING_PER_RESISTANCE * settings.bend_resistance * h * h * f64::from(every));
-            let compliance = R::from_f64(compliance);
-            add(settings.bend_resistance, Effect::Bend(BendStrength { share: R::ONE, compliance }));
-        }
+        let compliance = R::from_f64(1.0 / (BENDING_PER_RESISTANCE * settings.bend_resistance * h * h));
+        add(settings.bend_resistance, Effect::Bend(BendStrength { share: R::ONE, compliance }));
     }
-    vec![Round::Relax(first..sweeps.len()), Round::Collide]
+    vec![Round::Relax(0..sweeps.len()), Round::Collide]
 }
 
 /// Links as stiff as two resistances say; a side without resistance is left alone.

@@ -32,7 +32,7 @@ impl<R: Real> Solver<R> {
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 watch.enter(Stage::Predict);
                 self.predict(frame, &schedule, &fastest, step); // gravity, wind, drag; inertia
-                for round in schedule.rounds(step) {
+                for round in &schedule.rounds {
                     match round {
                         Round::Relax(sweeps) => {
                             watch.enter(Stage::Relax);

@@ -75,8 +75,7 @@ fn ratio(numerator: f64, denominator: f64) -> f64 {
 mod tests {
     use super::*;
     use parry3d_f64::math::Vector;
-    use parry3d_f64::query::PointQuery;
-    use parry3d_f64::query::closest_points;
+    use parry3d_f64::query::{self, ClosestPoints, PointQuery};
     use parry3d_f64::shape::{Segment, Triangle};
     use proptest::prelude::*;
 
@@ -103,8 +102,8 @@ mod tests {
             let gap = (e[0] * s[0] + e[1] * s[1] - e[2] * t[0] - e[3] * t[1]).norm();
             let (first, second) = (Segment::new(of(e[0]), of(e[1])), Segment::new(of(e[2]), of(e[3])));
             let here = parry3d_f64::math::Pose::default();
-            if let closest_points::ClosestPoints::WithinMargin(a, b) =
-                parry3d_f64::query::closest_points(&here, &first, &here, &second, 100.0).unwrap()
+            if let ClosestPoints::WithinMargin(a, b) =
+                query::closest_points(&here, &first, &here, &second, 100.0).unwrap()
             {
                 prop_assert!((gap - (a - b).length()).abs() < 1e-6, "{gap} against {}", (a - b).length());
             }
