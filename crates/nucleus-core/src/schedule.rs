@@ -156,3 +156,76 @@ fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -
         rest_scale: R::from_f64(cloth.rest_length_scale),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::frame::COUNT_PERIOD;
+
+    fn frame(substeps: u32, cloth: ClothFrame) -> FrameInput {
+        FrameInput {
+            duration: COUNT_PERIOD,
+            substeps,
+            collision_iterations: 4.0,
+            resistance: ResistanceModel::Classic,
+            gravity: Vector3::zeros(),
+            wind: Vector3::zeros(),
+            air_density: 0.0,
+            plane: None,
+            cloths: vec![cloth],
+            colliders: Vec::new(),
+            pins: Vec::new(),
+        }
+    }
+
+    /// The rounds of a step as letters: stretch, compress, shear, bend, Collide.
+    fn letters(schedule: &Schedule<f64>) -> String {
+        let letter = |sweep: &Sweep<f64>| match sweep.effect {
+            Effect::Stretch(strength) if strength.share.above == 0.0 => 'c',
+            Effect::Stretch(_) => 's',
+            Effect::Shear(_) => 'h',
+            Effect::Bend(_) => 'b',
+        };
+        let round = |round: &Round| match round {
+            Round::Relax(sweeps) => schedule.sweeps[sweeps.clone()].iter().map(letter).collect(),
+            Round::Collide => String::from("C"),
+        };
+        schedule.rounds.iter().map(round).collect()
+    }
+
+    // EVIDENCE: N2.2-1  attributes say how often each effect is evaluated
+    // EVIDENCE: N2.2-2  effects are interleaved, not run one after the other
+    // EVIDENCE: N2.2-3  collision passes lie between stretch passes
+    #[test]
+    fn effects_are_interleaved_by_their_counts() {
+        let cloth = ClothFrame {
+            stretch_resistance: 4.0,
+            compression_resistance: 2.0,
+            shear_resistance: 1.0,
+            bend_resistance: 0.0,
+            ..ClothFrame::default()
+        };
+        // Due at 1/8 s, 1/4 c C, 3/8 s, 1/2 h C, 5/8 s, 3/4 c C, 7/8 s, 1 C.
+        assert_eq!(letters(&Schedule::new(&frame(1, cloth))), "scCshCscCsC");
+    }
+
+    // EVIDENCE: N2.2-4  the last pass of a step is always collision
+    #[test]
+    fn collision_always_has_the_last_word() {
+        for substeps in 1..30 {
+            for resistance in [ResistanceModel::Classic, ResistanceModel::Physical { evaluations: 50.0 }] {
+                let input = FrameInput { resistance, ..frame(substeps, ClothFrame::default()) };
+                assert_eq!(Schedule::<f64>::new(&input).rounds.last(), Some(&Round::Collide));
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_resistance_is_never_swept() {
+        let cloth = ClothFrame { bend_resistance: 0.0, shear_resistance: 0.0, ..ClothFrame::default() };
+        let letters = letters(&Schedule::new(&frame(3, cloth)));
+        assert!(!letters.contains(['b', 'h']), "{letters}");
+    }
+}

@@ -93,3 +93,24 @@ impl Skin {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // EVIDENCE: N2.3-1  points, edges and faces: each lower element belongs to one face that has it
+    #[test]
+    fn every_point_and_edge_is_owned_by_one_triangle_that_has_it() {
+        // Two triangles on a shared edge, and a point of no face.
+        let skin = Skin::new(vec![[0, 1, 2], [2, 1, 3]], 0..5);
+        assert_eq!(skin.edges.len(), 5);
+        assert_eq!(skin.points.len(), 5);
+        for triangle in 0..2 {
+            let (owned, corners) = (skin.owned(triangle), skin.triangles[triangle]);
+            assert!(skin.points[owned.points].iter().all(|point| corners.contains(point)));
+            assert!(skin.edges[owned.edges].iter().flatten().all(|point| corners.contains(point)));
+        }
+        let grouped: usize = skin.groups().map(|group| group.points.len()).sum();
+        assert_eq!(grouped, 5, "the free point has a group too");
+    }
+}
