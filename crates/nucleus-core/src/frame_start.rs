@@ -2,9 +2,11 @@
 //! rows take up the new anchors. From here to the end of the frame nothing is allocated that was not before.
 
 use crate::collision::plane;
+use crate::columns::Shared;
 use crate::frame::{FrameInput, Pin};
 use crate::scalar::{Real, Row4};
 use crate::solver::Solver;
+use crate::team::Team;
 
 impl<R: Real> Solver<R> {
     /// Takes up what a frame brings.
@@ -51,11 +53,25 @@ impl<R: Real> Solver<R> {
     }
 
     fn anchor_rows(&mut self) {
-        let anchors = &self.state.anchor;
-        for cloth in &mut self.cloths {
-            cloth.stretch.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
-            cloth.shear.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
-            cloth.bend.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
+        let Self { cloths, state, team, .. } = self;
+        let anchors = &state.anchor;
+        for cloth in cloths {
+            on_all(team, cloth.stretch.groups_mut(), |group| group.anchor(anchors));
+            on_all(team, cloth.shear.groups_mut(), |group| group.anchor(anchors));
+            on_all(team, cloth.bend.groups_mut(), |group| group.anchor(anchors));
         }
     }
+}
+
+/// Does `work` on every lane group, in tasks of a thousand.
+fn on_all<G: Copy + Send>(team: &Team, groups: &mut [G], work: impl Fn(&mut G) + Sync) {
+    let count = groups.len() as u32;
+    let groups = Shared::new(groups);
+    team.phase(count.div_ceil(1024) as usize, |task| {
+        let from = task as u32 * 1024;
+        // SAFETY: tasks have groups of their own.
+        #[allow(unsafe_code)]
+        let run = unsafe { groups.run(from..count.min(from + 1024)) };
+        run.iter_mut().for_each(&work);
+    });
 }
