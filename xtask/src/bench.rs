@@ -76,33 +76,48 @@ enum Part {
 
 /// Runs the parts that are asked for, each table printed when it is done.
 pub fn run(options: &Options) -> anyhow::Result<()> {
+    // What cannot be written is better known before half an hour's work than after it.
     if let Some(path) = &options.write {
-        page::check(path)?; // before an hour's work, not after it
+        page::check(path)?;
+    }
+    if let Some(path) = &options.csv {
+        csv::write(path, &[])?;
     }
     let mut report = Report::new(machine::describe());
-    for part in Part::value_variants() {
-        if !options.only.is_empty() && !options.only.contains(part) {
-            continue;
-        }
-        match part {
-            Part::W1 => trade::run(Workload::Swing, &options.sizes, options.repeat, &mut report)?,
-            Part::W2 => trade::run(Workload::Drape, &options.sizes, options.repeat, &mut report)?,
-            Part::Hang => {
-                growth::sag(options.repeat, &mut report)?;
-                growth::link_cost(&options.sizes, options.repeat, &mut report)?;
-            }
-            Part::Threads => {
-                growth::threads(&options.sizes, &options.threads, options.repeat, &mut report)?;
-            }
-            Part::Scale => growth::scale(options.repeat, &mut report)?,
-        }
+    let asked_for = |part: &&Part| options.only.is_empty() || options.only.contains(part);
+    for part in Part::value_variants().iter().filter(asked_for) {
+        part.run(options, &mut report)?;
+        options.keep(&report)?;
     }
-    report.show_verdicts();
-    if let Some(path) = &options.csv {
-        csv::write(path, &report.runs)?;
-    }
-    if let Some(path) = &options.write {
-        page::write(path, &report)?;
-    }
+    print!("\n{}", report.verdict_table());
     Ok(())
+}
+
+impl Part {
+    fn run(self, options: &Options, report: &mut Report) -> anyhow::Result<()> {
+        let Options { sizes, threads, repeat, .. } = options;
+        match self {
+            Self::W1 => trade::run(Workload::Swing, sizes, *repeat, report),
+            Self::W2 => trade::run(Workload::Drape, sizes, *repeat, report),
+            Self::Hang => {
+                growth::sag(*repeat, report)?;
+                growth::link_cost(sizes, *repeat, report)
+            }
+            Self::Threads => growth::threads(sizes, threads, *repeat, report),
+            Self::Scale => growth::scale(*repeat, report),
+        }
+    }
+}
+
+impl Options {
+    /// Writes what has been found so far, so that a bench that is stopped has not been for nothing.
+    fn keep(&self, report: &Report) -> anyhow::Result<()> {
+        if let Some(path) = &self.csv {
+            csv::write(path, &report.runs)?;
+        }
+        if let Some(path) = &self.write {
+            page::write(path, report)?;
+        }
+        Ok(())
+    }
 }

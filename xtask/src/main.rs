@@ -5,7 +5,7 @@
 //! | what must hold before a change goes in, in order      | [`ci`]          |
 //! | which claim of the paper is shown by which test       | [`evidence`]    |
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
-//! | how fast and how exact the solver is, beside others  | [`mod@bench`]   |
+//! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 

@@ -7,6 +7,9 @@ use super::workload::Workload;
 /// A sheet that swings to less than this many metres is locked or damped, whatever its strain.
 const LEAST_SAG: f64 = 0.95;
 
+/// With more error than this many percent a run is no cloth, and answers nobody, not even a peer that blew up.
+const MOST_ERROR: f64 = 100.0;
+
 /// A peer and our answer to it.
 #[derive(Debug, Clone, Copy)]
 pub struct Contest<'a> {
@@ -60,7 +63,7 @@ fn no_worse(run: &Outcome, peer: &Peer) -> bool {
     let allowed = peer.depth.unwrap_or_default();
     let is_drape = run.trial.workload == Workload::Drape;
     let shallow = !is_drape || (0..2).all(|k| depths[k] <= allowed[k]);
-    error(run) <= peer.error && error(run).is_finite() && swings && shallow
+    error(run) <= peer.error.min(MOST_ERROR) && swings && shallow
 }
 
 #[cfg(test)]
@@ -124,6 +127,14 @@ mod tests {
         let inexact = [run(1.0, 3.0, 0.0)];
         let contest = Contest::new(&PEER, &inexact).unwrap();
         assert_eq!((contest.lead(), contest.is_won()), (None, false));
+    }
+
+    #[test]
+    fn a_peer_that_blew_up_is_not_answered_by_a_run_that_nearly_did() {
+        let peer = Peer { error: f64::INFINITY, ..PEER };
+        let runs = [run(1.0, 300.0, 0.0), run(1.0, f64::INFINITY, 0.0), run(2.0, 50.0, 0.0)];
+        assert_eq!(Contest::new(&peer, &runs).unwrap().lead(), Some(4.0));
+        assert!(!Contest::new(&peer, &runs[..2]).unwrap().is_won());
     }
 
     #[test]

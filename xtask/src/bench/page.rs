@@ -30,8 +30,7 @@ pub fn write(path: &Path, report: &Report) -> anyhow::Result<()> {
 /// Targets first, as they are what most readers come for.
 fn figures(report: &Report) -> String {
     let mut text = report.machine.join("\n") + "\n";
-    let (last, others) = report.tables.split_last().map_or((None, &[][..]), |(last, all)| (Some(last), all));
-    for table in last.into_iter().chain(others) {
+    for table in [report.verdict_table()].iter().chain(&report.tables) {
         text.extend(["\n", &table.to_string()]);
     }
     text

@@ -69,12 +69,12 @@ impl Report {
         self.verdicts.push(Verdict { target: target.into(), found, is_met });
     }
 
-    /// Prints which targets were met.
-    pub fn show_verdicts(&mut self) {
+    /// Which targets were met.
+    pub fn verdict_table(&self) -> Table {
         let mut table = Table::new("Targets", &["target", "", "found"]);
         for verdict in &self.verdicts {
             table.row([verdict.target.clone(), verdict.word().to_owned(), verdict.found.clone()]);
         }
-        self.show(table);
+        table
     }
 }

@@ -39,9 +39,10 @@ pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) 
 /// What is worth running. Large sheets need more evaluations before anything is right, and take too long at most.
 fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     let evaluations: &[u32] = match (workload, size) {
-        (Workload::Drape, 257..) => &[48, 192],
+        (Workload::Drape, 257..) => &[48, 96],
         (Workload::Drape, _) => &[24, 48, 96, 192, 384],
         (_, 257..) => &[48, 96, 192, 384],
+        (_, 65..) => &[12, 18, 24, 48, 96, 192, 384, 768, 1536, 2304],
         _ => &[12, 18, 24, 48, 96, 192, 384, 768, 1536],
     };
     let variants: &[(f64, f64)] = match workload {
@@ -60,7 +61,7 @@ fn is_worth_it(setting: &Setting) -> bool {
     let Setting { resistance, bend, evaluations } = *setting;
     let fits = match resistance {
         ..100.0 => evaluations <= 384,
-        100.0..1000.0 => evaluations >= 96,
+        100.0..1000.0 => (96..=1536).contains(&evaluations),
         _ => evaluations >= 768,
     };
     fits && (bend == 0.0 || [48, 192].contains(&evaluations))
