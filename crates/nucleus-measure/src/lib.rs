@@ -1,0 +1,3 @@
+//! How wrong a run is, and what it costs.
+
+#![forbid(unsafe_code)]
