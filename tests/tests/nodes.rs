@@ -62,6 +62,8 @@ fn by_hand(frames: u32) -> u64 {
         wind: Vector3::zeros(),
         air_density: 0.0,
         plane: None,
+        layer_range: 4.0,
+        self_collision_iterations: 4.0,
         cloths: vec![ClothFrame {
             stretch_resistance: 15.0,
             compression_resistance: 5.0,

@@ -26,13 +26,17 @@ pub struct ClothLists {
     pub air: bool,
     /// Damping of relative velocities is ever non-zero.
     pub damp: bool,
+    /// It ever meets itself.
+    pub self_collision: bool,
 }
 
 impl ClothLists {
     /// Everything on.
-    pub const ALL: Self = Self { stretch: true, shear: true, bend: true, air: true, damp: true };
+    pub const ALL: Self =
+        Self { stretch: true, shear: true, bend: true, air: true, damp: true, self_collision: true };
     /// Everything off: free points.
-    pub const NONE: Self = Self { stretch: false, shear: false, bend: false, air: false, damp: false };
+    pub const NONE: Self =
+        Self { stretch: false, shear: false, bend: false, air: false, damp: false, self_collision: false };
 }
 
 /// A mesh that becomes cloth. Its shape is both where it starts and how it is at rest.

@@ -15,7 +15,7 @@ use crate::columns::Shared;
 use crate::frame::{ColliderFrame, FrameInput, GroundPlane};
 use crate::observe::{Stage, StepObserver};
 use crate::scalar::{Real, Row4, dot};
-use crate::schedule::Schedule;
+use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
 
 /// Thickness in metres below which none is kept: contact needs some room to prove that nothing passed.
@@ -28,13 +28,6 @@ const FARTHEST: f64 = 2.0;
 /// Time steps for which active pairs are picked.
 const WINDOW: f64 = 8.0;
 
-/// Where in the frame a step is, in shares of it.
-#[derive(Clone, Copy)]
-struct Times {
-    step: [f64; 2],
-    end_of_substep: f64,
-}
-
 /// The sum of two thicknesses in metres.
 fn thickness(frame: &FrameInput, cloth: usize, collider: usize) -> f64 {
     (frame.cloths[cloth].thickness + frame.colliders[collider].thickness).max(LEAST_THICKNESS)
@@ -42,24 +35,22 @@ fn thickness(frame: &FrameInput, cloth: usize, collider: usize) -> f64 {
 
 impl<R: Real> Solver<R> {
     /// One pass over all contacts: the ground plane, then colliders.
-    pub(crate) fn collide(
+    pub(crate) fn meet_colliders(
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        step: u32,
+        span: Span,
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
         watch.enter(Stage::FindPairs);
         self.lift_from_ground(frame, schedule, tally);
-        let steps = f64::from(schedule.substeps * schedule.steps);
-        let time = [f64::from(step) / steps, f64::from(step + 1) / steps];
-        let end_of_substep = f64::from(step / schedule.steps + 1) / f64::from(schedule.substeps);
+        let time = [span.from, span.to];
         for cloth in 0..self.cloths.len() {
             if !self.can_touch(frame, cloth) {
                 continue;
             }
-            self.watch_pairs(frame, cloth, schedule, Times { step: time, end_of_substep }, tally);
+            self.watch_pairs(frame, cloth, schedule, span, tally);
             watch.enter(Stage::Collide);
             let Self { state, collider_states, pairs, team, .. } = self;
             for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
@@ -82,10 +73,10 @@ impl<R: Real> Solver<R> {
         frame: &FrameInput,
         cloth: usize,
         schedule: &Schedule<R>,
-        times: Times,
+        times: Span,
         tally: &mut Tally,
     ) {
-        let Times { step, .. } = times;
+        let step = [times.from, times.to];
         if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth) {
             return;
         }
@@ -107,11 +98,11 @@ impl<R: Real> Solver<R> {
 
     /// Sets the span that pairs are found for. A collider on its way needs a new list for each stretch of it;
     /// around colliders at rest a pair holds for as long as its points stay where they are foreseen.
-    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: Times) {
+    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: Span) {
         let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
         let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
         if colliders.any(|(collider, _)| collider.moves) {
-            self.spans[cloth] = [times.step[0], self.horizon(frame, cloth, times)];
+            self.spans[cloth] = [times.from, self.horizon(frame, cloth, times)];
             let points = self.cloths[cloth].points();
             self.strayed[points.start as usize..points.end as usize].fill(true);
         } else {
@@ -121,7 +112,8 @@ impl<R: Real> Solver<R> {
 
     /// How far ahead is foreseen: to the end of the substep, or as long as nothing goes farther than a few
     /// edges. Boxes over a longer way would meet everything on it.
-    fn horizon(&self, frame: &FrameInput, cloth: usize, Times { step, end_of_substep }: Times) -> f64 {
+    fn horizon(&self, frame: &FrameInput, cloth: usize, times: Span) -> f64 {
+        let (step, end_of_substep) = ([times.from, times.to], times.end_of_substep);
         let model = &self.cloths[cloth];
         let points = model.points();
         let rows = &self.state.velocity[points.start as usize..points.end as usize];
@@ -256,13 +248,13 @@ impl<R: Real> Solver<R> {
     }
 
     /// Gives back, after the step, part of the speed to the points that hit something that bounces.
-    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32) {
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, end: f64) {
         for cloth in 0..self.cloths.len() {
             if let Some(ground) = frame.plane.filter(|_| frame.cloths[cloth].collide) {
                 self.bounce_off_ground(frame, schedule, cloth, &ground);
             }
             if self.can_touch(frame, cloth) {
-                self.bounce_off_colliders(frame, schedule, step, cloth);
+                self.bounce_off_colliders(frame, schedule, end, cloth);
             }
         }
     }
@@ -287,7 +279,7 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    fn bounce_off_colliders(&mut self, frame: &FrameInput, schedule: &Schedule<R>, step: u32, cloth: usize) {
+    fn bounce_off_colliders(&mut self, frame: &FrameInput, schedule: &Schedule<R>, end: f64, cloth: usize) {
         for index in 0..self.pairs.len() {
             if self.pairs[index].cloth != cloth {
                 continue;
@@ -295,7 +287,6 @@ impl<R: Real> Solver<R> {
             let collider = self.pairs[index].collider;
             let bounce = frame.cloths[cloth].bounce.max(frame.colliders[collider].bounce);
             let Some(bounce) = bounce_of(frame, schedule, bounce) else { continue };
-            let end = f64::from(step + 1) / f64::from(schedule.substeps * schedule.steps);
             for active in 0..self.pairs[index].active.point_face.len() {
                 let Self { state, collider_states, pairs, .. } = self;
                 let pair = pairs[index].point_face[pairs[index].active.point_face[active] as usize];

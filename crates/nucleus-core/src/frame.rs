@@ -47,6 +47,11 @@ pub struct FrameInput {
     pub cloths: Vec<ClothFrame>,
     /// One entry per collider, by [`ColliderId`](crate::ColliderId).
     pub colliders: Vec<ColliderFrame>,
+    /// Two cloths whose `collisionLayer` differs by this much or more pass through each other
+    /// (`collisionLayerRange`).
+    pub layer_range: f64,
+    /// Collision passes of cloth with itself and other cloth in 1/24 s (`maxSelfCollisionIterations`).
+    pub self_collision_iterations: f64,
     /// Points that are held in this frame; a point that is named by none moves freely.
     pub pins: Vec<Pin>,
 }
@@ -104,6 +109,42 @@ pub struct ClothFrame {
     pub friction: f64,
     /// Bounce, 0 to 1; the larger of the two sides counts.
     pub bounce: f64,
+    /// Which of its elements meet other cloth (`collisionFlag`).
+    pub elements: Elements,
+    /// `collisionLayer`: of two cloths the one in the lower layer is the heavier, and at a difference of one
+    /// is not moved by the other at all.
+    pub layer: f64,
+    /// How it meets itself.
+    pub self_collision: SelfCollision,
+}
+
+/// Which elements of a mesh meet the points of another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Elements {
+    /// Points alone.
+    Points,
+    /// Edges too.
+    Edges,
+    /// Faces too.
+    Faces,
+}
+
+/// How a cloth meets itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfCollision {
+    /// Whether it does (`selfCollide`).
+    pub on: bool,
+    /// Thickness of each side in metres: `thickness` times `selfCollideWidthScale`.
+    pub thickness: f64,
+    /// Which elements meet its points (`selfCollisionFlag`).
+    pub elements: Elements,
+    /// Whether its edges meet each other too, so that nothing at all can pass (`selfCollisionFlag` full surface).
+    pub edges: bool,
+}
+
+impl SelfCollision {
+    /// None.
+    pub const OFF: Self = Self { on: false, thickness: 0.0, elements: Elements::Faces, edges: true };
 }
 
 impl Default for ClothFrame {
@@ -128,6 +169,9 @@ impl Default for ClothFrame {
             thickness: 0.0,
             friction: 0.1,
             bounce: 0.0,
+            elements: Elements::Faces,
+            layer: 0.0,
+            self_collision: SelfCollision::OFF,
         }
     }
 }

@@ -12,6 +12,7 @@ impl<R: Real> Solver<R> {
     /// Takes up what a frame brings.
     pub(crate) fn begin_frame(&mut self, frame: &FrameInput) {
         self.take_over_pairs(frame);
+        self.begin_meeting(frame);
         self.move_anchors();
         for pin in &frame.pins {
             self.hold(pin, frame.duration);

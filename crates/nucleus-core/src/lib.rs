@@ -4,12 +4,13 @@
 //! |---|---|
 //! | what happens in a frame, in order | `step.rs` |
 //! | what a frame brings | `frame.rs` |
+//! | how fast colliders are kept from leaping over cloth | `impact.rs` |
 //! | what an artist's resistance means | `resistance.rs` |
 //! | how often each effect is swept, and when | `schedule.rs` |
 //! | where stretch, shear, bend and damping are computed | `constraints/` |
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
-//! | how contact is found and proven | `collision/` |
+//! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
 //!
 //! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
@@ -26,7 +27,9 @@ mod constraints;
 mod frame;
 mod frame_start;
 mod ids;
+mod impact;
 mod measure;
+mod meet;
 mod model;
 mod observe;
 mod passes;
@@ -44,7 +47,10 @@ mod team;
 mod velocity;
 
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder};
-pub use frame::{COUNT_PERIOD, ClothFrame, ColliderFrame, FrameInput, GroundPlane, Pin, ResistanceModel};
+pub use frame::{
+    COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,
+    SelfCollision,
+};
 pub use ids::{ClothId, ColliderId, PointId};
 pub use observe::{Moment, Stage, StateView, StepObserver};
 pub use passes::PassCost;

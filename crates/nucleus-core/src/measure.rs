@@ -3,8 +3,10 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use crate::collide::StepParts;
+use crate::collision::mutual::Mutual;
 use crate::collision::resolve::Tally;
 use crate::frame::FrameInput;
+use crate::meet::motion;
 use crate::report::StepReport;
 use crate::scalar::{Real, dot};
 use crate::schedule::Schedule;
@@ -23,6 +25,8 @@ impl<R: Real> Solver<R> {
             max_strain,
             strain_99,
             min_gap: self.smallest_gap(frame, schedule),
+            min_cloth_gap: self.smallest_cloth_gap(),
+            limited: self.limited(),
             contacts: tally.contacts.load(Relaxed),
             pairs: tally.pairs.load(Relaxed),
             broad_phases: tally.broad_phases.load(Relaxed) as u32,
@@ -75,6 +79,19 @@ impl<R: Real> Solver<R> {
             }
         }
         (energy, finite && energy.is_finite())
+    }
+
+    /// The smallest distance between two elements of cloth, over the thickness kept there.
+    fn smallest_cloth_gap(&mut self) -> f64 {
+        let Self { mutual: Some(mutual), state, .. } = self else { return f64::INFINITY };
+        let Mutual { start, active, .. } = mutual;
+        let closeness = active.closeness(&motion(state, start, 0.0));
+        closeness.map_or(f64::INFINITY, R::to_f64)
+    }
+
+    fn limited(&self) -> u64 {
+        let Some(mutual) = &self.mutual else { return 0 };
+        mutual.candidates.list.iter().filter(|candidate| candidate.limited).count() as u64
     }
 
     /// The smallest distance to a collider or the plane, over the thickness.

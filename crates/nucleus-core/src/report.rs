@@ -11,6 +11,11 @@ pub struct StepReport {
     /// Smallest distance between a point and a collider or the plane at the end of the frame, over the
     /// thickness held there: 1 is touching, below 1 is pressed in. Infinite when nothing is near.
     pub min_gap: f64,
+    /// The same between two elements of cloth that met at the end of the frame, over the thickness kept
+    /// between them. Infinite when none did.
+    pub min_cloth_gap: f64,
+    /// Pairs of neighbours in a cloth that keep less than its thickness, because they are nearer at rest.
+    pub limited: u64,
     /// Contacts that pushed, over all passes of the frame.
     pub contacts: u64,
     /// Candidate pairs found by the broad phase, over all its runs in the frame.
@@ -37,6 +42,8 @@ impl Default for StepReport {
             max_strain: 0.0,
             strain_99: 0.0,
             min_gap: f64::INFINITY,
+            min_cloth_gap: f64::INFINITY,
+            limited: 0,
             contacts: 0,
             pairs: 0,
             broad_phases: 0,

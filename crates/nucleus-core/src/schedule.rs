@@ -35,8 +35,12 @@ pub enum Effect<R> {
 pub enum Round {
     /// These sweeps together, a run of [`Schedule::sweeps`].
     Relax(std::ops::Range<usize>),
-    /// A pass over all contacts.
+    /// A pass over contacts of cloth with itself and other cloth.
+    MeetEachOther,
+    /// A pass over contacts with colliders and the plane.
     Collide,
+    /// The proof that nothing passed anything.
+    Settle,
 }
 
 /// Everything a frame will do.
@@ -64,41 +68,97 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let mut sweeps = Vec::new();
-        let rounds = match frame.resistance {
-            ResistanceModel::Classic => classic(frame, substep, &mut sweeps),
-            ResistanceModel::Physical { .. } => physical(frame, h, &mut sweeps),
+        let mut schedule = Self { substeps, steps, h, sweeps: Vec::new(), rounds: Vec::new() };
+        schedule.plan(frame);
+        schedule
+    }
+
+    /// The same for a part of a time step: what moves fast is met in shorter steps.
+    pub fn split(&self, frame: &FrameInput, parts: u32) -> Self {
+        let h = self.h / f64::from(parts);
+        let mut split = Self { h, sweeps: Vec::new(), rounds: Vec::new(), ..*self };
+        split.plan(frame);
+        split
+    }
+
+    /// Sets the sweeps and rounds of a time step.
+    fn plan(&mut self, frame: &FrameInput) {
+        self.rounds = match frame.resistance {
+            ResistanceModel::Classic => classic(frame, self.h, &mut self.sweeps),
+            ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps),
         };
-        Self { substeps, steps, h, sweeps, rounds }
+        let meets = |cloth: &ClothFrame| cloth.self_collision.on;
+        if frame.cloths.len() > 1 || frame.cloths.iter().any(meets) {
+            self.rounds.push(Round::Settle);
+        } else {
+            self.rounds.retain(|round| *round != Round::MeetEachOther);
+        }
+    }
+
+    /// When in the frame a time step is.
+    pub fn span(&self, step: u32) -> Span {
+        let steps = f64::from(self.substeps * self.steps);
+        let end_of_substep = f64::from(step / self.steps + 1) / f64::from(self.substeps);
+        Span { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
+    }
+}
+
+/// When a time step is, in shares of the frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Its start.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// The end of the substep it is part of.
+    pub end_of_substep: f64,
+}
+
+impl Span {
+    /// One of so many equal parts.
+    pub fn part(self, part: u32, parts: u32) -> Self {
+        let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);
+        let to = if part + 1 == parts { self.to } else { cut(part + 1) };
+        Self { from: cut(part), to, ..self }
     }
 }
 
 /// All passes of a substep in the order of the moments at which they are due: the k-th of n sweeps in the
 /// middle of its n-th part, the k-th of n collision passes at the end of its.
 fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Round> {
-    let mut due: Vec<(f64, Option<Sweep<R>>)> = Vec::new();
+    let mut due: Vec<(f64, Due<R>)> = Vec::new();
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         for (count, effect) in classic_effects(settings) {
             let Share { sweeps, strength } = share(count, substep);
             let effect = effect(R::from_f64(strength));
             let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
-            due.extend((0..sweeps).map(|k| (moment(k), Some(Sweep { cloth, effect }))));
+            due.extend((0..sweeps).map(|k| (moment(k), Due::Sweep(Sweep { cloth, effect }))));
         }
     }
-    let passes = share(frame.collision_iterations, substep).sweeps.max(1);
-    due.extend((1..=passes).map(|k| (f64::from(k) / f64::from(passes), None)));
+    let mut passes = |count: f64, round: Round| {
+        let passes = share(count, substep).sweeps.max(1);
+        due.extend((1..=passes).map(|k| (f64::from(k) / f64::from(passes), Due::Pass(round.clone()))));
+    };
+    passes(frame.self_collision_iterations, Round::MeetEachOther);
+    passes(frame.collision_iterations, Round::Collide);
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut rounds = Vec::new();
-    for (_, sweep) in due {
-        match sweep {
-            Some(sweep) => {
+    for (_, next) in due {
+        match next {
+            Due::Sweep(sweep) => {
                 rounds.push(Round::Relax(sweeps.len()..sweeps.len() + 1));
                 sweeps.push(sweep);
             }
-            None => rounds.push(Round::Collide),
+            Due::Pass(round) => rounds.push(round),
         }
     }
     rounds
+}
+
+/// What is due at a moment of a substep.
+enum Due<R> {
+    Sweep(Sweep<R>),
+    Pass(Round),
 }
 
 /// What makes an effect of a strength.
@@ -140,7 +200,7 @@ fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> 
         let compliance = R::from_f64(1.0 / (BENDING_PER_RESISTANCE * settings.bend_resistance * h * h));
         add(settings.bend_resistance, Effect::Bend(BendStrength { share: R::ONE, compliance }));
     }
-    vec![Round::Relax(0..sweeps.len()), Round::Collide]
+    vec![Round::Relax(0..sweeps.len()), Round::MeetEachOther, Round::Collide]
 }
 
 /// Links as stiff as two resistances say; a side without resistance is left alone.
@@ -174,6 +234,8 @@ mod tests {
             wind: Vector3::zeros(),
             air_density: 0.0,
             plane: None,
+            layer_range: 4.0,
+            self_collision_iterations: 4.0,
             cloths: vec![cloth],
             colliders: Vec::new(),
             pins: Vec::new(),
@@ -190,7 +252,9 @@ mod tests {
         };
         let round = |round: &Round| match round {
             Round::Relax(sweeps) => schedule.sweeps[sweeps.clone()].iter().map(letter).collect(),
+            Round::MeetEachOther => String::from("M"),
             Round::Collide => String::from("C"),
+            Round::Settle => String::from("S"),
         };
         schedule.rounds.iter().map(round).collect()
     }

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::builder::ModelBuilder;
 use crate::collision::collider::ColliderState;
 use crate::collision::foresee::Cover;
+use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
 use crate::ids::{ClothId, ColliderId};
 use crate::model::{ClothModel, ColliderModel};
@@ -32,6 +33,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) strayed: Vec<bool>,
     /// What the pairs were found under: the thickness of each cloth and collider, endless where it does not collide.
     pub(crate) terms: Vec<f64>,
+    /// Contact among cloths; none where no two can ever meet.
+    pub(crate) mutual: Option<Mutual<R>>,
     /// Heights of anchors above the ground plane; empty where the scene uses none.
     pub(crate) heights: Vec<R>,
     pub(crate) team: Team,
@@ -43,12 +46,14 @@ impl<R: Real> Solver<R> {
     pub fn new(builder: ModelBuilder, threads: usize) -> Self {
         let ModelBuilder { cloths, colliders } = builder;
         let collides = !colliders.is_empty();
+        let meets = cloths.len() > 1 || cloths.iter().any(|cloth| cloth.lists.self_collision);
         let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
         for cloth in &cloths {
             let first = models.last().map_or(0, |last| last.points().start + last.blocks.columns());
-            models.push(ClothModel::new(cloth, first, collides));
+            models.push(ClothModel::new(cloth, first, collides || meets));
         }
         let state = State::new(&cloths, &models);
+        let mutual = meets.then(|| Mutual::new(&models, &state.anchor));
         drop(cloths);
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
         let covered = if collides { state.anchor.len() } else { 0 };
@@ -62,6 +67,7 @@ impl<R: Real> Solver<R> {
             terms: Vec::new(),
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
+            mutual,
             cloths: models,
             colliders,
             state,

@@ -12,9 +12,16 @@ use crate::predict::{self, Columns, Drive, gravity_kick};
 use crate::relax;
 use crate::report::StepReport;
 use crate::scalar::Real;
-use crate::schedule::{Round, Schedule};
+use crate::schedule::{Round, Schedule, Span};
 use crate::solver::Solver;
 use crate::velocity;
+
+/// A time step: what is done in it, which it is, and when.
+struct Step<'a, R> {
+    schedule: &'a Schedule<R>,
+    index: u32,
+    span: Span,
+}
 
 impl<R: Real> Solver<R> {
     /// Advances by one frame. Cannot fail: what could not be satisfied is counted in the report.
@@ -30,20 +37,19 @@ impl<R: Real> Solver<R> {
             watch.enter(Stage::Normals);
             self.find_normals();
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
-                watch.enter(Stage::Predict);
-                self.predict(frame, &schedule, &fastest, step); // gravity, wind, drag; inertia
-                for round in &schedule.rounds {
-                    match round {
-                        Round::Relax(sweeps) => {
-                            watch.enter(Stage::Relax);
-                            relax::sweep(self, &schedule.sweeps[sweeps.clone()]);
-                        }
-                        Round::Collide => self.collide(frame, &schedule, step, &mut tally, watch), // the last word
-                    }
+                let span = schedule.span(step);
+                let parts = self.parts(frame, &schedule, span, &fastest);
+                if parts == 1 {
+                    let now = Step { schedule: &schedule, index: step, span };
+                    self.advance(frame, &now, &fastest, &mut tally, watch);
+                    continue;
                 }
-                watch.enter(Stage::Velocity);
-                self.follow_positions(&schedule);
-                self.bounce(frame, &schedule, step);
+                let split = schedule.split(frame, parts);
+                for part in 0..parts {
+                    let (index, span) = (step * parts + part, span.part(part, parts));
+                    let now = Step { schedule: &split, index, span };
+                    self.advance(frame, &now, &fastest, &mut tally, watch);
+                }
             }
             self.damp(frame, &schedule);
             self.set_time(f64::from(substep) / f64::from(schedule.substeps));
@@ -52,6 +58,35 @@ impl<R: Real> Solver<R> {
         }
         watch.enter(Stage::Report);
         self.report(frame, &schedule, &tally)
+    }
+
+    /// One time step.
+    fn advance(
+        &mut self,
+        frame: &FrameInput,
+        now: &Step<'_, R>,
+        fastest: &[f64],
+        tally: &mut Tally,
+        watch: &mut dyn StepObserver,
+    ) {
+        let Step { schedule, index, span } = *now;
+        watch.enter(Stage::Predict);
+        self.keep_start();
+        self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
+        for round in &schedule.rounds {
+            match round {
+                Round::Relax(sweeps) => {
+                    watch.enter(Stage::Relax);
+                    relax::sweep(self, &schedule.sweeps[sweeps.clone()]);
+                }
+                Round::MeetEachOther => self.meet(frame, schedule, span, tally, watch),
+                Round::Collide => self.meet_colliders(frame, schedule, span, tally, watch),
+                Round::Settle => self.settle(frame, schedule, span, tally, watch), // the last word
+            }
+        }
+        watch.enter(Stage::Velocity);
+        self.follow_positions(schedule);
+        self.bounce(frame, schedule, span.to);
     }
 
     /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.

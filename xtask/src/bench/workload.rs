@@ -145,6 +145,8 @@ fn frame(setting: &Setting) -> FrameInput {
         wind: Vector3::zeros(),
         air_density: 1.0,
         plane: None,
+        layer_range: 4.0,
+        self_collision_iterations: 4.0,
         cloths: vec![cloth],
         colliders: Vec::new(),
         pins: Vec::new(),

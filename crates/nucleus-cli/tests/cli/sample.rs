@@ -73,6 +73,8 @@ fn input() -> FrameInput {
         wind: Vector3::zeros(),
         air_density: 0.0,
         plane: None,
+        layer_range: 4.0,
+        self_collision_iterations: 4.0,
         cloths: vec![ClothFrame::default()],
         colliders: Vec::new(),
         pins: Vec::new(),

@@ -17,6 +17,8 @@ pub struct ColliderState {
     pub moves: bool,
     /// The farthest that any point goes in this frame, in metres.
     pub way: f64,
+    /// Low and high corner of the box round it at the start and at the end of the frame.
+    corners: [[Vector3<f64>; 2]; 2],
     /// The time of the frame that the solver has come to, as a share of it.
     pub now: f64,
     /// What the boxes are relative to.
@@ -50,6 +52,7 @@ impl ColliderState {
             end: model.positions.clone(),
             moves: false,
             way: 0.0,
+            corners: [corners(&model.positions); 2],
             now: 0.0,
             origin: model.positions.first().copied().unwrap_or_default(),
             boxes: Boxes::default(),
@@ -72,7 +75,14 @@ impl ColliderState {
             self.moves = self.start != self.end;
             let ways = self.start.iter().zip(&self.end).map(|(start, end)| (end - start).norm());
             self.way = ways.fold(0.0, f64::max);
+            self.corners = [corners(&self.start), corners(&self.end)];
         }
+    }
+
+    /// A box round it at a time of the frame: its low and its high corner, in metres.
+    pub fn bounds(&self, time: f64) -> [Vector3<f64>; 2] {
+        let [start, end] = self.corners;
+        [0, 1].map(|corner| start[corner] + (end[corner] - start[corner]) * time)
     }
 
     /// Where a point is at a time of the frame, in metres.
@@ -101,6 +111,12 @@ impl ColliderState {
         self.boxes = boxes;
         self.fitted = Some(span);
     }
+}
+
+/// The low and the high corner of the box round some points.
+fn corners(points: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+    let first = points.first().copied().unwrap_or_default();
+    points.iter().fold([first, first], |[low, high], point| [low.inf(point), high.sup(point)])
 }
 
 fn refill(column: &mut Vec<Aabb>, boxes: impl Iterator<Item = Aabb>) {

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use super::bounce::Bounce;
 use super::foresee::{Cover, spread};
 use super::friction::{Push, rub};
-use super::narrow::{closest_on_segments, closest_on_triangle};
+use super::narrow;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
 
@@ -444,27 +444,12 @@ fn best_plane<const N: usize, const M: usize>(
 
 /// The closest points of two elements, as weights.
 fn closest<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> ([f64; N], [f64; M]) {
-    let mut b = [1.0; N];
-    let mut c = [1.0; M];
-    match N {
-        1 => c.copy_from_slice(&closest_on_triangle(x[0], [q[0], q[1], q[2]])),
-        2 => {
-            let (first, second) = closest_on_segments([x[0], x[1]], [q[0], q[1]]);
-            b.copy_from_slice(&first);
-            c.copy_from_slice(&second);
-        }
-        _ => b.copy_from_slice(&closest_on_triangle(q[0], [x[0], x[1], x[2]])),
-    }
-    (b, c)
+    narrow::closest(x.map(Into::into), q.map(Into::into))
 }
 
-/// The direction across two elements: a face's normal, or at right angles to two edges. Any length.
+/// A direction across two elements, of any length.
 fn across<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> Point {
-    match N {
-        1 => (q[1] - q[0]).cross(&(q[2] - q[0])),
-        2 => (x[1] - x[0]).cross(&(q[1] - q[0])),
-        _ => (x[1] - x[0]).cross(&(x[2] - x[0])),
-    }
+    narrow::across(x.map(Into::into), q.map(Into::into)).into()
 }
 
 fn weigh<const K: usize>(points: [Point; K], weights: [f64; K]) -> Point {

@@ -9,6 +9,7 @@
 //! | narrow phase: how close two elements are | [`narrow`] |
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
+//! | cloth against itself and other cloth | [`mutual`] |
 //! | the ground plane | [`plane`] |
 //! | bounce, once velocities are known | [`bounce`] |
 //! | one collision pass | [`resolve`] |
@@ -18,6 +19,7 @@ pub mod collider;
 pub mod contact;
 pub mod foresee;
 pub mod friction;
+pub mod mutual;
 pub mod narrow;
 pub mod pairs;
 pub mod plane;

@@ -38,6 +38,14 @@ impl Aabb {
         points.map(|point| Self::new(point, point)).fold(Self::EMPTY, Self::union)
     }
 
+    /// The box round a ball.
+    #[inline(always)]
+    pub fn ball(centre: [f32; 3], radius: f32) -> Self {
+        let [x, y, z] = centre;
+        let low = [x - radius, y - radius, z - radius, 0.0];
+        Self { low, high: [x + radius, y + radius, z + radius, 0.0] }
+    }
+
     /// The smallest box round two.
     #[inline(always)]
     pub fn union(self, other: Self) -> Self {
@@ -60,6 +68,18 @@ impl Aabb {
     /// The longest side.
     pub fn size(&self) -> f32 {
         (0..3).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max)
+    }
+
+    /// Whether something that moves from one box to another, each of its points along a straight line, may
+    /// meet something else that does. Boxes that are apart on one side all the time cannot.
+    #[inline(always)]
+    pub fn may_meet(ours: &[Self; 2], theirs: &[Self; 2]) -> bool {
+        let apart = |k: usize| {
+            let above = (ours[0].low[k] > theirs[0].high[k]) & (ours[1].low[k] > theirs[1].high[k]);
+            let below = (ours[0].high[k] < theirs[0].low[k]) & (ours[1].high[k] < theirs[1].low[k]);
+            above | below
+        };
+        !(apart(0) | apart(1) | apart(2))
     }
 
     /// Whether two boxes have a point in common.

@@ -6,11 +6,13 @@
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod vector;
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub use lanes::{Lanes, Quad};
+pub use vector::{add, cross, scale, sub, unit};
 
 /// A scalar the solver can work in: `f32` to be fast, `f64` for references.
 pub trait Real:
@@ -39,6 +41,8 @@ pub trait Real:
     const ONE: Self;
     /// The smallest number that a denominator may be: keeps 0 / 0 from arising, changes nothing else.
     const TINY: Self;
+    /// The distance from one to the next larger number.
+    const EPSILON: Self;
     /// The nearest value.
     fn from_f64(x: f64) -> Self;
     /// Exact.
@@ -57,6 +61,7 @@ impl Real for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const TINY: Self = 1e-20;
+    const EPSILON: Self = f32::EPSILON;
     fn from_f64(x: f64) -> Self {
         x as f32
     }
@@ -76,6 +81,7 @@ impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const TINY: Self = 1e-300;
+    const EPSILON: Self = f64::EPSILON;
     fn from_f64(x: f64) -> Self {
         x
     }

@@ -69,6 +69,8 @@ pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
         wind: Vec3::zeros(),
         air_density: 1.0,
         plane: None,
+        layer_range: 4.0,
+        self_collision_iterations: 4.0,
         cloths: vec![still()],
         colliders: Vec::new(),
         pins: Vec::new(),

@@ -35,15 +35,15 @@ node_table! {
         /// How much of a collision is carried out: 1 all, 0 none.
         COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0);
         /// Up to which elements it collides: points, edges or faces.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]);
-        /// Which elements collide when the object meets itself.
-        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]);
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("self_collision");
+        /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("self_collision");
         /// Takes part in collisions with other objects.
         COLLIDE: bool = toggle("collide", "cold", true).solved("contact");
         /// Takes part in collisions with itself.
-        SELF_COLLIDE: bool = toggle("selfCollide", "scld", true);
+        SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("self_collision");
         /// Which objects it meets, and which of the two gives way.
-        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0);
+        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("self_collision");
         /// Colour in which Maya draws the thickness.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]);
     }
@@ -91,7 +91,7 @@ node_table! {
     }
     "Quality Settings" {
         /// Passes for collisions with itself in 1/24 s.
-        MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s");
+        MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s").solved("schedule");
         /// No effect is given more iterations than this, whatever its resistance.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0);
         /// Pushes points of other objects to the nearest place outside; the sign says which side that is.

@@ -11,7 +11,7 @@ node_table! {
     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides ["dieOnEmissionVolumeExit", "lifespanMode", "lifespanRandom", "expressionsAfterDynamics", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail", "inheritFactor", "currentTime", "startFrame", "inputGeometrySpace", "enforceCountFromHistory", "targetGeometrySpace", "goalSmoothness", "cacheData", "traceDepth", "particleRenderType"];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
-        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0);
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
         /// Out of use in Maya.
         SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0);
         /// What Maya draws of the solver's data.

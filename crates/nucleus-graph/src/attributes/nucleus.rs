@@ -44,7 +44,7 @@ node_table! {
         /// Reads directions and the ground plane in the space of this node's own transform.
         USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("compile");
         /// Objects whose collision layers are this far apart, or farther, do not meet.
-        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0);
+        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("self_collision");
         /// Parts that a frame is solved in; the shortest time the solver knows.
         SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("schedule");
         /// Collision passes in 1/24 s, shared among the substeps.

@@ -13,6 +13,7 @@ use crate::graph::{Node, NodeId};
 use super::objects::{CLASSIC, ClothSource, ColliderSource};
 use super::pins::Grips;
 use super::program::Program;
+use super::self_collision::elements;
 
 impl Program {
     /// The input of the first frame, as an example of what a frame costs.
@@ -46,6 +47,8 @@ impl Program {
             wind: along(&nucleus::WIND_DIRECTION, &nucleus::WIND_SPEED),
             air_density: nucleus.at(&nucleus::AIR_DENSITY, at),
             plane: self.ground_plane(nucleus, at, &space),
+            layer_range: nucleus.at(&nucleus::COLLISION_LAYER_RANGE, at),
+            self_collision_iterations: self.self_collision_iterations(at),
             cloths: self.cloths.iter().map(|cloth| self.cloth_frame(cloth, at)).collect(),
             colliders: self.colliders.iter().map(|collider| self.collider_frame(collider, frame)).collect(),
             pins: self.pins(frame, grips, position),
@@ -93,6 +96,9 @@ impl Program {
             thickness: self.thickness(cloth.node, cloth.default_thickness, frame),
             friction: number(&n_base::FRICTION),
             bounce: number(&n_base::BOUNCE),
+            elements: elements(node.at(&n_base::COLLISION_FLAG, frame)),
+            layer: number(&n_base::COLLISION_LAYER),
+            self_collision: self.self_collision(cloth, frame),
         }
     }
 
@@ -121,7 +127,7 @@ impl Program {
     }
 
     /// In metres.
-    fn thickness(&self, node: NodeId, default: f64, frame: f64) -> f64 {
+    pub(super) fn thickness(&self, node: NodeId, default: f64, frame: f64) -> f64 {
         let node = self.graph.node(node);
         let set = node.setting(&n_base::THICKNESS).is_some();
         self.units.length(if set { node.at(&n_base::THICKNESS, frame) } else { default })

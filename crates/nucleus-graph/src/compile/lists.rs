@@ -18,5 +18,6 @@ pub(super) fn lists(cloth: &Node, nucleus: &Node) -> ClothLists {
         bend: used(&BEND_RESISTANCE),
         air: (used(&DRAG) || used(&LIFT)) && nucleus.is_ever_nonzero(&nucleus::AIR_DENSITY),
         damp: used(&STRETCH_DAMP) || used(&n_base::DAMP),
+        self_collision: cloth.is_ever_nonzero(&n_base::SELF_COLLIDE),
     }
 }

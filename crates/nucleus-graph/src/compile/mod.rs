@@ -19,6 +19,7 @@ mod lists;
 mod objects;
 mod pins;
 mod program;
+mod self_collision;
 mod thickness;
 mod units;
 

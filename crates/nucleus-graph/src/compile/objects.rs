@@ -12,7 +12,7 @@ use crate::scene::{Findings, Scene, TimeSpan};
 use super::geometry::Geometry;
 use super::lists::lists;
 use super::program::{Object, ObjectKind, Program};
-use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness};
+use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::Units;
 
 /// `resistanceModel: classic`.
@@ -24,6 +24,8 @@ pub(super) struct ClothSource {
     pub(super) node: NodeId,
     /// In scene units.
     pub(super) default_thickness: f64,
+    /// Whether its edges limit that.
+    pub(super) is_dense: bool,
     /// In metres, world space.
     pub(super) start: Vec<Vector3<f64>>,
 }
@@ -150,6 +152,7 @@ impl<'a> Compiler<'a> {
         let (node, nucleus) = (graph.node(id), graph.node(self.nucleus?));
         let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
+        let is_dense = is_dense(&surface, CLOTH_SHARE);
         let surface = self.units.surface(surface);
         let point_mass = node.get(&n_base::POINT_MASS);
         let mass = match nucleus.get(&nucleus::RESISTANCE_MODEL) {
@@ -168,7 +171,7 @@ impl<'a> Compiler<'a> {
             }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.cloths.push(ClothSource { node: id, default_thickness, start });
+        self.cloths.push(ClothSource { node: id, default_thickness, is_dense, start });
         Some(())
     }
 

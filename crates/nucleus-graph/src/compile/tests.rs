@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothFrame, ClothId, FrameInput, PointId, ResistanceModel};
+use nucleus_core::{ClothFrame, ClothId, Elements, FrameInput, PointId, ResistanceModel, SelfCollision};
 use proptest::prelude::*;
 
 use super::*;
@@ -123,7 +123,8 @@ fn every_attribute_of_cloth_reaches_its_place() {
     let set = "stretchResistance: 1, compressionResistance: 2, shearResistance: 3, bendResistance: 4, \
         restLengthScale: 5, stretchDamp: 6, damp: 7, drag: 8, tangentialDrag: 9, lift: 10, \
         ignoreSolverGravity: true, ignoreSolverWind: true, localForce: (11, 12, 13), localWind: (14, 15, 16), \
-        collide: false, thickness: 17, friction: 18, bounce: 19";
+        collide: false, thickness: 17, friction: 18, bounce: 19, collisionFlag: Edge, collisionLayer: 20, \
+        selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
         compression_resistance: 2.0,
@@ -143,6 +144,14 @@ fn every_attribute_of_cloth_reaches_its_place() {
         thickness: 17.0,
         friction: 18.0,
         bounce: 19.0,
+        elements: Elements::Edges,
+        layer: 20.0,
+        self_collision: SelfCollision {
+            on: true,
+            thickness: 17.0 * 21.0,
+            elements: Elements::Faces,
+            edges: false,
+        },
     };
     assert_eq!(program(&sheet("", set)).first_input().cloths, [expected]);
 }

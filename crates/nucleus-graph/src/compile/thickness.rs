@@ -12,6 +12,14 @@ const EDGE_SHARE: f64 = 0.13;
 /// Nothing is thinner than this, in scene units.
 const LEAST: f64 = 0.0001;
 
+/// Whether a surface is so dense that its edges limit its default thickness. Maya then makes it meet itself in
+/// its points alone, three times as wide.
+pub(super) fn is_dense(surface: &Surface, share: f64) -> bool {
+    let box_area = bounding_box_area(&surface.positions);
+    let edge = (box_area / surface.faces.len().max(1) as f64).sqrt();
+    edge * EDGE_SHARE <= box_area.sqrt() * share
+}
+
 /// The default thickness of a surface in world space; both in scene units.
 pub(super) fn default_thickness(surface: &Surface, share: f64) -> f64 {
     let box_area = bounding_box_area(&surface.positions);

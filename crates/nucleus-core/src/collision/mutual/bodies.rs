@@ -1,0 +1,97 @@
+//! The elements of all cloths, in groups of neighbours, under one tree.
+
+use nalgebra::Vector3;
+
+use crate::collision::skin::Group;
+use crate::collision::tree::{Aabb, Tree};
+use crate::model::ClothModel;
+use crate::scalar::Real;
+
+/// A group of elements and the cloth it belongs to.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// The cloth, by its index.
+    pub cloth: u32,
+    /// Its elements, in the cloth's skin.
+    pub group: Group,
+}
+
+/// All groups.
+#[derive(Debug, Clone, Default)]
+pub struct Bodies {
+    /// The groups, cloth by cloth.
+    pub groups: Vec<Body>,
+    /// Boxes over groups.
+    pub tree: Option<Tree>,
+    /// A box round all that is foreseen for each group.
+    pub around: Vec<Aabb>,
+    /// The points of each group's elements, and where they end in that column.
+    pub points: Vec<u32>,
+    ends: Vec<u32>,
+    /// The block that each point is in, counted over all cloths.
+    pub block: Vec<u32>,
+    /// How many blocks there are.
+    pub blocks: u32,
+    /// Where each point is at rest, in metres from the first of its cloth.
+    pub rest: Vec<[f32; 3]>,
+}
+
+impl Bodies {
+    /// The elements of these cloths in their shape at rest, which `anchors` have.
+    pub fn new<R: Real>(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
+        let rows = anchors.len();
+        let mut all = Self { block: vec![0; rows], rest: vec![[0.0; 3]; rows], ..Self::default() };
+        for (cloth, model) in (0..).zip(cloths) {
+            all.groups.extend(model.skin.groups().map(|group| Body { cloth, group }));
+            for block in 0..model.blocks.len() {
+                let range = model.blocks.range(block);
+                all.block[range.start as usize..range.end as usize].fill(all.blocks);
+                all.blocks += 1;
+            }
+        }
+        all.take_shape(cloths, anchors);
+        all
+    }
+
+    /// All points that the elements of a group have.
+    pub fn points_of(&self, group: usize) -> &[u32] {
+        let from = group.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.points[from as usize..self.ends[group] as usize]
+    }
+
+    /// Takes the shape at rest, and builds the tree over it.
+    fn take_shape<R: Real>(&mut self, cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) {
+        for model in cloths {
+            let points = model.points();
+            let first = Vector3::from(anchors[points.start as usize]);
+            for row in points.map(|row| row as usize) {
+                let away = Vector3::from(anchors[row]) - first;
+                self.rest[row] = [away.x as f32, away.y as f32, away.z as f32];
+            }
+        }
+        for body in &self.groups {
+            let skin = &cloths[body.cloth as usize].skin;
+            let corners = skin.triangles[body.group.triangles.clone()].iter().flatten();
+            let from = self.points.len();
+            self.points.extend(corners.chain(&skin.points[body.group.points.clone()]));
+            self.points[from..].sort_unstable();
+            let mut kept = from;
+            for at in from..self.points.len() {
+                if at == from || self.points[at] != self.points[kept - 1] {
+                    self.points[kept] = self.points[at];
+                    kept += 1;
+                }
+            }
+            self.points.truncate(kept);
+            self.ends.push(kept as u32);
+        }
+        let centre = |group: usize| {
+            let points = self.points_of(group);
+            let sum: Vector3<f64> = points.iter().map(|&point| Vector3::from(anchors[point as usize])).sum();
+            sum / f64::max(points.len() as f64, 1.0)
+        };
+        let centres: Vec<_> = (0..self.groups.len()).map(centre).collect();
+        self.tree = (!centres.is_empty()).then(|| Tree::new(&centres));
+        self.around = vec![Aabb::EMPTY; self.groups.len()];
+    }
+}

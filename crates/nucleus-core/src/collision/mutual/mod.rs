@@ -1,0 +1,87 @@
+//! Contact in which both sides can be moved: cloth against itself, cloth against cloth, particles against both.
+//!
+//! | You want to know... | Read |
+//! |---|---|
+//! | who meets whom, at which thickness and friction | [`terms`] |
+//! | the elements of all cloths in one tree | [`bodies`] |
+//! | where each point is foreseen to go | [`paths`] |
+//! | broad phase: which elements can touch while the points keep to that | [`search`], [`candidate`] |
+//! | which of these can touch within the next few time steps | [`active`] |
+//! | one contact: pushed apart, with friction, and proven | [`near`] |
+//! | which contacts may be worked on side by side | [`tasks`] |
+//! | meshes that pass through each other, and how they are worked apart | [`tangle`] |
+//!
+//! The proof is that of [`contact`](super::contact): both elements of a pair move along straight lines within
+//! a step, so the gap along one fixed direction is a concave function of time; if it is positive at both
+//! ends of the step, nothing passed in between.
+
+pub mod active;
+pub mod bodies;
+pub mod candidate;
+pub mod near;
+pub mod paths;
+pub mod search;
+pub mod tangle;
+pub mod tasks;
+pub mod terms;
+
+use active::Active;
+use bodies::Bodies;
+use paths::Paths;
+use search::Candidates;
+use tangle::Tangle;
+use terms::Terms;
+
+use crate::model::ClothModel;
+use crate::scalar::{Real, Row4};
+
+/// Everything that contact among cloths keeps; empty where a scene has none.
+pub struct Mutual<R> {
+    /// The elements.
+    pub bodies: Bodies,
+    /// Who meets whom in this frame, by cloth and cloth.
+    pub terms: Vec<Option<Terms<R>>>,
+    /// Displacement of each point at the start of the time step.
+    pub start: Vec<Row4<R>>,
+    /// Where each point is foreseen to go in the frame, and in the next few time steps.
+    pub far: Paths<R>,
+    /// The latter.
+    pub near: Paths<R>,
+    /// Start and end of the next few time steps, as shares of the frame.
+    pub window: [f64; 2],
+    /// Points that do not keep to what was foreseen for them in the frame.
+    pub strayed: Vec<bool>,
+    /// The same for the window.
+    pub left: Vec<bool>,
+    /// Pairs that can touch in the frame.
+    pub candidates: Candidates,
+    /// Those of them that can touch in the window.
+    pub active: Active<R>,
+    /// Elements that pass through each other.
+    pub tangle: Tangle,
+}
+
+impl<R: Real> Mutual<R> {
+    /// For cloths of which some may meet others or themselves.
+    pub fn new(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
+        let rows = anchors.len();
+        Self {
+            bodies: Bodies::new(cloths, anchors),
+            terms: Vec::new(),
+            start: vec![Row4::ZERO; rows],
+            far: Paths::new(rows),
+            near: Paths::new(rows),
+            window: [0.0; 2],
+            strayed: vec![true; rows],
+            left: vec![true; rows],
+            candidates: Candidates::default(),
+            active: Active::default(),
+            tangle: Tangle::new(rows),
+        }
+    }
+
+    /// Whether anything can meet in this frame.
+    pub fn is_on(&self) -> bool {
+        self.terms.iter().any(Option::is_some)
+    }
+}

@@ -1,0 +1,302 @@
+//! One contact between two elements that can both be moved.
+//!
+//! It carries a direction along which the two were apart at the start of the time step. As long as they are
+//! apart along it at the end too, they have not passed; otherwise another direction is looked for.
+
+use crate::collision::friction::{Push, rub};
+use crate::collision::narrow::{Places, across, gap_along, shortest, weigh};
+use crate::columns::Shared;
+use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
+
+/// Parts in a million of the thickness that count as touching: without it a contact at rest would push
+/// for ever at its last bit.
+const TOUCH: f64 = 1e-6;
+/// Share of the way to a plane that a point is let go: the rest is the gap that the next step starts with.
+const ROOM_USED: f64 = 0.9;
+/// Least and most share of a gap that one side may use up when both come nearer.
+const LEAST_SHARE: f64 = 0.05;
+
+/// What a contact needs of the time step.
+#[derive(Clone, Copy)]
+pub struct Motion<'a, R> {
+    /// Displacements from the anchors, with the inverse mass.
+    pub displacement: Shared<'a, Row4<R>>,
+    /// Where the points would be had nothing held them.
+    pub predicted: Shared<'a, Row4<R>>,
+    /// Displacements at the start of the step.
+    pub start: &'a [Row4<R>],
+    /// Length of the step in seconds.
+    pub h: R,
+    /// What a place may be off by, by rounding, in metres.
+    pub grain: R,
+}
+
+impl<R: Real> Motion<'_, R> {
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    fn row(&self, point: u32) -> Row4<R> {
+        // SAFETY: tasks of a phase share no block, and a contact's points are in its task's blocks.
+        unsafe { self.displacement.get(point) }
+    }
+
+    #[inline(always)]
+    fn start(&self, point: u32) -> [R; 3] {
+        self.start[point as usize].xyz()
+    }
+
+    /// Moves a point; `led` is the part of it that is not to become velocity.
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    fn write(&self, point: u32, row: Row4<R>, led: [R; 3]) {
+        // SAFETY: as above.
+        unsafe {
+            self.displacement.set(point, row);
+            let mut predicted = self.predicted.get(point);
+            for axis in 0..3 {
+                predicted.0[axis] += led[axis];
+            }
+            self.predicted.set(point, predicted);
+        }
+    }
+}
+
+/// What a contact is between, and on which terms.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting<R> {
+    /// The distance to keep, in metres.
+    pub thickness: R,
+    /// Sum of the two frictions.
+    pub friction: R,
+    /// Factor on the mobility of each side.
+    pub mobility: [R; 2],
+}
+
+/// A contact: `N` points of one element, `M` of the other.
+#[derive(Debug, Clone, Copy)]
+pub struct Near<R, const N: usize, const M: usize> {
+    /// Points of the one element, in the solver's places.
+    pub ours: [u32; N],
+    /// Points of the other.
+    pub theirs: [u32; M],
+    /// Their anchors, in metres from the first of ours.
+    places: ([[R; 3]; N], [[R; 3]; M]),
+    /// Points from theirs to ours; the two were apart along it at the start of the step.
+    normal: [R; 3],
+    meeting: Meeting<R>,
+}
+
+impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
+    /// A contact along the shortest line between the two at the start of a window; nothing if they cannot
+    /// touch in it. `from` and `to` are displacements at its start and end, with the radius they hold in.
+    #[inline]
+    pub fn find(
+        (ours, theirs): ([u32; N], [u32; M]),
+        meeting: Meeting<R>,
+        anchors: &[[f64; 3]],
+        from: impl Fn(u32) -> Row4<R>,
+        to: impl Fn(u32) -> [R; 3],
+    ) -> Option<Self> {
+        let origin = anchors[ours[0] as usize];
+        let place = |point: u32| {
+            let anchor = anchors[point as usize];
+            std::array::from_fn(|axis| R::from_f64(anchor[axis] - origin[axis]))
+        };
+        let places = (ours.map(place), theirs.map(place));
+        let mut near = Self { ours, theirs, places, normal: [R::ZERO; 3], meeting };
+        let (before, after) = (near.at(|point| from(point).xyz()), near.at(to));
+        near.normal = shortest(before).0;
+        let ball = |points: &[u32]| {
+            points
+                .iter()
+                .map(|&point| from(point).0[3])
+                .fold(R::ZERO, |most, x| if x > most { x } else { most })
+        };
+        let stray = ball(&ours) + ball(&theirs);
+        let (first, last) = (near.gap(&before), near.gap(&after));
+        let least = if last < first { last } else { first };
+        (least - stray < meeting.thickness).then_some(near)
+    }
+
+    #[inline(always)]
+    fn at(&self, displacement: impl Fn(u32) -> [R; 3]) -> Places<R, N, M> {
+        let ours = std::array::from_fn(|k| add(self.places.0[k], displacement(self.ours[k])));
+        (ours, std::array::from_fn(|k| add(self.places.1[k], displacement(self.theirs[k]))))
+    }
+
+    #[inline(always)]
+    fn now(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
+        self.at(|point| step.row(point).xyz())
+    }
+
+    #[inline(always)]
+    fn before(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
+        self.at(|point| step.start(point))
+    }
+
+    /// The gap along the contact's direction.
+    #[inline(always)]
+    fn gap(&self, at: &Places<R, N, M>) -> R {
+        gap_along(self.normal, at)
+    }
+
+    /// Pushes the two apart if they are nearer than their thickness; whether they were.
+    #[inline]
+    pub fn resolve(&mut self, step: &Motion<'_, R>) -> bool {
+        let now = self.now(step);
+        let held = self.meeting.thickness * R::from_f64(1.0 - TOUCH);
+        let gap = self.gap(&now);
+        if gap >= held {
+            return false;
+        }
+        let before = self.before(step);
+        let (normal, (b, c), distance) = shortest(now);
+        if distance > R::ZERO && gap_along(normal, &before) > step.grain {
+            // Apart along this line at both ends of the step: it is theirs from now on.
+            self.normal = normal;
+            if distance >= held {
+                return false;
+            }
+            self.push(step, (b, c), &before, self.meeting.thickness - distance);
+            return true;
+        }
+        // They may have passed. Back to the side that they were on.
+        let (_, (b, c), _) = shortest(before);
+        let depth = self.meeting.thickness - dot(self.normal, sub(weigh(now.0, b), weigh(now.1, c)));
+        if depth > R::ZERO {
+            self.push(step, (b, c), &before, depth);
+        }
+        true
+    }
+
+    /// Moves both sides by `depth` in all, each by its mobility, with friction.
+    fn push(&self, step: &Motion<'_, R>, (b, c): ([R; N], [R; M]), before: &Places<R, N, M>, depth: R) {
+        let mobile =
+            |point: u32, weight: R, side: usize| step.row(point).0[3] * weight * self.meeting.mobility[side];
+        let ours: [R; N] = std::array::from_fn(|k| mobile(self.ours[k], b[k], 0));
+        let theirs: [R; M] = std::array::from_fn(|k| mobile(self.theirs[k], c[k], 1));
+        let all = (0..N).map(|k| ours[k] * b[k]).sum::<R>() + (0..M).map(|k| theirs[k] * c[k]).sum::<R>();
+        if all <= R::TINY {
+            return;
+        }
+        let line_before = sub(weigh(before.0, b), weigh(before.1, c));
+        let push = Push::new(depth, self.meeting.thickness - dot(self.normal, line_before), step.h);
+        let along = scale(self.normal, push.length());
+        let rub = self.rub(step, (b, c), line_before, along, push.pressed);
+        let (moved, led) = (add(along, rub), scale(self.normal, push.led));
+        let part = R::ONE / all;
+        for k in 0..N {
+            self.shift(step, self.ours[k], ours[k] * part, moved, led);
+        }
+        for k in 0..M {
+            self.shift(step, self.theirs[k], -(theirs[k] * part), moved, led);
+        }
+    }
+
+    #[inline(always)]
+    fn shift(&self, step: &Motion<'_, R>, point: u32, part: R, moved: [R; 3], led: [R; 3]) {
+        let mut row = step.row(point);
+        for axis in 0..3 {
+            row.0[axis] += moved[axis] * part;
+        }
+        step.write(point, row, scale(led, part));
+    }
+
+    /// The correction along the surfaces, against the motion of one over the other within the step.
+    fn rub(
+        &self,
+        step: &Motion<'_, R>,
+        (b, c): ([R; N], [R; M]),
+        line_before: [R; 3],
+        along: [R; 3],
+        pressed: R,
+    ) -> [R; 3] {
+        let limit = self.meeting.friction * pressed;
+        if limit <= R::ZERO {
+            return [R::ZERO; 3];
+        }
+        let now = self.now(step);
+        let line = sub(weigh(now.0, b), weigh(now.1, c));
+        rub(add(sub(line, line_before), along), self.normal, limit)
+    }
+
+    /// Whether it is certain that the two did not pass each other in this step. Takes up another direction
+    /// if that proves it. What was not apart when the step began has nothing to lose.
+    #[inline]
+    pub fn prove(&mut self, step: &Motion<'_, R>) -> bool {
+        let now = self.now(step);
+        if self.gap(&now) > step.grain {
+            return true;
+        }
+        self.prove_otherwise(step, now)
+    }
+
+    #[cold]
+    fn prove_otherwise(&mut self, step: &Motion<'_, R>, now: Places<R, N, M>) -> bool {
+        let before = self.before(step);
+        let (first, _, distance) = shortest(before);
+        if distance <= step.grain {
+            return true;
+        }
+        let candidates = [shortest(now).0, across(now.0, now.1), across(before.0, before.1), first];
+        let units = candidates.into_iter().filter_map(|line| unit(line, R::TINY));
+        let both = units.flat_map(|n| [n, n.map(|x| -x)]);
+        let mut proofs =
+            both.filter(|&n| gap_along(n, &before) > step.grain && gap_along(n, &now) > step.grain);
+        match proofs.next() {
+            Some(normal) => self.normal = normal,
+            None => return false,
+        }
+        true
+    }
+
+    /// Stops the points that would pass a plane between the two, before it: each is taken back along its own
+    /// way of this step. Both sides then stay on theirs, whatever else takes their points back farther.
+    pub fn clip(&mut self, step: &Motion<'_, R>) {
+        let (before, now) = (self.before(step), self.now(step));
+        let (normal, _, _) = shortest(before);
+        self.normal = normal;
+        let most = |x: R, y: R| if y > x { y } else { x };
+        let rear = before.1.iter().map(|&q| dot(normal, q)).fold(-R::ONE / R::TINY, most);
+        let front = -before.0.iter().map(|&x| -dot(normal, x)).fold(-R::ONE / R::TINY, most);
+        let came = |from: &[[R; 3]], to: &[[R; 3]], sign: R| {
+            let each = from.iter().zip(to).map(|(&from, &to)| dot(normal, sub(to, from)) * sign);
+            each.fold(R::ZERO, most)
+        };
+        let (ours, theirs) = (came(&before.0, &now.0, -R::ONE), came(&before.1, &now.1, R::ONE));
+        let sum = ours + theirs;
+        let share = if sum > R::ZERO { theirs / sum } else { R::from_f64(0.5) };
+        let share = most(R::from_f64(LEAST_SHARE), share);
+        let share = -most(-share, -R::from_f64(1.0 - LEAST_SHARE));
+        let plane = rear + (front - rear) * share;
+        for k in 0..N {
+            self.stop(step, self.ours[k], [dot(normal, before.0[k]) - plane, dot(normal, now.0[k]) - plane]);
+        }
+        for k in 0..M {
+            self.stop(
+                step,
+                self.theirs[k],
+                [plane - dot(normal, before.1[k]), plane - dot(normal, now.1[k])],
+            );
+        }
+    }
+
+    /// Takes a point back to before a plane, given its height above it at both ends of the step.
+    fn stop(&self, step: &Motion<'_, R>, point: u32, [before, now]: [R; 2]) {
+        let mut row = step.row(point);
+        let room = before * R::from_f64(1.0 - ROOM_USED);
+        if now >= room || before - now <= R::TINY || row.0[3] <= R::ZERO {
+            return;
+        }
+        let share = (before - room) / (before - now);
+        let start = step.start(point);
+        for axis in 0..3 {
+            row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
+        }
+        step.write(point, row, [R::ZERO; 3]);
+    }
+
+    /// The distance between the two, over their thickness.
+    pub fn closeness(&self, step: &Motion<'_, R>) -> R {
+        shortest(self.now(step)).2 / self.meeting.thickness
+    }
+}

@@ -1,0 +1,55 @@
+//! Impact: a collider that goes farther in a time step than the cloth's faces are wide would leap over them.
+//! While it is about to meet cloth, time steps are split so that it does not.
+
+use nalgebra::Vector3;
+
+use crate::collision::collider::ColliderState;
+use crate::frame::FrameInput;
+use crate::scalar::Real;
+use crate::schedule::{Schedule, Span};
+use crate::solver::Solver;
+
+/// Edge lengths of a cloth that a collider may go in a time step.
+const LEAP: f64 = 1.0;
+/// Parts of a time step, at most.
+const MOST_PARTS: f64 = 256.0;
+
+impl<R: Real> Solver<R> {
+    /// Into how many parts a time step is to be split.
+    pub(crate) fn parts(
+        &self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        fastest: &[f64],
+    ) -> u32 {
+        let mut parts = 1.0f64;
+        for (collider, settings) in self.collider_states.iter().zip(&frame.colliders) {
+            let leap = collider.way * (span.to - span.from);
+            if !settings.collide || leap == 0.0 {
+                continue;
+            }
+            for (index, cloth) in self.cloths.iter().enumerate().filter(|(k, _)| frame.cloths[*k].collide) {
+                let wanted = leap / (LEAP * cloth.edge_length);
+                let room = frame.cloths[index].thickness + settings.thickness + fastest[index] * schedule.h;
+                // A cloth without edges is points, which nothing can leap over.
+                if wanted.is_finite() && wanted > parts && self.is_near(index, collider, span, room) {
+                    parts = wanted;
+                }
+            }
+        }
+        parts.ceil().min(MOST_PARTS) as u32
+    }
+
+    /// Whether a collider comes near a cloth in a time step, by the boxes round them.
+    fn is_near(&self, cloth: usize, collider: &ColliderState, span: Span, room: f64) -> bool {
+        let place = |row: u32| Vector3::from(self.state.position(row));
+        let points = self.cloths[cloth].points();
+        let first = place(points.start);
+        let cloth =
+            points.fold([first, first], |[low, high], row| [low.inf(&place(row)), high.sup(&place(row))]);
+        let [from, to] = [span.from, span.to].map(|time| collider.bounds(time));
+        let theirs = [from[0].inf(&to[0]), from[1].sup(&to[1])];
+        (0..3).all(|k| cloth[0][k] - room <= theirs[1][k] && theirs[0][k] <= cloth[1][k] + room)
+    }
+}

@@ -1,0 +1,301 @@
+//! Contact among cloths, as the solver goes through it: foresee, find, push apart, and at the end of every
+//! step prove that nothing passed.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::collision::mutual::Mutual;
+use crate::collision::mutual::active::{WINDOW, pick};
+use crate::collision::mutual::near::Motion;
+use crate::collision::mutual::paths::Path;
+use crate::collision::mutual::search::search;
+use crate::collision::mutual::terms::Terms;
+use crate::collision::resolve::Tally;
+use crate::columns::Shared;
+use crate::frame::FrameInput;
+use crate::observe::{Stage, StepObserver};
+use crate::scalar::{Real, Row4, add, dot, scale, sub};
+use crate::schedule::{Schedule, Span};
+use crate::solver::Solver;
+use crate::state::State;
+
+/// Radius of the ball that a point is to stay in for a few time steps, in shares of the thickness and of the
+/// length of an edge: the larger counts.
+const NEAR_BALL: [f64; 2] = [0.1, 0.02];
+/// The same for a frame.
+const FAR_BALL: [f64; 2] = [0.25, 0.15];
+/// In metres; nothing is foreseen more sharply.
+const LEAST_BALL: f64 = 1e-6;
+/// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
+const FARTHEST: f64 = 1.0;
+/// Times that pushing, and then clipping, are tried before what is not proven is let go.
+const PUSHES: usize = 4;
+const CLIPS: usize = 8;
+
+impl<R: Real> Solver<R> {
+    /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.
+    pub(crate) fn begin_meeting(&mut self, frame: &FrameInput) {
+        let Some(mutual) = &mut self.mutual else { return };
+        let cloths = &frame.cloths;
+        let terms = (0..cloths.len()).flat_map(|a| {
+            cloths.iter().enumerate().map(move |(b, other)| match a == b {
+                true => Terms::with_itself(other),
+                false => Terms::between(&cloths[a], other, frame.layer_range),
+            })
+        });
+        let terms: Vec<Option<Terms<R>>> = terms.collect();
+        if terms != mutual.terms {
+            mutual.terms = terms;
+            mutual.strayed.fill(true);
+        }
+        if mutual.is_on() {
+            mutual.far.move_anchors(&self.state.displacement);
+        }
+        mutual.window = [0.0; 2];
+    }
+
+    /// Keeps the places that points have before a time step moves them.
+    pub(crate) fn keep_start(&mut self) {
+        if let Some(mutual) = self.mutual.as_mut().filter(|mutual| mutual.is_on()) {
+            mutual.start.copy_from_slice(&self.state.displacement);
+        }
+    }
+
+    /// Pushes apart all that is too near, once.
+    pub(crate) fn meet(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+        watch: &mut dyn StepObserver,
+    ) {
+        if !self.mutual.as_ref().is_some_and(Mutual::is_on) {
+            return;
+        }
+        watch.enter(Stage::FindPairs);
+        self.watch_contacts(frame, span, tally);
+        watch.enter(Stage::Collide);
+        let Self { mutual: Some(mutual), state, team, .. } = self else { return };
+        let Mutual { start, active, .. } = mutual;
+        let step = Motion {
+            displacement: Shared::new(&mut state.displacement),
+            predicted: Shared::new(&mut state.predicted),
+            start,
+            h: R::from_f64(schedule.h),
+            grain: R::ZERO,
+        };
+        *tally.contacts.get_mut() += active.sweep(&step, team);
+    }
+
+    /// Proves at the end of a time step that nothing passed anything. What is not proven is pushed apart again,
+    /// then held back, and if all that does not help is let go and counted.
+    pub(crate) fn settle(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+        watch: &mut dyn StepObserver,
+    ) {
+        if !self.mutual.as_ref().is_some_and(Mutual::is_on) {
+            return;
+        }
+        for attempt in 0..=PUSHES + CLIPS {
+            self.watch_contacts(frame, span, tally);
+            if self.prove(schedule) == 0 {
+                return;
+            }
+            let pushes = attempt < PUSHES;
+            match attempt {
+                _ if pushes => self.meet(frame, schedule, span, tally, watch),
+                _ if attempt < PUSHES + CLIPS => self.clip(schedule, tally),
+                _ => return self.let_go(schedule, tally),
+            }
+            // What is held back on its way passes no collider at rest: it did not on the whole way.
+            if pushes || self.collider_states.iter().any(|collider| collider.moves) {
+                self.meet_colliders(frame, schedule, span, tally, watch);
+            }
+        }
+    }
+
+    fn prove(&mut self, schedule: &Schedule<R>) -> u64 {
+        let Self { mutual: Some(mutual), state, team, .. } = self else { return 0 };
+        let Mutual { start, active, .. } = mutual;
+        active.prove(&motion(state, start, schedule.h), team)
+    }
+
+    fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
+        let Self { mutual: Some(mutual), state, .. } = self else { return };
+        let Mutual { start, active, .. } = mutual;
+        active.clip(&motion(state, start, schedule.h), |_| *tally.caught.get_mut() += 1);
+    }
+
+    fn let_go(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
+        let crossed = self.prove(schedule);
+        *tally.crossed.get_mut() += crossed;
+        if let Some(mutual) = &mut self.mutual {
+            mutual.tangle.any |= crossed > 0;
+        }
+    }
+
+    /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
+    /// it was foreseen to, nothing needs to be done.
+    fn watch_contacts(&mut self, frame: &FrameInput, span: Span, tally: &mut Tally) {
+        let Some(mutual) = &mut self.mutual else { return };
+        if span.to > mutual.window[1] + 1e-9 {
+            let end = (span.from + (span.to - span.from) * WINDOW).min(1.0);
+            mutual.window = [span.from, end.max(span.to)];
+            mutual.left.fill(true);
+        } else if !self.find_who_left(span) {
+            return;
+        }
+        if self.foresee(frame, span) {
+            let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
+            search(mutual, cloths, &state.anchor, span.from, team);
+            *tally.pairs.get_mut() += mutual.candidates.list.len() as u64;
+            *tally.broad_phases.get_mut() += 1;
+        }
+        let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
+        pick(mutual, cloths.len(), &state.anchor, team);
+    }
+
+    /// Marks the points that are not where they were foreseen to be at the end of the step. Whether there
+    /// are any.
+    fn find_who_left(&mut self, span: Span) -> bool {
+        let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return false };
+        let Mutual { window: [from, to], left, near, .. } = mutual;
+        let share = R::from_f64((span.to - *from) / (*to - *from));
+        let any = AtomicBool::new(false);
+        let left = Shared::new(left);
+        for cloth in cloths.iter() {
+            team.phase(cloth.blocks.len(), |block| {
+                let mut any_here = false;
+                for row in cloth.blocks.range(block) {
+                    let keeps = near.of(row).holds(share, state.displacement[row as usize].xyz(), R::ZERO);
+                    any_here |= !keeps;
+                    // SAFETY: blocks do not overlap.
+                    #[allow(unsafe_code)]
+                    unsafe {
+                        left.set(row, !keeps);
+                    }
+                }
+                any.fetch_or(any_here, Ordering::Relaxed);
+            });
+        }
+        any.into_inner()
+    }
+
+    /// Writes what is foreseen for the window, for the points that left what was foreseen before; for those
+    /// that stray in it from what was foreseen for the frame, that too. Whether there were any.
+    fn foresee(&mut self, frame: &FrameInput, span: Span) -> bool {
+        let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return false };
+        let Mutual { start, far, near, window, strayed, left, .. } = mutual;
+        let ahead = Ahead::new(span, *window, mean_motion(start, &state.displacement));
+        let (near, far, strayed) = (near.shared(), far.shared(), Shared::new(strayed));
+        let any = AtomicBool::new(false);
+        for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
+            let thickness = settings.thickness.max(settings.self_collision.thickness);
+            let ball = |[of_thickness, of_edge]: [f64; 2]| {
+                R::from_f64((of_thickness * thickness).max(of_edge * cloth.edge_length).max(LEAST_BALL))
+            };
+            let balls = [ball(NEAR_BALL), ball(FAR_BALL)];
+            let farthest = R::from_f64(FARTHEST * cloth.edge_length);
+            team.phase(cloth.blocks.len(), |block| {
+                for row in cloth.blocks.range(block).filter(|&row| left[row as usize]) {
+                    let before = start[row as usize].xyz();
+                    let motion = sub(state.displacement[row as usize].xyz(), before);
+                    let soon = ahead.in_window(before, motion, balls[0]);
+                    // SAFETY: blocks do not overlap.
+                    #[allow(unsafe_code)]
+                    unsafe {
+                        near.set(row, soon);
+                        if strayed.get(row) || !ahead.is_kept(&soon, &far.of(row)) {
+                            far.set(row, ahead.in_frame(before, motion, balls[1], farthest));
+                            strayed.set(row, true);
+                            any.store(true, Ordering::Relaxed);
+                        }
+                    }
+                }
+            });
+        }
+        any.into_inner()
+    }
+}
+
+/// What foreseeing goes by.
+struct Ahead<R> {
+    /// Start and end of the window, as shares of the frame.
+    window: [R; 2],
+    /// Start of the step, as a share of the window.
+    begun: R,
+    /// Steps in a window and in a frame.
+    steps: [R; 2],
+    /// The motion of all points in a step, in the mean.
+    common: [R; 3],
+}
+
+impl<R: Real> Ahead<R> {
+    fn new(span: Span, window: [f64; 2], common: [R; 3]) -> Self {
+        let (step, length) = (span.to - span.from, window[1] - window[0]);
+        Self {
+            window: window.map(R::from_f64),
+            begun: R::from_f64((span.from - window[0]) / length),
+            steps: [R::from_f64(length / step), R::from_f64(1.0 / step)],
+            common,
+        }
+    }
+
+    /// On through the window as in this step.
+    #[inline(always)]
+    fn in_window(&self, before: [R; 3], motion: [R; 3], ball: R) -> Path<R> {
+        let travel = scale(motion, self.steps[0]);
+        Path { from: sub(before, scale(travel, self.begun)), travel, ball }
+    }
+
+    /// On through the frame as in this step, but no farther from what all do in common than `farthest`.
+    #[inline(always)]
+    fn in_frame(&self, before: [R; 3], motion: [R; 3], ball: R, farthest: R) -> Path<R> {
+        let now = self.window[0] + (self.window[1] - self.window[0]) * self.begun;
+        let most = farthest / (R::ONE - now + R::EPSILON);
+        let travel = limited(scale(motion, self.steps[1]), scale(self.common, self.steps[1]), most);
+        Path { from: sub(before, scale(travel, now)), travel, ball }
+    }
+
+    /// Whether a point that keeps to `soon` from now to the end of the window keeps to `later` too.
+    #[inline(always)]
+    fn is_kept(&self, soon: &Path<R>, later: &Path<R>) -> bool {
+        let now = self.window[0] + (self.window[1] - self.window[0]) * self.begun;
+        later.holds(now, soon.at(self.begun), soon.ball)
+            && later.holds(self.window[1], soon.at(R::ONE), soon.ball)
+    }
+}
+
+/// A time step as contacts see it.
+pub(crate) fn motion<'a, R: Real>(state: &'a mut State<R>, start: &'a [Row4<R>], h: f64) -> Motion<'a, R> {
+    Motion {
+        displacement: Shared::new(&mut state.displacement),
+        predicted: Shared::new(&mut state.predicted),
+        start,
+        h: R::from_f64(h),
+        grain: R::ZERO,
+    }
+}
+
+/// The mean motion of all points in a step: what they have in common brings none nearer to another.
+fn mean_motion<R: Real>(start: &[Row4<R>], now: &[Row4<R>]) -> [R; 3] {
+    let mut sum = [0.0f64; 3];
+    for (start, now) in start.iter().zip(now) {
+        let motion = sub(now.xyz(), start.xyz());
+        for axis in 0..3 {
+            sum[axis] += motion[axis].to_f64();
+        }
+    }
+    sum.map(|x| R::from_f64(x / start.len().max(1) as f64))
+}
+
+/// A motion that differs from the common one by `most` at most.
+fn limited<R: Real>(motion: [R; 3], common: [R; 3], most: R) -> [R; 3] {
+    let own = sub(motion, common);
+    let length = dot(own, own).sqrt();
+    if length > most { add(common, scale(own, most / length)) } else { motion }
+}

@@ -1,0 +1,92 @@
+//! Cloth against itself and other cloth: nothing passes, everything rests.
+
+mod scenes;
+
+use nucleus_core::{
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, GroundPlane, Mass, ModelBuilder,
+    ResistanceModel, SelfCollision, Solver, Surface,
+};
+use scenes::{Vec3, frame, grid, physical, still};
+
+const LISTS: ClothLists = ClothLists { stretch: true, bend: true, self_collision: true, ..ClothLists::NONE };
+
+fn full_surface(thickness: f64) -> SelfCollision {
+    SelfCollision { on: true, thickness, elements: Elements::Faces, edges: true }
+}
+
+/// Signed volume of four points, times six.
+fn orient([a, b, c, d]: [Vec3; 4]) -> f64 {
+    (b - a).cross(&(c - a)).dot(&(d - a))
+}
+
+/// Edges that pass through faces, of all cloths together.
+fn crossings(cloths: &[(&Surface, Vec<Vec3>)]) -> usize {
+    let mut edges = Vec::new();
+    let mut faces = Vec::new();
+    for (cloth, (surface, at)) in cloths.iter().enumerate() {
+        for [a, b, c] in surface.faces.triangles() {
+            faces.push((cloth, [a, b, c], [a, b, c].map(|k| at[k as usize])));
+            for (a, b) in [(a, b), (b, c), (c, a)] {
+                edges.push((cloth, [a, b], [a, b].map(|k| at[k as usize])));
+            }
+        }
+    }
+    let through = |(cloth, ends, [p, q]): &(usize, [u32; 2], [Vec3; 2]),
+                   (other, corners, [a, b, c]): &(usize, [u32; 3], [Vec3; 3])| {
+        if cloth == other && ends.iter().any(|end| corners.contains(end)) {
+            return false;
+        }
+        if (0..3)
+            .any(|k| p[k].min(q[k]) > a[k].max(b[k]).max(c[k]) || p[k].max(q[k]) < a[k].min(b[k]).min(c[k]))
+        {
+            return false;
+        }
+        let sides = [orient([*a, *b, *c, *p]), orient([*a, *b, *c, *q])];
+        let round = [orient([*p, *q, *a, *b]), orient([*p, *q, *b, *c]), orient([*p, *q, *c, *a])];
+        sides[0] * sides[1] < 0.0 && (round.iter().all(|x| *x > 0.0) || round.iter().all(|x| *x < 0.0))
+    };
+    edges.iter().map(|edge| faces.iter().filter(|face| through(edge, face)).count()).sum()
+}
+
+fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
+    use nucleus_core::StateView;
+    (0..points).map(|k| solver.point(ClothId(cloth), k)).collect()
+}
+
+fn floor() -> Option<GroundPlane> {
+    Some(GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.3 })
+}
+
+// EVIDENCE: N2.3-3  cloth against itself, in point and face and edge and edge
+#[test]
+fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
+    for resistance in [physical(96.0), ResistanceModel::Classic] {
+        let mut sheet = grid(33, 33, Vec3::new(1.0, 0.0, 0.05), Vec3::new(0.0, 1.0, 0.1));
+        sheet.positions.iter_mut().for_each(|p| {
+            p.y += 0.02;
+            p.z += 0.01 * (9.0 * p.y).sin() + 0.003 * (7.0 * p.x).sin();
+        });
+        let mut builder = ModelBuilder::new();
+        builder
+            .cloth(Cloth { surface: sheet.clone(), mass: Mass::PerArea(0.2), lists: LISTS })
+            .expect("a mesh");
+        let cloth = ClothFrame {
+            bend_resistance: 0.1,
+            stretch_damp: 0.1,
+            thickness: 0.005,
+            self_collision: full_surface(0.005),
+            ..still()
+        };
+        let input = FrameInput { plane: floor(), cloths: vec![cloth], ..frame(3, resistance) };
+        let mut solver = Solver::<f32>::new(builder, 1);
+        let mut contacts = 0;
+        for step in 0..30 {
+            let report = solver.step(&input, &mut ());
+            contacts += report.contacts;
+            assert!(report.finite);
+            let through = crossings(&[(&sheet, positions(&solver, 0, 33 * 33))]);
+            assert_eq!(through, 0, "{resistance:?}, frame {step}: {report:?}");
+        }
+        assert!(contacts > 1000, "it folded: {contacts}");
+    }
+}
