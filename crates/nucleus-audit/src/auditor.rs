@@ -67,9 +67,14 @@ pub struct Account {
 }
 
 impl Account {
+    /// Findings of all kinds together.
+    pub fn found(&self) -> u64 {
+        self.crossings + self.touches + self.undecided + self.overlaps
+    }
+
     /// Whether nothing was found.
     pub fn is_clean(&self) -> bool {
-        self.crossings + self.touches + self.undecided + self.overlaps == 0
+        self.found() == 0
     }
 }
 
@@ -93,18 +98,31 @@ impl Auditor {
     ///
     /// # Panics
     /// When there are not as many positions as points.
-    pub fn new(world: World, rules: Rules, start: Vec<Vector3<f64>>) -> Self {
-        let inside = intersections(&world, &rules, &start);
+    pub fn new(world: World, rules: Rules, start: &[Vector3<f64>]) -> Self {
+        let inside = intersections(&world, &rules, start);
         let count = inside.len() as u64;
         let account =
             Account { tangled_at_start: count, tangled: count, inside: count, ..Account::default() };
-        let tangle = Tangle::new(&inside);
-        Self { world, rules, state: start, tangle, reported: HashSet::new(), account, findings: Vec::new() }
+        let (tangle, state) = (Tangle::new(&inside), start.to_vec());
+        Self { world, rules, state, tangle, reported: HashSet::new(), account, findings: Vec::new() }
     }
 
-    /// Replaces the rules from the next motion on.
+    /// Replaces the rules from the next motion on. What is inside each other by then and was not to be looked at so far
+    /// is treated as if it had been so at the start.
     pub fn set_rules(&mut self, rules: Rules) {
+        if rules == self.rules {
+            return;
+        }
         self.rules = rules;
+        let inside = intersections(&self.world, &self.rules, &self.state);
+        let news: Vec<Overlapping> = inside
+            .iter()
+            .filter(|found| !self.tangle.has(found) && !self.reported.contains(&(found.edge, found.face)))
+            .copied()
+            .collect();
+        self.account.tangled_at_start += news.len() as u64;
+        self.tangle.add(&news);
+        self.count_state(&inside);
     }
 
     /// Takes up the next state: looks at the straight motion to it, and at the state itself where the motion gives
@@ -114,28 +132,53 @@ impl Auditor {
     /// When there are not as many positions as points.
     pub fn see(&mut self, moment: Moment, positions: &[Vector3<f64>]) {
         self.account.motions += 1;
-        let mut events = crossings(&self.world, &self.rules, &self.state, positions);
-        self.state.copy_from_slice(positions);
-        let quiet = events.is_empty() && self.tangle.len() == 0;
-        let reach = self.tangle.take(&self.world, &mut events);
-        self.account.excused += reach.taken;
-        for &event in &events {
+        let events = self.move_to(positions, true);
+        for event in events {
             self.count_passage(event.passage);
             self.keep(Finding { moment, what: What::Passage(event) });
         }
-        if !quiet {
-            let inside = intersections(&self.world, &self.rules, &self.state);
-            self.tangle.settle(&reach, &inside);
-            // These were seen to get there.
-            let seen = inside.iter().filter(|found| !self.tangle.has(found));
-            self.reported = seen.map(|found| (found.edge, found.face)).collect();
-            self.count_state(&inside);
+    }
+
+    /// Takes up the next state where the way to it is not known, and looks at it alone: what is inside what, that was
+    /// not before?
+    ///
+    /// # Panics
+    /// When there are not as many positions as points.
+    pub fn follow(&mut self, moment: Moment, positions: &[Vector3<f64>]) {
+        // A tangle is still followed along the straight way, which is the best guess there is.
+        if self.tangle.is_empty() {
+            self.state.copy_from_slice(positions);
+        } else {
+            self.move_to(positions, false);
         }
+        self.look(moment);
+    }
+
+    /// Takes up a state, and returns the events on the way that carry no tangle on. With `seen` nothing that they
+    /// lead to is news any more.
+    fn move_to(&mut self, positions: &[Vector3<f64>], seen: bool) -> Vec<Event> {
+        let mut events = crossings(&self.world, &self.rules, &self.state, positions);
+        self.state.copy_from_slice(positions);
+        if events.is_empty() && self.tangle.is_empty() {
+            return events;
+        }
+        let reach = self.tangle.take(&self.world, &mut events);
+        self.account.excused += reach.taken;
+        let inside = intersections(&self.world, &self.rules, &self.state);
+        self.tangle.settle(&reach, &inside);
+        if seen {
+            let news = inside.iter().filter(|found| !self.tangle.has(found));
+            self.reported = news.map(|found| (found.edge, found.face)).collect();
+        }
+        self.count_state(&inside);
+        events
     }
 
     /// Looks at the state that was taken up last: what is inside what, that was not seen to get there?
     pub fn look(&mut self, moment: Moment) {
         let inside = intersections(&self.world, &self.rules, &self.state);
+        let is_inside: HashSet<_> = inside.iter().map(|found| (found.edge, found.face)).collect();
+        self.reported.retain(|pair| is_inside.contains(pair));
         for &found in &inside {
             let pair = (found.edge, found.face);
             if self.tangle.has(&found) || !self.reported.insert(pair) {

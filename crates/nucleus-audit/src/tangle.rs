@@ -20,9 +20,19 @@ impl Tangle {
         Self { inside: start.iter().map(|found| (found.edge, found.face)).collect() }
     }
 
+    /// Adds what is to be treated like that.
+    pub fn add(&mut self, found: &[Overlapping]) {
+        self.inside.extend(found.iter().map(|found| (found.edge, found.face)));
+    }
+
     /// Pairs that have not come apart yet.
     pub fn len(&self) -> usize {
         self.inside.len()
+    }
+
+    /// Whether all have come apart.
+    pub fn is_empty(&self) -> bool {
+        self.inside.is_empty()
     }
 
     /// Takes out of `events` those that carry a tangle on, and returns where it may have come to.

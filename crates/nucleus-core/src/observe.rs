@@ -32,6 +32,13 @@ pub trait StateView {
     fn collider_moved(&self, collider: ColliderId) -> bool;
     /// One point of a cloth in metres and double precision; for tests and measures.
     fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64>;
+    /// Replaces `out` by the positions of a collider in metres and double precision; for tests and measures.
+    fn collider_points(&self, collider: ColliderId, out: &mut Vec<Vector3<f64>>) {
+        let mut single = Vec::new();
+        self.collider_positions(collider, 1.0, &mut single);
+        out.clear();
+        out.extend(single.iter().map(|&point| Vector3::from(point.map(f64::from))));
+    }
 }
 
 /// Something that is shown the state after each substep: a recorder, a meter, nothing (`()`).
