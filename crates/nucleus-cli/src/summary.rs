@@ -144,7 +144,7 @@ const TOLD: usize = 5;
 /// What an audit has come to, and the first that it found.
 fn audit_lines(audit: &Audit) -> String {
     let account = audit.account();
-    let motions = figures::count(account.motions as usize, "substep");
+    let motions = figures::count(account.motions as usize, "step");
     let mut text = match account.is_clean() {
         true => format!("audit of {motions}: nothing passed through anything\n"),
         false => {
@@ -174,7 +174,7 @@ fn audit_lines(audit: &Audit) -> String {
 fn audit_json(audit: &Audit) -> Value {
     let account = audit.account();
     json!({
-        "substeps": account.motions,
+        "steps": account.motions,
         "crossings": account.crossings,
         "overlaps": account.overlaps,
         "touches": account.touches,

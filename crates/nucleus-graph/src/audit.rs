@@ -11,8 +11,10 @@ use crate::compile::{Object, ObjectKind};
 pub enum Closeness {
     /// The state at the end of every frame.
     Frames,
-    /// Every substep: the straight way there of every point, and the state at the end of the frame.
-    Substeps,
+    /// Every state that the solver shows: the straight way to it of every point, and the state at the end of the
+    /// frame. Where the solver shows its substeps alone, a point that went round something within one is taken to have
+    /// gone through.
+    Steps,
 }
 
 /// Watches a run, and follows it with an [`Auditor`].
@@ -22,6 +24,8 @@ pub struct Audit {
     objects: Vec<ObjectKind>,
     closeness: Closeness,
     frame: i64,
+    /// Whether the state has been looked at in the substep that is running.
+    stepped: bool,
     positions: Vec<Vector3<f64>>,
 }
 
@@ -37,10 +41,10 @@ impl Audit {
         let world = World::new(objects.iter().map(body).collect());
         let objects: Vec<ObjectKind> = objects.iter().map(|object| object.kind).collect();
         let mut positions = Vec::new();
-        read(&objects, &world, state, &mut positions);
+        read(&objects, &world, (state, 1.0), &mut positions);
         let rules = rules(&world);
         let auditor = Auditor::new(world, rules, &positions);
-        Self { auditor, objects, closeness, frame: 0, positions }
+        Self { auditor, objects, closeness, frame: 0, stepped: false, positions }
     }
 
     /// Begins a frame.
@@ -59,24 +63,41 @@ impl Audit {
         self.auditor.findings().iter().map(|finding| self.auditor.describe(finding).to_string())
     }
 
-    fn see(&mut self, moment: core::Moment, state: &dyn StateView) {
+    /// Takes up a state within a substep.
+    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView) {
+        if self.closeness == Closeness::Steps {
+            self.stepped = true;
+            read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+            self.auditor.see(Moment { frame: self.frame, substep }, &self.positions);
+        }
+    }
+
+    /// Takes up the end of a substep.
+    fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
         let now = Moment { frame: self.frame, substep: moment.substep };
-        if self.closeness == Closeness::Frames && !moment.ends_frame() {
-            return;
+        let share = f64::from(moment.substep) / f64::from(moment.substeps);
+        if !std::mem::take(&mut self.stepped) {
+            self.step(share, moment.substep, state);
+            self.stepped = false;
         }
-        read(&self.objects, self.auditor.world(), state, &mut self.positions);
         match self.closeness {
-            Closeness::Frames => self.auditor.follow(now, &self.positions),
-            Closeness::Substeps => self.auditor.see(now, &self.positions),
-        }
-        if self.closeness == Closeness::Substeps && moment.ends_frame() {
-            self.auditor.look(now);
+            _ if !moment.ends_frame() => {}
+            Closeness::Steps => self.auditor.look(now),
+            Closeness::Frames => {
+                read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+                self.auditor.follow(now, &self.positions);
+            }
         }
     }
 }
 
-/// Replaces `out` by the positions of all objects, in metres.
-fn read(objects: &[ObjectKind], world: &World, state: &dyn StateView, out: &mut Vec<Vector3<f64>>) {
+/// Replaces `out` by the positions of all objects, in metres, in a state that a share of the frame has led to.
+fn read(
+    objects: &[ObjectKind],
+    world: &World,
+    (state, share): (&dyn StateView, f64),
+    out: &mut Vec<Vector3<f64>>,
+) {
     let mut points = Vec::new();
     out.clear();
     for (body, object) in objects.iter().enumerate() {
@@ -85,7 +106,7 @@ fn read(objects: &[ObjectKind], world: &World, state: &dyn StateView, out: &mut 
                 out.extend((0..world.points_of(body).len()).map(|point| state.point(cloth, point)));
             }
             ObjectKind::Collider(collider) => {
-                state.collider_points(collider, &mut points);
+                state.collider_points(collider, share, &mut points);
                 out.extend_from_slice(&points);
             }
         }
@@ -94,14 +115,28 @@ fn read(objects: &[ObjectKind], world: &World, state: &dyn StateView, out: &mut 
 
 /// Shows each state to an audit first, then to another observer.
 pub(crate) struct Audited<'a> {
-    pub(crate) audit: &'a mut Audit,
-    pub(crate) watch: &'a mut dyn StepObserver,
+    audit: &'a mut Audit,
+    watch: &'a mut dyn StepObserver,
+    /// The substep that is running.
+    substep: u32,
+}
+
+impl<'a> Audited<'a> {
+    pub(crate) fn new(audit: &'a mut Audit, watch: &'a mut dyn StepObserver) -> Self {
+        Self { audit, watch, substep: 1 }
+    }
 }
 
 impl StepObserver for Audited<'_> {
     fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
-        self.audit.see(moment, state);
+        self.audit.substep(moment, state);
         self.watch.substep(moment, state);
+        self.substep = moment.substep + 1;
+    }
+
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        self.audit.step(share, self.substep, state);
+        self.watch.step(share, state);
     }
 
     fn enter(&mut self, stage: Stage) {

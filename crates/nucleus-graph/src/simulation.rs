@@ -69,7 +69,7 @@ impl<R: Real> Simulation<R> {
             Some(audit) => {
                 let before = audit.account().found();
                 audit.begin_frame(frame, |world| self.program.kept_apart(frame, &input.pins, world));
-                let report = self.solver.step(&input, &mut Audited { audit, watch });
+                let report = self.solver.step(&input, &mut Audited::new(audit, watch));
                 (report, Some(audit.account().found() - before))
             }
         };

@@ -39,8 +39,8 @@ pub struct Run {
     /// The cache to write; the scene's name with `.mcap` if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
-    /// Look, apart from the solver, whether anything passes through anything: on the straight way of every point
-    /// through every substep. Exit code 1 if it does. It takes time, and changes nothing.
+    /// Look, apart from the solver, whether anything passes through anything on the way from each state that the
+    /// solver shows to the next. Exit code 1 if it does. It takes time, and changes nothing.
     #[arg(long)]
     audit: bool,
     /// Print a JSON object for each frame and one for the run.
@@ -74,7 +74,7 @@ impl Run {
         let (start, end) = recording::frames(&program)?;
         let mut simulation = Simulation::new(&program, self.threads());
         if self.audit {
-            simulation.begin_audit(Closeness::Substeps);
+            simulation.begin_audit(Closeness::Steps);
         } else if program.checks().iter().any(Check::needs_audit) {
             simulation.begin_audit(Closeness::Frames);
         }
