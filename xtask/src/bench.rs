@@ -9,6 +9,7 @@
 //! | which settings are run                           | [`trade`]     |
 //! | what other solvers need                          | [`peers`]     |
 //! | what counts as being ahead of them               | [`contest`]   |
+//! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
 //! | the cost of a link; a million points; threads    | [`growth`]    |
 //! | what is kept of a run                            | [`report`]    |
 
@@ -18,6 +19,7 @@ use clap::ValueEnum;
 
 mod accuracy;
 mod clock;
+mod contact;
 mod contest;
 mod csv;
 mod growth;
@@ -66,6 +68,15 @@ enum Part {
     W1,
     /// A sheet falls on a ball: time against error
     W2,
+    /// A sheet falls on a ball and onto itself: time, and what gets through
+    W3,
+    /// A ball at 10 m/s flies into a hanging sheet
+    W4,
+    /// Five sheets fall on a ball
+    W8,
+    /// What self-collision costs, up to 250,000 points
+    #[value(name = "self")]
+    SelfCollision,
     /// A sheet hangs: its sag, and the cost of a link
     Hang,
     /// The same on more threads
@@ -99,6 +110,10 @@ impl Part {
         match self {
             Self::W1 => trade::run(Workload::Swing, sizes, *repeat, report),
             Self::W2 => trade::run(Workload::Drape, sizes, *repeat, report),
+            Self::W3 => contact::run(contact::Workload::Folds, sizes, threads, report),
+            Self::W4 => contact::run(contact::Workload::Shot, sizes, threads, report),
+            Self::W8 => contact::run(contact::Workload::Layers, sizes, threads, report),
+            Self::SelfCollision => contact::cost(report),
             Self::Hang => {
                 growth::sag(*repeat, report)?;
                 growth::link_cost(sizes, *repeat, report)

@@ -1,4 +1,4 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy` and `bench`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `meshes` and `bench`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
@@ -6,6 +6,7 @@
 //! | which claim of the paper is shown by which test       | [`evidence`]    |
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
 //! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
+//! | which meshes the gallery has of its own                | [`meshes`]      |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -19,6 +20,7 @@ mod ci;
 mod evidence;
 mod files;
 mod map;
+mod meshes;
 mod readme;
 mod tidy;
 
@@ -32,6 +34,8 @@ enum Chore {
     Evidence,
     /// Holds ARCHITECTURE.md against the tree, and looks for files too long and paths of one machine.
     Tidy,
+    /// Writes the meshes of the gallery that no primitive gives.
+    Meshes,
     /// Times the solver and measures its error, beside the figures of other solvers.
     Bench(bench::Options),
 }
@@ -42,6 +46,7 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(&root),
         Chore::Evidence => evidence::print(&root),
         Chore::Tidy => tidy::run(&root),
+        Chore::Meshes => meshes::run(&root),
         Chore::Bench(options) => bench::run(&options),
     };
     match result {

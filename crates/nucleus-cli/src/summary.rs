@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use nucleus_graph::audit::Audit;
 use nucleus_graph::checks::{self, Bound};
 use serde_json::{Value, json};
 
@@ -16,6 +17,8 @@ pub struct Summary<'a> {
     pub account: Account,
     pub ending: Ending,
     pub checks: &'a [checks::Outcome],
+    /// The audit, if one was asked for.
+    pub audit: Option<&'a Audit>,
     /// The cache and its size in bytes, if one was written to its end.
     pub recorded: Option<(PathBuf, u64)>,
     /// The start frame and the last one reached.
@@ -27,9 +30,13 @@ impl Summary<'_> {
     pub fn outcome(&self) -> Outcome {
         match self.ending {
             Ending::Interrupted => Outcome::Interrupted,
-            Ending::Done if self.checks.iter().all(|check| check.passed) => Outcome::Fine,
+            Ending::Done if self.is_clean() && self.checks.iter().all(|check| check.passed) => Outcome::Fine,
             _ => Outcome::Trouble,
         }
+    }
+
+    fn is_clean(&self) -> bool {
+        self.audit.is_none_or(|audit| audit.account().is_clean())
     }
 
     /// For people.
@@ -52,6 +59,7 @@ impl Summary<'_> {
         for outcome in self.checks {
             writeln!(text, "{}", check_line(outcome))?;
         }
+        self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
         text += &self.ending_line();
         if let Some((path, bytes)) = &self.recorded {
             let (path, size) = (path.display(), figures::bytes(*bytes));
@@ -107,6 +115,7 @@ impl Summary<'_> {
             "smallest_gap": at(account.smallest_gap),
             "crossed": account.crossed,
             "checks": checks,
+            "audit": self.audit.map(audit_json),
             "cache": path,
             "bytes": bytes,
         }})
@@ -127,4 +136,52 @@ fn check_line(outcome: &checks::Outcome) -> String {
             format!("check {check}: {verdict} with {} at frame {frame} ({side})", figures::number(figure))
         }
     }
+}
+
+/// Findings that are told one by one; the rest is counted.
+const TOLD: usize = 5;
+
+/// What an audit has come to, and the first that it found.
+fn audit_lines(audit: &Audit) -> String {
+    let account = audit.account();
+    let motions = figures::count(account.motions as usize, "step");
+    let mut text = match account.is_clean() {
+        true => format!("audit of {motions}: nothing passed through anything\n"),
+        false => {
+            let kinds = [
+                (account.crossings, "passed through each other"),
+                (account.overlaps, "were found inside each other"),
+                (account.touches, "touched"),
+                (account.undecided, "could not be told apart"),
+            ];
+            let said = kinds.iter().filter(|(count, _)| *count > 0);
+            let said: Vec<_> = said
+                .map(|(count, what)| format!("{} {what}", figures::count(*count as usize, "pair")))
+                .collect();
+            format!("audit of {motions}: {}\n", said.join(", "))
+        }
+    };
+    if account.tangled_at_start > 0 {
+        let (start, now) = (account.tangled_at_start, account.tangled);
+        let start = figures::count(start as usize, "pair");
+        text += &format!("audit: {start} of edge and face began inside each other, {now} still are\n");
+    }
+    audit.findings().take(TOLD).for_each(|finding| text += &format!("  {finding}\n"));
+    let rest = account.found().saturating_sub(TOLD as u64);
+    if rest > 0 { text + &format!("  and {rest} more\n") } else { text }
+}
+
+fn audit_json(audit: &Audit) -> Value {
+    let account = audit.account();
+    json!({
+        "steps": account.motions,
+        "crossings": account.crossings,
+        "overlaps": account.overlaps,
+        "touches": account.touches,
+        "undecided": account.undecided,
+        "tangled_at_start": account.tangled_at_start,
+        "tangled": account.tangled,
+        "inside": account.inside,
+        "first": audit.findings().next(),
+    })
 }

@@ -32,12 +32,27 @@ pub trait StateView {
     fn collider_moved(&self, collider: ColliderId) -> bool;
     /// One point of a cloth in metres and double precision; for tests and measures.
     fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64>;
+    /// Replaces `out` by the positions of a collider in metres and double precision when this share of the frame is over;
+    /// for tests and measures. What does not know its motion gives the positions that it has.
+    fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
+        let _ = share;
+        let mut single = Vec::new();
+        self.collider_positions(collider, 1.0, &mut single);
+        out.clear();
+        out.extend(single.iter().map(|&point| Vector3::from(point.map(f64::from))));
+    }
 }
 
 /// Something that is shown the state after each substep: a recorder, a meter, nothing (`()`).
 pub trait StepObserver {
     /// Called once after each substep.
     fn substep(&mut self, moment: Moment, state: &dyn StateView);
+
+    /// Called after each step within a substep, where the solver takes several; `share` of the frame is over. Points go
+    /// straight from one of these states to the next.
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        let _ = (share, state);
+    }
 
     /// Called when the solver turns to another stage of its work. The solver has no clock; who wants to know
     /// how long a stage takes looks at one here.

@@ -113,6 +113,12 @@ impl<R: Real> StateView for Solver<R> {
         out.extend(scaled.map(|p| [p.x as f32, p.y as f32, p.z as f32]));
     }
 
+    fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
+        let state = &self.collider_states[collider.index()];
+        out.clear();
+        out.extend((0..state.start.len() as u32).map(|point| state.point(point, share)));
+    }
+
     fn collider_moved(&self, collider: ColliderId) -> bool {
         self.collider_states[collider.index()].moves
     }

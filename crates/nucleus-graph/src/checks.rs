@@ -61,11 +61,16 @@ pub struct Judge {
 struct Seen<'a> {
     frame: i64,
     report: &'a StepReport,
+    /// Nothing where no audit looks.
+    passed_through: Option<u64>,
     /// All points together, in kilograms.
     mass: f64,
 }
 
-static FORMS: [Form; 6] = [
+/// The check that only an audit can answer.
+const NO_CROSSING: &str = "noCrossing";
+
+static FORMS: [Form; 7] = [
     Form {
         name: "noPenetration",
         doc: "No point ends a substep on the far side of a collider.",
@@ -73,6 +78,14 @@ static FORMS: [Form; 6] = [
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, _| Some(seen.report.crossed as f64),
+    },
+    Form {
+        name: NO_CROSSING,
+        doc: "Nothing is inside anything at the end of a frame that was not so at the start: cloth in itself, in other cloth, in a collider. With `--audit` nothing passes through on the way either.",
+        parameters: &[],
+        bound: Bound::AtMost,
+        limit: |_| 0.0,
+        figure: |seen, _| seen.passed_through.map(|count| count as f64),
     },
     Form {
         name: "maxStretch",
@@ -141,6 +154,11 @@ impl Check {
         self.form
     }
 
+    /// Whether it is answered only where the run is audited.
+    pub fn needs_audit(&self) -> bool {
+        self.form.name == NO_CROSSING
+    }
+
     /// Which side of which limit its figure has to keep to.
     pub fn limit(&self) -> (Bound, f64) {
         (self.form.bound, (self.form.limit)(&self.arguments))
@@ -196,12 +214,13 @@ impl Judge {
 
     /// Looks at the next frame.
     pub fn see(&mut self, frame: &FrameReport) {
-        let seen = Seen { frame: frame.frame, report: &frame.report, mass: self.mass };
+        let FrameReport { frame, ref report, passed_through } = *frame;
+        let seen = Seen { frame, report, passed_through, mass: self.mass };
         for outcome in &mut self.outcomes {
             let check = &outcome.check;
             let Some(figure) = (check.form.figure)(&seen, &check.arguments) else { continue };
             if outcome.worst.is_none_or(|(worst, _)| check.is_worse(figure, worst)) {
-                outcome.worst = Some((figure, frame.frame));
+                outcome.worst = Some((figure, frame));
                 outcome.passed = check.accepts(figure);
             }
         }

@@ -12,6 +12,7 @@
 //! | what the solver is given                         | [`compile::compile`]       |
 //! | what happens when time changes                   | [`Simulation::advance`]    |
 //! | what a scene demands of its run                  | [`checks::Judge`]          |
+//! | whether anything passes through anything         | [`audit::Audit`]           |
 //! | how values change with time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
 //!
@@ -20,6 +21,7 @@
 
 pub mod animation;
 pub mod attributes;
+pub mod audit;
 pub mod checks;
 pub mod compile;
 pub mod graph;

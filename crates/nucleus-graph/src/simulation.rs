@@ -1,7 +1,9 @@
 //! The loop over frames: evaluates the animation, calls the solver.
 
-use nucleus_core::{Real, Solver, StateView, StepObserver, StepReport};
+use nucleus_audit::World;
+use nucleus_core::{FrameInput, PointId, Real, Solver, StateView, StepObserver, StepReport};
 
+use crate::audit::{Audit, Audited, Closeness};
 use crate::compile::{Grips, Object, Program};
 
 /// A run of a program, at some frame of it.
@@ -13,6 +15,7 @@ pub struct Simulation<R: Real = f32> {
     solver: Solver<R>,
     grips: Grips,
     frame: i64,
+    audit: Option<Audit>,
 }
 
 /// What the solver says about a frame.
@@ -22,6 +25,8 @@ pub struct FrameReport {
     pub frame: i64,
     /// What happened on the way there.
     pub report: StepReport,
+    /// How often something passed through something on the way there; nothing where no audit looks.
+    pub passed_through: Option<u64>,
 }
 
 impl<R: Real> Simulation<R> {
@@ -32,18 +37,44 @@ impl<R: Real> Simulation<R> {
             grips: Grips::default(),
             frame: program.time().start,
             program: program.clone(),
+            audit: None,
         }
+    }
+
+    /// Has the run audited from here on.
+    pub fn begin_audit(&mut self, closeness: Closeness) {
+        let pins = self.next_input(&mut self.grips.clone()).pins;
+        let rules = |world: &World| self.program.kept_apart(self.frame + 1, &pins, world);
+        self.audit = Some(Audit::new(self.objects(), closeness, &self.solver, rules));
+    }
+
+    /// What the audit has come to, if there is one.
+    pub fn audit(&self) -> Option<&Audit> {
+        self.audit.as_ref()
+    }
+
+    pub(crate) fn next_input(&self, grips: &mut Grips) -> FrameInput {
+        let position = |cloth, point: PointId| self.solver.point(cloth, point.index());
+        self.program.input(self.frame + 1, grips, &position)
     }
 
     /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
     pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
         let frame = self.frame + 1;
-        let solver = &self.solver;
-        let position = |cloth, point: nucleus_core::PointId| solver.point(cloth, point.index());
-        let input = self.program.input(frame, &mut self.grips, &position);
-        let report = self.solver.step(&input, watch);
+        let mut grips = std::mem::take(&mut self.grips);
+        let input = self.next_input(&mut grips);
+        self.grips = grips;
+        let (report, passed_through) = match &mut self.audit {
+            None => (self.solver.step(&input, watch), None),
+            Some(audit) => {
+                let before = audit.account().found();
+                audit.begin_frame(frame, |world| self.program.kept_apart(frame, &input.pins, world));
+                let report = self.solver.step(&input, &mut Audited::new(audit, watch));
+                (report, Some(audit.account().found() - before))
+            }
+        };
         self.frame = frame;
-        FrameReport { frame, report }
+        FrameReport { frame, report, passed_through }
     }
 
     /// The frame it is at.

@@ -6,7 +6,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use nucleus_cache::Recorder;
 use nucleus_graph::Simulation;
-use nucleus_graph::checks::Judge;
+use nucleus_graph::audit::Closeness;
+use nucleus_graph::checks::{Check, Judge};
 use serde_json::json;
 
 use crate::account::{Account, FrameFigures};
@@ -38,6 +39,10 @@ pub struct Run {
     /// The cache to write; the scene's name with `.mcap` if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
+    /// Look, apart from the solver, whether anything passes through anything on the way from each state that the
+    /// solver shows to the next. Exit code 1 if it does. It takes time, and changes nothing.
+    #[arg(long)]
+    audit: bool,
     /// Print a JSON object for each frame and one for the run.
     #[arg(long)]
     json: bool,
@@ -46,7 +51,7 @@ pub struct Run {
 impl Run {
     /// A run of a scene with everything else left as it is.
     pub fn of(scene: PathBuf) -> Self {
-        Self { scene, frames: None, threads: None, record: None, out: None, json: false }
+        Self { scene, frames: None, threads: None, record: None, out: None, audit: false, json: false }
     }
 
     /// The cache that it writes.
@@ -68,6 +73,11 @@ impl Run {
         interrupt::listen()?;
         let (start, end) = recording::frames(&program)?;
         let mut simulation = Simulation::new(&program, self.threads());
+        if self.audit {
+            simulation.begin_audit(Closeness::Steps);
+        } else if program.checks().iter().any(Check::needs_audit) {
+            simulation.begin_audit(Closeness::Frames);
+        }
         let mut judge = Judge::new(program.checks(), program.mass());
         let record = Record::of(self.record, &program);
         let out = self.out()?;
@@ -82,8 +92,9 @@ impl Run {
         let recorded = close(recorder, &mut ending).map(|bytes| (out, bytes));
         interrupt::run_is_over();
         let last = simulation.frame();
-        let summary =
-            Summary { account, ending, checks: judge.outcomes(), recorded, frames: (start.into(), last) };
+        let checks = judge.outcomes();
+        let audit = simulation.audit().filter(|_| self.audit);
+        let summary = Summary { account, ending, checks, audit, recorded, frames: (start.into(), last) };
         match self.json {
             true => output::print_json(&summary.as_json())?,
             false => output::print(&summary.as_text()?)?,

@@ -73,6 +73,43 @@ fn frames_and_what_is_recorded_can_be_chosen() {
 }
 
 #[test]
+fn an_audit_says_that_nothing_passed_through_anything() {
+    let folder = folder();
+    scene(folder.path(), 5, "noCrossing");
+    let output = nucleus(folder.path(), &["run", "drape.ron", "--audit"]);
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}{}", stderr(&output));
+    assert!(said.contains("audit of 8 steps: nothing passed through anything\n"), "{said}");
+    assert!(said.contains("check noCrossing: passed"), "{said}");
+    let output = nucleus(folder.path(), &["run", "drape.ron"]);
+    assert!(stdout(&output).contains("check noCrossing: passed"), "{}", stdout(&output));
+    assert!(!stdout(&output).contains("audit of"), "nobody asked");
+}
+
+#[test]
+fn what_an_audit_finds_is_trouble_and_is_named() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    // The sheet is held by all its points but one, and the ball is driven through: nobody could prevent it.
+    let path = folder.path().join("drape.ron");
+    let text = fs::read_to_string(&path).unwrap();
+    let text = text.replace("radius: 20", "radius: 20, translateY: keys([(1, 0), (5, 60)])");
+    let held = r#""k": dynamicConstraint(constraintType: transform, components: ["cloth1.vtx[0:23]", "cloth1.vtx[25:48]"]),
+        "sheet""#;
+    fs::write(&path, text.replacen(r#""sheet""#, held, 1)).unwrap();
+    let output = nucleus(folder.path(), &["run", "drape.ron", "--audit", "--json"]);
+    let last =
+        stdout(&output).lines().last().map(|line| serde_json::from_str::<Value>(line).unwrap()).unwrap();
+    let audit = &last["summary"]["audit"];
+    assert_eq!((output.status.code(), &audit["steps"]), (Some(1), &Value::from(8)), "{audit}");
+    let first = audit["first"].as_str().expect("there is a first");
+    assert!(
+        first.starts_with("frame ") && first.contains("cloth1.vtx[") && first.contains("rigid1.vtx["),
+        "{first}"
+    );
+}
+
+#[test]
 fn any_number_of_threads_gives_the_same_file() {
     let folder = folder();
     scene(folder.path(), 12, "");

@@ -4,7 +4,7 @@ fn judge(check: &str, arguments: &[f64], reports: &[StepReport]) -> Outcome {
     let check = Check::new(check, arguments).expect("a known check");
     let mut judge = Judge::new(&[check], 2.0);
     for (frame, report) in (2..).zip(reports) {
-        judge.see(&FrameReport { frame, report: *report });
+        judge.see(&FrameReport { frame, report: *report, passed_through: None });
     }
     judge.outcomes()[0].clone()
 }

@@ -7,12 +7,14 @@
 //! | which lists a cloth needs                            | `lists.rs`       |
 //! | what a frame brings                                  | `frame.rs`       |
 //! | what holds points, and where it takes hold of them   | `pins.rs`        |
+//! | what an audit is to find kept apart                  | `apart.rs`       |
 //! | where scene units become metres                      | `units.rs`       |
 //! | the thickness that nobody sets                       | `thickness.rs`   |
 //!
 //! **Invariant:** a scene pays only for what it uses, and whatever could go wrong in a run is refused
 //! here: a program can only run.
 
+mod apart;
 mod frame;
 mod geometry;
 mod lists;

@@ -1,0 +1,233 @@
+//! What there is to meet: bodies, their elements, and which of them are to be kept apart.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// An edge of a [`World`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId(pub u32);
+
+/// A triangle of a [`World`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FaceId(pub u32);
+
+/// Something made of points, edges and faces, all of which have positions in every state.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Body {
+    /// What reports call it.
+    pub name: String,
+    /// How many points it has.
+    pub points: usize,
+    /// Triangles, by their points.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges that belong to no triangle, by their points.
+    pub edges: Vec<[u32; 2]>,
+}
+
+impl Body {
+    /// A mesh of polygons, each cut into a fan of triangles round its first corner.
+    pub fn mesh<'a>(
+        name: impl Into<String>,
+        points: usize,
+        faces: impl IntoIterator<Item = &'a [u32]>,
+    ) -> Self {
+        let fan = |face: &'a [u32]| (2..face.len()).map(move |k| [face[0], face[k - 1], face[k]]);
+        let triangles = faces.into_iter().flat_map(fan).collect();
+        Self { name: name.into(), points, triangles, edges: Vec::new() }
+    }
+}
+
+/// All bodies, their elements numbered through.
+#[derive(Debug, Clone, Default)]
+pub struct World {
+    bodies: Vec<Body>,
+    /// The first point of each body, and one past the last of all.
+    first: Vec<u32>,
+    body_of: Vec<u32>,
+    edges: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    /// The edges of each triangle.
+    sides: Vec<[EdgeId; 3]>,
+    /// The edges at each point, and the triangles at each edge.
+    edges_at: Lists,
+    faces_at: Lists,
+}
+
+/// Many short lists in one.
+#[derive(Debug, Clone, Default)]
+struct Lists {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    /// `count` lists: item by item, each with the lists that it is in.
+    fn new<const N: usize>(count: usize, items: impl Iterator<Item = [u32; N]> + Clone) -> Self {
+        let mut starts = vec![0_u32; count + 1];
+        items.clone().flatten().for_each(|list| starts[list as usize + 1] += 1);
+        (0..count).for_each(|list| starts[list + 1] += starts[list]);
+        let mut next = starts.clone();
+        let mut all = vec![0; starts[count] as usize];
+        for (item, lists) in items.enumerate() {
+            for list in lists {
+                all[next[list as usize] as usize] = item as u32;
+                next[list as usize] += 1;
+            }
+        }
+        Self { starts, items: all }
+    }
+
+    fn list(&self, index: u32) -> &[u32] {
+        let [from, to] = [index, index + 1].map(|at| self.starts[at as usize] as usize);
+        &self.items[from..to]
+    }
+}
+
+impl World {
+    /// Numbers the elements of all bodies. A triangle or edge that names a point twice, or one that is not
+    /// there, is left out.
+    pub fn new(bodies: Vec<Body>) -> Self {
+        let mut world = Self { first: vec![0], ..Self::default() };
+        for (index, body) in bodies.iter().enumerate() {
+            world.add(index as u32, body);
+        }
+        world.bodies = bodies;
+        world.edges_at = Lists::new(world.body_of.len(), world.edges.iter().copied());
+        world.faces_at =
+            Lists::new(world.edges.len(), world.sides.iter().map(|sides| sides.map(|edge| edge.0)));
+        world
+    }
+
+    fn add(&mut self, index: u32, body: &Body) {
+        let first = self.body_of.len() as u32;
+        let end = first + body.points as u32;
+        self.body_of.resize(end as usize, index);
+        self.first.push(end);
+        let mut known: HashMap<[u32; 2], EdgeId> = HashMap::new();
+        for triangle in &body.triangles {
+            let [a, b, c] = triangle.map(|point| point + first);
+            let whole = a != b && b != c && c != a;
+            if whole && [a, b, c].iter().all(|&point| point < end) {
+                self.triangles.push([a, b, c]);
+                let sides = [[a, b], [b, c], [c, a]].map(|ends| self.edge(ends, &mut known));
+                self.sides.push(sides);
+            }
+        }
+        for [a, b] in body.edges.iter().map(|ends| ends.map(|point| point + first)) {
+            if a != b && a.max(b) < end {
+                self.edge([a, b], &mut known);
+            }
+        }
+    }
+
+    fn edge(&mut self, [a, b]: [u32; 2], known: &mut HashMap<[u32; 2], EdgeId>) -> EdgeId {
+        let ends = [a.min(b), a.max(b)];
+        *known.entry(ends).or_insert_with(|| {
+            self.edges.push(ends);
+            EdgeId(self.edges.len() as u32 - 1)
+        })
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// How many points there are in all.
+    pub fn points(&self) -> usize {
+        self.body_of.len()
+    }
+
+    /// The points of a body, numbered through.
+    pub fn points_of(&self, body: usize) -> Range<usize> {
+        self.first[body] as usize..self.first[body + 1] as usize
+    }
+
+    /// The body of a point.
+    pub fn body_of(&self, point: u32) -> usize {
+        self.body_of[point as usize] as usize
+    }
+
+    /// All edges, those of triangles too, each once.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// All triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The edges of a triangle.
+    pub fn sides(&self, face: FaceId) -> [EdgeId; 3] {
+        self.sides[face.0 as usize]
+    }
+
+    /// The edges at a point.
+    pub fn edges_at(&self, point: u32) -> impl Iterator<Item = EdgeId> + '_ {
+        self.edges_at.list(point).iter().map(|&edge| EdgeId(edge))
+    }
+
+    /// The triangles at an edge.
+    pub fn faces_at(&self, edge: EdgeId) -> impl Iterator<Item = FaceId> + '_ {
+        self.faces_at.list(edge.0).iter().map(|&face| FaceId(face))
+    }
+
+    /// The body of a point, and its number there.
+    pub fn local(&self, point: u32) -> (usize, u32) {
+        let body = self.body_of(point);
+        (body, point - self.first[body])
+    }
+}
+
+/// Which elements are to be kept apart. Without any rule all are.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Rules {
+    ignored: Vec<[usize; 2]>,
+    held: Vec<bool>,
+}
+
+impl Rules {
+    /// Nothing is asked of two bodies, or of one with itself.
+    pub fn ignore(&mut self, a: usize, b: usize) {
+        let pair = [a.min(b), a.max(b)];
+        if !self.ignored.contains(&pair) {
+            self.ignored.push(pair);
+        }
+    }
+
+    /// A point that goes where it is told, whatever is in its way. Nothing is asked of two elements all of whose
+    /// points are held: nobody could keep them apart.
+    pub fn hold(&mut self, point: usize) {
+        if self.held.len() <= point {
+            self.held.resize(point + 1, false);
+        }
+        self.held[point] = true;
+    }
+
+    /// Whether two elements with these points are to be kept apart. Elements that share a point touch there
+    /// for ever; what they do beyond it shows at their other elements.
+    pub(crate) fn apply<const A: usize, const B: usize>(
+        &self,
+        world: &World,
+        a: &[u32; A],
+        b: &[u32; B],
+    ) -> bool {
+        let bodies = [world.body_of(a[0]), world.body_of(b[0])];
+        let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
+        let held = |point: &u32| self.held.get(*point as usize).copied().unwrap_or(false);
+        let share_a_point = a.iter().any(|point| b.contains(point));
+        let are_held = a.iter().all(held) && b.iter().all(held);
+        !(share_a_point || are_held || self.ignored.contains(&pair))
+    }
+
+    /// The elements of which anything is asked at all.
+    pub(crate) fn concerned<const N: usize>(&self, world: &World, elements: &[[u32; N]]) -> Vec<u32> {
+        let bodies = 0..world.bodies().len();
+        let asked = |a: usize, b: usize| !self.ignored.contains(&[a.min(b), a.max(b)]);
+        let concerned: Vec<bool> =
+            bodies.clone().map(|body| bodies.clone().any(|other| asked(body, other))).collect();
+        let is_concerned = |(_, points): &(u32, &[u32; N])| concerned[world.body_of(points[0])];
+        (0..).zip(elements).filter(is_concerned).map(|(index, _)| index).collect()
+    }
+}

@@ -1,0 +1,148 @@
+//! A run under audit: whether anything passes through anything, found apart from the solver.
+
+use nalgebra::Vector3;
+use nucleus_audit::{Account, Auditor, Body, Moment, Rules, World};
+use nucleus_core::{self as core, Stage, StateView, StepObserver};
+
+use crate::compile::{Object, ObjectKind};
+
+/// How closely a run is audited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Closeness {
+    /// The state at the end of every frame.
+    Frames,
+    /// Every state that the solver shows: the straight way to it of every point, and the state at the end of the
+    /// frame. Where the solver shows its substeps alone, a point that went round something within one is taken to have
+    /// gone through.
+    Steps,
+}
+
+/// Watches a run, and follows it with an [`Auditor`].
+#[derive(Debug)]
+pub struct Audit {
+    auditor: Auditor,
+    objects: Vec<ObjectKind>,
+    closeness: Closeness,
+    frame: i64,
+    /// Whether the state has been looked at in the substep that is running.
+    stepped: bool,
+    positions: Vec<Vector3<f64>>,
+}
+
+impl Audit {
+    /// Begins with the state as it is. Nothing that is inside anything else there is held against the run.
+    pub(crate) fn new(
+        objects: &[Object],
+        closeness: Closeness,
+        state: &dyn StateView,
+        rules: impl Fn(&World) -> Rules,
+    ) -> Self {
+        let body = |object: &Object| Body::mesh(object.name.clone(), object.points, object.faces.iter());
+        let world = World::new(objects.iter().map(body).collect());
+        let objects: Vec<ObjectKind> = objects.iter().map(|object| object.kind).collect();
+        let mut positions = Vec::new();
+        read(&objects, &world, (state, 1.0), &mut positions);
+        let rules = rules(&world);
+        let auditor = Auditor::new(world, rules, &positions);
+        Self { auditor, objects, closeness, frame: 0, stepped: false, positions }
+    }
+
+    /// Begins a frame.
+    pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&World) -> Rules) {
+        self.frame = frame;
+        self.auditor.set_rules(rules(self.auditor.world()));
+    }
+
+    /// What has been found so far.
+    pub fn account(&self) -> Account {
+        self.auditor.account()
+    }
+
+    /// The first findings in words, in order of time.
+    pub fn findings(&self) -> impl Iterator<Item = String> + '_ {
+        self.auditor.findings().iter().map(|finding| self.auditor.describe(finding).to_string())
+    }
+
+    /// Takes up a state within a substep.
+    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView) {
+        if self.closeness == Closeness::Steps {
+            self.stepped = true;
+            read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+            self.auditor.see(Moment { frame: self.frame, substep }, &self.positions);
+        }
+    }
+
+    /// Takes up the end of a substep.
+    fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
+        let now = Moment { frame: self.frame, substep: moment.substep };
+        let share = f64::from(moment.substep) / f64::from(moment.substeps);
+        if !std::mem::take(&mut self.stepped) {
+            self.step(share, moment.substep, state);
+            self.stepped = false;
+        }
+        match self.closeness {
+            _ if !moment.ends_frame() => {}
+            Closeness::Steps => self.auditor.look(now),
+            Closeness::Frames => {
+                read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+                self.auditor.follow(now, &self.positions);
+            }
+        }
+    }
+}
+
+/// Replaces `out` by the positions of all objects, in metres, in a state that a share of the frame has led to.
+fn read(
+    objects: &[ObjectKind],
+    world: &World,
+    (state, share): (&dyn StateView, f64),
+    out: &mut Vec<Vector3<f64>>,
+) {
+    let mut points = Vec::new();
+    out.clear();
+    for (body, object) in objects.iter().enumerate() {
+        match *object {
+            ObjectKind::Cloth(cloth) => {
+                out.extend((0..world.points_of(body).len()).map(|point| state.point(cloth, point)));
+            }
+            ObjectKind::Collider(collider) => {
+                state.collider_points(collider, share, &mut points);
+                out.extend_from_slice(&points);
+            }
+        }
+    }
+}
+
+/// Shows each state to an audit first, then to another observer.
+pub(crate) struct Audited<'a> {
+    audit: &'a mut Audit,
+    watch: &'a mut dyn StepObserver,
+    /// The substep that is running.
+    substep: u32,
+}
+
+impl<'a> Audited<'a> {
+    pub(crate) fn new(audit: &'a mut Audit, watch: &'a mut dyn StepObserver) -> Self {
+        Self { audit, watch, substep: 1 }
+    }
+}
+
+impl StepObserver for Audited<'_> {
+    fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
+        self.audit.substep(moment, state);
+        self.watch.substep(moment, state);
+        self.substep = moment.substep + 1;
+    }
+
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        self.audit.step(share, self.substep, state);
+        self.watch.step(share, state);
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        self.watch.enter(stage);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,140 @@
+//! The workloads as scenes: what is timed is what an artist would run. Metres.
+
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::{env, fs, io, process};
+
+use anyhow::bail;
+use nalgebra::{Rotation3, Vector3};
+use nucleus_core::Surface;
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::read_scene_text;
+
+use super::Workload;
+use crate::bench::mesh::{self, Cells};
+use crate::bench::workload::{BALL, DENSITY, GRAVITY};
+
+/// What is set for a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Evaluations in 1/24 s, over 3 substeps.
+    pub evaluations: u32,
+    pub self_collide: bool,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} evaluations", self.evaluations)
+    }
+}
+
+/// A folder for meshes, removed when it is dropped.
+pub struct Place(PathBuf);
+
+impl Place {
+    /// A folder of its own.
+    ///
+    /// # Errors
+    /// When it cannot be made.
+    pub fn new() -> io::Result<Self> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("nucleus-bench-{}-{}", process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let folder = env::temp_dir().join(name);
+        fs::create_dir_all(&folder)?;
+        Ok(Self(folder))
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        // What is left in a folder for what may be lost does no harm.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The sheet that errors are measured on.
+pub fn lowest_sheet(workload: Workload, size: u32) -> Surface {
+    sheet(workload, size, 0)
+}
+
+/// Sheet `k` of a workload, counted from below.
+fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
+    let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+    if workload == Workload::Shot {
+        return mesh::sheet(n, Cells::Triangles, Vector3::zeros(), x, -y);
+    }
+    let corner = Vector3::new(-0.75, 0.90 + 0.05 * f64::from(k), -0.75);
+    let mut sheet = mesh::sheet(n, Cells::Triangles, corner, x * 1.5, z * 1.5);
+    let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), -0.2 * f64::from(k));
+    sheet.positions.iter_mut().for_each(|place| *place = turn * *place);
+    sheet
+}
+
+/// The scene of a workload with `n` by `n` points a sheet, ready to run.
+///
+/// # Errors
+/// When a mesh cannot be written or the scene is refused.
+pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> anyhow::Result<Program> {
+    let sheets = if workload == Workload::Layers { 5 } else { 1 };
+    let mut nodes = String::new();
+    for k in 0..sheets {
+        fs::write(place.0.join(format!("sheet{k}.obj")), obj(&sheet(workload, n, k)))?;
+        let Setting { self_collide, .. } = setting;
+        write!(
+            nodes,
+            r#""mesh{k}": mesh(file: "sheet{k}.obj"),
+            "sheet{k}": nCloth(inputMesh: "mesh{k}", pointMass: {DENSITY}, stretchResistance: 20,
+                compressionResistance: 20, bendResistance: 0, stretchDamp: 0.1, drag: 0, lift: 0,
+                thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
+        )?;
+    }
+    nodes += &others(workload, n, &place.0)?;
+    let (frames, evaluations) = (workload.frames() + 1, setting.evaluations);
+    let plane = workload != Workload::Shot;
+    let text = format!(
+        r#"Scene(time: (start: 1, end: {frames}, fps: 24), nodes: {{
+            "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
+            {nodes}
+        }})"#
+    );
+    let found = read_scene_text(&text, &place.0.join("workload.ron")).and_then(|(scene, _)| compile(&scene));
+    match found {
+        Ok(program) => Ok(program),
+        Err(mistakes) => bail!("{} is refused: {mistakes:?}", workload.name()),
+    }
+}
+
+/// What the sheets meet and what holds them.
+fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
+    // The ball of W4 is smaller and flies.
+    let (centre, radius, keys) = match workload {
+        Workload::Shot => (Vector3::new(0.5, -0.5, 0.0), 0.15, "translateZ: keys([(1, -2), (25, 8)])"),
+        _ => (Vector3::from(BALL.0), BALL.1, "translateZ: 0"),
+    };
+    fs::write(folder.join("ball.obj"), obj(&mesh::sphere(radius, centre)))?;
+    let mut nodes = format!(
+        r#""ballMesh": mesh(file: "ball.obj", {keys}),
+        "ball": nRigid(inputMesh: "ballMesh", thickness: 0.0025, friction: 0.25),"#
+    );
+    if workload == Workload::Shot {
+        let last = n - 1;
+        write!(
+            nodes,
+            r#""corners": dynamicConstraint(constraintType: transform, components: ["sheet0.vtx[0]", "sheet0.vtx[{last}]"]),"#
+        )?;
+    }
+    Ok(nodes)
+}
+
+fn obj(surface: &Surface) -> String {
+    let mut text = String::new();
+    for place in &surface.positions {
+        text += &format!("v {} {} {}\n", place.x, place.y, place.z);
+    }
+    for face in surface.faces.iter() {
+        let corners: Vec<String> = face.iter().map(|k| (k + 1).to_string()).collect();
+        text += &format!("f {}\n", corners.join(" "));
+    }
+    text
+}
