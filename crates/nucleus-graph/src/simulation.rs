@@ -1,6 +1,6 @@
 //! The loop over frames: evaluates the animation, calls the solver.
 
-use nucleus_core::{Real, Solver, StateView, StepObserver, StepReport};
+use nucleus_core::{FrameInput, Real, Solver, StateView, StepObserver, StepReport};
 
 use crate::compile::{Grips, Object, Program};
 
@@ -37,10 +37,21 @@ impl<R: Real> Simulation<R> {
 
     /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
     pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
+        self.advance_with(&mut |_, _| {}, watch)
+    }
+
+    /// The same, with a last look at what the frame brings, before the solver sees it: a chance to measure it, or
+    /// to bring what no scene can say.
+    pub fn advance_with(
+        &mut self,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        watch: &mut dyn StepObserver,
+    ) -> FrameReport {
         let frame = self.frame + 1;
         let solver = &self.solver;
         let position = |cloth, point: nucleus_core::PointId| solver.point(cloth, point.index());
-        let input = self.program.input(frame, &mut self.grips, &position);
+        let mut input = self.program.input(frame, &mut self.grips, &position);
+        change(&self.solver, &mut input);
         let report = self.solver.step(&input, watch);
         self.frame = frame;
         FrameReport { frame, report }
