@@ -82,8 +82,8 @@ impl Run {
         let recorded = close(recorder, &mut ending).map(|bytes| (out, bytes));
         interrupt::run_is_over();
         let last = simulation.frame();
-        let summary =
-            Summary { account, ending, checks: judge.outcomes(), recorded, frames: (start.into(), last) };
+        let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
+        let summary = Summary { account, ending, checks, recorded, frames, objects };
         match self.json {
             true => output::print_json(&summary.as_json())?,
             false => output::print(&summary.as_text()?)?,
