@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use nucleus_core::StepReport;
+use nucleus_core::{Refused, StepReport};
 use serde::Serialize;
 
 /// The figures of one frame, as they are recorded and printed for machines.
@@ -22,13 +22,18 @@ pub struct FrameFigures {
     pub crossed: u64,
     pub kinetic_energy: f64,
     pub finite: bool,
+    /// How much of what the frame brought could not be used.
+    pub refused: u64,
+    /// The first of that.
+    #[serde(skip)]
+    pub first_refused: Option<Refused>,
 }
 
 impl FrameFigures {
     /// The figures of a frame from its report.
     pub fn new(frame: i32, report: &StepReport) -> Self {
         let StepReport { max_strain, strain_99, min_gap, contacts, pairs, broad_phases, .. } = *report;
-        let StepReport { caught, crossed, kinetic_energy, finite, .. } = *report;
+        let StepReport { caught, crossed, kinetic_energy, finite, refused, .. } = *report;
         let min_gap = min_gap.is_finite().then_some(min_gap);
         Self {
             frame,
@@ -42,6 +47,8 @@ impl FrameFigures {
             crossed,
             kinetic_energy,
             finite,
+            refused: refused.count,
+            first_refused: refused.first,
         }
     }
 }
@@ -63,6 +70,10 @@ pub struct Account {
     pub crossed: u64,
     /// The first frame in which something was not a finite number.
     pub not_finite: Option<i32>,
+    /// How much of what frames brought could not be used, over all frames.
+    pub refused: u64,
+    /// The first of that, and its frame.
+    pub first_refused: Option<(Refused, i32)>,
 }
 
 impl Account {
@@ -81,6 +92,8 @@ impl Account {
             self.smallest_gap = Some((gap, frame));
         }
         self.crossed += figures.crossed;
+        self.refused += figures.refused;
+        self.first_refused = self.first_refused.or(figures.first_refused.map(|what| (what, frame)));
         if !figures.finite {
             self.not_finite = self.not_finite.or(Some(frame));
         }

@@ -3,8 +3,10 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use nucleus_core::Refused;
 use nucleus_graph::audit::Audit;
 use nucleus_graph::checks::{self, Bound};
+use nucleus_graph::compile::{Object, ObjectKind};
 use serde_json::{Value, json};
 
 use crate::account::Account;
@@ -23,6 +25,8 @@ pub struct Summary<'a> {
     pub recorded: Option<(PathBuf, u64)>,
     /// The start frame and the last one reached.
     pub frames: (i64, i64),
+    /// The objects of the run.
+    pub objects: &'a [Object],
 }
 
 impl Summary<'_> {
@@ -55,6 +59,11 @@ impl Summary<'_> {
         if account.crossed > 0 {
             let points = figures::count(account.crossed as usize, "point");
             writeln!(text, "{points} ended on the far side of a collider")?;
+        }
+        if let Some((what, frame)) = account.first_refused {
+            let (what, count) =
+                (refused(what, self.objects), figures::count(account.refused as usize, "value"));
+            writeln!(text, "frame {frame}: {what} ({count} in all)")?;
         }
         for outcome in self.checks {
             writeln!(text, "{}", check_line(outcome))?;
@@ -114,11 +123,37 @@ impl Summary<'_> {
             "worst_strain": at(account.worst_strain),
             "smallest_gap": at(account.smallest_gap),
             "crossed": account.crossed,
+            "refused": account.refused,
+            "first_refused": account.first_refused.map(|(what, _)| refused(what, self.objects)),
             "checks": checks,
             "audit": self.audit.map(audit_json),
             "cache": path,
             "bytes": bytes,
         }})
+    }
+}
+
+/// `point 17 of `ball` was no usable position, and was held where it was`.
+fn refused(what: Refused, objects: &[Object]) -> String {
+    let name = |kind: ObjectKind| {
+        objects.iter().find(|object| object.kind == kind).map_or("an object", |object| object.name.as_str())
+    };
+    let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
+    match what {
+        Refused::ColliderPoint(id, point) => {
+            let (ball, point) = (name(collider(id)), point.0);
+            format!("point {point} of `{ball}` was no usable position, and was held where it was")
+        }
+        Refused::ColliderMotion(id) => {
+            format!("`{}` was given the wrong number of points, and stood still", name(collider(id)))
+        }
+        Refused::Pin(id, point) => {
+            format!("point {} of `{}` was held nowhere, and stayed where it was", point.0, name(cloth(id)))
+        }
+        Refused::Cloth(id) => format!("an attribute of `{}` was no usable number", name(cloth(id))),
+        Refused::Collider(id) => format!("an attribute of `{}` was no usable number", name(collider(id))),
+        Refused::Duration => "it had no length, and was passed over".to_owned(),
+        _ => "a setting of the solver was no usable number".to_owned(),
     }
 }
 
@@ -184,4 +219,24 @@ fn audit_json(audit: &Audit) -> Value {
         "inside": account.inside,
         "first": audit.findings().next(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::{ClothId, ColliderId, Faces, PointId};
+
+    use super::*;
+
+    #[test]
+    fn what_was_refused_is_named_as_the_scene_names_it() {
+        let object =
+            |name: &str, kind| Object { name: name.to_owned(), kind, points: 3, faces: Faces::default() };
+        let objects = [
+            object("silk", ObjectKind::Cloth(ClothId(0))),
+            object("ball", ObjectKind::Collider(ColliderId(0))),
+        ];
+        let said = refused(Refused::ColliderPoint(ColliderId(0), PointId(17)), &objects);
+        assert_eq!(said, "point 17 of `ball` was no usable position, and was held where it was");
+        assert!(refused(Refused::Cloth(ClothId(0)), &objects).contains("`silk`"));
+    }
 }

@@ -2,6 +2,7 @@
 //! From [`ModelBuilder::finish`] on, nothing can be invalid.
 
 use crate::ids::{ClothId, ColliderId};
+use crate::refuse::{FARTHEST, is_usable};
 use crate::surface::Surface;
 
 /// How the mass of a cloth is given.
@@ -64,6 +65,12 @@ pub enum BuildError {
     /// A position is NaN or infinite.
     #[error("point {point} is not a finite position")]
     NotFinite {
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A position is farther than [`FARTHEST`] from the origin.
+    #[error("point {point} is more than {FARTHEST:e} m from the origin")]
+    TooFar {
         /// The point, in the mesh's order.
         point: usize,
     },
@@ -144,6 +151,9 @@ fn check_surface(surface: &Surface) -> Result<(), BuildError> {
     }
     if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(BuildError::NotFinite { point });
+    }
+    if let Some(point) = surface.positions.iter().position(|p| !is_usable(p)) {
+        return Err(BuildError::TooFar { point });
     }
     for (face, corners) in surface.faces.iter().enumerate() {
         if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {

@@ -53,7 +53,8 @@ impl<R: Real> Solver<R> {
         self.state.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
     }
 
-    fn anchor_rows(&mut self) {
+    /// Rows take up where the anchors are.
+    pub(crate) fn anchor_rows(&mut self) {
         let Self { cloths, state, team, .. } = self;
         let anchors = &state.anchor;
         for cloth in cloths {

@@ -5,6 +5,7 @@
 //! | what happens in a frame, in order | `step.rs` |
 //! | what a frame brings | `frame.rs` |
 //! | how fast colliders are kept from leaping over cloth | `impact.rs` |
+//! | what becomes of a NaN in it | `refuse.rs` |
 //! | what an artist's resistance means | `resistance.rs` |
 //! | how often each effect is swept, and when | `schedule.rs` |
 //! | where stretch, shear, bend and damping are computed | `constraints/` |
@@ -34,6 +35,7 @@ mod model;
 mod observe;
 mod passes;
 mod predict;
+mod refuse;
 mod relax;
 mod report;
 mod resistance;
@@ -54,6 +56,7 @@ pub use frame::{
 pub use ids::{ClothId, ColliderId, PointId};
 pub use observe::{Moment, Stage, StateView, StepObserver};
 pub use passes::PassCost;
+pub use refuse::{FARTHEST, Refusals, Refused};
 pub use report::StepReport;
 pub use resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, classic_stiffness};
 pub use scalar::Real;

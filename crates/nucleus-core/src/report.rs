@@ -1,6 +1,8 @@
 //! What the solver says about a frame: counts and worst values. A step cannot fail; what could not be
 //! satisfied is counted here.
 
+use crate::refuse::Refusals;
+
 /// The account of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport {
@@ -34,6 +36,8 @@ pub struct StepReport {
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
     pub finite: bool,
+    /// What the frame brought and was no number: held or left out.
+    pub refused: Refusals,
 }
 
 impl Default for StepReport {
@@ -52,6 +56,7 @@ impl Default for StepReport {
             unproven: 0,
             kinetic_energy: 0.0,
             finite: true,
+            refused: Refusals::default(),
         }
     }
 }

@@ -197,7 +197,7 @@ fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> 
         add(stretch, Effect::Stretch(physical_links(settings, above, settings.compression_resistance, h)));
         let shear = settings.shear_resistance;
         add(shear, Effect::Shear(physical_links(settings, shear, shear, h)));
-        let compliance = R::from_f64(1.0 / (BENDING_PER_RESISTANCE * settings.bend_resistance * h * h));
+        let compliance = compliance(BENDING_PER_RESISTANCE * settings.bend_resistance, h);
         add(settings.bend_resistance, Effect::Bend(BendStrength { share: R::ONE, compliance }));
     }
     vec![Round::Relax(0..sweeps.len()), Round::MeetEachOther, Round::Collide]
@@ -206,7 +206,7 @@ fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> 
 /// Links as stiff as two resistances say; a side without resistance is left alone.
 fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -> LinkStrength<R> {
     let side = |resistance: f64| match resistance > 0.0 {
-        true => (R::ONE, R::from_f64(1.0 / (STIFFNESS_PER_RESISTANCE * resistance * h * h))),
+        true => (R::ONE, compliance(STIFFNESS_PER_RESISTANCE * resistance, h)),
         false => (R::ZERO, R::ZERO),
     };
     let (above, below) = (side(above), side(below));
@@ -215,6 +215,13 @@ fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -
         compliance: Sides { above: above.1, below: below.1 },
         rest_scale: R::from_f64(cloth.rest_length_scale),
     }
+}
+
+/// 1 / (stiffness h²), but never so much that it is no number in `f32`: a resistance that is keyed down to
+/// nought passes through all sizes.
+fn compliance<R: Real>(stiffness: f64, h: f64) -> R {
+    const SOFTEST: f64 = 1e30;
+    R::from_f64((1.0 / (stiffness * h * h)).min(SOFTEST))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::collision::collider::ColliderState;
 use crate::collision::foresee::Cover;
 use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
-use crate::ids::{ClothId, ColliderId};
+use crate::ids::{ClothId, ColliderId, PointId};
 use crate::model::{ClothModel, ColliderModel};
 use crate::observe::StateView;
 use crate::scalar::{Real, Row4};
@@ -58,7 +58,7 @@ impl<R: Real> Solver<R> {
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
         let covered = if collides { state.anchor.len() } else { 0 };
         let both = |cloth| (0..colliders.len()).map(move |collider| PairList::new(cloth, collider));
-        Self {
+        let mut solver = Self {
             spans: vec![[0.0; 2]; models.len()],
             windows: vec![[0.0; 2]; models.len()],
             near: vec![[Row4::ZERO; 2]; covered],
@@ -73,12 +73,20 @@ impl<R: Real> Solver<R> {
             state,
             heights: Vec::new(),
             team: Team::new(threads),
-        }
+        };
+        solver.anchor_rows();
+        solver
     }
 
     /// How far into the frame the solver has come, as a share of it.
     pub(crate) fn set_time(&mut self, now: f64) {
         self.collider_states.iter_mut().for_each(|collider| collider.now = now);
+    }
+
+    /// The mass of a point in kilograms, as it is when nothing holds it.
+    pub fn mass(&self, cloth: ClothId, point: PointId) -> f64 {
+        let row = self.cloths[cloth.index()].place(point.index());
+        1.0 / self.state.inverse_mass[row as usize].to_f64()
     }
 
     /// A fingerprint of all positions and velocities: equal bits, equal hash.

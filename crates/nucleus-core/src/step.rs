@@ -9,6 +9,7 @@ use crate::constraints::damp::{self, DampStrength};
 use crate::frame::FrameInput;
 use crate::observe::{Moment, Stage, StepObserver};
 use crate::predict::{self, Columns, Drive, gravity_kick};
+use crate::refuse::Refused;
 use crate::relax;
 use crate::report::StepReport;
 use crate::scalar::Real;
@@ -24,10 +25,26 @@ struct Step<'a, R> {
 }
 
 impl<R: Real> Solver<R> {
-    /// Advances by one frame. Cannot fail: what could not be satisfied is counted in the report.
+    /// Advances by one frame. Cannot fail: what could not be satisfied, or is no number, is counted in the report.
     ///
     /// `frame` has one entry per cloth and per collider.
     pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
+        let (frame, refused) = self.usable(frame);
+        let report = match refused.first {
+            Some(Refused::Duration) => self.pass_over(watch),
+            _ => self.solve(&frame, watch),
+        };
+        StepReport { refused, ..report }
+    }
+
+    /// A frame in which no time passes: all stays as it is.
+    fn pass_over(&mut self, watch: &mut dyn StepObserver) -> StepReport {
+        watch.substep(Moment { substep: 1, substeps: 1 }, self);
+        StepReport::default()
+    }
+
+    /// One frame of finite numbers.
+    fn solve(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
         let schedule = Schedule::new(frame);
         let mut tally = Tally::default();
         watch.enter(Stage::FrameStart);

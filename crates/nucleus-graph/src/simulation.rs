@@ -60,10 +60,21 @@ impl<R: Real> Simulation<R> {
 
     /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
     pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
+        self.advance_with(&mut |_, _| {}, watch)
+    }
+
+    /// The same, with a last look at what the frame brings, before the solver sees it: a chance to measure it, or
+    /// to bring what no scene can say.
+    pub fn advance_with(
+        &mut self,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        watch: &mut dyn StepObserver,
+    ) -> FrameReport {
         let frame = self.frame + 1;
         let mut grips = std::mem::take(&mut self.grips);
-        let input = self.next_input(&mut grips);
+        let mut input = self.next_input(&mut grips);
         self.grips = grips;
+        change(&self.solver, &mut input);
         let (report, passed_through) = match &mut self.audit {
             None => (self.solver.step(&input, watch), None),
             Some(audit) => {

@@ -3,6 +3,7 @@
 mod attrs;
 mod cache_info;
 mod check;
+mod extremes;
 mod info;
 mod play;
 mod render;
@@ -23,6 +24,7 @@ pub enum Command {
     Play(play::Play),
     Render(render::Render),
     Attrs(attrs::Attrs),
+    Extremes(extremes::Extremes),
 }
 
 impl Command {
@@ -35,6 +37,7 @@ impl Command {
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
             Self::Attrs(attrs) => attrs.run(),
+            Self::Extremes(extremes) => extremes.run(),
         }
     }
 }

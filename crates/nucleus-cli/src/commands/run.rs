@@ -92,9 +92,9 @@ impl Run {
         let recorded = close(recorder, &mut ending).map(|bytes| (out, bytes));
         interrupt::run_is_over();
         let last = simulation.frame();
-        let checks = judge.outcomes();
         let audit = simulation.audit().filter(|_| self.audit);
-        let summary = Summary { account, ending, checks, audit, recorded, frames: (start.into(), last) };
+        let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
+        let summary = Summary { account, ending, checks, audit, recorded, frames, objects };
         match self.json {
             true => output::print_json(&summary.as_json())?,
             false => output::print(&summary.as_text()?)?,

@@ -2,6 +2,7 @@
 
 mod attrs;
 mod check;
+mod extremes;
 mod info;
 mod interrupted;
 mod play;

@@ -159,6 +159,7 @@ impl<'a> Compiler<'a> {
             CLASSIC => Mass::PerPoint(point_mass),
             _ => Mass::PerArea(point_mass),
         };
+        self.warn_of_free_points(node.name(), mesh, &surface);
         let start = surface.positions.clone();
         let faces = surface.faces.clone();
         let kilograms = match mass {
@@ -210,6 +211,25 @@ impl<'a> Compiler<'a> {
     fn mass_and_object(&mut self, name: &str, kind: ObjectKind, points: usize, faces: Faces, kilograms: f64) {
         self.mass += kilograms;
         self.objects.push(Object { name: name.to_owned(), kind, points, faces });
+    }
+
+    /// Points of no face are held by nothing: they run, but are seldom meant.
+    fn warn_of_free_points(&mut self, cloth: &str, mesh: NodeId, surface: &Surface) {
+        let mut in_face = vec![false; surface.positions.len()];
+        surface.faces.corners().iter().for_each(|&point| in_face[point as usize] = true);
+        let free = in_face.iter().filter(|in_face| !**in_face).count();
+        let Some(first) = in_face.iter().position(|in_face| !in_face) else { return };
+        let message = match free {
+            all if all == in_face.len() => format!("`{cloth}` has no face, only free points"),
+            1 => format!("`{cloth}` has 1 point of no face, point {first}: it is free"),
+            free => {
+                format!("`{cloth}` has {free} points of no face, the first is point {first}: they are free")
+            }
+        };
+        let place = self.scene.source.place(self.scene.graph.node(mesh).name());
+        let warning = self.findings.warning(&place, message);
+        warning
+            .help("take them out of the mesh, or hold them by a constraint, if they are not meant to fall");
     }
 
     /// Says what the builder has refused, where it can be mended.

@@ -168,13 +168,18 @@ fn within(
         return Some(number);
     }
     let bounds = match (row.range.min, row.range.max) {
-        (Some(min), Some(max)) => format!("between {min} and {max}"),
-        (Some(min), None) => format!("at least {min}"),
-        (None, Some(max)) => format!("at most {max}"),
+        (Some(min), Some(max)) => format!("between {} and {}", written(min), written(max)),
+        (Some(min), None) => format!("at least {}", written(min)),
+        (None, Some(max)) => format!("at most {}", written(max)),
         (None, None) => "a number".to_owned(),
     };
-    findings.error(span, format!("{label} must be {bounds}, found {number}"));
+    findings.error(span, format!("{label} must be {bounds}, found {}", written(number)));
     None
+}
+
+/// A number as one would write it: `100000`, `1e300`.
+fn written(x: f64) -> String {
+    if x.abs() < 1e7 && (x == 0.0 || x.abs() >= 1e-5) { format!("{x}") } else { format!("{x:e}") }
 }
 
 /// A word of an enum: ours, Maya's own name of it, or Maya's index.

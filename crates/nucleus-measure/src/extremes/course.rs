@@ -1,0 +1,143 @@
+//! How a run went, frame by frame.
+
+use nalgebra::Vector3;
+use nucleus_core::{ClothId, Real, StepReport};
+use nucleus_graph::Simulation;
+use nucleus_graph::compile::{ObjectKind, Program};
+
+use super::case::Tamper;
+use super::cost::Clock;
+use super::energy::{Energy, EnergyBook};
+
+/// What was seen at the end of a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen {
+    /// The frame.
+    pub frame: i64,
+    /// What the solver said.
+    pub report: StepReport,
+    /// How fast it is, and how much energy it has.
+    pub energy: Energy,
+}
+
+/// A run, measured.
+#[derive(Debug, Clone, Default)]
+pub struct Course {
+    /// Every frame that was solved.
+    pub frames: Vec<Seen>,
+    /// Where the points of all cloths were when it began, in metres.
+    pub start: Vec<Vec<Vector3<f64>>>,
+    /// Where they are in the end.
+    pub end: Vec<Vec<Vector3<f64>>>,
+    /// Processor time of all frames in seconds.
+    pub seconds: f64,
+    /// Time steps of all frames.
+    pub steps: f64,
+    /// Rows evaluated in all frames.
+    pub evaluations: f64,
+}
+
+impl Course {
+    /// Runs a program on one thread. `tamper` changes what frames bring; `stored` is what the start holds in joules,
+    /// besides what falls and is stretched.
+    pub fn of<R: Real>(program: &Program, tamper: Option<Tamper>, stored: f64) -> Self {
+        let mut simulation = Simulation::<R>::new(program, 1);
+        let points = cloths(program);
+        let mut book = EnergyBook::new(simulation.solver(), &points, stored);
+        let mut course = Course { start: places(&simulation, &points), ..Course::default() };
+        while !simulation.is_done() {
+            let frame = simulation.frame() + 1;
+            let (mut steps, mut evaluations) = (0.0, 0.0);
+            let clock = std::cell::OnceCell::new();
+            let seen = simulation.advance_with(
+                &mut |solver, input| {
+                    if let Some(tamper) = tamper {
+                        tamper(frame, input);
+                    }
+                    book.begin(solver, input);
+                    let passes = solver.passes(input);
+                    steps = passes.iter().find(|pass| pass.name == "predict").map_or(0.0, |pass| pass.sweeps);
+                    evaluations = passes.iter().map(nucleus_core::PassCost::evaluations).sum();
+                    clock.get_or_init(Clock::start);
+                },
+                &mut (),
+            );
+            course.seconds += clock.get_or_init(Clock::start).seconds();
+            course.steps += steps;
+            course.evaluations += evaluations;
+            let energy = book.end(simulation.solver());
+            course.frames.push(Seen { frame, report: seen.report, energy });
+        }
+        course.end = places(&simulation, &points);
+        course
+    }
+}
+
+/// How many points each cloth has.
+fn cloths(program: &Program) -> Vec<usize> {
+    let cloths = program.objects().iter().filter(|object| matches!(object.kind, ObjectKind::Cloth(_)));
+    cloths.map(|object| object.points).collect()
+}
+
+fn places<R: Real>(simulation: &Simulation<R>, points: &[usize]) -> Vec<Vec<Vector3<f64>>> {
+    let of = |(cloth, &count): (usize, &usize)| {
+        (0..count).map(|point| simulation.state().point(ClothId(cloth as u32), point)).collect()
+    };
+    points.iter().enumerate().map(of).collect()
+}
+
+impl Course {
+    /// The worst of a figure over all frames.
+    pub fn most(&self, figure: impl Fn(&Seen) -> f64) -> f64 {
+        self.frames.iter().map(figure).fold(0.0, worse)
+    }
+
+    /// The worst of a figure from a frame on.
+    pub fn most_from(&self, frame: i64, figure: impl Fn(&Seen) -> f64) -> f64 {
+        self.frames.iter().filter(|seen| seen.frame >= frame).map(figure).fold(0.0, worse)
+    }
+
+    /// A count over all frames.
+    pub fn sum(&self, figure: impl Fn(&Seen) -> u64) -> u64 {
+        self.frames.iter().map(figure).sum()
+    }
+
+    /// Whether every frame was finite.
+    pub fn is_finite(&self) -> bool {
+        self.frames.iter().all(|seen| seen.report.finite && seen.energy.speed.is_finite())
+    }
+
+    /// The farthest that any point is in the end from where it began, in metres.
+    pub fn farthest_from_start(&self) -> f64 {
+        farthest(&self.start, &self.end)
+    }
+
+    /// The farthest that any point is in the end from where another run has it, in metres.
+    pub fn farthest_from(&self, other: &Self) -> f64 {
+        farthest(&self.end, &other.end)
+    }
+
+    /// The farthest that the way of any point from its start is from its way in another run, in metres: the same
+    /// scene put elsewhere is to move in the same way.
+    pub fn farthest_moves_from(&self, other: &Self) -> f64 {
+        let ways = |course: &Self| {
+            let pairs = course.end.iter().flatten().zip(course.start.iter().flatten());
+            vec![pairs.map(|(end, start)| end - start).collect::<Vec<_>>()]
+        };
+        farthest(&ways(self), &ways(other))
+    }
+
+    /// The lowest point in the end, in metres.
+    pub fn lowest(&self) -> f64 {
+        self.end.iter().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn farthest(a: &[Vec<Vector3<f64>>], b: &[Vec<Vector3<f64>>]) -> f64 {
+    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).norm()).fold(0.0, worse)
+}
+
+/// The larger of two; what is no number is the largest.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

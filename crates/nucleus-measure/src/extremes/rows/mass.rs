@@ -1,0 +1,107 @@
+//! Mass: how light, how heavy, and both side by side.
+
+use super::super::meshes;
+use super::{Cost, Extreme, RUNS, Recovery, Runs, at_most, banner, from_file};
+
+pub static ROWS: [Extreme; 5] = [
+    Extreme {
+        name: "mass-ratio-in-a-mesh",
+        group: "Mass",
+        what: "a strip whose last point weighs a million times its first, hung by the light end",
+        expect: "The strip hangs and stays whole. The light end carries all the weight over a narrow strip, so it is \
+            stretched by what its material gives; sizes of faces within a factor of ten keep the error small.",
+        trial: Runs {
+            case: || {
+                from_file("graded.obj", "vtx[0:1]", "", "").scene(96).mesh("graded.obj", meshes::graded(40, 1e6))
+            },
+            nominal: || {
+                from_file("even.obj", "vtx[0:1]", "", "").scene(96).mesh("even.obj", meshes::graded(40, 1.0))
+            },
+            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.5 }),
+            ..RUNS
+        }
+        .trial(),
+        fails: Some(
+            "A sweep hands a load on from point to point, each by its own mass, so that light points cannot hold a heavy one; it \
+            takes a solve of the whole cloth at once.",
+        ),
+    },
+    Extreme {
+        name: "mass-ratio-100-in-a-mesh",
+        group: "Mass",
+        what: "a strip whose last point weighs a hundred times its first, hung by the light end",
+        expect: "The strip hangs and stays whole.",
+        trial: Runs {
+            case: || {
+                from_file("graded.obj", "vtx[0:1]", "", "").scene(96).mesh("graded.obj", meshes::graded(40, 1e2))
+            },
+            nominal: || {
+                from_file("even.obj", "vtx[0:1]", "", "").scene(96).mesh("even.obj", meshes::graded(40, 1.0))
+            },
+            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.05 }),
+            ..RUNS
+        }
+        .trial(),
+        fails: Some(
+            "As above. At even masses the error is a hundredth of this.",
+        ),
+    },
+    Extreme {
+        name: "mass-ratio-of-cloths",
+        group: "Mass",
+        what: "a cloth of 1 mg/m² beside one of 1 t/m²",
+        expect: "Both hang. The air carries the light one, since drag is divided by `pointMass`; a ton needs a \
+            resistance to match: at the default of 20 it would be stretched to twice its length.",
+        trial: Runs {
+            case: || {
+                banner("", "stretchResistance: 20000, compressionResistance: 10000")
+                    .with(
+                        "\"other\": polyPlane(width: 1, height: 1, subdivisions: (16, 16), rotate: (-90, 0, 0), translate: (3, 0, 0)),
+                        \"heavy\": nCloth(inputMesh: \"other\", pointMass: 1000, damp: 1, stretchResistance: 20000, compressionResistance: 10000),
+                        \"light\": nCloth(inputMesh: \"third\", pointMass: 0.000001, damp: 1),
+                        \"third\": polyPlane(width: 1, height: 1, subdivisions: (16, 16), rotate: (-90, 0, 0), translate: (-3, 0, 0)),
+                        \"rails\": dynamicConstraint(constraintType: transform, components: [\"heavy.vtx[0:16]\", \"light.vtx[0:16]\"]),",
+                    )
+                    .scene(96)
+            },
+            cost: Cost::Evaluation,
+            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.02 }),
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+    Extreme {
+        name: "mass-1e-9",
+        group: "Mass",
+        what: "`pointMass` 1e-9: a microgram per square metre",
+        expect: "It hangs in the air as a feather would; nothing shakes.",
+        trial: Runs {
+            case: || banner("", "").scene(96).replace("pointMass: 0.2", "pointMass: 0.000000001"),
+            recovery: Some(Recovery { from: 48, speed: 0.2, strain: 0.02 }),
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+    Extreme {
+        name: "mass-1e6",
+        group: "Mass",
+        what: "`pointMass` 1e6, and resistances and air five million times the ordinary to match",
+        expect: "The ordinary banner in other units: it moves in the same way.",
+        trial: Runs {
+            case: || {
+                banner("", "stretchResistance: 1e8, compressionResistance: 5e7, bendResistance: 5e5, drag: 2.5e5, lift: 2.5e5")
+                    .scene(96)
+                    .replace("pointMass: 0.2", "pointMass: 1000000")
+            },
+            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.02 }),
+            demands: &[at_most("farthest from the ordinary banner (m)", 0.02, |course, nominal| {
+                course.farthest_from(nominal)
+            })],
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+];

@@ -1,0 +1,146 @@
+//! The rows, a file per part of the table, and the ordinary scenes that they are made from.
+
+mod attributes;
+mod colliders;
+mod forces;
+mod input;
+mod mass;
+mod mesh;
+mod scale;
+mod thickness;
+mod time;
+
+use super::case::Case;
+use super::course::Course;
+use super::row::{Cost, Demand, Extreme, Recovery, Trial};
+use super::verdict::Side;
+
+/// All rows, in the order of the table.
+pub fn rows() -> impl Iterator<Item = &'static Extreme> {
+    let parts: [&'static [Extreme]; 9] = [
+        &mass::ROWS,
+        &attributes::ROWS,
+        &time::ROWS,
+        &scale::ROWS,
+        &forces::ROWS,
+        &thickness::ROWS,
+        &mesh::ROWS,
+        &colliders::ROWS,
+        &input::ROWS,
+    ];
+    parts.into_iter().flatten()
+}
+
+/// The row of this name.
+pub fn named(name: &str) -> Option<&'static Extreme> {
+    rows().find(|row| row.name == name)
+}
+
+/// A row whose scene runs; the rest is as most rows have it, and each changes what differs.
+const RUNS: Runs = Runs {
+    case: || Case::new(0, ""),
+    nominal: || banner("", "").scene(96),
+    cost: Cost::Frame,
+    stored: 0.0,
+    recovery: None,
+    demands: &[],
+    warns: &[],
+};
+
+/// What [`Trial::Runs`] is made from, so that a row need only say what is its own.
+struct Runs {
+    case: fn() -> Case,
+    nominal: fn() -> Case,
+    cost: Cost,
+    stored: f64,
+    recovery: Option<Recovery>,
+    demands: &'static [Demand],
+    warns: &'static [&'static str],
+}
+
+impl Runs {
+    const fn trial(self) -> Trial {
+        let Self { case, nominal, cost, stored, recovery, demands, warns } = self;
+        Trial::Runs { case, nominal, cost, stored, recovery, demands, warns }
+    }
+}
+
+/// A bound that a figure must not be above.
+const fn at_most(what: &'static str, limit: f64, figure: fn(&Course, &Course) -> f64) -> Demand {
+    Demand { what, figure, side: Side::AtMost, limit }
+}
+
+/// A bound that a figure must not be below.
+const fn at_least(what: &'static str, limit: f64, figure: fn(&Course, &Course) -> f64) -> Demand {
+    Demand { what, figure, side: Side::AtLeast, limit }
+}
+
+/// No point ends a substep on the far side of a collider.
+const NOTHING_CROSSES: Demand =
+    at_most("points crossed", 0.0, |course, _| course.sum(|seen| seen.report.crossed) as f64);
+
+/// Nodes of a scene, as text.
+struct Nodes(String);
+
+impl Nodes {
+    /// With more nodes.
+    fn with(mut self, nodes: &str) -> Self {
+        for line in nodes.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            self.0 += "        ";
+            self.0 += line;
+            self.0.push('\n');
+        }
+        self
+    }
+
+    /// As a scene of so many frames.
+    fn scene(self, frames: i64) -> Case {
+        Case::new(frames, self.0)
+    }
+}
+
+/// A nucleus with these attributes.
+fn nucleus(attributes: &str) -> Nodes {
+    Nodes(String::new()).with(&format!("\"nucleus1\": nucleus({attributes}),"))
+}
+
+/// A banner of a metre, 17 points each way, hung from its upper edge. Attributes of the nucleus and of the cloth. Like
+/// all ordinary scenes here it is damped by the air in every direction, so that it is at rest two seconds after the cause of
+/// its motion has ended: drag takes a share of 3 of the speed in a second.
+fn banner(solver: &str, cloth: &str) -> Nodes {
+    let damp = if cloth.contains("damp:") { "" } else { "damp: 1, " };
+    let tangential = if cloth.contains("tangentialDrag:") { "" } else { "tangentialDrag: 0.5, " };
+    nucleus(solver).with(&format!(
+        "\"sheet\": polyPlane(width: 1, height: 1, subdivisions: (16, 16), rotate: (-90, 0, 0)),
+        \"banner\": nCloth(inputMesh: \"sheet\", pointMass: 0.2, {damp}{tangential}{cloth}),
+        \"rail\": dynamicConstraint(constraintType: transform, components: [\"banner.vtx[0:16]\"]),"
+    ))
+}
+
+/// A cloth made from an OBJ file that lies flat a metre wide; turned up, it hangs from these of its points.
+fn from_file(file: &str, held: &str, solver: &str, cloth: &str) -> Nodes {
+    nucleus(solver).with(&format!(
+        "\"sheet\": mesh(file: \"{file}\", rotate: (-90, 0, 0)),
+        \"banner\": nCloth(inputMesh: \"sheet\", pointMass: 0.2, damp: 1, tangentialDrag: 0.5, {cloth}),
+        \"rail\": dynamicConstraint(constraintType: transform, components: [\"banner.{held}\"]),"
+    ))
+}
+
+/// A sheet of a metre that falls from 10 cm on the ground.
+fn floor(solver: &str, cloth: &str) -> Nodes {
+    nucleus(&format!("usePlane: true, planeFriction: 0.5, {solver}")).with(&format!(
+        "\"sheet\": polyPlane(width: 1, height: 1, subdivisions: (16, 16), translate: (0, 0.1, 0)),
+        \"rug\": nCloth(inputMesh: \"sheet\", pointMass: 0.2, damp: 1, tangentialDrag: 0.5, {cloth}),"
+    ))
+}
+
+/// A sheet of a metre that falls on a ball of 30 cm that rests on the ground.
+fn drape(solver: &str, cloth: &str, ball: &str) -> Nodes {
+    nucleus(&format!("usePlane: true, {solver}")).with(&format!(
+        "\"sheet\": polyPlane(width: 1, height: 1, subdivisions: (16, 16), translate: (0, 0.65, 0)),
+        \"cloth\": nCloth(inputMesh: \"sheet\", pointMass: 0.2, damp: 1, tangentialDrag: 0.5, friction: 0.5, {cloth}),
+        \"sphere\": polySphere(radius: 0.3, subdivisions: (20, 12), {}),
+        \"ball\": nRigid(inputMesh: \"sphere\", friction: 0.5),",
+        if ball.contains("translate") { ball.to_owned() } else { format!("translate: (0, 0.3, 0), {ball}") }
+    ))
+}

@@ -1,0 +1,92 @@
+//! Thickness: none, and more than there is room for.
+
+use super::{Extreme, NOTHING_CROSSES, RUNS, Recovery, Runs, at_least, drape, floor};
+
+pub static ROWS: [Extreme; 5] = [
+    Extreme {
+        name: "thickness-0",
+        group: "Thickness",
+        what: "no thickness on either side",
+        expect: "The sheet lies on the ball; a hundredth of a millimetre is kept to tell the sides apart.",
+        trial: Runs {
+            case: || drape("", "thickness: 0", "").scene(96).replace("nRigid(", "nRigid(thickness: 0, "),
+            nominal: || drape("", "", "").scene(96),
+            recovery: Some(Recovery { from: 90, speed: 0.3, strain: 0.05 }),
+            demands: &[NOTHING_CROSSES],
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+    Extreme {
+        name: "thickness-above-a-face",
+        group: "Thickness",
+        what: "a thickness of 10 cm on faces of 6 cm",
+        expect: "The sheet lies 10 cm above the ball, and rests.",
+        trial: Runs {
+            case: || {
+                drape("", "thickness: 0.1", "").scene(48).replace("nRigid(", "nRigid(thickness: 0.002, ")
+            },
+            nominal: || drape("", "", "").scene(96),
+            recovery: Some(Recovery { from: 42, speed: 0.3, strain: 0.05 }),
+            demands: &[NOTHING_CROSSES],
+            ..RUNS
+        }
+        .trial(),
+        fails: Some(
+            "All that is within the thickness is a pair in every step, and where it is more than a face that is many; the \
+            sheet is pushed up with some speed.",
+        ),
+    },
+    Extreme {
+        name: "thickness-above-the-cloth",
+        group: "Thickness",
+        what: "a thickness of 2 m on a sheet of 1 m that starts 5 cm above a ball",
+        expect: "The sheet is led out of the ball's reach at 1 m/s, without a leap, and rests on it.",
+        trial: Runs {
+            case: || drape("", "thickness: 2", "").scene(144).replace("nRigid(", "nRigid(thickness: 0.002, "),
+            nominal: || drape("", "", "").scene(96),
+            // Lifted by 2 m.
+            stored: 0.2 * 9.8 * 2.2,
+            recovery: Some(Recovery { from: 130, speed: 0.5, strain: 0.1 }),
+            demands: &[NOTHING_CROSSES],
+            ..RUNS
+        }
+        .trial(),
+        fails: Some("The sheet gains speed while it is led out, and slides off."),
+    },
+    Extreme {
+        name: "thickness-above-the-cloth-floor",
+        group: "Thickness",
+        what: "a thickness of 2 m on a sheet of 1 m that starts 10 cm above the ground",
+        expect: "The sheet is led up at 1 m/s and rests 2 m above the ground.",
+        trial: Runs {
+            case: || floor("", "thickness: 2").scene(96),
+            nominal: || floor("", "").scene(96),
+            stored: 0.2 * 9.8 * 2.0,
+            recovery: Some(Recovery { from: 84, speed: 0.1, strain: 0.02 }),
+            demands: &[at_least("lowest point in the end (m)", 1.99, |course, _| course.lowest())],
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+    Extreme {
+        name: "thickness-leaps",
+        group: "Thickness",
+        what: "a thickness that leaps between 1 mm and 50 cm from second to second",
+        expect: "The sheet is led out when it grows and falls when it shrinks; it never jumps.",
+        trial: Runs {
+            case: || {
+                floor("", "thickness: keys([(0, 0.001), (24, 0.001), (25, 0.5), (48, 0.5), (49, 0.001)])")
+                    .scene(120)
+            },
+            nominal: || floor("", "").scene(96),
+            stored: 0.2 * 9.8 * 0.5,
+            recovery: Some(Recovery { from: 108, speed: 0.1, strain: 0.02 }),
+            ..RUNS
+        }
+        .trial(),
+        fails: None,
+    },
+];

@@ -1,0 +1,54 @@
+//! The whole table of extremes, as `nucleus extremes` runs it.
+
+use std::collections::HashSet;
+use std::io;
+
+use nucleus_measure::extremes::{Extreme, Outcome, Trial, judge_all, miss, page, rows};
+
+fn judged() -> Vec<Outcome> {
+    let rows: Vec<&Extreme> = rows().collect();
+    let mut outcomes = Vec::new();
+    let mut tell = |outcome| {
+        outcomes.push(outcome);
+        Ok::<(), io::Error>(())
+    };
+    judge_all(&rows, 1, &mut tell).expect("meshes can be written");
+    outcomes
+}
+
+#[test]
+fn every_extreme_holds_or_is_known_to_fail() {
+    let outcomes = judged();
+    let mut wrong = Vec::new();
+    for outcome in outcomes.iter().filter(|outcome| !outcome.is_as_known()) {
+        let misses: Vec<String> = outcome.failures().map(miss).collect();
+        wrong.push(match misses.is_empty() {
+            true => format!("{}: holds now, so that its `fails` is to be taken out", outcome.extreme.name),
+            false => format!("{}: {}", outcome.extreme.name, misses.join("; ")),
+        });
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let page = page(&outcomes);
+    for outcome in &outcomes {
+        assert!(page.contains(&format!("**`{}`**", outcome.extreme.name)), "{}", outcome.extreme.name);
+    }
+}
+
+#[test]
+fn a_row_that_fails_says_why_and_no_two_have_one_name() {
+    let mut names = HashSet::new();
+    for row in rows() {
+        assert!(names.insert(row.name), "{} twice", row.name);
+        assert!(row.fails.is_none_or(|reason| reason.ends_with('.')), "{}", row.name);
+        assert!(row.expect.ends_with('.') && !row.what.ends_with('.'), "{}", row.name);
+    }
+}
+
+#[test]
+fn every_scene_of_the_table_is_a_file_that_can_be_read() {
+    for row in rows() {
+        let (Trial::Runs { case, .. } | Trial::Refused { case, .. }) = row.trial;
+        let compiled = case().compile().expect("meshes can be written");
+        assert_eq!(compiled.program.is_some(), matches!(row.trial, Trial::Runs { .. }), "{}", row.name);
+    }
+}
