@@ -8,6 +8,7 @@ mod play;
 mod render;
 mod run;
 mod scene_info;
+mod trade;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -23,6 +24,7 @@ pub enum Command {
     Play(play::Play),
     Render(render::Render),
     Attrs(attrs::Attrs),
+    Trade(trade::Trade),
 }
 
 impl Command {
@@ -35,6 +37,7 @@ impl Command {
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
             Self::Attrs(attrs) => attrs.run(),
+            Self::Trade(trade) => trade.run(),
         }
     }
 }

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use nucleus_cache::Recorder;
 use nucleus_graph::Simulation;
 use nucleus_graph::checks::Judge;
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::{Diagnostic, Scene};
 use serde_json::json;
 
 use crate::account::{Account, FrameFigures};
@@ -16,7 +18,7 @@ use crate::progress::Progress;
 use crate::recording::{self, Record};
 use crate::simulate::{Ending, simulate};
 use crate::summary::Summary;
-use crate::{interrupt, output, scene_file};
+use crate::{interrupt, output, quality, scene_file};
 
 /// Simulates a scene and records it as a cache.
 ///
@@ -38,6 +40,9 @@ pub struct Run {
     /// The cache to write; the scene's name with `.mcap` if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
+    /// The cheapest setting with at most this error (`1%`), by what `nucleus trade` has found for the scene.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    quality: Option<f64>,
     /// Print a JSON object for each frame and one for the run.
     #[arg(long)]
     json: bool,
@@ -46,7 +51,7 @@ pub struct Run {
 impl Run {
     /// A run of a scene with everything else left as it is.
     pub fn of(scene: PathBuf) -> Self {
-        Self { scene, frames: None, threads: None, record: None, out: None, json: false }
+        Self { scene, frames: None, threads: None, record: None, out: None, quality: None, json: false }
     }
 
     /// The cache that it writes.
@@ -62,8 +67,12 @@ impl Run {
 
     /// Runs it.
     pub fn run(self) -> Result<Outcome> {
-        let Some((_, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
+        let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
             return Ok(Outcome::Refused);
+        };
+        let program = match self.quality {
+            None => program,
+            Some(wanted) => self.program_of(&scene, wanted)?,
         };
         interrupt::listen()?;
         let (start, end) = recording::frames(&program)?;
@@ -89,6 +98,15 @@ impl Run {
             false => output::print(&summary.as_text()?)?,
         }
         Ok(summary.outcome())
+    }
+
+    /// The program at the setting that a quality wants.
+    fn program_of(&self, scene: &Scene, wanted: f64) -> Result<Program> {
+        let (scene, said) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
+        eprintln!("{said}");
+        let first =
+            |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
+        compile(&scene).map_err(|found| anyhow!("the scene cannot run so: {}", first(found)))
     }
 
     fn threads(&self) -> usize {
