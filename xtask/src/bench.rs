@@ -4,7 +4,7 @@
 //! |--------------------------------------------------|---------------|
 //! | what is simulated                                | [`workload`]  |
 //! | how error is measured                            | [`accuracy`]  |
-//! | how time is measured, and stages                 | [`clock`]     |
+//! | how time is measured, and stages                 | [`nucleus_measure::clock`] |
 //! | one run                                          | [`trial`]     |
 //! | which settings are run                           | [`trade`]     |
 //! | what other solvers need                          | [`peers`]     |
@@ -18,12 +18,11 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 mod accuracy;
-mod clock;
 mod contact;
 mod contest;
 mod csv;
 mod growth;
-mod machine;
+
 mod mesh;
 mod page;
 mod peers;
@@ -94,7 +93,7 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
     if let Some(path) = &options.csv {
         csv::write(path, &[])?;
     }
-    let mut report = Report::new(machine::describe());
+    let mut report = Report::new(nucleus_measure::machine::describe());
     let asked_for = |part: &&Part| options.only.is_empty() || options.only.contains(part);
     for part in Part::value_variants().iter().filter(asked_for) {
         part.run(options, &mut report)?;

@@ -9,9 +9,12 @@
 //! | how a scene is opened, and refused         | `scene_file.rs`            |
 //! | how a cache is opened, and refused         | `cache_file.rs`            |
 //! | how numbers are written for people         | `figures.rs`               |
+//! | how quality is asked for                   | `quality.rs`               |
+//! | where results are kept between commands    | `cache_folder.rs`          |
 
 mod account;
 mod cache_file;
+mod cache_folder;
 mod commands;
 mod diagnostics;
 mod figures;
@@ -20,6 +23,7 @@ mod interrupt;
 mod outcome;
 mod output;
 mod progress;
+mod quality;
 mod recording;
 mod scene_file;
 mod simulate;

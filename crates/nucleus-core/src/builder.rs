@@ -2,6 +2,7 @@
 //! From [`ModelBuilder::finish`] on, nothing can be invalid.
 
 use crate::ids::{ClothId, ColliderId};
+use crate::model::point_masses;
 use crate::refuse::{FARTHEST, is_usable};
 use crate::surface::Surface;
 
@@ -49,6 +50,13 @@ pub struct Cloth {
     pub mass: Mass,
     /// The lists it can ever need.
     pub lists: ClothLists,
+}
+
+impl Cloth {
+    /// The mass of each point in kilograms, in the mesh's order: what the solver goes by.
+    pub fn point_masses(&self) -> Vec<f64> {
+        point_masses(self)
+    }
 }
 
 /// A mesh that others collide with (an nRigid): given in world space, moved by [`ColliderFrame`](crate::ColliderFrame).
@@ -130,6 +138,11 @@ impl ModelBuilder {
         }
         self.cloths.push(cloth);
         Ok(ClothId(self.cloths.len() as u32 - 1))
+    }
+
+    /// The cloths, by their ids.
+    pub fn cloths(&self) -> &[Cloth] {
+        &self.cloths
     }
 
     /// Adds a collider.

@@ -11,9 +11,9 @@ use nucleus_graph::audit::Closeness;
 use nucleus_graph::compile::Program;
 
 use super::accuracy::Meter;
-use super::clock::{STAGES, Spent, StageClock};
 use super::report::Report;
 use super::table::{Table, figure};
+use nucleus_measure::clock::{STAGES, Spent, StageClock};
 
 mod peers;
 mod scene;

@@ -70,9 +70,9 @@ fn no_worse(run: &Outcome, peer: &Peer) -> bool {
 mod tests {
     use super::*;
     use crate::bench::accuracy::Accuracy;
-    use crate::bench::clock::Spent;
     use crate::bench::trial::Trial;
     use crate::bench::workload::Setting;
+    use nucleus_measure::clock::Spent;
 
     const PEER: Peer = Peer {
         name: "peer",

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use anyhow::Context;
 
-use super::clock::STAGES;
 use super::trial::Outcome;
+use nucleus_measure::clock::STAGES;
 
 /// Writes all runs; times in milliseconds a frame, strains as fractions, lengths in metres.
 ///

@@ -1,12 +1,12 @@
 //! Time against error: a workload at many settings, beside what other solvers need.
 
-use super::clock::STAGES;
 use super::contest::{self, Contest};
 use super::peers::{PEERS, SOURCE};
 use super::report::Report;
 use super::table::{Table, figure};
 use super::trial::{Outcome, Trial};
 use super::workload::{Setting, Workload};
+use nucleus_measure::clock::STAGES;
 
 /// The evaluations at which it is shown where the time goes.
 const TYPICAL: u32 = 48;

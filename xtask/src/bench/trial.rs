@@ -4,8 +4,8 @@ use anyhow::{Context, ensure};
 use nucleus_core::{FrameInput, Solver};
 
 use super::accuracy::{Accuracy, Meter};
-use super::clock::{STAGES, Spent, StageClock};
 use super::workload::{Scene, Setting, Workload};
+use nucleus_measure::clock::{STAGES, Spent, StageClock};
 
 /// What is to be run.
 #[derive(Debug, Clone, Copy, PartialEq)]

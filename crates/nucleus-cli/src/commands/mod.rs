@@ -9,6 +9,7 @@ mod play;
 mod render;
 mod run;
 mod scene_info;
+mod trade;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -25,6 +26,7 @@ pub enum Command {
     Render(render::Render),
     Attrs(attrs::Attrs),
     Extremes(extremes::Extremes),
+    Trade(trade::Trade),
 }
 
 impl Command {
@@ -38,6 +40,7 @@ impl Command {
             Self::Render(render) => render.run(),
             Self::Attrs(attrs) => attrs.run(),
             Self::Extremes(extremes) => extremes.run(),
+            Self::Trade(trade) => trade.run(),
         }
     }
 }

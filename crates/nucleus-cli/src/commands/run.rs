@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use nucleus_cache::Recorder;
 use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::{Diagnostic, Scene};
 use serde_json::json;
 
 use crate::account::{Account, FrameFigures};
@@ -17,7 +19,7 @@ use crate::progress::Progress;
 use crate::recording::{self, Record};
 use crate::simulate::{Ending, simulate};
 use crate::summary::Summary;
-use crate::{interrupt, output, scene_file};
+use crate::{interrupt, output, quality, scene_file};
 
 /// Simulates a scene and records it as a cache.
 ///
@@ -43,6 +45,9 @@ pub struct Run {
     /// solver shows to the next. Exit code 1 if it does. It takes time, and changes nothing.
     #[arg(long)]
     audit: bool,
+    /// The cheapest setting with at most this error (`1%`), by what `nucleus trade` has found for the scene.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    quality: Option<f64>,
     /// Print a JSON object for each frame and one for the run.
     #[arg(long)]
     json: bool,
@@ -51,7 +56,16 @@ pub struct Run {
 impl Run {
     /// A run of a scene with everything else left as it is.
     pub fn of(scene: PathBuf) -> Self {
-        Self { scene, frames: None, threads: None, record: None, out: None, audit: false, json: false }
+        Self {
+            scene,
+            frames: None,
+            threads: None,
+            record: None,
+            out: None,
+            audit: false,
+            quality: None,
+            json: false,
+        }
     }
 
     /// The cache that it writes.
@@ -67,8 +81,12 @@ impl Run {
 
     /// Runs it.
     pub fn run(self) -> Result<Outcome> {
-        let Some((_, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
+        let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
             return Ok(Outcome::Refused);
+        };
+        let program = match self.quality {
+            None => program,
+            Some(wanted) => self.program_of(&scene, wanted)?,
         };
         interrupt::listen()?;
         let (start, end) = recording::frames(&program)?;
@@ -100,6 +118,15 @@ impl Run {
             false => output::print(&summary.as_text()?)?,
         }
         Ok(summary.outcome())
+    }
+
+    /// The program at the setting that a quality wants.
+    fn program_of(&self, scene: &Scene, wanted: f64) -> Result<Program> {
+        let (scene, said) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
+        eprintln!("{said}");
+        let first =
+            |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
+        compile(&scene).map_err(|found| anyhow!("the scene cannot run so: {}", first(found)))
     }
 
     fn threads(&self) -> usize {

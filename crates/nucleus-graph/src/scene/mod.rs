@@ -6,6 +6,7 @@
 //! | how a file becomes a scene                   | [`read_scene`], `read/`       |
 //! | how a scene becomes text                     | [`write_scene`]               |
 //! | what is said about mistakes, and where       | [`Diagnostic`]                |
+//! | how an attribute is changed in a text        | [`edit::edit`]                |
 //! | RON itself                                   | [`syntax`]                    |
 //!
 //! **Invariant:** nothing in a file is passed over in silence. Whatever is read has an effect, or is a
@@ -13,6 +14,7 @@
 
 mod diagnostic;
 mod document;
+pub mod edit;
 mod findings;
 mod nearest;
 mod read;

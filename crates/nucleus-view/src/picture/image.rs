@@ -53,6 +53,14 @@ impl Image {
         encoded.map_err(|source| ViewError::Encode { path: path.into(), source })
     }
 
+    /// The picture as the bytes of a PNG file.
+    pub fn to_png(&self) -> Result<Vec<u8>, ViewError> {
+        let mut bytes = Vec::new();
+        let encoded = self.encode(&mut bytes);
+        encoded.map_err(|source| ViewError::Encode { path: "a picture in memory".into(), source })?;
+        Ok(bytes)
+    }
+
     fn encode(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
         let mut encoder = png::Encoder::new(to, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);

@@ -17,15 +17,30 @@ pub const STAGES: [(Stage, &str); 9] = [
     (Stage::Report, "report"),
 ];
 
-/// Processor time that this process has used so far, all threads together; nothing where the system does not tell.
-pub fn processor_time() -> Option<Duration> {
-    #[cfg(target_os = "linux")]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-        Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
+/// Whose processor time is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clock {
+    /// That of the whole process, all its threads together.
+    Process,
+    /// That of the thread that asks: what runs beside it on other threads does not count.
+    Thread,
+}
+
+impl Clock {
+    /// Processor time used so far; nothing where the system does not tell.
+    pub fn read(self) -> Option<Duration> {
+        #[cfg(target_os = "linux")]
+        {
+            let id = match self {
+                Self::Process => rustix::time::ClockId::ProcessCPUTime,
+                Self::Thread => rustix::time::ClockId::ThreadCPUTime,
+            };
+            let time = rustix::time::clock_gettime(id);
+            Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
+        }
+        #[cfg(not(target_os = "linux"))]
+        None
     }
-    #[cfg(not(target_os = "linux"))]
-    None
 }
 
 /// What some work took.
@@ -33,16 +48,21 @@ pub fn processor_time() -> Option<Duration> {
 pub struct Spent {
     /// On the wall, in seconds.
     pub wall: f64,
-    /// Of the processor, in seconds, over all threads; as on the wall where the system does not tell.
+    /// Of the processor, in seconds; as on the wall where the system does not tell.
     pub processor: f64,
 }
 
 impl Spent {
-    /// Does some work and looks at the clocks before and after.
+    /// Does some work and looks at the clocks before and after: of the processor at that of all threads together.
     pub fn on<T>(work: impl FnOnce() -> T) -> (Self, T) {
-        let (start, before) = (Instant::now(), processor_time());
+        Self::by(Clock::Process, work)
+    }
+
+    /// The same, by a clock of one's choice.
+    pub fn by<T>(clock: Clock, work: impl FnOnce() -> T) -> (Self, T) {
+        let (start, before) = (Instant::now(), clock.read());
         let result = work();
-        let (after, wall) = (processor_time(), start.elapsed());
+        let (after, wall) = (clock.read(), start.elapsed());
         let processor = before.zip(after).map_or(wall, |(before, after)| after.saturating_sub(before));
         (Self { wall: wall.as_secs_f64(), processor: processor.as_secs_f64() }, result)
     }
@@ -105,10 +125,18 @@ mod tests {
 
     #[test]
     fn work_shows_on_both_clocks() {
-        let (spent, steps) = Spent::on(|| {
-            let start = Instant::now();
-            (0u64..).take_while(|_| start.elapsed() < Duration::from_millis(30)).count()
-        });
-        assert!(steps > 0 && spent.wall >= 0.03 && spent.processor > 0.0, "{spent:?}");
+        for clock in [Clock::Process, Clock::Thread] {
+            let (spent, steps) = Spent::by(clock, || {
+                let start = Instant::now();
+                (0u64..).take_while(|_| start.elapsed() < Duration::from_millis(30)).count()
+            });
+            assert!(steps > 0 && spent.wall >= 0.03 && spent.processor > 0.0, "{spent:?}");
+        }
+    }
+
+    #[test]
+    fn a_thread_that_sleeps_spends_nothing_while_another_works() {
+        let (spent, ()) = Spent::by(Clock::Thread, || std::thread::sleep(Duration::from_millis(30)));
+        assert!(spent.processor < 0.02 || Clock::Thread.read().is_none(), "{spent:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The machine that the bench runs on.
+//! The machine that things are measured on.
 
 use std::{fs, thread};
 

@@ -1,0 +1,120 @@
+//! The page of a trade: what it shows, and the pictures in it.
+
+use anyhow::Result;
+use nucleus_graph::Simulation;
+use nucleus_graph::compile::ObjectKind;
+use nucleus_measure::report::{self, Page, Picture, html};
+use nucleus_measure::store::Store;
+use nucleus_measure::trade::run::object_positions;
+use nucleus_measure::trade::{Found, Point, Subject, sweep};
+use nucleus_view::{Bounds, Camera, Colouring, Ground, Kind, Object, Style, draw};
+
+/// Pixels of a picture.
+const SIZE: [u32; 2] = [560, 420];
+
+/// The strain that has the full colour.
+const FULL_SCALE: f32 = 0.05;
+
+/// All objects at one moment, in scene units.
+type State = Vec<Vec<[f32; 3]>>;
+
+/// The page as text.
+pub fn of(
+    scene: &str,
+    subject: &Subject,
+    store: &Store,
+    found: &Found,
+    recommended: Option<&Point>,
+    wanted: f64,
+) -> Result<String> {
+    let trade = &found.trade;
+    let mut shown: Vec<(String, String, State)> = Vec::new();
+    let cheapest = trade.points.iter().find(|point| point.error.is_some());
+    let most_exact = trade.frontier().last().filter(|_| found.references.is_none());
+    let asked = [("cheapest", cheapest), ("recommended", recommended), ("most exact", most_exact)];
+    for (title, point) in asked {
+        let Some(point) = point else { continue };
+        if let Some(state) = sweep::end(store, subject, &point.setting)? {
+            shown.push((title.to_owned(), caption(point), state));
+        }
+    }
+    if let (Some(both), Some(point)) = (&found.references, &trade.reference) {
+        let caption =
+            format!("{}, in double precision; {} ms a frame", point.setting, report::figure(point.ms));
+        shown.push(("reference".to_owned(), caption, both.fine.end.clone()));
+    }
+    let pictures = pictures(subject, shown)?;
+    let named = [("recommended", recommended), ("the scene's own", trade.own_point())];
+    let mut series: Vec<(String, Vec<f64>)> = Vec::new();
+    for (name, point) in named {
+        let twice = name != "recommended" && recommended.is_some_and(|best| best.setting == trade.own);
+        if let Some(apart) = point.filter(|_| !twice).and_then(|point| found.apart(&point.setting)) {
+            series.push((name.to_owned(), apart));
+        }
+    }
+    let machine = nucleus_measure::machine::describe().join(" ");
+    Ok(html(&Page {
+        scene,
+        trade,
+        wanted,
+        recommended,
+        pictures: &pictures,
+        series: &series,
+        machine: &machine,
+    }))
+}
+
+fn caption(point: &Point) -> String {
+    let error = point.error.map(report::percent).unwrap_or_default();
+    let trouble = point.trouble().map(|trouble| format!("; {trouble}")).unwrap_or_default();
+    format!("{}; {} ms a frame, error {error}{trouble}", point.setting, report::figure(point.ms))
+}
+
+/// The last frame of each, all seen by one camera. Colours tell strain, where an error shows best.
+fn pictures(subject: &Subject, shown: Vec<(String, String, State)>) -> Result<Vec<Picture>> {
+    let rest = rest(subject);
+    let (mut stage, mut all) = (Bounds::default(), Bounds::default());
+    for (_, _, state) in &shown {
+        let objects = objects(subject, &rest, state);
+        stage.merge(&Bounds::of_interest(&objects));
+        objects.iter().for_each(|object| all.include(object.positions));
+    }
+    let ground = if all.is_empty() { Ground::None } else { Ground::At(all.low[1]) };
+    let colouring = Colouring::Strain { full_scale: FULL_SCALE };
+    let style = Style { size: SIZE, colouring, ground, ..Style::default() };
+    let camera = Camera::framing(&stage, SIZE);
+    let drawn = shown.into_iter().map(|(title, caption, state)| {
+        let png = draw(&objects(subject, &rest, &state), &camera, &style).to_png()?;
+        Ok(Picture { title, caption, png })
+    });
+    drawn.collect()
+}
+
+/// All objects at the start.
+fn rest(subject: &Subject) -> State {
+    let start: Simulation = Simulation::new(subject.program(), 1);
+    let mut rest: State = vec![Vec::new(); start.objects().len()];
+    for (object, out) in start.objects().iter().zip(&mut rest) {
+        object_positions(&start, object, out);
+    }
+    rest
+}
+
+fn objects<'a>(subject: &'a Subject, rest: &'a State, state: &'a State) -> Vec<Object<'a>> {
+    let all = subject.program().objects().iter().zip(rest).zip(state);
+    // What was kept of another build may not fit; it is not drawn.
+    let fitting = all.filter(|((_, rest), positions)| rest.len() == positions.len());
+    fitting
+        .map(|((object, rest), positions)| Object {
+            name: &object.name,
+            kind: match object.kind {
+                ObjectKind::Cloth(_) if object.faces.is_empty() => Kind::Particles,
+                ObjectKind::Cloth(_) => Kind::Cloth,
+                ObjectKind::Collider(_) => Kind::Collider,
+            },
+            faces: &object.faces,
+            positions,
+            rest: Some(rest),
+        })
+        .collect()
+}

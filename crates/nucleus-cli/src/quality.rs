@@ -1,0 +1,82 @@
+//! Quality as it is asked for: an error, or a time; and the setting that a scene's stored curve has for it.
+
+use anyhow::{Context, Result, bail};
+use nucleus_graph::scene::Scene;
+use nucleus_measure::report;
+use nucleus_measure::store::Store;
+use nucleus_measure::trade::recommend::{Choice, for_error};
+use nucleus_measure::trade::{Subject, Trade};
+
+use crate::cache_folder;
+
+/// `1%`, `0.5 %` or `0.01`, as a share.
+pub fn error(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.trim().strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
+        Ok(_) => Err("an error has to be above 0".to_owned()),
+        Err(_) => Err("write an error as `1%` or `0.01`".to_owned()),
+    }
+}
+
+/// `30ms`, `30` or `0.03s`, in milliseconds.
+pub fn time(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let (number, scale) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
+        (Some(number), _) => (number, 1.0),
+        (None, Some(number)) => (number, 1e3),
+        (None, None) => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
+        Ok(_) => Err("a time has to be above 0".to_owned()),
+        Err(_) => Err("write a time as `30ms` or `0.03s`".to_owned()),
+    }
+}
+
+/// Where the results of a scene are kept.
+pub fn store(subject: &Subject) -> Store {
+    Store::new(&cache_folder::folder().join("trade"), &subject.name())
+}
+
+/// The scene at the cheapest setting for an error, by the curve that `nucleus trade` has stored; and which it is.
+pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String)> {
+    let subject = Subject::new(scene)?;
+    let trade = Trade::find(&store(&subject))?.with_context(|| {
+        format!("nothing is known of `{name}` and this solver yet: run `nucleus trade {name}` first")
+    })?;
+    let point = match for_error(&trade, wanted) {
+        Choice::Found(point) => point,
+        Choice::Nearest(point) => bail!(
+            "no setting of `{name}` reaches {}; the nearest is {} with {}",
+            report::percent(wanted),
+            report::percent(point.error.unwrap_or_default()),
+            point.setting
+        ),
+        Choice::None => bail!("no setting of `{name}` is sound: see what `nucleus trade {name}` says"),
+    };
+    let error = report::percent(point.error.unwrap_or_default());
+    let said = format!(
+        "{}: error {error}, about {} ms a frame on one core",
+        point.setting,
+        report::figure(point.ms)
+    );
+    Ok((subject.set(&point.setting), said))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_percent_or_shares_and_times_milliseconds_or_seconds() {
+        assert_eq!([error("1%"), error(" 0.5 % "), error("0.01")], [Ok(0.01), Ok(0.005), Ok(0.01)]);
+        assert_eq!([time("30ms"), time("30"), time("0.5s")], [Ok(30.0), Ok(30.0), Ok(500.0)]);
+        for text in ["0%", "-1%", "nan", "inf", "much", ""] {
+            assert!(error(text).is_err() && time(text).is_err(), "{text}");
+        }
+    }
+}

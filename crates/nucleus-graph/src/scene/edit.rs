@@ -1,0 +1,235 @@
+//! Changing attributes in the text of a scene, and nothing else: comments and layout stay as they are.
+
+use std::ops::Range;
+
+use super::syntax::{self, Node, Value};
+use crate::attributes::node_type;
+
+/// An attribute that is to have another value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edit {
+    /// The node, by its name.
+    pub node: String,
+    /// The attribute, by its long name.
+    pub attribute: &'static str,
+    /// What it is to be.
+    pub to: NewValue,
+}
+
+/// What an attribute is to be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NewValue {
+    /// This text, in place of whatever is there.
+    Text(String),
+    /// All numbers times a factor, none below `least`: one number, or the values of keys.
+    Scaled {
+        /// The factor.
+        factor: f64,
+        /// What they stay above.
+        least: f64,
+        /// The number that is scaled if the attribute is not set.
+        default: f64,
+    },
+}
+
+/// Why a text cannot be edited.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EditError {
+    /// It is not RON.
+    #[error("the text is not a scene: {message}")]
+    NotAScene {
+        /// What is wrong with it.
+        message: String,
+    },
+    /// There is no such node in it.
+    #[error("the scene has no node `{node}`")]
+    NoNode {
+        /// Its name.
+        node: String,
+    },
+}
+
+/// The text with these attributes changed. What is not set is added behind what is.
+///
+/// ```
+/// use nucleus_graph::scene::edit::{Edit, NewValue, edit};
+///
+/// let text = "Scene(time: (start: 1, end: 9, fps: 24), nodes: {\"n\": nucleus(subSteps: 3 /* Maya's */)})";
+/// let five = Edit { node: "n".into(), attribute: "subSteps", to: NewValue::Text("5".into()) };
+/// assert_eq!(edit(text, &[five]).unwrap(), text.replace("subSteps: 3", "subSteps: 5"));
+/// ```
+///
+/// # Errors
+/// When the text is not a scene, or a node is not in it.
+pub fn edit(text: &str, edits: &[Edit]) -> Result<String, EditError> {
+    let root = syntax::parse(text).map_err(|errors| EditError::NotAScene {
+        message: errors.into_iter().next().map(|error| error.message).unwrap_or_default(),
+    })?;
+    let mut changes: Vec<(Range<usize>, String)> = Vec::new();
+    for edit in edits {
+        let body = node(&root, &edit.node).ok_or_else(|| EditError::NoNode { node: edit.node.clone() })?;
+        change(text, body, edit, &mut changes);
+    }
+    // From the back, so that places in front stay where they are; what is added at one place keeps its order.
+    changes.sort_by_key(|(place, _)| place.start);
+    let mut text = text.to_owned();
+    for (place, new) in changes.into_iter().rev() {
+        text.replace_range(place, &new);
+    }
+    Ok(text)
+}
+
+/// The body of a node: `nucleus(...)`.
+fn node<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
+    let Value::Record { fields, .. } = &root.value else { return None };
+    let (_, nodes) = fields.iter().find(|(word, _)| word.text == "nodes")?;
+    let Value::Map(entries) = &nodes.value else { return None };
+    let is_it = |key: &Node| matches!(&key.value, Value::Text(text) if text == name);
+    entries.iter().find(|(key, _)| is_it(key)).map(|(_, body)| body)
+}
+
+fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>, String)>) {
+    let Value::Record { name, fields } = &body.value else { return };
+    let row =
+        name.as_ref().and_then(|name| node_type(&name.text)).and_then(|of| of.attribute(edit.attribute));
+    let is_it = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
+    match fields.iter().find(|(word, _)| is_it(&word.text)) {
+        Some((_, value)) => match &edit.to {
+            NewValue::Text(new) => changes.push((value.span.clone(), new.clone())),
+            NewValue::Scaled { factor, least, .. } => {
+                let scaled = numbers(value).into_iter();
+                changes.extend(scaled.map(|(place, x)| (place.clone(), written((x * factor).max(*least)))));
+            }
+        },
+        None => {
+            let new = match &edit.to {
+                NewValue::Text(new) => new.clone(),
+                NewValue::Scaled { factor, least, default } => written((default * factor).max(*least)),
+            };
+            changes.push(added(text, body, fields.last(), edit.attribute, &new));
+        }
+    }
+}
+
+/// Where a new field goes, and how it is written there: on a line of its own if the last one is on one.
+fn added(
+    text: &str,
+    body: &Node,
+    last: Option<&(syntax::Word, Node)>,
+    attribute: &str,
+    new: &str,
+) -> (Range<usize>, String) {
+    let Some((word, value)) = last else {
+        let place = body.span.end - 1;
+        return (place..place, format!("{attribute}: {new}"));
+    };
+    let line = text[..word.span.start].rfind('\n').map_or(0, |at| at + 1);
+    let before = &text[line..word.span.start];
+    let own_line = line > body.span.start && before.trim().is_empty();
+    let separator = if own_line { format!(",\n{before}") } else { ", ".to_owned() };
+    (value.span.end..value.span.end, format!("{separator}{attribute}: {new}"))
+}
+
+/// The numbers that are the value: itself, or the values of its keys.
+fn numbers(value: &Node) -> Vec<(&Range<usize>, f64)> {
+    match &value.value {
+        Value::Number(x) => vec![(&value.span, *x)],
+        Value::Tuple { name: Some(name), items } if name.text == "keys" => {
+            let keys = items.iter().filter_map(|list| match &list.value {
+                Value::List(keys) => Some(keys),
+                _ => None,
+            });
+            keys.flatten().filter_map(key_value).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The value of `(12, 96, spline)`.
+fn key_value(key: &Node) -> Option<(&Range<usize>, f64)> {
+    let Value::Tuple { name: None, items } = &key.value else { return None };
+    let value = items.get(1)?;
+    if let Value::Number(x) = value.value { Some((&value.span, x)) } else { None }
+}
+
+/// A number as scenes write it: rounded to six digits that matter, so that a factor leaves no dust.
+fn written(x: f64) -> String {
+    let digits = if x == 0.0 { 0 } else { (5.0 - x.abs().log10().floor()).clamp(0.0, 15.0) as usize };
+    let text = format!("{x:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::read_scene_text;
+
+    const TEXT: &str = r#"// A scene of mine.
+Scene(
+    time: (start: 1, end: 9, fps: 24),
+    nodes: {
+        "nucleus1": nucleus(
+            subSteps: 3, // as Maya has it
+            evaluations: keys([(1, 96, stepped), (13, 768), /* slow */ (30, 384)]),
+        ),
+        "plane": polyPlane(),
+        "cloth1": nCloth(inputMesh: "plane", stch: 20),
+    },
+)
+"#;
+
+    fn of(node: &str, attribute: &'static str, to: NewValue) -> Edit {
+        Edit { node: node.to_owned(), attribute, to }
+    }
+
+    fn text(new: &str) -> NewValue {
+        NewValue::Text(new.to_owned())
+    }
+
+    #[test]
+    fn only_the_value_changes_and_comments_stay() {
+        let edited = edit(TEXT, &[of("nucleus1", "subSteps", text("8"))]).unwrap();
+        assert_eq!(edited, TEXT.replace("subSteps: 3,", "subSteps: 8,"));
+    }
+
+    #[test]
+    fn keys_are_scaled_one_by_one_where_they_stand() {
+        let half = NewValue::Scaled { factor: 0.01, least: 1.0, default: 96.0 };
+        let edited = edit(TEXT, &[of("nucleus1", "evaluations", half)]).unwrap();
+        assert!(edited.contains("keys([(1, 1, stepped), (13, 7.68), /* slow */ (30, 3.84)])"), "{edited}");
+    }
+
+    #[test]
+    fn what_is_not_set_is_added_where_it_reads_well() {
+        let edits = [
+            of("nucleus1", "maxCollisionIterations", text("5")),
+            of("cloth1", "damp", text("0.1")),
+            of("plane", "width", text("2")),
+        ];
+        let edited = edit(TEXT, &edits).unwrap();
+        assert!(edited.contains("(30, 384)]),\n            maxCollisionIterations: 5,\n"), "{edited}");
+        assert!(edited.contains("nCloth(inputMesh: \"plane\", stch: 20, damp: 0.1)"), "{edited}");
+        assert!(edited.contains("polyPlane(width: 2)"), "{edited}");
+        assert!(read_scene_text(&edited, "a.ron".as_ref()).is_ok());
+    }
+
+    #[test]
+    fn short_names_are_the_same_attribute() {
+        let double = NewValue::Scaled { factor: 2.0, least: 0.0, default: 20.0 };
+        let edited = edit(TEXT, &[of("cloth1", "stretchResistance", double)]).unwrap();
+        assert!(edited.contains("stch: 40)"), "{edited}");
+    }
+
+    #[test]
+    fn a_node_that_is_not_there_is_named_and_nonsense_refused() {
+        let missing = edit(TEXT, &[of("n", "subSteps", text("8"))]).unwrap_err();
+        assert_eq!(missing, EditError::NoNode { node: "n".to_owned() });
+        assert!(matches!(edit("Scene(", &[]), Err(EditError::NotAScene { .. })));
+    }
+
+    #[test]
+    fn numbers_are_written_without_dust() {
+        assert_eq!([0.1 + 0.2, 192.0, 1e-7 / 3.0, 0.0].map(written), ["0.3", "192", "0.0000000333333", "0"]);
+    }
+}

@@ -1,0 +1,1 @@
+//! Whether the advice of the paper holds here.

@@ -1,0 +1,319 @@
+//! The page: one file, pictures inside, good to read by day and by night.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use super::chart::{Axis, Chart, Dot, Line, escape};
+use super::{figure, percent, time_to};
+use crate::trade::{Point, Reading, Setting, Trade};
+
+/// A picture of a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// What it is: `cheapest`, `recommended`, `reference`.
+    pub title: String,
+    /// What there is to say of it.
+    pub caption: String,
+    /// A PNG file.
+    pub png: Vec<u8>,
+}
+
+/// What the page is made of.
+pub struct Page<'a> {
+    /// The scene's name.
+    pub scene: &'a str,
+    /// What was found.
+    pub trade: &'a Trade,
+    /// The error that was looked for.
+    pub wanted: f64,
+    /// The setting that is recommended, if any is sound.
+    pub recommended: Option<&'a Point>,
+    /// States side by side.
+    pub pictures: &'a [Picture],
+    /// How single runs went apart from the reference: a name, and the distance in each frame.
+    pub series: &'a [(String, Vec<f64>)],
+    /// The machine, in words.
+    pub machine: &'a str,
+}
+
+/// The page as text.
+pub fn html(page: &Page) -> String {
+    let scene = escape(page.scene);
+    let [start, end] = page.trade.frames;
+    let mut text = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\">\n<title>{scene}: speed against accuracy</title>\n<style>\n{}</style>\n\
+         <h1>{scene}</h1>\n<p class=\"soft\">Speed against accuracy, frames {start} to {end}.</p>\n",
+        include_str!("style.css")
+    );
+    text += &lead(page);
+    text += &cards(page.trade);
+    text += &pictures(page.pictures);
+    text += &trade_chart(page);
+    text += &apart_chart(page);
+    text += &table(page.trade);
+    text += &how(page);
+    text
+}
+
+/// The first sentence: what to do.
+fn lead(page: &Page) -> String {
+    let trade = page.trade;
+    let Some(best) = page.recommended else {
+        return "<p class=\"lead\">No setting is sound: each went wrong, as the table below says.</p>\n"
+            .to_owned();
+    };
+    let error = best.error.unwrap_or_default();
+    let reached = match error <= page.wanted {
+        true => format!("the cheapest with an error of at most {}", percent(page.wanted)),
+        false => format!("the nearest to an error of {}, which no setting reaches", percent(page.wanted)),
+    };
+    let mut text = format!(
+        "<p class=\"lead\"><b>{}</b> is {reached}: {} ms a frame, error {}.",
+        escape(&best.setting.to_string()),
+        figure(best.ms),
+        percent(error)
+    );
+    if let Some(own) = trade.own_point().filter(|own| own.setting != best.setting)
+        && let Some(error) = own.error
+    {
+        let _ = write!(
+            text,
+            " The scene's own setting, {}, takes {} ms and has an error of {}.",
+            escape(&own.setting.to_string()),
+            figure(own.ms),
+            percent(error)
+        );
+    }
+    text + "</p>\n"
+}
+
+/// Time to three errors, and the slope.
+fn cards(trade: &Trade) -> String {
+    let card = |title: String, big: String, small: String| {
+        format!(
+            "<div class=\"card\"><div class=\"soft\">{title}</div><div class=\"big\">{big}</div><div class=\"soft\">{}</div></div>\n",
+            escape(&small)
+        )
+    };
+    let mut text = "<div class=\"cards\">\n".to_owned();
+    for error in [0.1, 0.01, 0.001] {
+        let title = format!("time to {}", percent(error));
+        text += &match trade.cheapest(error).filter(|_| trade.can_tell(error)) {
+            Some(point) => card(title, format!("{} ms", figure(point.ms)), point.setting.to_string()),
+            None => {
+                let why = time_to(trade, error);
+                let why = why.split_once(": ").map_or(why.as_str(), |(_, why)| why).to_owned();
+                card(title, "–".to_owned(), why)
+            }
+        };
+    }
+    if let Some(slope) = trade.slope() {
+        let small = "the power of the time with which the error falls".to_owned();
+        text += &card("slope".to_owned(), format!("{slope:.2}"), small);
+    }
+    text + "</div>\n"
+}
+
+fn pictures(pictures: &[Picture]) -> String {
+    if pictures.is_empty() {
+        return String::new();
+    }
+    let mut text = "<div class=\"pictures\">\n".to_owned();
+    for Picture { title, caption, png } in pictures {
+        let (title, caption) = (escape(title), escape(caption));
+        let _ = writeln!(
+            text,
+            "<figure><img alt=\"{title}\" src=\"data:image/png;base64,{}\"><figcaption><b>{title}</b><br>{caption}</figcaption></figure>",
+            base64(png)
+        );
+    }
+    text + "</div>\n"
+}
+
+/// What the colour of a dot tells: the substeps, and the reading.
+fn family(setting: &Setting) -> (Reading, u32) {
+    (setting.reading, setting.substeps)
+}
+
+/// Error against time.
+fn trade_chart(page: &Page) -> String {
+    let trade = page.trade;
+    let families: BTreeSet<(bool, u32)> = trade
+        .points
+        .iter()
+        .map(|point| family(&point.setting))
+        .map(|(reading, substeps)| (reading == Reading::Classic, substeps))
+        .collect();
+    let families: Vec<(bool, u32)> = families.into_iter().collect();
+    let colour = |setting: &Setting| {
+        let (reading, substeps) = family(setting);
+        families.iter().position(|of| *of == (reading == Reading::Classic, substeps)).unwrap_or(0)
+    };
+    let known = |point: &Point| point.error.map(|error| [point.ms, error.max(1e-7)]);
+    let dot = |point: &Point| {
+        let at = known(point)?;
+        let is_best = page.recommended.is_some_and(|best| best.setting == point.setting);
+        let label = match (is_best, point.setting == trade.own) {
+            (true, true) => Some("recommended, and the scene's own"),
+            (true, false) => Some("recommended"),
+            (false, true) => Some("the scene's own"),
+            (false, false) => None,
+        };
+        let trouble = point.trouble().map(|trouble| format!("\n{trouble}")).unwrap_or_default();
+        Some(Dot {
+            at,
+            colour: colour(&point.setting),
+            is_sound: point.is_sound(),
+            title: format!("{}\n{} ms, {}{trouble}", point.setting, figure(point.ms), percent(at[1])),
+            label: label.map(str::to_owned),
+        })
+    };
+    let errors = trade.points.iter().filter_map(known).map(|[_, error]| error).chain(trade.floor);
+    let chart = Chart {
+        x: Axis::log("milliseconds a frame, on one core", trade.points.iter().map(|point| point.ms)),
+        y: Axis::log(trade.measure.name(), errors).in_percent(),
+        dots: trade.points.iter().filter_map(dot).collect(),
+        lines: vec![Line {
+            through: trade.frontier().filter_map(known).collect(),
+            class: "frontier",
+            label: None,
+        }],
+        floor: trade.floor.map(|floor| (floor, "the references differ by this much".to_owned())),
+        mark: None,
+    };
+    let mut text =
+        format!("<h2>Error against time</h2>\n<div class=\"chart\">{}<div class=\"key\">", chart.svg());
+    for (index, (is_classic, substeps)) in families.iter().enumerate() {
+        let reading = if *is_classic { "Classic, " } else { "" };
+        let plural = if *substeps == 1 { "" } else { "s" };
+        let _ = write!(
+            text,
+            "<span><i style=\"background:var(--c{})\"></i>{reading}{substeps} substep{plural}</span>",
+            index % 6
+        );
+    }
+    text + "<span><i style=\"border:2px solid var(--bad)\"></i>not sound</span></div></div>\n"
+}
+
+/// How far runs go apart from the reference, frame by frame.
+fn apart_chart(page: &Page) -> String {
+    let trade = page.trade;
+    if trade.apart.is_empty() {
+        return String::new();
+    }
+    let start = trade.frames[0] as f64 + 1.0;
+    let places = |apart: &[f64]| -> Vec<[f64; 2]> {
+        apart.iter().enumerate().map(|(k, apart)| [start + k as f64, apart.max(1e-7)]).collect()
+    };
+    let mut lines = vec![Line {
+        through: places(&trade.apart),
+        class: "l0",
+        label: Some("the other reference".to_owned()),
+    }];
+    for ((name, apart), class) in page.series.iter().zip(["l1", "l2"]) {
+        lines.push(Line { through: places(apart), class, label: Some(name.clone()) });
+    }
+    let values =
+        lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
+    let mark = match trade.measure {
+        crate::trade::Measure::Position { frames } => {
+            Some((start + frames as f64 - 1.0, "compared to here".to_owned()))
+        }
+        _ => None,
+    };
+    let chart = Chart {
+        x: Axis::plain("frame", start, trade.frames[1] as f64),
+        y: Axis::log("distance from the reference", values).in_percent(),
+        dots: Vec::new(),
+        lines,
+        floor: None,
+        mark,
+    };
+    format!(
+        "<h2>How long positions can be compared</h2>\n<div class=\"chart\">{}</div>\n<p class=\"soft\">Where two references, \
+         one with half the step of the other, go apart, a fold has fallen to one side in one of them and to the other in the \
+         other. From there on the distance says nothing about a setting.</p>\n",
+        chart.svg()
+    )
+}
+
+fn table(trade: &Trade) -> String {
+    let mut text = "<h2>All settings</h2>\n<div class=\"wide\"><table>\n<tr><th>ms</th><th>error</th><th>position, RMS</th>\
+                    <th>largest</th><th>strain, 99 %</th><th>largest</th><th>energy made</th><th>gap</th><th>setting</th></tr>\n"
+        .to_owned();
+    let maybe = |x: Option<f64>, show: fn(f64) -> String| x.map_or("–".to_owned(), show);
+    for point in trade.reference.iter().chain(&trade.points) {
+        let is_reference = trade.reference.as_ref().is_some_and(|reference| std::ptr::eq(reference, point));
+        let classes = [(point.on_frontier, "frontier"), (point.setting == trade.own && !is_reference, "own")];
+        let classes: Vec<&str> = classes.iter().filter(|(is, _)| *is).map(|(_, class)| *class).collect();
+        let trouble = point.trouble().map(|t| format!(" <span class=\"trouble\">{}</span>", escape(&t)));
+        let _ = writeln!(
+            text,
+            "<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}{}{}</td></tr>",
+            classes.join(" "),
+            figure(point.ms),
+            if is_reference { "reference".to_owned() } else { maybe(point.error, percent) },
+            maybe(point.position.map(|[rms, _]| rms), percent),
+            maybe(point.position.map(|[_, max]| max), percent),
+            percent(point.strain),
+            percent(point.max_strain),
+            maybe(point.created, percent),
+            maybe(point.least_gap, figure),
+            escape(&point.setting.to_string()),
+            if is_reference { ", in double precision" } else { "" },
+            trouble.unwrap_or_default()
+        );
+    }
+    text + "</table></div>\n"
+}
+
+fn how(page: &Page) -> String {
+    let trade = page.trade;
+    let floor =
+        trade.floor.map(|floor| format!(" The two references differ by {} in this measure.", percent(floor)));
+    let energy = match trade.is_closed {
+        true => {
+            "Nothing drives the cloth, so kinetic and potential energy above where they began were made by the solver; \
+                 the table gives them over those of a fall by the cloth's own size."
+        }
+        false => {
+            "Wind or something that moves drives the cloth, so that energy made by the solver cannot be told apart."
+        }
+    };
+    format!(
+        "<h2>How it was measured</h2>\n<p>{}{}</p>\n<p>A time is processor time of one core, in the solver alone. The strain is \
+         the one that 99 % of the edges stay below, RMS over all frames; a gap is the least over the thickness. {energy}</p>\n\
+         <footer>{} · scene and solver {}</footer>\n</html>\n",
+        escape(&trade.measure.sentence()),
+        floor.unwrap_or_default(),
+        escape(page.machine),
+        escape(&trade.name)
+    )
+}
+
+/// Bytes as text (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let word =
+            three.iter().fold(0u32, |word, byte| word << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
+        for place in 0..4 {
+            let sign = char::from(SIGNS[(word >> (18 - 6 * place)) as usize & 63]);
+            text.push(if place <= three.len() { sign } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let all = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
+        assert_eq!(all, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
+    }
+}
