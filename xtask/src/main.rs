@@ -1,4 +1,4 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy` and `bench`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `bench` and `interop`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
@@ -6,6 +6,7 @@
 //! | which claim of the paper is shown by which test       | [`evidence`]    |
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
 //! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
+//! | whether other tools read what is exported             | [`mod@interop`] |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -18,6 +19,7 @@ mod bench;
 mod ci;
 mod evidence;
 mod files;
+mod interop;
 mod map;
 mod readme;
 mod tidy;
@@ -34,6 +36,8 @@ enum Chore {
     Tidy,
     /// Times the solver and measures its error, beside the figures of other solvers.
     Bench(bench::Options),
+    /// Exports caches in every format and has other tools read them; installs those first.
+    Interop(interop::Options),
 }
 
 fn main() -> ExitCode {
@@ -43,6 +47,7 @@ fn main() -> ExitCode {
         Chore::Evidence => evidence::print(&root),
         Chore::Tidy => tidy::run(&root),
         Chore::Bench(options) => bench::run(&options),
+        Chore::Interop(options) => interop::run(&root, &options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -56,4 +61,9 @@ fn main() -> ExitCode {
 /// The repository: the folder above this crate.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in a folder of the repository").to_owned()
+}
+
+/// Where cargo puts what it builds.
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }

@@ -3,6 +3,7 @@
 mod attrs;
 mod cache_info;
 mod check;
+mod export;
 mod info;
 mod play;
 mod render;
@@ -22,6 +23,7 @@ pub enum Command {
     Info(info::Info),
     Play(play::Play),
     Render(render::Render),
+    Export(export::Export),
     Attrs(attrs::Attrs),
 }
 
@@ -34,6 +36,7 @@ impl Command {
             Self::Play(play) => play.run(),
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
+            Self::Export(export) => export.run(),
             Self::Attrs(attrs) => attrs.run(),
         }
     }
