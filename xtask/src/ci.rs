@@ -79,8 +79,7 @@ fn scenes(root: &Path) -> anyhow::Result<()> {
 
 /// Where cargo puts optimised programs.
 fn built(root: &Path) -> PathBuf {
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    target.join("release")
+    crate::target(root).join("release")
 }
 
 fn succeed(mut command: Command, name: &str) -> anyhow::Result<()> {

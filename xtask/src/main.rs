@@ -1,4 +1,4 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `meshes` and `bench`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench` and `interop`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
@@ -7,6 +7,7 @@
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
 //! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
 //! | which meshes the gallery has of its own                | [`meshes`]      |
+//! | whether other tools read what is exported             | [`mod@interop`] |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -19,6 +20,7 @@ mod bench;
 mod ci;
 mod evidence;
 mod files;
+mod interop;
 mod map;
 mod meshes;
 mod readme;
@@ -38,6 +40,8 @@ enum Chore {
     Meshes,
     /// Times the solver and measures its error, beside the figures of other solvers.
     Bench(bench::Options),
+    /// Exports caches in every format and has other tools read them; installs those first.
+    Interop(interop::Options),
 }
 
 fn main() -> ExitCode {
@@ -48,6 +52,7 @@ fn main() -> ExitCode {
         Chore::Tidy => tidy::run(&root),
         Chore::Meshes => meshes::run(&root),
         Chore::Bench(options) => bench::run(&options),
+        Chore::Interop(options) => interop::run(&root, &options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -61,4 +66,9 @@ fn main() -> ExitCode {
 /// The repository: the folder above this crate.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in a folder of the repository").to_owned()
+}
+
+/// Where cargo puts what it builds.
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }

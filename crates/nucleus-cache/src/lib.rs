@@ -43,6 +43,7 @@ mod stream;
 mod summary;
 mod tally;
 mod target;
+mod topic_file;
 mod topology;
 
 pub use loss::Loss;
@@ -53,3 +54,4 @@ pub use playback::Playback;
 pub use record_error::RecordError;
 pub use recorder::{FrameRecorder, Recorded, Recorder};
 pub use run::{Detail, RunInfo};
+pub use topic_file::TopicFile;

@@ -67,6 +67,12 @@ pub enum RecordError {
         /// Why not.
         source: serde_json::Error,
     },
+    /// Writing a file for other viewers failed.
+    #[error("writing failed")]
+    Export {
+        /// What the system says.
+        source: io::Error,
+    },
     /// Writing failed on the way: a full disk, most likely.
     #[error("writing the cache failed; {frames} frames ({bytes} bytes) were written and can be played")]
     Write {

@@ -74,3 +74,34 @@ fn state(account: &Account) -> String {
     }
     state
 }
+
+/// Shows how far something other than a run is, on a terminal only: it seldom takes long.
+pub struct Steps(Option<ProgressBar>);
+
+impl Steps {
+    /// Begins; `what` is being done.
+    pub fn new(what: &'static str) -> Self {
+        let bar = stderr().is_terminal().then(|| ProgressBar::new(1000));
+        if let (Some(bar), Ok(style)) =
+            (&bar, ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} left"))
+        {
+            bar.set_style(style);
+            bar.set_message(what);
+        }
+        Self(bar)
+    }
+
+    /// So much is done, from 0 to 1.
+    pub fn show(&mut self, share: f64) {
+        if let Some(bar) = &self.0 {
+            bar.set_position((1000.0 * share) as u64);
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn end(self) {
+        if let Some(bar) = self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -3,6 +3,7 @@
 mod attrs;
 mod cache_info;
 mod check;
+mod export;
 mod extremes;
 mod info;
 mod play;
@@ -24,6 +25,7 @@ pub enum Command {
     Info(info::Info),
     Play(play::Play),
     Render(render::Render),
+    Export(export::Export),
     Attrs(attrs::Attrs),
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
@@ -38,6 +40,7 @@ impl Command {
             Self::Play(play) => play.run(),
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
+            Self::Export(export) => export.run(),
             Self::Attrs(attrs) => attrs.run(),
             Self::Extremes(extremes) => extremes.run(),
             Self::Trade(trade) => trade.run(),

@@ -1,0 +1,194 @@
+//! The part of a cache that is exported: which objects, which moments, in which units.
+
+use std::io::{Read, Seek};
+
+use nucleus_cache::{ObjectInfo, Playback};
+
+use crate::error::ExportError;
+
+/// What is to be taken from a cache.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// Names of objects; all if there is none.
+    pub objects: Vec<String>,
+    /// First and last frame; all that were recorded if not given.
+    pub frames: Option<(i32, i32)>,
+    /// Every how manieth frame.
+    pub every: u32,
+    /// Whether substeps are samples too, where they were recorded.
+    pub substeps: bool,
+    /// Factor on all lengths, after the units of the format.
+    pub scale: f64,
+}
+
+impl Default for Selection {
+    fn default() -> Self {
+        Self { objects: Vec::new(), frames: None, every: 1, substeps: false, scale: 1.0 }
+    }
+}
+
+/// A moment that is exported.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The frame it belongs to.
+    pub frame: i32,
+    /// Its place among the moments of its frame; equal to `substeps` at the end of the frame.
+    pub substep: u32,
+    /// How many moments of the frame are exported.
+    pub substeps: u32,
+    /// Its time in frames: whole at the end of a frame.
+    pub at: f64,
+    moment: usize,
+}
+
+impl Sample {
+    /// Whether it is the end of its frame.
+    pub fn is_whole(&self) -> bool {
+        self.substep == self.substeps
+    }
+}
+
+/// The objects and samples of a cache that are exported.
+pub struct Clip<'a, R> {
+    cache: &'a mut Playback<R>,
+    objects: Vec<usize>,
+    samples: Vec<Sample>,
+    scale: f64,
+}
+
+impl<'a, R: Read + Seek> Clip<'a, R> {
+    /// Takes a part of a cache.
+    ///
+    /// # Errors
+    /// When an object or all frames that are asked for are not there.
+    pub fn of(cache: &'a mut Playback<R>, selection: &Selection) -> Result<Self, ExportError> {
+        let objects = objects(cache, &selection.objects)?;
+        let samples = samples(cache, selection)?;
+        Ok(Self { cache, objects, samples, scale: selection.scale })
+    }
+
+    /// The objects, in the order of the cache.
+    pub fn objects(&self) -> impl ExactSizeIterator<Item = &ObjectInfo> {
+        self.objects.iter().map(|&object| &self.cache.objects()[object])
+    }
+
+    /// An object by its place in [`objects`](Self::objects).
+    pub fn object(&self, object: usize) -> &ObjectInfo {
+        &self.cache.objects()[self.objects[object]]
+    }
+
+    /// The samples in order of time, at least one.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// Frames per second.
+    pub fn fps(&self) -> f64 {
+        self.cache.run().frames_per_second
+    }
+
+    /// Units of the scene in a metre.
+    pub fn units_per_metre(&self) -> f64 {
+        self.cache.run().units_per_metre
+    }
+
+    /// The scene that was run, as a title.
+    pub fn title(&self) -> String {
+        let path = &self.cache.run().scene_path;
+        if path.is_empty() { "a Nucleus run".to_owned() } else { format!("a Nucleus run of {path}") }
+    }
+
+    /// Makes all lengths metres.
+    pub(crate) fn in_metres(&mut self) {
+        self.scale /= self.units_per_metre();
+    }
+
+    /// Whether an object has other positions in any sample than in the first. Reads them all.
+    pub(crate) fn moves(&mut self, object: usize) -> Result<bool, ExportError> {
+        let first = self.positions(object, 0)?;
+        for sample in 1..self.samples.len() {
+            if self.positions(object, sample)? != first {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Positions of an object at a sample.
+    ///
+    /// # Errors
+    /// When the frame is damaged or a point is not finite: no other tool knows what to do with that.
+    pub fn positions(&mut self, object: usize, sample: usize) -> Result<Vec<[f32; 3]>, ExportError> {
+        let Sample { moment, frame, .. } = self.samples[sample];
+        let mut positions = self.cache.positions(self.objects[object], moment)?;
+        if self.scale != 1.0 {
+            let scale = self.scale;
+            positions.as_flattened_mut().iter_mut().for_each(|x| *x = (f64::from(*x) * scale) as f32);
+        }
+        let lost = positions.iter().filter(|point| !point.iter().all(|x| x.is_finite())).count();
+        match lost {
+            0 => Ok(positions),
+            points => Err(ExportError::NotFinite { object: self.object(object).name.clone(), frame, points }),
+        }
+    }
+
+    /// Velocities of an object at a sample in units per second, where they were recorded.
+    ///
+    /// # Errors
+    /// When the frame is damaged.
+    pub fn velocities(&mut self, object: usize, sample: usize) -> Result<Option<Vec<[f32; 3]>>, ExportError> {
+        let moment = self.samples[sample].moment;
+        let velocities = self.cache.velocities(self.objects[object], moment)?;
+        let scale = self.scale;
+        Ok(velocities.map(|mut all| {
+            all.as_flattened_mut().iter_mut().for_each(|x| *x = (f64::from(*x) * scale) as f32);
+            all
+        }))
+    }
+}
+
+fn objects<R: Read + Seek>(cache: &Playback<R>, names: &[String]) -> Result<Vec<usize>, ExportError> {
+    let all = cache.objects();
+    if names.is_empty() {
+        return Ok((0..all.len()).collect());
+    }
+    let mut found = Vec::new();
+    for name in names {
+        match all.iter().position(|object| object.name == *name) {
+            Some(object) => found.push(object),
+            None => {
+                let known = all.iter().map(|object| format!("`{}`", object.name)).collect();
+                return Err(ExportError::NoObject { name: name.clone(), known });
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    Ok(found)
+}
+
+fn samples<R: Read + Seek>(cache: &Playback<R>, selection: &Selection) -> Result<Vec<Sample>, ExportError> {
+    let moments = cache.moments();
+    let (Some(begin), Some(end)) = (moments.first(), moments.last()) else { return Err(ExportError::Empty) };
+    let has = (begin.frame, end.frame);
+    let (first, last) = selection.frames.unwrap_or(has);
+    let every = i64::from(selection.every.max(1));
+    let from = i64::from(first.max(has.0));
+    let wanted =
+        |frame: i32| (first..=last).contains(&frame) && (i64::from(frame) - from).rem_euclid(every) == 0;
+    let chosen = moments
+        .iter()
+        .enumerate()
+        .filter(|(_, moment)| wanted(moment.frame) && (selection.substeps || moment.ends_frame()));
+    let samples: Vec<Sample> = chosen
+        .map(|(place, moment)| {
+            let (substep, substeps) = match moment.ends_frame() {
+                true => (1, 1),
+                false => (moment.substep, moment.substeps),
+            };
+            let at = f64::from(moment.frame) - 1.0 + f64::from(substep) / f64::from(substeps);
+            Sample { frame: moment.frame, substep, substeps, at, moment: place }
+        })
+        .collect();
+    if samples.is_empty() { Err(ExportError::NoFrame { first, last, has }) } else { Ok(samples) }
+}

@@ -1,0 +1,259 @@
+//! Maya's nCache: an XML description and, for each sample, a file of nested blocks, highest byte first.
+//!
+//! Time is counted in ticks of 1/6000 s. The layout is taken from caches that Maya has written.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use crate::clip::{Clip, Sample};
+use crate::error::ExportError;
+use crate::name;
+use crate::output::{OutFile, Output};
+
+const TICKS_PER_SECOND: f64 = 6000.0;
+
+/// How wide the lengths in a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Width {
+    /// `.mc`.
+    Bits32,
+    /// `.mcx`.
+    Bits64,
+}
+
+/// Writes `<object>.xml` and `<object>Frame<n>.mc` into a folder.
+pub(crate) fn write<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    folder: &Path,
+    width: Width,
+    output: &mut Output,
+    told: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let names = name::for_nodes(clip.objects().map(|object| object.name.as_str()));
+    let per_frame = ticks(1.0, clip.fps());
+    for place in 0..clip.samples().len() {
+        let sample = clip.samples()[place];
+        let tick = ticks(sample.at, clip.fps());
+        for (object, name) in names.iter().enumerate() {
+            let file = format!("{name}{}.{}", numbered(&sample, tick, per_frame), width.end());
+            let mut file = output.file(folder.join(file))?;
+            write_sample(clip, object, place, name, Frame { tick, width }, &mut file)?;
+            output.finish(file)?;
+        }
+        told((place + 1) as f64 / clip.samples().len() as f64);
+    }
+    for (object, name) in names.iter().enumerate() {
+        let mut file = output.file(folder.join(format!("{name}.xml")))?;
+        let channels = channels(clip, object, name)?;
+        file.text(description(clip, &channels, width, per_frame));
+        output.finish(file)?;
+    }
+    Ok(())
+}
+
+fn ticks(frames: f64, fps: f64) -> i32 {
+    (frames * TICKS_PER_SECOND / fps).round() as i32
+}
+
+/// `Frame12`, or `Frame11Tick125` half-way to it.
+fn numbered(sample: &Sample, tick: i32, per_frame: i32) -> String {
+    match sample.is_whole() {
+        true => format!("Frame{}", sample.frame),
+        false => format!("Frame{}Tick{}", sample.frame - 1, tick - (sample.frame - 1) * per_frame),
+    }
+}
+
+/// Name, type and meaning of a channel.
+type Channel = (String, &'static str, &'static str);
+
+const VECTORS: &str = "FloatVectorArray";
+const NUMBERS: &str = "DoubleArray";
+
+/// The channels of an object: one for a mesh; for particles their numbers, count, positions and velocities.
+fn channels<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    name: &str,
+) -> Result<Vec<Channel>, ExportError> {
+    if !clip.object(object).faces.is_empty() {
+        return Ok(vec![(name.to_owned(), VECTORS, "positions")]);
+    }
+    let mut kinds = vec![("id", NUMBERS), ("count", NUMBERS), ("position", VECTORS)];
+    if clip.velocities(object, clip.samples().len() - 1)?.is_some() {
+        kinds.push(("velocity", VECTORS));
+    }
+    Ok(kinds.into_iter().map(|(kind, holds)| (format!("{name}_{kind}"), holds, kind)).collect())
+}
+
+fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Width, per_frame: i32) -> String {
+    let samples = clip.samples();
+    let [first, last] = [samples[0], samples[samples.len() - 1]].map(|sample| ticks(sample.at, clip.fps()));
+    let rate = if samples.len() > 1 { (last - first) / (samples.len() as i32 - 1) } else { per_frame };
+    let lines = channels.iter().enumerate().map(|(place, (name, holds, kind))| {
+        format!(
+            "    <channel{place} ChannelName=\"{name}\" ChannelType=\"{holds}\" ChannelInterpretation=\"{kind}\" \
+             SamplingType=\"Regular\" SamplingRate=\"{rate}\" StartTime=\"{first}\" EndTime=\"{last}\"/>\n"
+        )
+    });
+    format!(
+        "<?xml version=\"1.0\"?>\n<Autodesk_Cache_File>\n  <cacheType Type=\"OneFilePerFrame\" Format=\"{}\"/>\n  \
+         <time Range=\"{first}-{last}\"/>\n  <cacheTimePerFrame TimePerFrame=\"{per_frame}\"/>\n  \
+         <cacheVersion Version=\"2.0\"/>\n  <extra>written by Nucleus</extra>\n  <Channels>\n{}  </Channels>\n\
+         </Autodesk_Cache_File>\n",
+        width.word(),
+        lines.collect::<String>(),
+    )
+}
+
+/// When a file is, and how wide its lengths are.
+#[derive(Clone, Copy)]
+struct Frame {
+    tick: i32,
+    width: Width,
+}
+
+fn write_sample<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    sample: usize,
+    name: &str,
+    frame: Frame,
+    file: &mut OutFile,
+) -> Result<(), ExportError> {
+    let positions = clip.positions(object, sample)?;
+    let count = positions.len();
+    let mut body = Vec::new();
+    for (name, _, kind) in channels(clip, object, name)? {
+        let data = match kind {
+            "id" => (0..count).flat_map(|id| (id as f64).to_be_bytes()).collect(),
+            "count" => (count as f64).to_be_bytes().to_vec(),
+            "velocity" => vectors(&clip.velocities(object, sample)?.unwrap_or_else(|| vec![[0.0; 3]; count])),
+            _ => vectors(&positions),
+        };
+        let (tag, size) = match kind {
+            "id" => (b"DBLA", count),
+            "count" => (b"DBLA", 1),
+            _ => (b"FVCA", count),
+        };
+        frame.width.block(b"CHNM", &[name.as_bytes(), b"\0"].concat(), &mut body);
+        frame.width.block(b"SIZE", &(size as u32).to_be_bytes(), &mut body);
+        frame.width.block(tag, &data, &mut body);
+    }
+    file.bytes(&frame.width.head(frame.tick));
+    file.bytes(&frame.width.group(b"MYCH", &body));
+    Ok(())
+}
+
+fn vectors(values: &[[f32; 3]]) -> Vec<u8> {
+    values.as_flattened().iter().flat_map(|x| x.to_be_bytes()).collect()
+}
+
+impl Width {
+    fn end(self) -> &'static str {
+        match self {
+            Self::Bits32 => "mc",
+            Self::Bits64 => "mcx",
+        }
+    }
+
+    /// The word for it in a description.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Bits32 => "mcc",
+            Self::Bits64 => "mcx",
+        }
+    }
+
+    /// A tag and a length.
+    fn length(self, tag: &[u8; 4], length: usize, out: &mut Vec<u8>) {
+        out.extend_from_slice(tag);
+        match self {
+            Self::Bits32 => out.extend_from_slice(&(length as u32).to_be_bytes()),
+            Self::Bits64 => {
+                out.extend_from_slice(&[0; 4]);
+                out.extend_from_slice(&(length as u64).to_be_bytes());
+            }
+        }
+    }
+
+    /// A block; its stated length leaves out the zeros that fill it up.
+    fn block(self, tag: &[u8; 4], data: &[u8], out: &mut Vec<u8>) {
+        let step = if self == Self::Bits32 { 4 } else { 8 };
+        self.length(tag, data.len(), out);
+        out.extend_from_slice(data);
+        out.resize(out.len() + (data.len().next_multiple_of(step) - data.len()), 0);
+    }
+
+    /// A group of blocks.
+    fn group(self, kind: &[u8; 4], blocks: &[u8]) -> Vec<u8> {
+        let mut out = Vec::with_capacity(blocks.len() + 20);
+        self.length(if self == Self::Bits32 { b"FOR4" } else { b"FOR8" }, 4 + blocks.len(), &mut out);
+        out.extend_from_slice(kind);
+        out.extend_from_slice(blocks);
+        out
+    }
+
+    /// The head of a file of one sample.
+    fn head(self, tick: i32) -> Vec<u8> {
+        let mut blocks = Vec::new();
+        self.block(b"VRSN", b"0.1\0", &mut blocks);
+        self.block(b"STIM", &tick.to_be_bytes(), &mut blocks);
+        self.block(b"ETIM", &tick.to_be_bytes(), &mut blocks);
+        self.group(b"CACH", &blocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(hex: &str) -> Vec<u8> {
+        let digits: Vec<u8> = hex.bytes().filter(u8::is_ascii_hexdigit).collect();
+        digits
+            .chunks(2)
+            .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap())
+            .collect()
+    }
+
+    fn sample(width: Width, tick: i32, name: &str, tag: &[u8; 4], size: u32, data: &[u8]) -> Vec<u8> {
+        let mut body = Vec::new();
+        width.block(b"CHNM", &[name.as_bytes(), b"\0"].concat(), &mut body);
+        width.block(b"SIZE", &size.to_be_bytes(), &mut body);
+        width.block(tag, data, &mut body);
+        [width.head(tick), width.group(b"MYCH", &body)].concat()
+    }
+
+    /// The first bytes of a file that Maya wrote: 349 points of `nClothShape1` at frame 3.
+    #[test]
+    fn a_narrow_file_begins_as_maya_begins_it() {
+        let maya = bytes(
+            "464f5234 00000028 43414348 5652534e 00000004 302e3100 5354494d 00000004 000002ee 4554494d 00000004
+             000002ee 464f5234 0000108c 4d594348 43484e4d 0000000d 6e436c6f 74685368 61706531 00000000
+             53495a45 00000004 0000015d 46564341 0000105c",
+        );
+        let ours = sample(Width::Bits32, 750, "nClothShape1", b"FVCA", 349, &[0; 12 * 349]);
+        assert_eq!(ours[..maya.len()], maya);
+        assert_eq!(ours.len(), 4292, "the length of that file");
+    }
+
+    /// Blocks of a file that Maya wrote with wide lengths. Maya leaves rubbish in the four bytes behind a
+    /// tag; here they are zero.
+    #[test]
+    fn wide_blocks_are_laid_out_as_mayas_are() {
+        let head = bytes(
+            "464f5238 00000000 00000000 0000004c 43414348 5652534e 00000000 00000000 00000004 302e3100 00000000
+             5354494d 00000000 00000000 00000004 000000fa 00000000 4554494d 00000000 00000000 00000004 000000fa
+             00000000",
+        );
+        assert_eq!(Width::Bits64.head(250), head);
+        let mut name = Vec::new();
+        Width::Bits64.block(b"CHNM", b"nParticleShape1_count\0", &mut name);
+        assert_eq!(name.len(), 16 + 24);
+        assert_eq!(name[12..16], [0, 0, 0, 22]);
+    }
+
+    #[test]
+    fn ticks_are_six_thousandths_of_a_second() {
+        assert_eq!((ticks(1.0, 24.0), ticks(3.0, 24.0), ticks(-1.0, 30.0)), (250, 750, -200));
+    }
+}

@@ -1,0 +1,123 @@
+//! VTK's unstructured grids: XML with raw binary behind it, and a ParaView collection that gives them times.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use nucleus_cache::ObjectInfo;
+
+use crate::clip::Clip;
+use crate::error::ExportError;
+use crate::name;
+use crate::obj::numbered;
+use crate::output::{OutFile, Output};
+
+/// Writes `<object>.<frame>.vtu` and `<object>.pvd` into a folder.
+pub(crate) fn write<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    folder: &Path,
+    output: &mut Output,
+    told: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let names = name::for_files(clip.objects().map(|object| object.name.as_str()));
+    for sample in 0..clip.samples().len() {
+        let place = numbered(&clip.samples()[sample]);
+        for (object, name) in names.iter().enumerate() {
+            let positions = clip.positions(object, sample)?;
+            let velocities = clip.velocities(object, sample)?;
+            let mut file = output.file(folder.join(format!("{name}.{place}.vtu")))?;
+            write_grid(&mut file, clip.object(object), &positions, velocities.as_deref());
+            output.finish(file)?;
+        }
+        told((sample + 1) as f64 / clip.samples().len() as f64);
+    }
+    for name in &names {
+        let mut file = output.file(folder.join(format!("{name}.pvd")))?;
+        file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n");
+        for sample in clip.samples() {
+            let (time, place) = (sample.at / clip.fps(), numbered(sample));
+            file.text(format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{name}.{place}.vtu\"/>\n"));
+        }
+        file.text("  </Collection>\n</VTKFile>\n");
+        output.finish(file)?;
+    }
+    Ok(())
+}
+
+/// The kinds of cell.
+const VERTEX: u8 = 1;
+const TRIANGLE: u8 = 5;
+const POLYGON: u8 = 7;
+const QUAD: u8 = 9;
+
+fn write_grid(
+    file: &mut OutFile,
+    object: &ObjectInfo,
+    positions: &[[f32; 3]],
+    velocities: Option<&[[f32; 3]]>,
+) {
+    let floats = |values: &[[f32; 3]]| values.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let (corners, ends, kinds) = cells(object, positions.len());
+    let numbers = |values: &[i64]| values.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let mut blocks: Vec<Vec<u8>> = vec![floats(positions), numbers(&corners), numbers(&ends), kinds];
+    blocks.extend(velocities.map(floats));
+    let mut offset = 0;
+    let offsets: Vec<usize> = blocks
+        .iter()
+        .map(|block| {
+            let own = offset;
+            offset += 8 + block.len();
+            own
+        })
+        .collect();
+    let array = |name: &str, kind: &str, components: usize, block: usize| {
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{}\"/>",
+            offsets[block]
+        )
+    };
+    let point_data = match velocities {
+        Some(_) => {
+            format!("<PointData Vectors=\"velocity\">{}</PointData>\n", array("velocity", "Float32", 3, 4))
+        }
+        None => String::new(),
+    };
+    file.text(format!(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n{point_data}\
+         <Points>{}</Points>\n<Cells>{}{}{}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
+         <AppendedData encoding=\"raw\">\n_",
+        positions.len(),
+        ends.len(),
+        array("positions", "Float32", 3, 0),
+        array("connectivity", "Int64", 1, 1),
+        array("offsets", "Int64", 1, 2),
+        array("types", "UInt8", 1, 3),
+    ));
+    for block in &blocks {
+        file.bytes(&(block.len() as u64).to_le_bytes());
+        file.bytes(block);
+    }
+    file.text("\n</AppendedData>\n</VTKFile>\n");
+}
+
+/// Corners, ends and kinds of all cells: faces, or else a vertex for each point.
+fn cells(object: &ObjectInfo, points: usize) -> (Vec<i64>, Vec<i64>, Vec<u8>) {
+    if object.faces.is_empty() {
+        let all = 0..points as i64;
+        return (all.clone().collect(), all.map(|point| point + 1).collect(), vec![VERTEX; points]);
+    }
+    let corners = object.faces.corners().iter().map(|&point| i64::from(point)).collect();
+    let mut end = 0;
+    let ends = object.faces.iter().map(|face| {
+        end += face.len() as i64;
+        end
+    });
+    let ends = ends.collect();
+    let kind = |face: &[u32]| match face.len() {
+        3 => TRIANGLE,
+        4 => QUAD,
+        _ => POLYGON,
+    };
+    (corners, ends, object.faces.iter().map(kind).collect())
+}

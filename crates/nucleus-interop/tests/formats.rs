@@ -1,0 +1,211 @@
+//! What is written, read back by readers made for these tests alone. Whether other tools read it is for
+//! `cargo xtask interop` to say.
+
+mod sample;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use nucleus_cache::Playback;
+use nucleus_interop::{ExportError, Exported, Format, Request, Selection, export};
+use sample::{END, START, UNITS};
+use tempfile::TempDir;
+
+const SHEET: &str = "ns:sheet|1";
+const POINTS: usize = 11;
+
+fn exported(format: Format, selection: Selection) -> (TempDir, PathBuf, Exported) {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = folder.path().join("sample.mcap");
+    sample::write(&cache);
+    let out = folder.path().join("out");
+    let request = Request { format, out: out.clone(), selection, force: false };
+    let exported = export(&mut Playback::open(&cache).unwrap(), &request, &mut |_| {}).unwrap();
+    (folder, out, exported)
+}
+
+fn all(format: Format) -> (TempDir, PathBuf) {
+    let (folder, out, _) = exported(format, Selection::default());
+    (folder, out)
+}
+
+/// Positions of the sheet at the end of a frame.
+fn sheet(frame: i32) -> Vec<[f32; 3]> {
+    sample::positions(SHEET, (frame - START) as f32)
+}
+
+fn floats<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f32) -> Vec<[f32; 3]> {
+    let numbers: Vec<f32> = bytes.chunks_exact(N).map(|word| number(word.try_into().unwrap())).collect();
+    numbers.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect()
+}
+
+fn word(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
+}
+
+#[test]
+fn obj_keeps_every_bit_every_point_and_every_face() {
+    let (_folder, out) = all(Format::Obj);
+    for frame in START..=END {
+        let text = fs::read_to_string(out.join(format!("ns_sheet_1.{frame:04}.obj"))).unwrap();
+        let points: Vec<Vec<f32>> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("v "))
+            .map(|line| line.split(' ').map(|x| x.parse().unwrap()).collect())
+            .collect();
+        assert_eq!(points, sheet(frame), "frame {frame}");
+        let faces: Vec<&str> = text.lines().filter(|line| line.starts_with("f ")).collect();
+        assert_eq!(faces, ["f 1 2 5 4", "f 2 3 6", "f 2 6 5", "f 4 5 6 9 8 7"]);
+    }
+}
+
+#[test]
+fn pc2_says_where_it_begins_and_how_fast_it_goes() {
+    let substeps = Selection { substeps: true, frames: Some((5, 8)), ..Selection::default() };
+    let (_folder, out, exported) = exported(Format::Pc2, substeps);
+    let bytes = fs::read(out.join("ns_sheet_1.pc2")).unwrap();
+    assert_eq!(&bytes[..12], b"POINTCACHE2\0");
+    assert_eq!([word(&bytes, 12), word(&bytes, 16), word(&bytes, 28)], [1, POINTS as u32, 8]);
+    assert_eq!([f32::from_bits(word(&bytes, 20)), f32::from_bits(word(&bytes, 24))], [4.5, 0.5]);
+    assert_eq!(exported.samples, 8, "two for each of four frames");
+    let second = &bytes[32 + 12 * POINTS..32 + 24 * POINTS];
+    assert_eq!(floats(second, f32::from_le_bytes), sheet(5));
+}
+
+#[test]
+fn mdd_has_the_highest_byte_first_and_a_time_for_each_sample() {
+    let (_folder, out) = all(Format::Mdd);
+    let bytes = fs::read(out.join("dust.mdd")).unwrap();
+    let samples = (END - START + 1) as usize;
+    assert_eq!(bytes[..8], [0, 0, 0, samples as u8, 0, 0, 0, 5]);
+    let times: Vec<f32> =
+        bytes[8..8 + 4 * samples].chunks(4).map(|x| f32::from_be_bytes(x.try_into().unwrap())).collect();
+    assert_eq!(times[0], START as f32 / 24.0);
+    let last = &bytes[bytes.len() - 60..];
+    assert_eq!(floats(last, f32::from_be_bytes), sample::positions("dust", (END - START) as f32));
+}
+
+#[test]
+fn ply_and_vtu_hold_the_floats_of_the_cache() {
+    let raw: Vec<u8> = sheet(9).as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    for (format, end) in [(Format::Ply, "ply"), (Format::Vtu, "vtu")] {
+        let (_folder, out) = all(format);
+        let bytes = fs::read(out.join(format!("ns_sheet_1.0009.{end}"))).unwrap();
+        assert!(bytes.windows(raw.len()).any(|window| window == raw), "{end}");
+    }
+}
+
+/// JSON and binary part of a glTF file.
+fn parts(path: &Path) -> (serde_json::Value, Vec<u8>) {
+    let bytes = fs::read(path).unwrap();
+    assert_eq!((&bytes[..4], word(&bytes, 8) as usize), (&b"glTF"[..], bytes.len()));
+    let text = word(&bytes, 12) as usize;
+    (serde_json::from_slice(&bytes[20..20 + text]).unwrap(), bytes[28 + text..].to_vec())
+}
+
+#[test]
+fn glb_is_in_metres_and_reaches_every_frame_by_one_target() {
+    let (_folder, out) = all(Format::Glb);
+    let (text, binary) = parts(&out);
+    let positions = |accessor: &serde_json::Value| {
+        let view = &text["bufferViews"]
+            [text["accessors"][accessor.as_u64().unwrap() as usize]["bufferView"].as_u64().unwrap() as usize];
+        let [begin, length] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap() as usize);
+        floats(&binary[begin..begin + length], f32::from_le_bytes)
+    };
+    let primitive = &text["meshes"][0]["primitives"][0];
+    assert_eq!(text["meshes"][0]["name"], SHEET, "objects are in the order of the cache");
+    let base = positions(&primitive["attributes"]["POSITION"]);
+    for frame in START + 1..=END {
+        let target = positions(&primitive["targets"][(frame - START - 1) as usize]["POSITION"]);
+        for ((base, moved), expected) in base.iter().zip(&target).zip(sheet(frame)) {
+            for axis in 0..3 {
+                let error = f64::from(base[axis] + moved[axis]) - f64::from(expected[axis]) / UNITS;
+                assert!(error.abs() < 1e-6, "frame {frame}: {error}");
+            }
+        }
+    }
+    let wall = text["meshes"].as_array().unwrap().iter().find(|mesh| mesh["name"] == "wall").unwrap();
+    assert!(wall["primitives"][0].get("targets").is_none(), "what stands still needs no target");
+}
+
+#[test]
+fn usda_states_its_units_and_times_and_keeps_substeps_between_frames() {
+    let (_folder, out, _) = exported(Format::Usda, Selection { substeps: true, ..Selection::default() });
+    let text = fs::read_to_string(out).unwrap();
+    for line in [
+        "metersPerUnit = 0.01",
+        "upAxis = \"Y\"",
+        "startTimeCode = 3",
+        "endTimeCode = 12",
+        "            3.5: [(",
+    ] {
+        assert!(text.contains(line), "{line}");
+    }
+    assert!(text.contains("def Mesh \"ns_sheet_1\"") && text.contains("def Points \"dust\""), "{text}");
+    assert!(text.contains("vector3f[] velocities.timeSamples"));
+}
+
+#[test]
+fn an_ncache_has_a_file_for_each_frame_and_names_its_channels() {
+    let (_folder, out) = all(Format::Mc);
+    let text = fs::read_to_string(out.join("dust.xml")).unwrap();
+    for part in
+        ["Format=\"mcc\"", "Range=\"750-3000\"", "dust_position", "ChannelInterpretation=\"velocity\""]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let bytes = fs::read(out.join("ns_sheet_1Frame9.mc")).unwrap();
+    assert_eq!(floats(&bytes[bytes.len() - 12 * POINTS..], f32::from_be_bytes), sheet(9));
+}
+
+#[test]
+fn every_format_writes_the_same_bytes_twice() {
+    for format in Format::ALL {
+        let [(_a, _, one), (_b, _, two)] = [(); 2].map(|()| exported(format, Selection::default()));
+        assert_eq!(one.files.len(), two.files.len());
+        for (one, two) in one.files.iter().zip(&two.files) {
+            assert_eq!(fs::read(one).unwrap(), fs::read(two).unwrap(), "{}", one.display());
+        }
+    }
+}
+
+#[test]
+fn a_selection_takes_what_it_names_and_refuses_what_is_not_there() {
+    let some = Selection {
+        objects: vec!["wall".into(), SHEET.into()],
+        frames: Some((4, 10)),
+        every: 3,
+        ..Selection::default()
+    };
+    let (_folder, out, exported) = exported(Format::Obj, some);
+    assert_eq!((exported.samples, exported.objects, exported.files.len()), (3, 2, 6));
+    assert!(out.join("wall.0010.obj").exists() && !out.join("wall.0005.obj").exists());
+    let (folder, _) = all(Format::Obj);
+    let refusal = |selection: Selection| {
+        let request = Request { format: Format::Obj, out: folder.path().join("b"), selection, force: false };
+        export(&mut Playback::open(folder.path().join("sample.mcap")).unwrap(), &request, &mut |_| {})
+            .unwrap_err()
+    };
+    let unknown = refusal(Selection { objects: vec!["sheet".into()], ..Selection::default() }).to_string();
+    assert!(unknown.contains("no object `sheet`") && unknown.contains("`ns:sheet|1`"), "{unknown}");
+    let late = refusal(Selection { frames: Some((40, 50)), ..Selection::default() }).to_string();
+    assert!(late.contains("the cache has 3 to 12"), "{late}");
+}
+
+#[test]
+fn nothing_is_overwritten_without_being_told_to_and_nothing_is_left_half_written() {
+    let (folder, out) = all(Format::Usda);
+    let mut cache = Playback::open(folder.path().join("sample.mcap")).unwrap();
+    let before = fs::read(&out).unwrap();
+    let mut request =
+        Request { format: Format::Glb, out: out.clone(), selection: Selection::default(), force: false };
+    assert!(matches!(export(&mut cache, &request, &mut |_| {}), Err(ExportError::Exists { .. })));
+    assert_eq!(fs::read(&out).unwrap(), before);
+    request.force = true;
+    export(&mut cache, &request, &mut |_| {}).unwrap();
+    assert_eq!(&fs::read(&out).unwrap()[..4], b"glTF");
+    let names: Vec<_> =
+        fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 2, "the cache and the export: {names:?}");
+}

@@ -1,0 +1,117 @@
+//! A small run made by a formula.
+
+#![allow(dead_code)] // each user takes a part of it
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
+use nucleus_core::{ClothId, ColliderId, Moment, StateView, StepObserver};
+
+pub const START: i32 = 3;
+pub const END: i32 = 12;
+pub const SUBSTEPS: u32 = 2;
+/// Scene units are centimetres.
+pub const UNITS: f64 = 100.0;
+/// The first frame in which the cart moves.
+const ROLLS: i32 = 7;
+
+const SHEET: ClothId = ClothId(0);
+const CART: ColliderId = ColliderId(0);
+
+/// Writes the sample as a cache of substeps.
+pub fn write(path: &Path) {
+    let run = RunInfo {
+        scene_path: "scenes/\"sample\".ron".to_owned(),
+        start: START,
+        end: END,
+        units_per_metre: UNITS,
+        detail: Detail::Substeps,
+        velocities: true,
+        ..RunInfo::default()
+    };
+    let mut recorder = Recorder::create(path, &run, objects()).unwrap();
+    recorder.record_start(&State { frame: START, time: 0.0 }).unwrap();
+    for frame in START + 1..=END {
+        let mut observer = recorder.frame(frame).unwrap();
+        for substep in 1..=SUBSTEPS {
+            let time = (frame - START - 1) as f32 + substep as f32 / SUBSTEPS as f32;
+            observer.substep(Moment { substep, substeps: SUBSTEPS }, &State { frame, time });
+        }
+        recorder.end_frame(&()).unwrap();
+    }
+    recorder.finish().unwrap();
+}
+
+/// Positions of an object `time` frames after the start, in scene units.
+pub fn positions(object: &str, time: f32) -> Vec<[f32; 3]> {
+    let units = UNITS as f32;
+    let metres = match object {
+        "ns:sheet|1" => sheet(time),
+        "1 cart" => cart((time - (ROLLS - START - 1) as f32).max(0.0)),
+        "wall" => wall(),
+        _ => dust(time),
+    };
+    metres.into_iter().map(|point| point.map(|x| x * units)).collect()
+}
+
+pub fn objects() -> Vec<(Source, ObjectInfo)> {
+    let object = |name: &str, kind, faces: &[&[u32]]| ObjectInfo {
+        name: name.to_owned(),
+        kind,
+        faces: faces.iter().copied().collect(),
+        rest: positions(name, 0.0),
+    };
+    let sheet: &[&[u32]] = &[&[0, 1, 4, 3], &[1, 2, 5], &[1, 5, 4], &[3, 4, 5, 8, 7, 6]];
+    let cart: &[&[u32]] = &[&[0, 1, 2, 3, 4]];
+    let wall: &[&[u32]] = &[&[0, 1, 2, 3]];
+    vec![
+        (Source::Cloth(SHEET), object("ns:sheet|1", ObjectKind::Cloth, sheet)),
+        (Source::Cloth(ClothId(1)), object("dust", ObjectKind::Particles, &[])),
+        (Source::Collider(CART), object("1 cart", ObjectKind::Collider, cart)),
+        (Source::Collider(ColliderId(1)), object("wall", ObjectKind::Collider, wall)),
+    ]
+}
+
+/// Eleven points, of which the last two are in no face.
+fn sheet(time: f32) -> Vec<[f32; 3]> {
+    (0..11u8).map(|k| [f32::from(k % 3), 1.0 + 0.1 * (time + f32::from(k)).sin(), f32::from(k / 3)]).collect()
+}
+
+fn dust(time: f32) -> Vec<[f32; 3]> {
+    (0..5u8).map(|k| [f32::from(k), 3.0 - 0.01 * time * time, f32::from(k * k) + 0.1 * time]).collect()
+}
+
+fn cart(rolled: f32) -> Vec<[f32; 3]> {
+    [[0.0, 0.0], [1.0, 0.0], [1.5, 1.0], [0.5, 1.6], [-0.3, 1.0]]
+        .map(|[x, z]| [x + 0.2 * rolled, 0.0, z])
+        .into()
+}
+
+fn wall() -> Vec<[f32; 3]> {
+    vec![[-1.0, 0.0, -1.0], [-1.0, 0.0, 3.0], [-1.0, 2.0, 3.0], [-1.0, 2.0, -1.0]]
+}
+
+struct State {
+    frame: i32,
+    time: f32,
+}
+
+impl StateView for State {
+    fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
+        *out = positions(if cloth == SHEET { "ns:sheet|1" } else { "dust" }, self.time);
+    }
+    fn velocities(&self, cloth: ClothId, units: f64, out: &mut Vec<[f32; 3]>) {
+        self.positions(cloth, units, out);
+        out.iter_mut().for_each(|velocity| *velocity = [self.time, 2.0, -1.0]);
+    }
+    fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
+        *out = positions(if collider == CART { "1 cart" } else { "wall" }, self.time);
+    }
+    fn collider_moved(&self, collider: ColliderId) -> bool {
+        collider == CART && self.frame >= ROLLS
+    }
+    fn point(&self, _: ClothId, _: usize) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+}

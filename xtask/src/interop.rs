@@ -1,0 +1,177 @@
+//! Whether other tools read what `nucleus export` writes: Blender, Pixar's USD, VTK, Foxglove's own types, rerun
+//! and Khronos' glTF validator.
+//!
+//! Each export is held against the cache as the `mcap` package of others reads it, point by point.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, bail, ensure};
+use serde_json::Value;
+
+/// How exports are checked.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// A cache to check the exports of, instead of the sample and a scene of the gallery.
+    cache: Vec<PathBuf>,
+}
+
+/// The scripts; each prints what it has found as one line of JSON.
+const SCRIPTS: [(&str, &str); 5] = [
+    ("cache.py", include_str!("interop/cache.py")),
+    ("blender.py", include_str!("interop/blender.py")),
+    ("scenes.py", include_str!("interop/scenes.py")),
+    ("viewers.py", include_str!("interop/viewers.py")),
+    ("gltf.js", include_str!("interop/gltf.js")),
+];
+
+/// Blender wants an older numpy than rerun, so each has a place of its own.
+const ENVIRONMENTS: [(&str, &[&str]); 2] = [
+    ("readers", &["bpy==5.0.1", "numpy<2", "usd-core==26.11", "vtk==9.7.2", "mcap==1.6.0", "zstandard"]),
+    (
+        "viewers",
+        &[
+            "rerun-sdk==0.41.0",
+            "mcap==1.6.0",
+            "mcap-protobuf-support==0.6.0",
+            "foxglove-schemas-protobuf",
+            "numpy",
+        ],
+    ),
+];
+const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
+
+/// The Python that Blender's module is made for.
+const PYTHON: &str = "python3.11";
+
+/// Installs what is missing, exports, and asks every reader.
+pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
+    let place = super::target(root).join("interop");
+    fs::create_dir_all(&place)?;
+    install(&place)?;
+    for (name, text) in SCRIPTS {
+        fs::write(place.join(name), text)?;
+    }
+    cargo(
+        root,
+        &["build", "--release", "--package", "nucleus-cli", "--package", "nucleus-interop", "--examples"],
+    )?;
+    let caches = if options.cache.is_empty() { own_caches(root, &place)? } else { options.cache.clone() };
+    let mut failed = 0;
+    for cache in caches {
+        println!("\n== {}", cache.display());
+        let folder = place.join("files");
+        if folder.exists() {
+            fs::remove_dir_all(&folder)?;
+        }
+        export(root, &cache, &folder)?;
+        failed += check(&place, &cache, &folder)?;
+    }
+    ensure!(failed == 0, "{failed} exports are not read as they were recorded");
+    Ok(())
+}
+
+/// The sample, which is odd in every way, and the beginning of a real run.
+fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let [sample, drape] = ["sample.mcap", "drape.mcap"].map(|name| place.join(name));
+    let release = super::target(root).join("release");
+    for cache in [&sample, &drape] {
+        // Nothing is overwritten without being told to.
+        if cache.exists() {
+            fs::remove_file(cache)?;
+        }
+    }
+    succeed(Command::new(release.join("examples/sample")).arg(&sample))?;
+    let scene = root.join("scenes/cloth/drape_on_sphere.ron");
+    let mut run = Command::new(release.join("nucleus"));
+    // Checks of frames that are not reached fail; that is no trouble here, as long as there is a cache.
+    run.arg("run").arg(scene).args(["--frames", "24", "-o"]).arg(&drape).status()?;
+    ensure!(drape.exists(), "the scene was not recorded");
+    Ok(vec![sample, drape])
+}
+
+fn export(root: &Path, cache: &Path, folder: &Path) -> anyhow::Result<()> {
+    let nucleus = super::target(root).join("release/nucleus");
+    for format in ["obj", "ply", "pc2", "mdd", "usda", "glb", "vtu", "mc", "mcx", "foxglove"] {
+        let out = match format {
+            "usda" | "glb" => format!("run.{format}"),
+            "foxglove" => "run.foxglove.mcap".to_owned(),
+            folder => folder.to_owned(),
+        };
+        let mut command = Command::new(&nucleus);
+        succeed(command.arg("export").arg(cache).args(["--as", format, "-o"]).arg(folder.join(out)))?;
+    }
+    Ok(())
+}
+
+/// Asks every reader; gives the number of those that found something else than was recorded.
+fn check(place: &Path, cache: &Path, folder: &Path) -> anyhow::Result<usize> {
+    let python = |environment: &str| place.join(environment).join("bin/python");
+    let mut failed = 0;
+    for (program, script) in [
+        (python("readers"), "blender.py"),
+        (python("readers"), "scenes.py"),
+        (python("viewers"), "viewers.py"),
+        ("node".into(), "gltf.js"),
+    ] {
+        let mut command = Command::new(&program);
+        command.arg(place.join(script)).arg(cache).arg(folder);
+        let output = command.env("NODE_PATH", place.join("node/node_modules")).output();
+        let output = output.with_context(|| format!("`{}` cannot be started", program.display()))?;
+        let said = String::from_utf8_lossy(&output.stdout);
+        let found = said.lines().rev().find_map(|line| serde_json::from_str::<Vec<Value>>(line).ok());
+        let Some(rows) = found.filter(|_| output.status.success()) else {
+            bail!("{script}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr));
+        };
+        failed += rows.iter().map(tell).filter(|fine| !fine).count();
+    }
+    Ok(failed)
+}
+
+/// Prints a finding; says whether it is fine.
+fn tell(row: &Value) -> bool {
+    let word = |key: &str| row[key].as_str().unwrap_or_default();
+    let verdict = match (row["trouble"].as_str(), row["error"].as_f64()) {
+        (Some(trouble), _) => format!("FAILED: {trouble}"),
+        (None, Some(error)) => format!("error {error:.1e}"),
+        (None, None) => "same".to_owned(),
+    };
+    println!("{:<34} {:<28} {verdict}", word("what"), word("reader"));
+    row["trouble"].is_null()
+}
+
+fn install(place: &Path) -> anyhow::Result<()> {
+    for (name, packages) in ENVIRONMENTS {
+        let folder = place.join(name);
+        let stamp = folder.join("installed");
+        if fs::read_to_string(&stamp).is_ok_and(|known| known == packages.join("\n")) {
+            continue;
+        }
+        println!("-- installing {} into {}", packages.join(", "), folder.display());
+        succeed(Command::new(PYTHON).args(["-m", "venv"]).arg(&folder))?;
+        succeed(Command::new(folder.join("bin/python")).args(["-m", "pip", "install", "-q"]).args(packages))?;
+        fs::write(stamp, packages.join("\n"))?;
+    }
+    let node = place.join("node");
+    if !node.join("node_modules/gltf-validator").exists() {
+        println!("-- installing {VALIDATOR} into {}", node.display());
+        fs::create_dir_all(&node)?;
+        let mut npm = Command::new("npm");
+        npm.args(["install", "--no-audit", "--no-fund", "--prefix"]).arg(&node).arg(VALIDATOR);
+        succeed(&mut npm)?;
+    }
+    Ok(())
+}
+
+fn cargo(root: &Path, arguments: &[&str]) -> anyhow::Result<()> {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    succeed(Command::new(program).args(arguments).current_dir(root))
+}
+
+fn succeed(command: &mut Command) -> anyhow::Result<()> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let status = command.status().with_context(|| format!("`{name}` cannot be started"))?;
+    ensure!(status.success(), "`{name}`: {status}");
+    Ok(())
+}
