@@ -1,4 +1,4 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy` and `bench`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `bench` and `book`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
@@ -6,6 +6,7 @@
 //! | which claim of the paper is shown by which test       | [`evidence`]    |
 //! | what else is checked: the map, sizes, paths           | [`tidy`]        |
 //! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
+//! | how the pages with measured figures are made          | [`book`]        |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -15,6 +16,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod bench;
+mod book;
 mod ci;
 mod evidence;
 mod files;
@@ -34,6 +36,8 @@ enum Chore {
     Tidy,
     /// Times the solver and measures its error, beside the figures of other solvers.
     Bench(bench::Options),
+    /// Makes anew the pages of docs/ whose figures are measured; takes a quarter of an hour.
+    Book(book::Options),
 }
 
 fn main() -> ExitCode {
@@ -43,6 +47,7 @@ fn main() -> ExitCode {
         Chore::Evidence => evidence::print(&root),
         Chore::Tidy => tidy::run(&root),
         Chore::Bench(options) => bench::run(&options),
+        Chore::Book(options) => book::run(&root, &options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

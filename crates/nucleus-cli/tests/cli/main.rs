@@ -8,3 +8,4 @@ mod play;
 mod render;
 mod run;
 mod sample;
+mod trade;
