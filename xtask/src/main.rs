@@ -1,4 +1,4 @@
-//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench` and `interop`.
+//! Chores of the repository: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench`, `interop` and `book`.
 //!
 //! | You want to know...                                   | Read            |
 //! |-------------------------------------------------------|-----------------|
@@ -8,6 +8,7 @@
 //! | how fast and how exact the solver is, beside others   | [`mod@bench`]   |
 //! | which meshes the gallery has of its own                | [`meshes`]      |
 //! | whether other tools read what is exported             | [`mod@interop`] |
+//! | how the pages with measured figures are made          | [`book`]        |
 //! | how `ARCHITECTURE.md` is read                         | [`map`]         |
 //! | which files belong to the repository                  | [`files`]       |
 
@@ -17,6 +18,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod bench;
+mod book;
 mod ci;
 mod evidence;
 mod files;
@@ -42,6 +44,8 @@ enum Chore {
     Bench(bench::Options),
     /// Exports caches in every format and has other tools read them; installs those first.
     Interop(interop::Options),
+    /// Makes anew the pages of docs/ whose figures are measured; takes a quarter of an hour.
+    Book(book::Options),
 }
 
 fn main() -> ExitCode {
@@ -53,6 +57,7 @@ fn main() -> ExitCode {
         Chore::Meshes => meshes::run(&root),
         Chore::Bench(options) => bench::run(&options),
         Chore::Interop(options) => interop::run(&root, &options),
+        Chore::Book(options) => book::run(&root, &options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

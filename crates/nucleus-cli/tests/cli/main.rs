@@ -9,3 +9,4 @@ mod play;
 mod render;
 mod run;
 mod sample;
+mod trade;

@@ -44,9 +44,9 @@ struct Near<'a> {
     wide: bool,
 }
 
-/// A group of triangles is an edge or two wide at rest. One that motion or stretch has made wider
-/// than this many collides with its points alone, and is counted.
-const WIDEST: f32 = 24.0;
+/// A group of triangles is an edge or two wide at rest. One that stretch has made wider than this many would meet
+/// everything: it collides with its points alone, and is counted.
+const WIDEST: f32 = 256.0;
 
 impl<R: Real> Search<'_, R> {
     /// Replaces the pairs of those groups of the cloth for which something new is foreseen.

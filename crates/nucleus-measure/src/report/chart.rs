@@ -37,7 +37,6 @@ pub struct Line {
     pub through: Vec<[f64; 2]>,
     /// Its class in the style sheet.
     pub class: &'static str,
-    pub label: Option<String>,
 }
 
 /// A chart.
@@ -197,16 +196,6 @@ impl Chart {
         let places: Vec<[f64; 2]> = line.through.iter().map(|at| self.place(*at)).collect();
         let points: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         put(svg, format_args!("<polyline class=\"{}\" points=\"{}\"/>", line.class, points.join(" ")));
-        if let (Some(words), Some([x, y])) = (&line.label, places.last()) {
-            let (x, y, words) = (x - 4.0, y - 8.0, escape(words));
-            put(
-                svg,
-                format_args!(
-                    "<text class=\"label {}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"end\">{words}</text>",
-                    line.class
-                ),
-            );
-        }
     }
 
     fn draw_dot(&self, dot: &Dot, svg: &mut String) {

@@ -174,11 +174,7 @@ fn trade_chart(page: &Page) -> String {
         x: Axis::log("milliseconds a frame, on one core", trade.points.iter().map(|point| point.ms)),
         y: Axis::log(trade.measure.name(), errors).in_percent(),
         dots: trade.points.iter().filter_map(dot).collect(),
-        lines: vec![Line {
-            through: trade.frontier().filter_map(known).collect(),
-            class: "frontier",
-            label: None,
-        }],
+        lines: vec![Line { through: trade.frontier().filter_map(known).collect(), class: "frontier" }],
         floor: trade.floor.map(|floor| (floor, "the references differ by this much".to_owned())),
         mark: None,
     };
@@ -206,16 +202,20 @@ fn apart_chart(page: &Page) -> String {
     let places = |apart: &[f64]| -> Vec<[f64; 2]> {
         apart.iter().enumerate().map(|(k, apart)| [start + k as f64, apart.max(1e-7)]).collect()
     };
-    let mut lines = vec![Line {
-        through: places(&trade.apart),
-        class: "l0",
-        label: Some("the other reference".to_owned()),
-    }];
-    for ((name, apart), class) in page.series.iter().zip(["l1", "l2"]) {
-        lines.push(Line { through: places(apart), class, label: Some(name.clone()) });
+    let mut lines = vec![Line { through: places(&trade.apart), class: "l0" }];
+    for ((_, apart), class) in page.series.iter().zip(["l1", "l2"]) {
+        lines.push(Line { through: places(apart), class });
     }
     let values =
         lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
+    let named = ["the other reference"].into_iter().chain(page.series.iter().map(|(name, _)| name.as_str()));
+    let key: String = named
+        .zip(["soft", "c0", "c1"])
+        .map(|(name, colour)| {
+            format!("<span><i style=\"background:var(--{colour})\"></i>{}</span>", escape(name))
+        })
+        .collect();
+    let key = format!("<div class=\"key\">{key}</div>");
     let mark = match trade.measure {
         crate::trade::Measure::Position { frames } => {
             Some((start + frames as f64 - 1.0, "compared to here".to_owned()))
@@ -231,7 +231,7 @@ fn apart_chart(page: &Page) -> String {
         mark,
     };
     format!(
-        "<h2>How long positions can be compared</h2>\n<div class=\"chart\">{}</div>\n<p class=\"soft\">Where two references, \
+        "<h2>How long positions can be compared</h2>\n<div class=\"chart\">{}{key}</div>\n<p class=\"soft\">Where two references, \
          one with half the step of the other, go apart, a fold has fallen to one side in one of them and to the other in the \
          other. From there on the distance says nothing about a setting.</p>\n",
         chart.svg()

@@ -6,15 +6,18 @@
 //! | its charts                                   | `chart.rs`    |
 //! | the table for other programs                 | [`csv`]       |
 //! | the words for the terminal                   | [`text`]      |
+//! | the page that leads to several of them       | [`index`]     |
 //! | how numbers are written                      | [`figure`]    |
 
 mod chart;
 mod csv;
 mod html;
+mod index;
 mod text;
 
 pub use csv::csv;
 pub use html::{Page, Picture, html};
+pub use index::index;
 pub use text::{text, time_to};
 
 /// A number with three digits that matter, without zeros at the end: `0.0125`, `24`, `1.5`.

@@ -1,0 +1,120 @@
+//! `nucleus trade`, and `nucleus run --quality`.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::sample::{folder, scene, stderr, stdout};
+
+/// `nucleus` with these arguments; what it keeps is kept in the folder too.
+fn nucleus(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
+    command.env("NUCLEUS_CACHE", folder.join("kept")).args(arguments).current_dir(folder);
+    command.output().unwrap()
+}
+
+/// A sweep that takes a moment.
+const SMALL: [&str; 8] = ["trade", "drape.ron", "--evaluations", "6,12", "--substeps", "1", "--frames", "8"];
+
+/// Lines of a list that is kept, in whichever folder.
+fn kept_lines(folder: &Path, name: &str) -> usize {
+    let all = fs::read_dir(folder.join("kept").join("trade")).unwrap();
+    let lines = |folder: fs::DirEntry| fs::read_to_string(folder.path().join(name)).unwrap().lines().count();
+    all.map(|entry| lines(entry.unwrap())).sum()
+}
+
+#[test]
+fn a_sweep_writes_a_page_with_pictures_a_table_and_json_and_says_what_to_take() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let output = nucleus(folder.path(), &SMALL);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    for words in ["an error of 1 %", "12 evaluations in 1 substep", "created energy", "to 0.1 %"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let read = |end: &str| fs::read_to_string(folder.path().join(format!("drape.trade.{end}"))).unwrap();
+    let html = read("html");
+    assert!(html.matches("data:image/png;base64,").count() >= 2 && html.contains("<svg"));
+    assert!(!html.contains("http://") && !html.contains("https://"), "the page needs nothing from elsewhere");
+    // The head, two settings and the scene's own.
+    assert_eq!(read("csv").lines().count(), 4);
+    let json: serde_json::Value = serde_json::from_str(&read("json")).unwrap();
+    assert_eq!(json["points"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn a_sweep_goes_on_where_it_was() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let first = nucleus(
+        folder.path(),
+        &["trade", "drape.ron", "--evaluations", "12", "--substeps", "1", "--frames", "8"],
+    );
+    assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
+    assert_eq!(
+        (kept_lines(folder.path(), "runs.jsonl"), kept_lines(folder.path(), "references.jsonl")),
+        (2, 2)
+    );
+    nucleus(folder.path(), &SMALL);
+    assert_eq!(
+        (kept_lines(folder.path(), "runs.jsonl"), kept_lines(folder.path(), "references.jsonl")),
+        (3, 2)
+    );
+    let again = nucleus(folder.path(), &SMALL);
+    assert_eq!((again.status.code(), kept_lines(folder.path(), "runs.jsonl")), (Some(0), 3));
+}
+
+#[test]
+fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let before = nucleus(folder.path(), &["run", "drape.ron", "--quality", "50%"]);
+    assert_eq!(before.status.code(), Some(2));
+    assert!(stderr(&before).contains("run `nucleus trade drape.ron` first"), "{}", stderr(&before));
+
+    let sweep = nucleus(folder.path(), &[&SMALL[..], &["--error", "50%", "--apply", "other.ron"]].concat());
+    assert_eq!(sweep.status.code(), Some(0), "{}", stderr(&sweep));
+    let run = nucleus(folder.path(), &["run", "drape.ron", "--quality", "50%", "--record", "none"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert!(stderr(&run).contains("evaluations in 1 substep: error "), "{}", stderr(&run));
+
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let (scene, other) = (read("drape.ron"), read("other.ron"));
+    let changed: Vec<_> = scene.lines().zip(other.lines()).filter(|(a, b)| a != b).collect();
+    assert_eq!(changed.len(), 1, "{other}");
+    assert!(changed[0].1.contains("nucleus(spaceScale: 0.01, subSteps: 1, evaluations: "), "{other}");
+    // The scene at its new setting is still the same scene.
+    let other = nucleus(folder.path(), &["run", "other.ron", "--quality", "50%", "--record", "none"]);
+    assert_eq!(other.status.code(), Some(0), "{}", stderr(&other));
+}
+
+#[test]
+fn what_no_setting_reaches_ends_with_the_nearest_and_exit_code_1() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    for wish in [["--time", "0.00001ms"], ["--error", "0.0000001%"]] {
+        let output = nucleus(folder.path(), &[&SMALL[..], &wish].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stdout(&output).contains("; the nearest: "), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_said_with_exit_code_1() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let refused = |arguments: &[&str], words: &str| {
+        let output = nucleus(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    };
+    refused(&["trade", "drape.ron", "--frames", "1"], "nothing to compare in 1 frame");
+    let bare = "Scene(time: (start: 1, end: 9, fps: 24), nodes: {\"n\": nucleus()})";
+    fs::write(folder.path().join("bare.ron"), bare).unwrap();
+    refused(&["trade", "bare.ron"], "the scene has no cloth");
+    let still = r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {
+        "n": nucleus(gravity: 0), "p": polyPlane(), "c": nCloth(inputMesh: "p")})"#;
+    fs::write(folder.path().join("still.ron"), still).unwrap();
+    refused(&["trade", "still.ron", "--evaluations", "6"], "no cloth moves");
+}

@@ -1,0 +1,57 @@
+//! The experiments as a page.
+
+use std::fmt::Write;
+
+use super::{Experiment, Finding};
+use crate::trade::Reading;
+
+/// What a reading is called on the page.
+pub(super) fn name(reading: Reading) -> &'static str {
+    match reading {
+        Reading::Classic => "Classic",
+        Reading::Physical => "Physical",
+    }
+}
+
+/// The page in Markdown. `machine` is what the times were taken on.
+pub fn page(results: &[(Experiment, Vec<Finding>)], machine: &str) -> String {
+    let mut text = format!(
+        "# The paper's advice, tried\n\nThe white paper on Nucleus gives advice on settings; [`claims.md`](claims.md) numbers it.\n\
+         Here each piece of it is an experiment on this solver, for both readings of a resistance.\n\
+         Counts and strains are the same on every machine; milliseconds are processor time of one core.\n\
+         `cargo xtask book` makes this page anew.\n\n{machine}\n\n| Claim | | Classic | Physical |\n|---|---|---|---|\n"
+    );
+    for (experiment, findings) in results {
+        let verdict = |reading: &str| {
+            findings.iter().find(|f| f.reading == reading).map_or("not tried", |f| f.verdict.words())
+        };
+        let Experiment { claim, says, .. } = experiment;
+        put(
+            &mut text,
+            format_args!("| {claim} | {says} | {} | {} |", verdict("Classic"), verdict("Physical")),
+        );
+    }
+    for (Experiment { claim, says, scene, .. }, findings) in results {
+        put(&mut text, format_args!("\n## {claim}\n\n{says}\n\n{scene}"));
+        for Finding { reading, verdict, because, table: (head, rows) } in findings {
+            put(&mut text, format_args!("\n**{reading}: {}.** {}.", verdict.words(), capital(because)));
+            if !rows.is_empty() {
+                put(&mut text, format_args!("\n| {} |\n|{}", head.join(" | "), "---:|".repeat(head.len())));
+            }
+            for row in rows {
+                put(&mut text, format_args!("| {} |", row.join(" | ")));
+            }
+        }
+    }
+    text
+}
+
+fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{line}");
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}

@@ -1,0 +1,60 @@
+//! N2.4-17: particles that meet only objects.
+
+use super::scenes::{Knobs, particles};
+use super::{Experiment, Finding, Verdict};
+use crate::report::figure;
+use crate::trade::Reading;
+use crate::trade::run::Run;
+
+pub const ONE_IS_ENOUGH: Experiment = Experiment {
+    claim: "N2.4-17",
+    says: "Particles that collide only with objects need 1 substep and 1 collision iteration.",
+    scene: "256 points without links (a cloth without resistances, as the solver has no nParticle yet) fall on a ball and the ground.",
+    try_it: || [Reading::Classic, Reading::Physical].map(try_it).to_vec(),
+};
+
+fn try_it(reading: Reading) -> Finding {
+    let runs = [(1, 1), (3, 4), (16, 16)].map(|(substeps, collision_iterations)| {
+        // A point has nothing to be evaluated: one evaluation is one time step.
+        let evaluations = f64::from(substeps);
+        (
+            substeps,
+            collision_iterations,
+            particles(&Knobs { substeps, collision_iterations, evaluations, ..Knobs::new(reading) }),
+        )
+    });
+    let least = |run: &Run| run.contact.least_gap.unwrap_or(f64::INFINITY);
+    let (_, _, one) = &runs[0];
+    let rows = runs.iter().map(|(substeps, passes, run)| {
+        vec![
+            substeps.to_string(),
+            passes.to_string(),
+            run.contact.crossed.to_string(),
+            figure(least(run)),
+            figure(run.ms()),
+        ]
+    });
+    Finding {
+        reading: super::page::name(reading),
+        verdict: Verdict::of(one.contact.crossed == 0 && least(one) > 0.98 && one.is_finite()),
+        because: format!(
+            "at one and one, {} points went through and the least gap is {} of the thickness",
+            one.contact.crossed,
+            figure(least(one))
+        ),
+        table: (vec!["substeps", "collision iterations", "went through", "least gap", "ms"], rows.collect()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // EVIDENCE: N2.4-17  points that meet only objects need one substep and one collision iteration
+    #[test]
+    fn points_without_links_keep_their_distance_at_one_substep_and_one_iteration() {
+        for finding in (ONE_IS_ENOUGH.try_it)() {
+            assert_eq!(finding.verdict, Verdict::Holds, "{}: {}", finding.reading, finding.because);
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The scenes of the experiments, as text, and how they are run.
+
+use nucleus_graph::scene::read_scene_text;
+
+use crate::trade::run::{Run, follow};
+use crate::trade::{Reading, Subject};
+
+/// What is set in an experiment.
+#[derive(Debug, Clone, Copy)]
+pub struct Knobs {
+    pub reading: Reading,
+    pub substeps: u32,
+    pub collision_iterations: u32,
+    pub stretch: f64,
+    pub evaluations: f64,
+}
+
+impl Knobs {
+    /// Maya's defaults.
+    pub const fn new(reading: Reading) -> Self {
+        Self { reading, substeps: 3, collision_iterations: 4, stretch: 20.0, evaluations: 96.0 }
+    }
+
+    fn nucleus(&self) -> String {
+        let reading = if self.reading == Reading::Classic { "classic" } else { "physical" };
+        format!(
+            "nucleus(spaceScale: 0.01, resistanceModel: {reading}, subSteps: {}, maxCollisionIterations: {}, evaluations: {})",
+            self.substeps, self.collision_iterations, self.evaluations
+        )
+    }
+}
+
+/// A sheet of half a metre that meets a ball at 2.5 m/s and is wrapped round it; a second.
+pub fn drape(knobs: &Knobs) -> Run {
+    run(&format!(
+        r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
+        "nucleus1": {},
+        "sheet": polyPlane(width: 60, height: 60, subdivisions: (24, 24), translate: (0, 21, 0)),
+        "cloth": nCloth(inputMesh: "sheet", thickness: 0.6, stretchResistance: {stretch}, compressionResistance: {half}, friction: 0.3),
+        "sphere": polySphere(radius: 20, subdivisions: (24, 16), translateY: keys([(1, 0), (13, 45), (25, 45)])),
+        "ball": nRigid(inputMesh: "sphere", thickness: 0.4, friction: 0.3),
+    }})"#,
+        knobs.nucleus(),
+        stretch = knobs.stretch,
+        half = knobs.stretch / 2.0
+    ))
+}
+
+/// A strip so many cells long that hangs by its upper edge; a second.
+pub fn strip(knobs: &Knobs, cells: u32) -> Run {
+    run(&format!(
+        r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
+        "nucleus1": {},
+        "plane": polyPlane(width: 4, height: {cells}, subdivisions: (4, {cells}), rotate: (90, 0, 0)),
+        "cloth": nCloth(inputMesh: "plane", stretchResistance: {stretch}, compressionResistance: {stretch}, bendResistance: 0, damp: 0.5),
+        "rail": dynamicConstraint(constraintType: transform, components: ["cloth.vtx[0:4]"]),
+    }})"#,
+        knobs.nucleus(),
+        stretch = knobs.stretch,
+    ))
+}
+
+/// Points without any links that fall on a ball and from it to the ground; a second.
+pub fn particles(knobs: &Knobs) -> Run {
+    run(&format!(
+        r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
+        "nucleus1": {},
+        "grid": polyPlane(width: 30, height: 30, subdivisions: (15, 15), translate: (0, 40, 0)),
+        "points": nCloth(inputMesh: "grid", thickness: 0.5, stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0),
+        "sphere": polySphere(radius: 20, subdivisions: (24, 16)),
+        "ball": nRigid(inputMesh: "sphere", thickness: 0.5),
+    }})"#,
+        knobs.nucleus().replace("nucleus(", "nucleus(usePlane: true, planeOrigin: (0, -20, 0), "),
+    ))
+}
+
+/// Runs a scene. Experiments are our own; one that cannot run is a mistake of ours.
+fn run(text: &str) -> Run {
+    let (scene, _) =
+        read_scene_text(text, "experiment.ron".as_ref()).unwrap_or_else(|found| panic!("{found:?}"));
+    let subject = Subject::new(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let setting = subject.own();
+    let followed = follow::<f32>(&subject, &setting, subject.program(), None, &|| true);
+    let (run, _) = followed.unwrap_or_else(|| panic!("it was never asked to end"));
+    run
+}
+
+/// The strain of 99 % of the edges, RMS over the frames.
+pub fn strain(run: &Run) -> f64 {
+    crate::metrics::root_mean_square(run.frames.iter().map(|frame| frame.strain))
+}
+
+/// The same over the last quarter of the frames.
+pub fn late_strain(run: &Run) -> f64 {
+    let from = run.frames.len() - run.frames.len() / 4;
+    crate::metrics::root_mean_square(run.frames[from..].iter().map(|frame| frame.strain))
+}
+
+/// Candidate pairs that a run of the broad phase finds, on average.
+pub fn pairs_per_search(run: &Run) -> f64 {
+    run.pairs as f64 / run.searches.max(1) as f64
+}
