@@ -52,11 +52,13 @@ impl<R: Real> Solver<R> {
             }
             self.watch_pairs(frame, cloth, schedule, span, tally);
             watch.enter(Stage::Collide);
-            let Self { state, collider_states, pairs, team, .. } = self;
+            let Self { colliders, state, collider_states, pairs, team, .. } = self;
             for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
                 let collider = list.collider;
                 let view = StepParts { frame, cloth, collider, h: schedule.h, time, span: list.span };
-                resolve(list, &view.of(state, &collider_states[collider]), team, tally);
+                let step = view.of(state, &collider_states[collider]);
+                resolve(list, &step, team, tally);
+                list.trapped.lead_out(&colliders[collider], &step);
             }
         }
     }
@@ -142,6 +144,7 @@ impl<R: Real> Solver<R> {
     ) {
         let Self { cloths, colliders, state, collider_states, pairs, far, spans, strayed, .. } = self;
         let span = spans[cloth];
+        let mut freed = Vec::new();
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let collider = list.collider;
             if !frame.colliders[collider].collide {
@@ -156,11 +159,15 @@ impl<R: Real> Solver<R> {
             let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
             let unproven = &tally.unproven;
             Search { cloth, collider, state: state_of, cover: far, strayed, unproven, step }.run(list);
+            list.trapped.begin(cloth.points(), collider, state_of, step);
+            list.trapped.look(collider, state_of, step, |point| freed.push(point));
             *tally.pairs.get_mut() += list.len() as u64;
         }
         *tally.broad_phases.get_mut() += 1;
         let points = cloths[cloth].points();
         strayed[points.start as usize..points.end as usize].fill(false);
+        // Their contacts were found from the inside.
+        freed.into_iter().for_each(|point| strayed[point as usize] = true);
     }
 
     /// Writes what is foreseen for a cloth's points in a window, and for those that are new, or that may
@@ -237,7 +244,11 @@ impl<R: Real> Solver<R> {
             self.strayed.fill(true);
             return;
         }
-        let Self { pairs, state, far, .. } = self;
+        let Self { pairs, state, far, strayed, .. } = self;
+        // They are looked at in every frame.
+        for &(point, _) in pairs.iter().flat_map(|list| &list.trapped.points) {
+            strayed[point as usize] = true;
+        }
         for ([low, high], moved) in far.iter_mut().zip(&state.displacement) {
             for axis in 0..3 {
                 low.0[axis] -= moved.0[axis];

@@ -36,6 +36,7 @@ impl<R: Real> Solver<R> {
             broad_phases: tally.broad_phases.load(Relaxed) as u32,
             caught: tally.caught.load(Relaxed),
             crossed: tally.crossed.load(Relaxed),
+            trapped: self.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
             unproven: tally.unproven.load(Relaxed),
             kinetic_energy,
             finite,

@@ -29,6 +29,8 @@ pub struct StepReport {
     /// Points that ended a substep on the far side of a collider after all. Always 0 unless the
     /// start was already tangled.
     pub crossed: u64,
+    /// Points that are inside a closed collider, and are being led out.
+    pub trapped: u64,
     /// Small neighbourhoods of cloth that motion or stretch had spread so wide that only their points were
     /// kept out of colliders, not their edges and faces; over all runs of the broad phase.
     pub unproven: u64,
@@ -53,6 +55,7 @@ impl Default for StepReport {
             broad_phases: 0,
             caught: 0,
             crossed: 0,
+            trapped: 0,
             unproven: 0,
             kinetic_energy: 0.0,
             finite: true,

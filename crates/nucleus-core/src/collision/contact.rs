@@ -98,6 +98,35 @@ impl<R: Real> Step<'_, R> {
         std::array::from_fn(|k| self.place(points[k], self.start(points[k])))
     }
 
+    /// Where a point is at the start of the step, in metres.
+    pub fn place_at_start(&self, point: u32) -> Point {
+        self.place(point, self.start(point))
+    }
+
+    /// Where a point is at the end of the step, in metres.
+    pub fn place_at_end(&self, point: u32) -> Point {
+        self.place(point, self.moved(point).xyz())
+    }
+
+    /// Pushes a point, unless it is pinned; `led` is the part of it that is not to become velocity.
+    #[allow(unsafe_code)]
+    pub fn push(&self, point: u32, push: Point, led: Point) {
+        let mut row = self.moved(point);
+        if row.0[3] <= R::ZERO {
+            return;
+        }
+        // SAFETY: as for `moved`.
+        unsafe {
+            let mut predicted = self.predicted.get(point);
+            for axis in 0..3 {
+                row.0[axis] += R::from_f64(push[axis]);
+                predicted.0[axis] += R::from_f64(led[axis]);
+            }
+            self.displacement.set(point, row);
+            self.predicted.set(point, predicted);
+        }
+    }
+
     #[inline(always)]
     fn place(&self, point: u32, [x, y, z]: [R; 3]) -> Point {
         Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
@@ -128,7 +157,7 @@ impl<R: Real> Step<'_, R> {
 
     /// The collider's points at the start and at the end of the step.
     #[inline]
-    fn surface<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
+    pub fn surface<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
         std::array::from_fn(|end| std::array::from_fn(|k| self.surface_point(points[k], self.time[end])))
     }
 
@@ -183,6 +212,13 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         pair.turn_to(normal, (b, c), step);
         let gap = pair.least_gap([R::ZERO, R::ONE], |point| cover[point as usize]);
         (gap < step.thickness).then_some(pair)
+    }
+
+    /// Whether the cloth's element, in its midst, is on the far side of the collider's, given the way out there.
+    pub fn is_within(&self, outward: Point) -> bool {
+        let amid = R::from_f64(1e-4);
+        let normal = Point::from(self.normal.map(R::to_f64));
+        self.weights.iter().all(|&weight| weight > amid) && normal.dot(&outward) < 0.0
     }
 
     /// The smallest gap of the pair's plane over a box of possible displacements per cloth point, over a

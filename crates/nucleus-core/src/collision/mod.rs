@@ -10,6 +10,7 @@
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
 //! | cloth against itself and other cloth | [`mutual`] |
+//! | points inside a collider, and how they are led out | [`trapped`] |
 //! | the ground plane | [`plane`] |
 //! | bounce, once velocities are known | [`bounce`] |
 //! | one collision pass | [`resolve`] |
@@ -26,4 +27,5 @@ pub mod plane;
 pub mod resolve;
 pub mod search;
 pub mod skin;
+pub mod trapped;
 pub mod tree;

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::collider::Boxes;
 use super::contact::Pair;
 use super::foresee::Cover;
+use super::trapped::Trapped;
 use crate::model::Blocks;
 use crate::scalar::{Real, Row4};
 
@@ -32,6 +33,8 @@ pub struct PairList<R> {
     pub searched: Vec<bool>,
     /// Boxes of the group being searched.
     pub boxes: Boxes,
+    /// Points of the cloth that are inside the collider.
+    pub trapped: Trapped,
 }
 
 /// Indices into the columns of a [`PairList`].
@@ -62,6 +65,7 @@ impl<R: Real> PairList<R> {
             active: Active::default(),
             searched: Vec::new(),
             boxes: Boxes::default(),
+            trapped: Trapped::default(),
         }
     }
 
@@ -91,7 +95,7 @@ impl<R: Real> PairList<R> {
 
     /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
     pub fn activate(&mut self, cover: &[Cover<R>], window: [f64; 2], thickness: R, blocks: &Blocks) {
-        let Self { span, point_face, edge_edge, face_point, by_point, active, .. } = self;
+        let Self { span, point_face, edge_edge, face_point, by_point, active, trapped, .. } = self;
         let share = |time: f64| if span[1] > span[0] { (time - span[0]) / (span[1] - span[0]) } else { 0.0 };
         let window = window.map(|time| R::from_f64(share(time)));
         let all = |pairs: usize| 0..pairs as u32;
@@ -102,9 +106,10 @@ impl<R: Real> PairList<R> {
             cover,
             window,
             thickness,
+            trapped,
         );
-        pick(edge_edge, all(edge_edge.len()), &mut active.edge_edge, cover, window, thickness);
-        pick(face_point, all(face_point.len()), &mut active.face_point, cover, window, thickness);
+        pick(edge_edge, all(edge_edge.len()), &mut active.edge_edge, cover, window, thickness, trapped);
+        pick(face_point, all(face_point.len()), &mut active.face_point, cover, window, thickness, trapped);
         let place = |end: u32| {
             active.point_face.partition_point(|&pair| point_face[pair as usize].points[0] < end) as u32
         };
@@ -121,8 +126,14 @@ fn pick<R: Real, const N: usize, const M: usize>(
     cover: &[Cover<R>],
     window: [R; 2],
     thickness: R,
+    trapped: &Trapped,
 ) {
     active.clear();
-    let near = |pair: &Pair<R, N, M>| pair.least_gap(window, |point| cover[point as usize]) < thickness;
+    let is_held = |pair: &Pair<R, N, M>| {
+        trapped.points.is_empty() || !pair.points.iter().any(|&point| trapped.holds(point))
+    };
+    let near = |pair: &Pair<R, N, M>| {
+        pair.least_gap(window, |point| cover[point as usize]) < thickness && is_held(pair)
+    };
     active.extend(order.filter(|&pair| near(&pairs[pair as usize])));
 }

@@ -13,7 +13,7 @@ use super::foresee::Cover;
 use super::pairs::PairList;
 use super::skin::Group;
 use super::tree::Aabb;
-use crate::model::{ClothModel, ColliderModel};
+use crate::model::{ClothModel, ColliderModel, Outside};
 use crate::scalar::{Real, Row4};
 
 /// What is searched: a cloth and a collider, whose boxes are fitted to the span.
@@ -107,7 +107,11 @@ impl<R: Real> Search<'_, R> {
         let corners = theirs.triangles[triangle as usize];
         let points = skin.points[group.points.clone()].iter().zip(&ours.points);
         for (&point, _) in points.filter(|(_, reach)| reach.meets(face)) {
-            self.pair([point], corners, *index, &mut found.point_face);
+            let Some(pair) = self.pair([point], corners, *index) else { continue };
+            found.point_face.push(pair);
+            if self.collider.outside.is_some() && self.is_behind(point, corners) {
+                found.trapped.suspects.push(point);
+            }
         }
         if *wide {
             return;
@@ -116,26 +120,49 @@ impl<R: Real> Search<'_, R> {
         for edge in owned.edges.filter(|&edge| boxes.edges[edge].meets(around)) {
             let edges = skin.edges[group.edges.clone()].iter().zip(&ours.edges);
             for (&ends, _) in edges.filter(|(_, reach)| reach.meets(&boxes.edges[edge])) {
-                self.pair(ends, theirs.edges[edge], *index, &mut found.edge_edge);
+                let pair = self.pair(ends, theirs.edges[edge], *index);
+                found.edge_edge.extend(pair.filter(|pair| !self.is_within(pair, |o, n| o.at_edge(edge, n))));
             }
         }
         for point in owned.points.filter(|&point| boxes.points[point].meets(around)) {
             let faces = skin.triangles[group.triangles.clone()].iter().zip(&ours.triangles);
             for (&face, _) in faces.filter(|(_, reach)| reach.meets(&boxes.points[point])) {
-                self.pair(face, [theirs.points[point]], *index, &mut found.face_point);
+                let pair = self.pair(face, [theirs.points[point]], *index);
+                found
+                    .face_point
+                    .extend(pair.filter(|pair| !self.is_within(pair, |o, n| o.at_point(point, n))));
             }
         }
     }
 
-    /// Keeps a pair if it can touch.
+    /// Whether the cloth's element of a pair is inside the collider: kept on its side it would never come out.
+    fn is_within<const N: usize, const M: usize>(
+        &self,
+        pair: &Pair<R, N, M>,
+        outward: impl Fn(&Outside, &dyn Fn(u32) -> Vector3<f64>) -> Vector3<f64>,
+    ) -> bool {
+        let normal = |face: u32| {
+            let [from, _] = self.step.surface(self.collider.skin.triangles[face as usize]);
+            (from[1] - from[0]).cross(&(from[2] - from[0])).try_normalize(0.0).unwrap_or_default()
+        };
+        self.collider.outside.as_ref().is_some_and(|outside| pair.is_within(outward(outside, &normal)))
+    }
+
+    /// Whether a point is behind the plane of a face.
+    fn is_behind(&self, point: u32, corners: [u32; 3]) -> bool {
+        let [from, _] = self.step.surface(corners);
+        let outward = (from[1] - from[0]).cross(&(from[2] - from[0]));
+        outward.dot(&(self.step.place_at_start(point) - from[0])) < 0.0
+    }
+
+    /// A pair, if it can touch.
     fn pair<const N: usize, const M: usize>(
         &self,
         ours: [u32; N],
         theirs: [u32; M],
         group: u32,
-        found: &mut Vec<Pair<R, N, M>>,
-    ) {
-        found.extend(Pair::find(ours, theirs, group, self.step, self.cover));
+    ) -> Option<Pair<R, N, M>> {
+        Pair::find(ours, theirs, group, self.step, self.cover)
     }
 
     /// The box round all that is foreseen for a point of the cloth.

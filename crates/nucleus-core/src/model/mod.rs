@@ -1,6 +1,7 @@
 //! What is fixed once a scene is compiled: the lists of each cloth, laid out to be swept.
 
 mod order;
+mod outside;
 mod rows;
 mod topology;
 
@@ -9,6 +10,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 pub use order::Order;
+pub use outside::Outside;
 pub use rows::{Blocks, Row, RowList};
 pub use topology::{
     Hinge, Link, cross_links, edge_links, hinges, point_areas, triangle_area, triangle_edges,
@@ -106,6 +108,8 @@ pub struct ColliderModel {
     pub positions: Vec<Vector3<f64>>,
     /// What can touch.
     pub skin: Skin,
+    /// Its outside, if it has one: every edge has two faces.
+    pub outside: Option<Outside>,
 }
 
 impl ColliderModel {
@@ -113,7 +117,8 @@ impl ColliderModel {
     pub fn new(collider: Collider) -> Self {
         let triangles = collider.surface.faces.triangles().collect();
         let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
-        Self { positions: collider.surface.positions, skin }
+        let outside = Outside::of(&skin);
+        Self { positions: collider.surface.positions, skin, outside }
     }
 }
 

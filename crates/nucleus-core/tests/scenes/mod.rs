@@ -129,3 +129,16 @@ pub fn drape_placed(points: u32, place: impl Fn(Vec3) -> Vec3) -> ModelBuilder {
     builder.collider(Collider { surface: ball }).expect("a good mesh");
     builder
 }
+
+/// A box of six quads.
+pub fn cuboid(low: Vec3, high: Vec3) -> Surface {
+    let mut surface = Surface::default();
+    for corner in 0..8u32 {
+        let pick = |axis: u32| if corner >> axis & 1 == 0 { low[axis as usize] } else { high[axis as usize] };
+        surface.positions.push(Vec3::new(pick(0), pick(1), pick(2)));
+    }
+    for face in [[0u32, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        surface.faces.push(&face);
+    }
+    surface
+}

@@ -1,0 +1,87 @@
+//! What cannot be satisfied is gone on with, and recovers when it can be.
+
+mod scenes;
+
+use nucleus_core::{
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, Solver, StateView, StepReport,
+};
+use scenes::{INSCRIBED, LINKS, Vec3, cuboid, frame, grid, one_cloth, physical, pins, sphere, still};
+
+/// A sheet held at two edges between two boxes, which close on it within a second until there is `gap` between them,
+/// stay for a second, and part again. The report of each frame.
+fn pinch(gap: f64) -> Vec<StepReport> {
+    let mut sheet = grid(17, 17, Vec3::x(), Vec3::z());
+    sheet.positions.iter_mut().for_each(|p| *p -= Vec3::new(0.5, 0.0, 0.5));
+    let held = pins(&sheet, (0..17).chain(272..289));
+    let mut builder = one_cloth(sheet, ClothLists { self_collision: false, ..ClothLists::ALL });
+    let slab = cuboid(Vec3::new(-0.4, -0.1, -0.4), Vec3::new(0.4, 0.1, 0.4));
+    for _ in 0..2 {
+        builder.collider(Collider { surface: slab.clone() }).expect("a good mesh");
+    }
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let height = |frame: f64| {
+        let closed = (frame / 24.0).min((72.0 - frame) / 24.0).clamp(0.0, 1.0);
+        0.4 + closed * (0.1 + gap / 2.0 - 0.4)
+    };
+    let cloth = ClothFrame {
+        thickness: 0.005,
+        friction: 0.25,
+        stretch_damp: 0.1,
+        damp: 1.0,
+        bend_resistance: 0.1,
+        ..still()
+    };
+    let one = |frame: u32| {
+        let collider = |sign: f64| {
+            let at =
+                |frame: f64| slab.positions.iter().map(|p| p + Vec3::y() * (sign * height(frame))).collect();
+            let (start, end) = (at(f64::from(frame)), at(f64::from(frame + 1)));
+            ColliderFrame { start, end, collide: true, thickness: 0.005, friction: 0.25, bounce: 0.0 }
+        };
+        FrameInput {
+            gravity: Vec3::new(0.0, -1.0, 0.0),
+            pins: held.clone(),
+            colliders: vec![collider(-1.0), collider(1.0)],
+            cloths: vec![cloth],
+            ..scenes::frame(3, physical(96.0))
+        }
+    };
+    (0..130).map(|frame| solver.step(&one(frame), &mut ())).collect()
+}
+
+// EVIDENCE: N2.1-2  what cannot be satisfied does not lock or explode
+#[test]
+fn cloth_pinched_between_two_boxes_goes_on_and_recovers_when_they_part() {
+    for gap in [0.021, 0.0, -0.05] {
+        let reports = pinch(gap);
+        assert!(reports.iter().all(|report| report.finite));
+        let closed = &reports[30];
+        // With less than two thicknesses between the boxes there is no place to be in.
+        assert_eq!(closed.trapped > 0, gap <= 0.0, "gap {gap}: {closed:?}");
+        let last = reports.last().expect("frames");
+        assert!(last.strain_99 < 0.01 && last.kinetic_energy < 1e-2, "gap {gap}: {last:?}");
+        assert_eq!((last.trapped, last.caught), (0, 0), "gap {gap}: {last:?}");
+    }
+}
+
+#[test]
+fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
+    let mut patch = grid(9, 9, Vec3::x() * 0.2, Vec3::z() * 0.2);
+    patch.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.1, 0.2, -0.1));
+    let mut builder = one_cloth(patch, LINKS);
+    builder.collider(Collider { surface: sphere(0.3, Vec3::zeros()) }).expect("a good mesh");
+    let colliders = vec![ColliderFrame { collide: true, friction: 2.0, ..ColliderFrame::default() }];
+    let cloths = vec![ClothFrame { thickness: 0.005, ..still() }];
+    let input = FrameInput { cloths, colliders, ..frame(3, physical(96.0)) };
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let first = solver.step(&input, &mut ());
+    assert_eq!(first.trapped, 81, "{first:?}");
+    // Points are led at 1 m/s. What they pull along is of that speed too, and nothing may be much faster.
+    let energy = 0.2 * 0.2 * 0.2 * 2.0 * 2.0 / 2.0;
+    for frame in 0..6 {
+        let report = solver.step(&input, &mut ());
+        assert!(report.finite && report.kinetic_energy < energy, "frame {frame}, {energy} J: {report:?}");
+        assert_eq!(report.trapped == 0, frame > 0, "frame {frame}: {report:?}");
+    }
+    assert!((0..81).all(|k| solver.point(ClothId(0), k).norm() > 0.3 * INSCRIBED), "a point is inside");
+}
