@@ -9,6 +9,7 @@
 //! | which setting is how wrong, and what it costs              | [`trade`]             |
 //! | how that is shown: a page, a table, JSON                   | [`report`]            |
 //! | whether the advice of the paper holds                      | [`advice`]            |
+//! | what holds where scenes leave the ordinary                 | [`extremes`]          |
 //! | where results are kept                                     | [`store`]             |
 //!
 //! **Invariant:** nothing here knows the terminal, and no result depends on how many runs go on side by side.

@@ -67,7 +67,7 @@ pub fn edges_of_no_length(cells: usize) -> String {
     }
     for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
         let a = row * (cells + 1) + column + 1;
-        // A triangle where the cell has no height keeps some area, so that it is not left out.
+        // It reaches into the next row, so that it has an area and is not left out.
         if row == cells / 2 {
             face(&mut text, &[a, a + cells + 1, a + cells + 2, a + 2 * cells + 3]);
         } else {
