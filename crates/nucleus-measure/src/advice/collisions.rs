@@ -23,7 +23,7 @@ pub const SLIGHTLY_ABOVE: Experiment = Experiment {
 pub const A_TENTH: Experiment = Experiment {
     claim: "N2.4-16",
     says: "Collision iterations should be at least a tenth of the stretch resistance.",
-    scene: "The same at 2 substeps, with a quarter of a tenth to four tenths of the stretch resistance.",
+    scene: "The same at 1 substep, with a quarter of a tenth to four tenths of the stretch resistance.",
     try_it: || vec![a_tenth(), no_passes()],
 };
 
