@@ -67,7 +67,7 @@ impl<R: Real> Solver<R> {
         let (mut rows, mut evaluations) = (vec![false; self.cloths.len()], 0.0);
         let length = |cloth: usize| match name {
             "shear" => self.cloths[cloth].shear.len(),
-            "bend" => self.cloths[cloth].bend.len(),
+            "bend" => self.cloths[cloth].bend.len() + self.cloths[cloth].fold.len(),
             _ => self.cloths[cloth].stretch.len(),
         };
         for sweep in schedule.sweeps.iter().filter(|sweep| named(&sweep.effect, name)) {
