@@ -11,6 +11,7 @@
 //! | what counts as being ahead of them               | [`contest`]   |
 //! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
 //! | the cost of a link; a million points; threads    | [`growth`]    |
+//! | what each feature costs                          | [`features`]  |
 //! | what is kept of a run                            | [`report`]    |
 
 use std::path::PathBuf;
@@ -21,6 +22,7 @@ mod accuracy;
 mod contact;
 mod contest;
 mod csv;
+mod features;
 mod growth;
 
 mod mesh;
@@ -82,6 +84,8 @@ enum Part {
     Threads,
     /// Up to a million points
     Scale,
+    /// One feature after the other on the same sheet
+    Features,
 }
 
 /// Runs the parts that are asked for, each table printed when it is done.
@@ -119,6 +123,7 @@ impl Part {
             }
             Self::Threads => growth::threads(sizes, threads, *repeat, report),
             Self::Scale => growth::scale(*repeat, report),
+            Self::Features => features::run(*repeat, report),
         }
     }
 }

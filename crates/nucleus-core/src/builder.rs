@@ -20,7 +20,9 @@ pub enum Mass {
 pub struct ClothLists {
     /// Links along edges (stretch or compression resistance is ever non-zero).
     pub stretch: bool,
-    /// Cross links of quads (shear resistance is ever non-zero).
+    /// Cross links of quads among them, so that stretch resistance holds shear too (`addCrossLinks`).
+    pub cross_links: bool,
+    /// Cross links of quads once more (shear resistance is ever non-zero).
     pub shear: bool,
     /// Bending between faces (bend resistance is ever non-zero).
     pub bend: bool,
@@ -34,11 +36,25 @@ pub struct ClothLists {
 
 impl ClothLists {
     /// Everything on.
-    pub const ALL: Self =
-        Self { stretch: true, shear: true, bend: true, air: true, damp: true, self_collision: true };
+    pub const ALL: Self = Self {
+        stretch: true,
+        cross_links: true,
+        shear: true,
+        bend: true,
+        air: true,
+        damp: true,
+        self_collision: true,
+    };
     /// Everything off: free points.
-    pub const NONE: Self =
-        Self { stretch: false, shear: false, bend: false, air: false, damp: false, self_collision: false };
+    pub const NONE: Self = Self {
+        stretch: false,
+        cross_links: false,
+        shear: false,
+        bend: false,
+        air: false,
+        damp: false,
+        self_collision: false,
+    };
 }
 
 /// A mesh that becomes cloth. Its shape is both where it starts and how it is at rest.

@@ -69,6 +69,20 @@ pub struct GroundPlane {
     pub friction: f64,
 }
 
+/// Stiffnesses of a cloth as a laboratory gives them. Where there is one, the resistance beside it has no say; nought
+/// is none at all. Only the Physical reading has them: in the Classic one stiffness is a consequence.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stiffness {
+    /// Against being longer than at rest, in N/m: Young's modulus times the thickness of the cloth.
+    pub stretch: Option<f64>,
+    /// Against being shorter than at rest, in N/m.
+    pub compression: Option<f64>,
+    /// Against shear, in N/m, on top of what stretch resists through cross links.
+    pub shear: Option<f64>,
+    /// Against bending, in N·m: moment for a width, over curvature.
+    pub bend: Option<f64>,
+}
+
 /// The attributes of one cloth in one frame. A resistance counts evaluations in 1/24 s (Classic) or
 /// stands for a stiffness (Physical); see [`ResistanceModel`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +95,8 @@ pub struct ClothFrame {
     pub shear_resistance: f64,
     /// Resistance of the angle between faces.
     pub bend_resistance: f64,
+    /// Physical stiffnesses that stand in for what the resistances come to.
+    pub stiffness: Stiffness,
     /// Factor on all rest lengths.
     pub rest_length_scale: f64,
     /// Damping of the relative velocity along links.
@@ -155,6 +171,7 @@ impl Default for ClothFrame {
             compression_resistance: 10.0,
             shear_resistance: 0.0,
             bend_resistance: 0.1,
+            stiffness: Stiffness::default(),
             rest_length_scale: 1.0,
             stretch_damp: 0.1,
             damp: 0.0,

@@ -61,6 +61,7 @@ impl<R: Real> Solver<R> {
             on_all(team, cloth.stretch.groups_mut(), |group| group.anchor(anchors));
             on_all(team, cloth.shear.groups_mut(), |group| group.anchor(anchors));
             on_all(team, cloth.bend.groups_mut(), |group| group.anchor(anchors));
+            on_all(team, cloth.fold.groups_mut(), |group| group.anchor(anchors));
         }
     }
 }

@@ -51,14 +51,16 @@ mod velocity;
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder};
 pub use frame::{
     COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,
-    SelfCollision,
+    SelfCollision, Stiffness,
 };
 pub use ids::{ClothId, ColliderId, PointId};
 pub use observe::{Moment, Stage, StateView, StepObserver};
 pub use passes::PassCost;
 pub use refuse::{FARTHEST, Refusals, Refused};
 pub use report::StepReport;
-pub use resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, classic_stiffness};
+pub use resistance::{
+    BENDING_PER_RESISTANCE, PhysicalStiffness, STIFFNESS_PER_RESISTANCE, classic_stiffness,
+};
 pub use scalar::Real;
 pub use solver::Solver;
 pub use surface::{Faces, Surface};

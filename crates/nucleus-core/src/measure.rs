@@ -5,13 +5,13 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::collide::StepParts;
 use crate::collision::mutual::Mutual;
 use crate::collision::resolve::Tally;
-use crate::constraints::bend::HingeGroup;
+use crate::constraints::hinge::HingeGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::meet::motion;
 use crate::model::ClothModel;
 use crate::report::StepReport;
-use crate::resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE};
+use crate::resistance::PhysicalStiffness;
 use crate::scalar::{Real, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
@@ -76,22 +76,23 @@ impl<R: Real> Solver<R> {
     pub fn elastic_energy(&self, frame: &FrameInput) -> f64 {
         let ResistanceModel::Physical { .. } = frame.resistance else { return 0.0 };
         let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
-            let ClothFrame { stretch_resistance, compression_resistance, shear_resistance, .. } = *settings;
+            let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);
             let scale = settings.rest_length_scale;
-            self.links_hold(cloth.stretch.groups(), scale, [stretch_resistance, compression_resistance])
-                + self.links_hold(cloth.shear.groups(), scale, [shear_resistance; 2])
-                + self.hinges_hold(cloth.bend.groups(), settings.bend_resistance)
+            self.links_hold(cloth.stretch.groups(), scale, [stretch, compression])
+                + self.links_hold(cloth.shear.groups(), scale, [shear; 2])
+                + self.hinges_hold(cloth.bend.groups(), bend)
+                + self.hinges_hold(cloth.fold.groups(), bend)
         };
         self.cloths.iter().zip(&frame.cloths).map(of_cloth).sum()
     }
 
-    /// What links hold, by their resistance above and below their rest length.
+    /// What links hold, by the stiffness of the cloth in N/m above and below their rest length.
     fn links_hold(&self, groups: &[LinkGroup<R>], rest_scale: f64, [above, below]: [f64; 2]) -> f64 {
         let hold = |(group, lane): (&LinkGroup<R>, usize)| {
             let rest = group.rest_length[lane].to_f64() * rest_scale;
             let stretch = self.length(group, lane) - rest;
-            let resistance = if stretch > 0.0 { above } else { below };
-            let stiffness = STIFFNESS_PER_RESISTANCE * resistance / group.slenderness[lane].to_f64();
+            let of_cloth = if stretch > 0.0 { above } else { below };
+            let stiffness = of_cloth / group.slenderness[lane].to_f64();
             stiffness * stretch * stretch / 2.0
         };
         groups.iter().flat_map(|group| (0..4).map(move |lane| (group, lane))).map(hold).sum()
@@ -104,18 +105,17 @@ impl<R: Real> Solver<R> {
         dot(d, d).sqrt().to_f64()
     }
 
-    fn hinges_hold(&self, groups: &[HingeGroup<R>], resistance: f64) -> f64 {
-        let hold = |(group, lane): (&HingeGroup<R>, usize)| {
+    fn hinges_hold<const N: usize>(&self, groups: &[HingeGroup<R, N>], stiffness: f64) -> f64 {
+        let hold = |(group, lane): (&HingeGroup<R, N>, usize)| {
             let bent = self.bending(group, lane) - group.rest[lane].to_f64();
-            BENDING_PER_RESISTANCE * resistance * bent * bent / 2.0
+            stiffness * bent * bent / 2.0
         };
         groups.iter().flat_map(|group| (0..4).map(move |lane| (group, lane))).map(hold).sum()
     }
 
     /// The length of a hinge's bending vector.
-    fn bending(&self, group: &HingeGroup<R>, lane: usize) -> f64 {
-        let [k0, k1, k2] = group.weights.map(|weight| weight[lane]);
-        let weights = [k0, k1, k2, -(k0 + k1 + k2)];
+    fn bending<const N: usize>(&self, group: &HingeGroup<R, N>, lane: usize) -> f64 {
+        let weights = group.weights.map(|weight| weight[lane]);
         let points = group.points.map(|point| self.state.displacement[point[lane] as usize].0);
         let c: [R; 3] = std::array::from_fn(|axis| {
             group.anchored[axis][lane] + weights.iter().zip(points).map(|(&k, x)| k * x[axis]).sum()

@@ -1,7 +1,9 @@
 //! The program that a scene compiles to: its passes, how long their lists are, and how often they run.
 
 use crate::air::Air;
-use crate::frame::FrameInput;
+use crate::constraints::damp::DampStrength;
+use crate::frame::{ClothFrame, FrameInput};
+use crate::model::ClothModel;
 use crate::scalar::Real;
 use crate::schedule::{Effect, Round, Schedule};
 use crate::solver::Solver;
@@ -32,7 +34,7 @@ impl<R: Real> Solver<R> {
         let points: usize = self.cloths.iter().map(|cloth| cloth.points().len()).sum();
         let mut passes = vec![PassCost { name: "predict", rows: points, sweeps: f64::from(steps) }];
         let breathes = |(cloth, settings)| {
-            let cloth: &crate::model::ClothModel<R> = cloth;
+            let cloth: &ClothModel<R> = cloth;
             !cloth.triangles.is_empty() && Air::<R>::new(frame, settings, cloth.weight, schedule.h).is_some()
         };
         let airy = self.cloths.iter().zip(&frame.cloths).filter(|&pair| breathes(pair));
@@ -41,6 +43,12 @@ impl<R: Real> Solver<R> {
         for name in ["stretch", "compress", "shear", "bend"] {
             passes.push(self.sweeps_of(name, &schedule));
         }
+        let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
+            cloth.damps && DampStrength::<R>::new(settings.stretch_damp, settings.damp, schedule.h).is_some()
+        };
+        let damped = self.cloths.iter().zip(&frame.cloths).filter(damped);
+        let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
+        passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
         let collisions = schedule.rounds.iter().filter(|round| **round == Round::Collide);
         let count = (collisions.count() * steps as usize) as f64;
         let touching = self
@@ -67,7 +75,7 @@ impl<R: Real> Solver<R> {
         let (mut rows, mut evaluations) = (vec![false; self.cloths.len()], 0.0);
         let length = |cloth: usize| match name {
             "shear" => self.cloths[cloth].shear.len(),
-            "bend" => self.cloths[cloth].bend.len(),
+            "bend" => self.cloths[cloth].bend.len() + self.cloths[cloth].fold.len(),
             _ => self.cloths[cloth].stretch.len(),
         };
         for sweep in schedule.sweeps.iter().filter(|sweep| named(&sweep.effect, name)) {

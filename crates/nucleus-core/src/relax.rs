@@ -1,52 +1,96 @@
 //! Sweeps: each list of a round once, blocks side by side, then what crosses them, colour by colour.
 
 use crate::columns::Shared;
+use crate::constraints::hinge::HingeGroup;
+use crate::constraints::stretch::{LinkGroup, LinkStrength};
 use crate::constraints::{bend, stretch};
-use crate::model::{Blocks, RowList};
-use crate::scalar::Real;
-use crate::schedule::{Effect, Sweep};
+use crate::model::{Blocks, ClothModel, RowList};
+use crate::scalar::{Real, Row4};
+use crate::schedule::{Direction, Effect, Sweep};
 use crate::solver::Solver;
 use crate::team::Team;
 
 /// Does the sweeps of a round. Inner rows of all lists come first, block by block, while the block is in the
-/// core's cache; then cross rows, list by list.
-pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>]) {
+/// core's cache; then cross rows, list by list. Backward, all of that from the last to the first, in cloths that
+/// turn.
+pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>], direction: Direction) {
     let Solver { cloths, state, team, .. } = solver;
     let points = Shared::new(&mut state.displacement);
     for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
         let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
-        // SAFETY (of all blocks below): inner rows of two blocks, and cross rows of one colour, share no point;
-        // the lists are laid out so, and tests hold them to it.
-        #[allow(unsafe_code)]
-        team.phase(cloth.blocks.len(), |block| {
-            for sweep in of_cloth {
-                match &sweep.effect {
-                    Effect::Stretch(strength) => unsafe {
-                        stretch::relax(points, cloth.stretch.inner(block), strength);
-                    },
-                    Effect::Shear(strength) => unsafe {
-                        stretch::relax(points, cloth.shear.inner(block), strength);
-                    },
-                    Effect::Bend(strength) => unsafe {
-                        bend::relax(points, cloth.bend.inner(block), strength);
-                    },
-                }
+        let backward = direction == Direction::Backward && cloth.turns;
+        let broom = Broom { points, cloth, backward };
+        if backward {
+            of_cloth.iter().rev().for_each(|sweep| broom.cross(team, &sweep.effect));
+            team.phase(cloth.blocks.len(), |block| {
+                of_cloth.iter().rev().for_each(|sweep| broom.inner(block, &sweep.effect));
+            });
+        } else {
+            team.phase(cloth.blocks.len(), |block| {
+                of_cloth.iter().for_each(|sweep| broom.inner(block, &sweep.effect));
+            });
+            of_cloth.iter().for_each(|sweep| broom.cross(team, &sweep.effect));
+        }
+    }
+}
+
+/// Sweeps the lists of one cloth in one direction.
+///
+/// Safety of all its passes: inner rows of two blocks, and cross rows of one colour, share no point; the lists are
+/// laid out so, and tests hold them to it.
+struct Broom<'a, R: Real> {
+    points: Shared<'a, Row4<R>>,
+    cloth: &'a ClothModel<R>,
+    backward: bool,
+}
+
+impl<R: Real> Broom<'_, R> {
+    fn inner(&self, block: usize, effect: &Effect<R>) {
+        let cloth = self.cloth;
+        match effect {
+            Effect::Stretch(strength) => self.links(cloth.stretch.inner(block), strength),
+            Effect::Shear(strength) => self.links(cloth.shear.inner(block), strength),
+            Effect::Bend(strength) => {
+                self.hinges(cloth.bend.inner(block), strength);
+                self.hinges(cloth.fold.inner(block), strength);
             }
-        });
-        #[allow(unsafe_code)]
-        for sweep in of_cloth {
-            match &sweep.effect {
-                Effect::Stretch(strength) => {
-                    over_cross(team, &cloth.stretch, |rows| unsafe {
-                        stretch::relax(points, rows, strength)
-                    });
-                }
-                Effect::Shear(strength) => {
-                    over_cross(team, &cloth.shear, |rows| unsafe { stretch::relax(points, rows, strength) });
-                }
-                Effect::Bend(strength) => {
-                    over_cross(team, &cloth.bend, |rows| unsafe { bend::relax(points, rows, strength) });
-                }
+        }
+    }
+
+    fn cross(&self, team: &Team, effect: &Effect<R>) {
+        let (cloth, backward) = (self.cloth, self.backward);
+        match effect {
+            Effect::Stretch(strength) => {
+                over_cross(team, &cloth.stretch, backward, |rows| self.links(rows, strength));
+            }
+            Effect::Shear(strength) => {
+                over_cross(team, &cloth.shear, backward, |rows| self.links(rows, strength));
+            }
+            Effect::Bend(strength) => {
+                over_cross(team, &cloth.bend, backward, |rows| self.hinges(rows, strength));
+                over_cross(team, &cloth.fold, backward, |rows| self.hinges(rows, strength));
+            }
+        }
+    }
+
+    #[allow(unsafe_code)]
+    fn links(&self, rows: &[LinkGroup<R>], strength: &LinkStrength<R>) {
+        // SAFETY: see above.
+        unsafe {
+            match self.backward {
+                true => stretch::relax(self.points, rows.iter().rev(), strength),
+                false => stretch::relax(self.points, rows.iter(), strength),
+            }
+        }
+    }
+
+    #[allow(unsafe_code)]
+    fn hinges<const N: usize>(&self, rows: &[HingeGroup<R, N>], strength: &bend::BendStrength<R>) {
+        // SAFETY: see above.
+        unsafe {
+            match self.backward {
+                true => bend::relax(self.points, rows.iter().rev(), strength),
+                false => bend::relax(self.points, rows.iter(), strength),
             }
         }
     }
@@ -55,12 +99,14 @@ pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>]) {
 /// Does `work` on all rows of a list once: inner rows, then cross rows.
 pub fn over_list<G: Sync>(team: &Team, blocks: &Blocks, list: &RowList<G>, work: impl Fn(&[G]) + Sync) {
     team.phase(blocks.len(), |block| work(list.inner(block)));
-    over_cross(team, list, work);
+    over_cross(team, list, false, work);
 }
 
 /// Does `work` on the cross rows of a list, colour by colour.
-fn over_cross<G: Sync>(team: &Team, list: &RowList<G>, work: impl Fn(&[G]) + Sync) {
-    for colour in 0..list.cross_colours() {
+fn over_cross<G: Sync>(team: &Team, list: &RowList<G>, backward: bool, work: impl Fn(&[G]) + Sync) {
+    let count = list.cross_colours();
+    for k in 0..count {
+        let colour = if backward { count - 1 - k } else { k };
         team.phase(list.cross_tasks(colour), |task| work(list.cross(colour, task)));
     }
 }

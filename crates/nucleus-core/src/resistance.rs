@@ -7,7 +7,7 @@
 //! *Physical*: a stiffness. The cloth is the same on every mesh and at every setting; what a setting changes
 //! is the error.
 
-use crate::frame::COUNT_PERIOD;
+use crate::frame::{COUNT_PERIOD, ClothFrame};
 
 /// N/m of membrane stiffness for a stretch, compression or shear resistance of 1. The default of 20 is then
 /// 10 kN/m, a usual woven cloth.
@@ -16,6 +16,33 @@ pub const STIFFNESS_PER_RESISTANCE: f64 = 500.0;
 /// N·m of bending stiffness for a bend resistance of 1. The presets for T-shirt (0.1), denim (0.4) and
 /// leather (10) are then 1e-5, 4e-5 and 1e-3 N·m, as such cloths are.
 pub const BENDING_PER_RESISTANCE: f64 = 1e-4;
+
+/// What a cloth's resistances come to in the Physical reading, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhysicalStiffness {
+    /// N/m against being longer than at rest.
+    pub stretch: f64,
+    /// N/m against being shorter than at rest.
+    pub compression: f64,
+    /// N/m against shear, on top of cross links.
+    pub shear: f64,
+    /// N·m against bending.
+    pub bend: f64,
+}
+
+impl PhysicalStiffness {
+    /// A stiffness that is given counts as it is; else it is the resistance times its unit.
+    pub fn of(cloth: &ClothFrame) -> Self {
+        let given = &cloth.stiffness;
+        let or = |given: Option<f64>, resistance: f64, unit: f64| given.unwrap_or(resistance * unit).max(0.0);
+        Self {
+            stretch: or(given.stretch, cloth.stretch_resistance, STIFFNESS_PER_RESISTANCE),
+            compression: or(given.compression, cloth.compression_resistance, STIFFNESS_PER_RESISTANCE),
+            shear: or(given.shear, cloth.shear_resistance, STIFFNESS_PER_RESISTANCE),
+            bend: or(given.bend, cloth.bend_resistance, BENDING_PER_RESISTANCE),
+        }
+    }
+}
 
 /// Most evaluations of one effect in a substep, whatever the scene asks for (`maxIterations`).
 const MOST_SWEEPS: f64 = 10_000.0;

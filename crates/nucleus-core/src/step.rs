@@ -94,7 +94,7 @@ impl<R: Real> Solver<R> {
             match round {
                 Round::Relax(sweeps) => {
                     watch.enter(Stage::Relax);
-                    relax::sweep(self, &schedule.sweeps[sweeps.clone()]);
+                    relax::sweep(self, &schedule.sweeps[sweeps.clone()], schedule.direction(index));
                 }
                 Round::MeetEachOther => self.meet(frame, schedule, span, tally, watch),
                 Round::Collide => self.meet_colliders(frame, schedule, span, tally, watch),

@@ -27,3 +27,4 @@ pub mod report;
 pub mod store;
 pub mod trade;
 pub mod trajectory;
+pub mod validation;

@@ -126,7 +126,7 @@ impl Workload {
 }
 
 /// Cloth that feels gravity and nothing else.
-fn frame(setting: &Setting) -> FrameInput {
+pub fn frame(setting: &Setting) -> FrameInput {
     let cloth = ClothFrame {
         stretch_resistance: setting.resistance,
         compression_resistance: setting.resistance,

@@ -11,6 +11,7 @@ mod render;
 mod run;
 mod scene_info;
 mod trade;
+mod validate;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -29,6 +30,7 @@ pub enum Command {
     Attrs(attrs::Attrs),
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
+    Validate(validate::Validate),
 }
 
 impl Command {
@@ -44,6 +46,7 @@ impl Command {
             Self::Attrs(attrs) => attrs.run(),
             Self::Extremes(extremes) => extremes.run(),
             Self::Trade(trade) => trade.run(),
+            Self::Validate(validate) => validate.run(),
         }
     }
 }

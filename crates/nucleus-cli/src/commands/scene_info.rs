@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use nucleus_core::{FrameInput, PassCost, ResistanceModel, STIFFNESS_PER_RESISTANCE, classic_stiffness};
+use nucleus_core::{ClothFrame, FrameInput, PassCost, PhysicalStiffness, ResistanceModel, classic_stiffness};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Object, ObjectKind, Program};
 use nucleus_graph::scene::{Scene, TimeSpan};
@@ -29,8 +29,8 @@ struct ObjectFacts {
     faces: usize,
     /// Of the box round it at the start, in metres.
     size: [f64; 3],
-    /// What its stretch resistance amounts to in the first frame, in N/m; nothing for colliders.
-    stiffness: Option<f64>,
+    /// What its resistances come to in the first frame; nothing for colliders.
+    stiffness: Option<ClothStiffness>,
 }
 
 impl SceneInfo {
@@ -113,8 +113,8 @@ impl ObjectFacts {
         let counts = [(self.points, "point"), (self.edges, "edge"), (self.faces, "face")];
         let counts = counts.map(|(number, noun)| figures::count(number, noun)).join(", ");
         let line = format!("{}: {}, {counts}, {x} x {y} x {z} m", self.name, self.kind);
-        match self.stiffness {
-            Some(stiffness) => format!("{line}, stretch about {} N/m", figures::number(stiffness)),
+        match &self.stiffness {
+            Some(stiffness) => format!("{line}, {}", stiffness.words()),
             None => line,
         }
     }
@@ -122,7 +122,9 @@ impl ObjectFacts {
     fn as_json(&self) -> Value {
         json!({
             "name": self.name, "kind": self.kind, "points": self.points, "edges": self.edges, "faces": self.faces,
-            "size_metres": self.size, "stretch_stiffness": self.stiffness,
+            "size_metres": self.size,
+            "stretch_stiffness": self.stiffness.as_ref().map(ClothStiffness::stretch),
+            "stiffness": self.stiffness.as_ref().map(ClothStiffness::as_json),
         })
     }
 }
@@ -132,8 +134,7 @@ fn facts(object: &Object, program: &Program, simulation: &Simulation, input: &Fr
     let (kind, stiffness) = match object.kind {
         ObjectKind::Cloth(id) => {
             simulation.state().positions(id, 1.0, &mut positions);
-            let resistance = input.cloths[id.index()].stretch_resistance;
-            ("cloth", Some(stretch_stiffness(resistance, program, input)))
+            ("cloth", Some(ClothStiffness::of(&input.cloths[id.index()], program, input)))
         }
         ObjectKind::Collider(id) => {
             simulation.state().collider_positions(id, 1.0, &mut positions);
@@ -151,14 +152,57 @@ fn facts(object: &Object, program: &Program, simulation: &Simulation, input: &Fr
     }
 }
 
-/// N/m. The Classic reading takes the mean mass of all points of the scene.
-fn stretch_stiffness(resistance: f64, program: &Program, input: &FrameInput) -> f64 {
-    let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
-    let points: usize = program.objects().iter().filter(is_cloth).map(|object| object.points).sum();
-    let substep = input.duration / f64::from(input.substeps);
-    match input.resistance {
-        ResistanceModel::Classic => classic_stiffness(resistance, substep, program.mass() / points as f64),
-        ResistanceModel::Physical { .. } => STIFFNESS_PER_RESISTANCE * resistance,
+/// What the resistances of a cloth come to, in SI units.
+enum ClothStiffness {
+    /// N/m, about: a consequence of mesh and substeps.
+    Classic(f64),
+    /// What they stand for.
+    Physical(PhysicalStiffness),
+}
+
+impl ClothStiffness {
+    /// The Classic reading takes the mean mass of all points of the scene.
+    fn of(cloth: &ClothFrame, program: &Program, input: &FrameInput) -> Self {
+        let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
+        let points: usize = program.objects().iter().filter(is_cloth).map(|object| object.points).sum();
+        let substep = input.duration / f64::from(input.substeps);
+        match input.resistance {
+            ResistanceModel::Classic => {
+                let mass = program.mass() / points as f64;
+                Self::Classic(classic_stiffness(cloth.stretch_resistance, substep, mass))
+            }
+            ResistanceModel::Physical { .. } => Self::Physical(PhysicalStiffness::of(cloth)),
+        }
+    }
+
+    fn stretch(&self) -> f64 {
+        match self {
+            Self::Classic(stretch) => *stretch,
+            Self::Physical(stiffness) => stiffness.stretch,
+        }
+    }
+
+    fn words(&self) -> String {
+        let Self::Physical(PhysicalStiffness { stretch, compression, shear, bend }) = self else {
+            return format!("stretch about {} N/m", figures::number(self.stretch()));
+        };
+        let membrane = [(stretch, "stretch"), (compression, "compression"), (shear, "shear")];
+        let membrane = membrane.map(|(stiffness, name)| (stiffness, name, "N/m"));
+        let all =
+            membrane.into_iter().chain([(bend, "bend", "N·m")]).filter(|(stiffness, ..)| **stiffness > 0.0);
+        let words: Vec<String> = all
+            .map(|(stiffness, name, unit)| format!("{name} {} {unit}", figures::number(*stiffness)))
+            .collect();
+        if words.is_empty() { "no stiffness".to_owned() } else { words.join(", ") }
+    }
+
+    fn as_json(&self) -> Value {
+        match self {
+            Self::Classic(stretch) => json!({ "stretch": stretch }),
+            Self::Physical(PhysicalStiffness { stretch, compression, shear, bend }) => {
+                json!({ "stretch": stretch, "compression": compression, "shear": shear, "bend": bend })
+            }
+        }
     }
 }
 

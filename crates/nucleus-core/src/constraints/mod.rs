@@ -3,5 +3,6 @@
 
 pub mod bend;
 pub mod damp;
+pub mod hinge;
 pub mod shear;
 pub mod stretch;

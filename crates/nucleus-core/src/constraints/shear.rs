@@ -4,7 +4,7 @@
 //! of `shearResistance`; what makes them shear is which points they join.
 
 use super::stretch::LinkRow;
-use crate::model::cross_links;
+use crate::model::shear_links;
 use crate::scalar::Real;
 use crate::surface::Surface;
 
@@ -14,7 +14,7 @@ use crate::surface::Surface;
 /// resistance means the same stiffness here as along the edges.
 pub fn rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
     let mut rows: Vec<LinkRow<R>> =
-        cross_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
+        shear_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
     rows.sort_unstable_by_key(|row| row.ends);
     rows
 }

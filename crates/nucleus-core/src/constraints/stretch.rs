@@ -114,9 +114,9 @@ impl<R: Real> LinkGroup<R> {
 /// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<R: Real>(
+pub unsafe fn relax<'a, R: Real>(
     points: Shared<'_, Row4<R>>,
-    groups: &[LinkGroup<R>],
+    groups: impl Iterator<Item = &'a LinkGroup<R>>,
     strength: &LinkStrength<R>,
 ) {
     let both = |sides: Sides<R>| (R::Lanes::splat(sides.above), R::Lanes::splat(sides.below));

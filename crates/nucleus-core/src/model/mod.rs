@@ -13,12 +13,12 @@ pub use order::Order;
 pub use outside::Outside;
 pub use rows::{Blocks, Row, RowList};
 pub use topology::{
-    Hinge, Link, cross_links, edge_links, hinges, point_areas, triangle_area, triangle_edges,
+    Link, Seam, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area, triangle_edges,
 };
 
 use crate::builder::{Cloth, Collider, Mass};
 use crate::collision::skin::Skin;
-use crate::constraints::bend::{HingeGroup, HingeRow};
+use crate::constraints::hinge::{self, HingeGroup};
 use crate::constraints::shear;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::scalar::Real;
@@ -31,16 +31,21 @@ pub struct ClothModel<R> {
     pub order: Order,
     /// Its points in the columns, in blocks.
     pub blocks: Blocks,
-    /// Links along edges.
+    /// Links along edges and, where they are asked for, cross links.
     pub stretch: RowList<LinkGroup<R>>,
-    /// Cross links of quads.
+    /// Cross links again, held by a resistance of their own.
     pub shear: RowList<LinkGroup<R>>,
-    /// Hinges between faces.
-    pub bend: RowList<HingeGroup<R>>,
+    /// Hinges between triangles, and twists of quads.
+    pub bend: RowList<HingeGroup<R, 4>>,
+    /// Hinges between quads.
+    pub fold: RowList<HingeGroup<R, 6>>,
     /// The triangles that touch each block, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// What can touch; empty where the scene has no collider.
     pub skin: Skin,
+    /// Whether its sweeps turn round from time to time: its links close rings of an odd number (triangles, or
+    /// quads with cross links), and swept always in one order they would stir it.
+    pub turns: bool,
     /// `pointMass`, as a number: air forces are divided by it.
     pub weight: f64,
     /// Mean length of an edge at rest in metres; nought without edges.
@@ -62,8 +67,10 @@ impl<R: Real> ClothModel<R> {
             stretch: RowList::default(),
             shear: RowList::default(),
             bend: RowList::default(),
+            fold: RowList::default(),
             triangles: Vec::new(),
             skin: Skin::default(),
+            turns: cloth.lists.cross_links || surface.faces.iter().any(|face| face.len() % 2 == 1),
             weight,
             edge_length: 0.0,
             damps: cloth.lists.damp,
@@ -71,13 +78,16 @@ impl<R: Real> ClothModel<R> {
         let places = model.order.places().to_vec();
         let place = |point: u32| first + places[point as usize];
         if cloth.lists.stretch {
-            model.stretch = RowList::new(&edge_rows(surface, place), &model.blocks);
+            model.stretch =
+                RowList::new(&stretch_rows(surface, cloth.lists.cross_links, place), &model.blocks);
         }
         if cloth.lists.shear {
             model.shear = RowList::new(&shear::rows(surface, place), &model.blocks);
         }
         if cloth.lists.bend {
-            model.bend = RowList::new(&hinge_rows(surface, place), &model.blocks);
+            let rows = hinge::rows(surface, place);
+            model.bend = RowList::new(&rows.of_four, &model.blocks);
+            model.fold = RowList::new(&rows.of_six, &model.blocks);
         }
         if cloth.lists.air {
             model.triangles = triangles_by_block(surface, place, &model.blocks);
@@ -137,27 +147,19 @@ pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
     }
 }
 
-fn edge_rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
-    let mut rows: Vec<LinkRow<R>> =
-        edge_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
+fn stretch_rows<R: Real>(
+    surface: &Surface,
+    with_cross_links: bool,
+    place: impl Fn(u32) -> u32,
+) -> Vec<LinkRow<R>> {
+    let links = stretch_links(surface, with_cross_links);
+    let mut rows: Vec<LinkRow<R>> = links.iter().map(|link| LinkRow::new(link, &place)).collect();
     rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
     rows
 }
 
-fn hinge_rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<HingeRow<R>> {
-    let all = hinges(surface);
-    let mut rows: Vec<HingeRow<R>> =
-        all.iter().filter_map(|hinge| HingeRow::new(surface, hinge, &place)).collect();
-    rows.sort_unstable_by_key(|row| {
-        let mut points = [0, 1, 2, 3].map(|k| row.point(k));
-        points.sort_unstable();
-        points
-    });
-    rows
-}
-
 fn mean_length(surface: &Surface) -> f64 {
-    let links = edge_links(surface);
+    let links = stretch_links(surface, false);
     links.iter().map(|link| link.rest_length).sum::<f64>() / links.len().max(1) as f64
 }
 

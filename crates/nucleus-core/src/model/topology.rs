@@ -1,5 +1,5 @@
 //! A mesh taken apart into the simple lists the solver works on (§2.2, §2.4): edges, cross links of quads,
-//! hinges between triangles, and the areas and lengths that weigh them.
+//! seams between faces, and the areas and lengths that weigh them.
 
 use nalgebra::Vector3;
 
@@ -17,76 +17,166 @@ pub struct Link {
     pub slenderness: f64,
 }
 
-/// Two triangles that share an edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hinge {
-    /// The ends of the shared edge, then the opposite corners.
-    pub points: [u32; 4],
+/// Two faces that share an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seam {
+    /// The ends of the edge.
+    pub ends: [u32; 2],
+    /// The faces on its two sides.
+    pub faces: [u32; 2],
 }
 
-/// One side of one face: its ends in ascending order, the face, and the face's corner opposite (triangles only).
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+/// A line between two corners of a face, the lower first, and how much of the face's area it answers for.
+#[derive(Clone, Copy)]
+struct Line {
     ends: [u32; 2],
-    face: u32,
-    opposite: u32,
+    strip: f64,
 }
 
-/// The edges of the mesh as links, each once, sorted by ends.
+/// The edges of the mesh as links, each once, sorted by ends, and where `with_cross_links` the cross links after
+/// them: both diagonals of each quad (`addCrossLinks`), and of larger polygons every line between two points that
+/// are not neighbours. A triangle has none.
 ///
-/// The strips of a square grid are as wide as its cells, so that the links together are exactly as stiff as
-/// the cloth along both directions.
-pub fn edge_links(surface: &Surface) -> Vec<Link> {
-    let areas: Vec<f64> = surface.faces.iter().map(|face| polygon_area(surface, face)).collect();
-    let mut sides = polygon_sides(surface);
-    sides.sort_unstable();
-    let strips = sides.chunk_by(|a, b| a.ends == b.ends);
-    let link = |shared: &[Side]| {
+/// A stiffness K of the cloth in N/m becomes one of K strip / l² of a link, where the strip is the area of cloth
+/// that the link answers for. The strips are such that the links together pull back with K along the edges of a
+/// grid, and in every direction in equilateral triangles and in squares with cross links, which then also narrow
+/// by a third of what they are stretched, and resist shear with 3/8 K.
+pub fn stretch_links(surface: &Surface, with_cross_links: bool) -> Vec<Link> {
+    let mut links = joined(surface, sides(surface, with_cross_links));
+    if with_cross_links {
+        links.extend(joined(surface, diagonals(surface, strip_of_diagonal)));
+    }
+    links
+}
+
+/// The cross links alone, each as long as it is wide: what `shearResistance` holds.
+pub fn shear_links(surface: &Surface) -> Vec<Link> {
+    let mut links = joined(surface, diagonals(surface, |_, _, _| 0.0));
+    links.iter_mut().for_each(|link| link.slenderness = 1.0);
+    links
+}
+
+/// Lines as links: those between the same two points are one.
+fn joined(surface: &Surface, mut lines: Vec<Line>) -> Vec<Link> {
+    lines.sort_by_key(|line| line.ends);
+    let strips = lines.chunk_by(|a, b| a.ends == b.ends);
+    let link = |shared: &[Line]| {
         let ends = shared[0].ends;
         let rest_length = distance(surface, ends);
-        // An edge's share of a face: its sides share twice the area, since every direction is covered once.
-        let share = |side: &Side| {
-            let corners = surface.faces.face(side.face as usize).len();
-            2.0 * areas[side.face as usize] / corners as f64
-        };
-        let strip: f64 = shared.iter().map(share).sum();
+        let strip: f64 = shared.iter().map(|line| line.strip).sum();
         Link { ends, rest_length, slenderness: slenderness(rest_length, strip) }
     };
     strips.map(link).collect()
 }
 
-/// The cross links: both diagonals of each quad (`addCrossLinks`); a triangle has none.
-/// Of larger polygons every point is linked to every other that is not its neighbour.
-pub fn cross_links(surface: &Surface) -> Vec<Link> {
-    let mut links = Vec::new();
+/// The sides of all faces.
+fn sides(surface: &Surface, with_cross_links: bool) -> Vec<Line> {
+    let mut sides = Vec::with_capacity(surface.faces.corners().len());
+    for face in surface.faces.iter() {
+        let area = polygon_area(surface, face);
+        // Sides alone cover every direction once and share twice the area; those of a triangle brace each other,
+        // and share it three times.
+        let alone = if face.len() == 3 { area } else { 2.0 * area / face.len() as f64 };
+        let cell = (with_cross_links && face.len() == 4).then(|| Cell::of(surface, face));
+        for (k, ends) in around(face).enumerate() {
+            let strip = match (&cell, face.len()) {
+                (Some(cell), _) => cell.side(k % 2) * area / 2.0,
+                (None, 5..) if with_cross_links => polygon_strip(surface, face, ends),
+                _ => alone,
+            };
+            sides.push(Line { ends, strip });
+        }
+    }
+    sides
+}
+
+/// The sides of a face, each with its lower end first.
+fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let next = face.iter().cycle().skip(1);
+    face.iter().zip(next).map(|(&p, &q)| [p.min(q), p.max(q)])
+}
+
+fn strip_of_diagonal(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
+    match face.len() {
+        4 => Cell::of(surface, face).diagonal() * polygon_area(surface, face),
+        _ => polygon_strip(surface, face, ends),
+    }
+}
+
+/// All links of a large polygon are as stiff, and their strips make three times its area.
+fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
+    let pairs = (1..face.len()).flat_map(|k| (0..k).map(move |j| [face[j], face[k]]));
+    let squares: f64 = pairs.map(|pair| distance(surface, pair).powi(2)).sum();
+    if squares > 0.0 {
+        3.0 * polygon_area(surface, face) * distance(surface, ends).powi(2) / squares
+    } else {
+        0.0
+    }
+}
+
+/// A quad as a rectangle, which it mostly is: the squares of the cosines between its diagonal and its sides.
+///
+/// With diagonals of D = 3 c_x² c_y² of its area each, the cross stiffness is 6 c_x⁴ c_y⁴, that is 3/8 in a square;
+/// the sides get what is missing to pull back with exactly 1 along both of them.
+struct Cell {
+    cosine: [f64; 2],
+}
+
+impl Cell {
+    fn of(surface: &Surface, face: &[u32]) -> Self {
+        let length = |k: usize| distance(surface, [face[k], face[(k + 1) % 4]]);
+        let squares = [length(0) + length(2), length(1) + length(3)].map(|sum| sum * sum);
+        let all = squares[0] + squares[1];
+        Self { cosine: if all > 0.0 { squares.map(|square| square / all) } else { [0.5; 2] } }
+    }
+
+    /// Share of the area for one diagonal.
+    fn diagonal(&self) -> f64 {
+        3.0 * self.cosine[0] * self.cosine[1]
+    }
+
+    /// Share of the area for both sides along an axis.
+    fn side(&self, axis: usize) -> f64 {
+        let cross = 2.0 * self.diagonal() * self.cosine[0] * self.cosine[1];
+        // E = C - cross² / C is to be 1.
+        let along = (1.0 + (1.0 + 4.0 * cross * cross).sqrt()) / 2.0;
+        along - 2.0 * self.diagonal() * self.cosine[axis] * self.cosine[axis]
+    }
+}
+
+/// Lines between points of a face that are not neighbours, with the strip of each.
+fn diagonals(surface: &Surface, strip: impl Fn(&Surface, &[u32], [u32; 2]) -> f64) -> Vec<Line> {
+    let mut lines = Vec::new();
     for face in surface.faces.iter().filter(|face| face.len() > 3) {
         for first in 0..face.len() {
             for second in first + 2..face.len() {
                 if first > 0 || second + 1 < face.len() {
                     let ends = [face[first].min(face[second]), face[first].max(face[second])];
-                    links.push(Link { ends, rest_length: distance(surface, ends), slenderness: 1.0 });
+                    lines.push(Line { ends, strip: strip(surface, face, ends) });
                 }
             }
         }
     }
-    links.sort_unstable_by_key(|link| link.ends);
-    links.dedup_by_key(|link| link.ends);
-    links
+    lines
 }
 
-/// The hinges of the triangulated mesh. Where more than two triangles share an edge (not a manifold), each
-/// is hinged to the next.
-pub fn hinges(surface: &Surface) -> Vec<Hinge> {
-    let mut sides = triangle_sides(surface);
+/// Where two faces share an edge. Where more than two do (not a manifold), each is joined to the next.
+pub fn seams(surface: &Surface) -> Vec<Seam> {
+    let sides = (0..).zip(surface.faces.iter());
+    let mut sides: Vec<([u32; 2], u32)> =
+        sides.flat_map(|(index, face)| around(face).map(move |ends| (ends, index))).collect();
     sides.sort_unstable();
-    let mut hinges = Vec::with_capacity(sides.len() / 2);
-    for shared in sides.chunk_by(|a, b| a.ends == b.ends) {
-        for pair in shared.windows(2).filter(|pair| pair[0].opposite != pair[1].opposite) {
-            let [a, b] = pair[0].ends;
-            hinges.push(Hinge { points: [a, b, pair[0].opposite, pair[1].opposite] });
-        }
+    let mut seams = Vec::with_capacity(sides.len() / 2);
+    for shared in sides.chunk_by(|a, b| a.0 == b.0) {
+        let pairs = shared.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+        seams.extend(pairs.map(|pair| Seam { ends: pair[0].0, faces: [pair[0].1, pair[1].1] }));
     }
-    hinges
+    seams
+}
+
+/// A face cut into triangles, a fan round its first corner.
+pub fn fan_triangles(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])
 }
 
 /// The edges of the triangulated mesh, each once, sorted: the edges that collide.
@@ -125,26 +215,5 @@ fn distance(surface: &Surface, ends: [u32; 2]) -> f64 {
 }
 
 fn polygon_area(surface: &Surface, face: &[u32]) -> f64 {
-    (2..face.len()).map(|k| triangle_area(surface, [face[0], face[k - 1], face[k]])).sum()
-}
-
-fn polygon_sides(surface: &Surface) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(surface.faces.corners().len());
-    for (index, face) in surface.faces.iter().enumerate() {
-        for k in 0..face.len() {
-            let (p, q) = (face[k], face[(k + 1) % face.len()]);
-            sides.push(Side { ends: [p.min(q), p.max(q)], face: index as u32, opposite: u32::MAX });
-        }
-    }
-    sides
-}
-
-fn triangle_sides(surface: &Surface) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(surface.faces.corners().len() * 2);
-    for (index, [a, b, c]) in surface.faces.triangles().enumerate() {
-        for (p, q, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
-            sides.push(Side { ends: [p.min(q), p.max(q)], face: index as u32, opposite });
-        }
-    }
-    sides
+    fan_triangles(face).map(|triangle| triangle_area(surface, triangle)).sum()
 }

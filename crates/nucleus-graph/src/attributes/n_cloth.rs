@@ -97,11 +97,21 @@ node_table! {
         /// Whether links are solved one after another, or all from the same state.
         EVALUATION_ORDER: Choice = choice("evaluationOrder", "evo", 0, &[(0, "Sequential"), (1, "Parallel")]);
         /// Links all corners of faces with more than three.
-        ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true);
+        ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("stretch").fixed();
         /// `crossoverPush` of the object against itself.
         SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0);
         /// `trappedCheck` of the object against itself.
         SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false);
+    }
+    "Nucleus (open)" {
+        /// Physical: stiffness of the cloth against being stretched, Young's modulus times its thickness. Below 0 it comes from `stretchResistance`, 500 N/m for 1.
+        STRETCH_STIFFNESS: f64 = float("stretchStiffness", "stretchStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("stretch").extension();
+        /// Physical: stiffness against being compressed. Below 0 it comes from `compressionResistance`, 500 N/m for 1.
+        COMPRESSION_STIFFNESS: f64 = float("compressionStiffness", "compressionStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("stretch").extension();
+        /// Physical: shear modulus times thickness, on top of what cross links resist. Below 0 it comes from `shearResistance`, 500 N/m for 1.
+        SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("shear").extension();
+        /// Physical: flexural rigidity of the cloth, the moment on a width of 1 m that bends it to a radius of 1 m. Below 0 it comes from `bendResistance`, 1e-4 N·m for 1.
+        BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("bend").extension();
     }
     "Caching" {
         /// What a cache keeps of this object.

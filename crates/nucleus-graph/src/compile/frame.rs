@@ -4,7 +4,9 @@
 //! it (N2.4-7).
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, PointId, ResistanceModel};
+use nucleus_core::{
+    ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, PointId, ResistanceModel, Stiffness,
+};
 
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, nucleus};
@@ -77,11 +79,19 @@ impl Program {
     fn cloth_frame(&self, cloth: &ClothSource, frame: f64) -> ClothFrame {
         let node = self.graph.node(cloth.node);
         let number = |key: &Key<f64>| node.at(key, frame);
+        // Below nought there is none: the resistance counts.
+        let stiffness = |key: &Key<f64>| Some(number(key)).filter(|stiffness| *stiffness >= 0.0);
         ClothFrame {
             stretch_resistance: number(&n_cloth::STRETCH_RESISTANCE),
             compression_resistance: number(&n_cloth::COMPRESSION_RESISTANCE),
             shear_resistance: number(&n_cloth::SHEAR_RESISTANCE),
             bend_resistance: number(&n_cloth::BEND_RESISTANCE),
+            stiffness: Stiffness {
+                stretch: stiffness(&n_cloth::STRETCH_STIFFNESS),
+                compression: stiffness(&n_cloth::COMPRESSION_STIFFNESS),
+                shear: stiffness(&n_cloth::SHEAR_STIFFNESS),
+                bend: stiffness(&n_cloth::BEND_STIFFNESS),
+            },
             rest_length_scale: number(&n_base::REST_LENGTH_SCALE),
             stretch_damp: number(&n_cloth::STRETCH_DAMP),
             damp: number(&n_base::DAMP),

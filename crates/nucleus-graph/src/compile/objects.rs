@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 use nucleus_core::{BuildError, Cloth, ClothId, Collider, Faces, Mass, ModelBuilder, Surface};
 
-use crate::attributes::{Choice, Key, Plugged, n_base, nucleus};
+use crate::attributes::{Choice, Key, Plugged, n_base, n_cloth, nucleus};
 use crate::graph::NodeId;
 use crate::scene::{Findings, Scene, TimeSpan};
 
@@ -154,6 +154,7 @@ impl<'a> Compiler<'a> {
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let surface = self.units.surface(surface);
+        self.warn_of_stiffness(id);
         let point_mass = node.get(&n_base::POINT_MASS);
         let mass = match nucleus.get(&nucleus::RESISTANCE_MODEL) {
             CLASSIC => Mass::PerPoint(point_mass),
@@ -174,6 +175,27 @@ impl<'a> Compiler<'a> {
         }
         self.cloths.push(ClothSource { node: id, default_thickness, is_dense, start });
         Some(())
+    }
+
+    /// A stiffness means nothing where resistances are counts.
+    fn warn_of_stiffness(&mut self, cloth: NodeId) {
+        use n_cloth::{BEND_STIFFNESS, COMPRESSION_STIFFNESS, SHEAR_STIFFNESS, STRETCH_STIFFNESS};
+        let node = self.scene.graph.node(cloth);
+        let nucleus = self.nucleus.map(|id| self.scene.graph.node(id));
+        if nucleus.is_none_or(|nucleus| nucleus.get(&nucleus::RESISTANCE_MODEL) != CLASSIC) {
+            return;
+        }
+        for key in [&STRETCH_STIFFNESS, &COMPRESSION_STIFFNESS, &SHEAR_STIFFNESS, &BEND_STIFFNESS] {
+            if node.setting(key).is_some() && (node.changes(key) || node.get(key) >= 0.0) {
+                let place = self.scene.source.place(&format!("{}.{}", node.name(), key.row.name));
+                let message = format!(
+                    "`{}` of `{}` has no effect: with `resistanceModel: classic` stiffness follows from counts",
+                    key.row.name,
+                    node.name()
+                );
+                self.findings.warning(&place, message);
+            }
+        }
     }
 
     fn collider(&mut self, id: NodeId) -> Option<()> {

@@ -1,7 +1,9 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothFrame, ClothId, Elements, FrameInput, PointId, ResistanceModel, SelfCollision};
+use nucleus_core::{
+    ClothFrame, ClothId, Elements, FrameInput, PointId, ResistanceModel, SelfCollision, Stiffness,
+};
 use proptest::prelude::*;
 
 use super::*;
@@ -76,12 +78,20 @@ fn lengths_are_scaled_and_accelerations_are_not() {
 fn a_list_is_on_only_if_its_attribute_is_ever_other_than_zero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
-    assert_eq!(lists(nothing), "stretch: false, shear: false, bend: false, air: false, damp: false");
-    assert_eq!(lists(""), "stretch: true, shear: false, bend: true, air: true, damp: true");
+    let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: false";
+    assert_eq!(lists(nothing), off);
+    let on = "stretch: true, cross_links: true, shear: false, bend: true, air: true, damp: true, self_collision: false";
+    assert_eq!(lists(""), on);
     for (cloth, list) in [
         ("bendResistance: keys([(1, 0), (20, 1)])", "bend: true"),
         ("bendResistance: keys([(1, 0), (20, 0)])", "bend: false"),
         ("shearResistance: 2", "shear: true"),
+        ("shearStiffness: 2", "shear: true"),
+        ("bendStiffness: 0", "bend: false"),
+        ("bendStiffness: keys([(1, 0), (20, 1e-4)])", "bend: true"),
+        ("bendResistance: 0, bendStiffness: 1e-5", "bend: true"),
+        ("bendResistance: 0, bendStiffness: -1", "bend: false"),
+        ("addCrossLinks: false", "cross_links: false"),
         ("stretchResistance: 0", "stretch: true"),
         ("drag: 0", "air: true"),
         ("stretchDamp: 0, damp: 1", "damp: true"),
@@ -122,6 +132,7 @@ fn mass_is_by_point_or_by_area() {
 fn every_attribute_of_cloth_reaches_its_place() {
     let set = "stretchResistance: 1, compressionResistance: 2, shearResistance: 3, bendResistance: 4, \
         restLengthScale: 5, stretchDamp: 6, damp: 7, drag: 8, tangentialDrag: 9, lift: 10, \
+        stretchStiffness: 20, compressionStiffness: 21, shearStiffness: 0, bendStiffness: -1, \
         ignoreSolverGravity: true, ignoreSolverWind: true, localForce: (11, 12, 13), localWind: (14, 15, 16), \
         collide: false, thickness: 17, friction: 18, bounce: 19, collisionFlag: Edge, collisionLayer: 20, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
@@ -130,6 +141,7 @@ fn every_attribute_of_cloth_reaches_its_place() {
         compression_resistance: 2.0,
         shear_resistance: 3.0,
         bend_resistance: 4.0,
+        stiffness: Stiffness { stretch: Some(20.0), compression: Some(21.0), shear: Some(0.0), bend: None },
         rest_length_scale: 5.0,
         stretch_damp: 6.0,
         damp: 7.0,

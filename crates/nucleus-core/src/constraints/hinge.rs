@@ -1,0 +1,303 @@
+//! What bends: hinges between two faces, and the twist of quads.
+//!
+//! The bending vector of a row is c = Σ K_i x_i, with Σ K_i = 0 and, where the cloth is flat, Σ K_i x_i = 0. For
+//! triangles K are the weights of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", §3;
+//! |c| is then the length of the edge times the angle. The energy is B/2 · |c|², with K scaled so that B is the
+//! bending stiffness of a plate in N·m, whatever the mesh:
+//!
+//! - A hinge answers for half the cloth between the middles of its faces: K is divided by the root of A_0 + A_1
+//!   for triangles, of which three families cover the plane, and of (A_0 + A_1) / 2 for quads, where two do.
+//! - On the far side of a quad a hinge looks at the middle of the opposite edge. So the two families of a grid
+//!   measure the two curvatures and nothing else, and no diagonal has a say in it.
+//! - The twist of a quad is x_a - x_b + x_c - x_d, and answers for all of it. With it a grid is a plate without
+//!   preference: its energy is B/2 · (z_xx² + z_yy² + 2 z_xy²), Poisson's ratio nought.
+//!
+//! Equilateral triangles are a plate of the same B and a Poisson's ratio of -1/3 (Seung and Nelson 1988). A grid
+//! cut along one diagonal is up to three times as stiff across that diagonal: quads are better left whole.
+
+use nalgebra::Vector3;
+
+use crate::model::{Row, Seam, fan_triangles, seams, triangle_area};
+use crate::scalar::Real;
+use crate::surface::Surface;
+
+/// `N` points that bend, between points of the solver, before they are laid out.
+#[derive(Debug, Clone, Copy)]
+pub struct HingeRow<R, const N: usize> {
+    points: [u32; N],
+    weights: [R; N],
+    rest: R,
+}
+
+/// Four hinges side by side. In `f32` 48 bytes a hinge of four points, 64 of six.
+#[derive(Debug, Clone, Copy)]
+pub struct HingeGroup<R, const N: usize> {
+    /// The points.
+    pub points: [[u32; 4]; N],
+    /// Their weights, which add up to nought.
+    pub weights: [[R; 4]; N],
+    /// The bending vector of the anchors. Set at the start of each frame.
+    pub anchored: [[R; 4]; 3],
+    /// Length of the bending vector at rest; nought where flat.
+    pub rest: [R; 4],
+}
+
+/// The rows of a mesh, by how many points they have.
+#[derive(Debug, Clone, Default)]
+pub struct HingeRows<R> {
+    /// Hinges between triangles, and twists of quads.
+    pub of_four: Vec<HingeRow<R, 4>>,
+    /// Hinges between quads.
+    pub of_six: Vec<HingeRow<R, 6>>,
+}
+
+/// All that bends in a mesh, between the solver's places of its points.
+pub fn rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> HingeRows<R> {
+    let mut rows = HingeRows { of_four: Vec::new(), of_six: Vec::new() };
+    for seam in seams(surface) {
+        match hinge(surface, &seam, &place) {
+            Some(Hinge::Wide(row)) => rows.of_six.push(row),
+            Some(Hinge::Narrow(row)) => rows.of_four.push(row),
+            None => {}
+        }
+    }
+    for face in surface.faces.iter().filter(|face| face.len() == 4) {
+        rows.of_four.extend(twist(surface, [face[0], face[1], face[2], face[3]], &place));
+    }
+    for face in surface.faces.iter().filter(|face| face.len() > 4) {
+        let fan: Vec<_> = fan_triangles(face).collect();
+        for pair in fan.windows(2) {
+            let [[a, c, b], [_, _, d]] = [pair[0], pair[1]];
+            rows.of_four.extend(narrow(surface, [a, b, c, d], &place));
+        }
+    }
+    rows.of_four.sort_unstable_by_key(|row| sorted(row.points));
+    rows.of_six.sort_unstable_by_key(|row| sorted(row.points));
+    rows
+}
+
+enum Hinge<R> {
+    Narrow(HingeRow<R, 4>),
+    Wide(HingeRow<R, 6>),
+}
+
+/// The hinge of an edge; nothing where a face has no area, for then there is no angle.
+fn hinge<R: Real>(surface: &Surface, seam: &Seam, place: impl Fn(u32) -> u32) -> Option<Hinge<R>> {
+    let faces = seam.faces.map(|face| surface.faces.face(face as usize));
+    let [a, b] = seam.ends;
+    if faces.iter().all(|face| face.len() == 4) {
+        let [[c, d], [e, f]] = faces.map(|face| far_side(face, seam.ends));
+        let points = [a, b, c, d, e, f];
+        if all_differ(points) {
+            return wide(surface, points, place).map(Hinge::Wide);
+        }
+    }
+    let [c, d] = faces.map(|face| apex(face, seam.ends));
+    let points = [a, b, c?, d?];
+    if all_differ(points) { narrow(surface, points, place).map(Hinge::Narrow) } else { None }
+}
+
+/// Two triangles: the ends of their edge, then the corners opposite.
+fn narrow<R: Real>(
+    surface: &Surface,
+    points: [u32; 4],
+    place: impl Fn(u32) -> u32,
+) -> Option<HingeRow<R, 4>> {
+    let [a, b, c, d] = points;
+    let area = triangle_area(surface, [a, b, c]) + triangle_area(surface, [a, b, d]);
+    let weights = bending_weights(points.map(|point| position(surface, point)))?;
+    Some(HingeRow::new(surface, points, weights.map(|weight| weight / area.sqrt()), place))
+}
+
+/// Two quads: the ends of their edge, then those of the edges opposite.
+fn wide<R: Real>(surface: &Surface, points: [u32; 6], place: impl Fn(u32) -> u32) -> Option<HingeRow<R, 6>> {
+    let [a, b, c, d, e, f] = points.map(|point| position(surface, point));
+    let (near, far) = ((c + d) / 2.0, (e + f) / 2.0);
+    let area = |middle: Vector3<f64>| (b - a).cross(&(middle - a)).norm() / 2.0;
+    let weights = bending_weights([a, b, near, far])?;
+    let [k0, k1, k2, k3] = weights.map(|weight| weight / (area(near) + area(far)).sqrt());
+    let weights = [k0, k1, k2 / 2.0, k2 / 2.0, k3 / 2.0, k3 / 2.0];
+    Some(HingeRow::new(surface, points, weights, place))
+}
+
+/// How far a quad is from a plane: its diagonals as a hinge, scaled so that all four weights of a parallelogram
+/// are as large.
+fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32) -> Option<HingeRow<R, 4>> {
+    let [a, b, c, d] = face;
+    let points = [a, c, b, d];
+    let area = triangle_area(surface, [a, b, c]) + triangle_area(surface, [a, c, d]);
+    let weights = bending_weights(points.map(|point| position(surface, point)))?;
+    let size = weights.iter().map(|weight| weight.abs()).sum::<f64>() / 4.0;
+    Some(HingeRow::new(surface, points, weights.map(|weight| weight / size * (2.0 / area).sqrt()), place))
+}
+
+/// Bergou's weights, from cotangents of the angles at the edge; nothing where an angle is degenerate.
+fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
+    let cotangent = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&v) / u.cross(&v).norm();
+    let edge = x1 - x0;
+    let at_0 = [cotangent(edge, x2 - x0), cotangent(edge, x3 - x0)];
+    let at_1 = [cotangent(-edge, x2 - x1), cotangent(-edge, x3 - x1)];
+    let weights = [at_1[0] + at_1[1], at_0[0] + at_0[1], -at_0[0] - at_1[0], -at_0[1] - at_1[1]];
+    weights.iter().all(|weight| weight.is_finite()).then_some(weights)
+}
+
+impl<R: Real, const N: usize> HingeRow<R, N> {
+    fn new(surface: &Surface, points: [u32; N], weights: [f64; N], place: impl Fn(u32) -> u32) -> Self {
+        let x = points.map(|point| position(surface, point));
+        let vector: Vector3<f64> = (0..N).map(|k| x[k] * weights[k]).sum();
+        // What is flat to rounding is flat: 1e-6 of the terms that cancel.
+        let flat = 1e-6 * (0..N).map(|k| weights[k].abs() * (x[k] - x[0]).norm()).sum::<f64>();
+        let rest = if vector.norm() <= flat { 0.0 } else { vector.norm() };
+        let mut weights = weights.map(R::from_f64);
+        // Rounded, they still add up to nought: else a cloth would be drawn to the origin.
+        weights[N - 1] = weights[..N - 1].iter().fold(R::ZERO, |sum, &weight| sum - weight);
+        Self { points: points.map(place), weights, rest: R::from_f64(rest) }
+    }
+}
+
+impl<R: Real, const N: usize> Row for HingeRow<R, N> {
+    type Group = HingeGroup<R, N>;
+    const POINTS: usize = N;
+
+    fn point(&self, k: usize) -> u32 {
+        self.points[k]
+    }
+
+    fn idle(stand_in: u32) -> Self {
+        Self { points: [stand_in; N], weights: [R::ZERO; N], rest: R::ZERO }
+    }
+
+    fn group(rows: [Self; 4]) -> HingeGroup<R, N> {
+        HingeGroup {
+            points: std::array::from_fn(|k| rows.map(|row| row.points[k])),
+            weights: std::array::from_fn(|k| rows.map(|row| row.weights[k])),
+            anchored: [[R::ZERO; 4]; 3],
+            rest: rows.map(|row| row.rest),
+        }
+    }
+}
+
+impl<R: Real, const N: usize> HingeGroup<R, N> {
+    /// Takes up where the anchors now are, in double precision.
+    pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
+        for lane in 0..4 {
+            let x = self.points.map(|point| anchors[point[lane] as usize]);
+            for axis in 0..3 {
+                // Relative to the last point, whose weight is minus the sum of the others.
+                let term = |k: usize| self.weights[k][lane].to_f64() * (x[k][axis] - x[N - 1][axis]);
+                self.anchored[axis][lane] = R::from_f64((0..N - 1).map(term).sum());
+            }
+        }
+    }
+}
+
+fn position(surface: &Surface, point: u32) -> Vector3<f64> {
+    surface.positions[point as usize]
+}
+
+/// The two corners of a quad that are not on an edge.
+fn far_side(face: &[u32], ends: [u32; 2]) -> [u32; 2] {
+    let mut others = face.iter().copied().filter(|corner| !ends.contains(corner));
+    [others.next().unwrap_or(ends[0]), others.next().unwrap_or(ends[0])]
+}
+
+/// The third corner of the triangle with this edge, the face being cut into a fan.
+fn apex(face: &[u32], ends: [u32; 2]) -> Option<u32> {
+    let triangle = fan_triangles(face).find(|triangle| ends.iter().all(|end| triangle.contains(end)))?;
+    triangle.into_iter().find(|corner| !ends.contains(corner))
+}
+
+fn all_differ<const N: usize>(points: [u32; N]) -> bool {
+    (1..N).all(|k| !points[..k].contains(&points[k]))
+}
+
+fn sorted<const N: usize>(mut points: [u32; N]) -> [u32; N] {
+    points.sort_unstable();
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::Faces;
+
+    type Faced = fn(u32, u32) -> Vec<Vec<u32>>;
+
+    /// A mesh of `n` by `n` points, `at` placing them, with faces per cell from its corner and row length.
+    fn mesh(n: u32, at: impl Fn(f64, f64) -> [f64; 2], cell: Faced) -> Surface {
+        let points = (0..n * n).map(|k| at(f64::from(k % n), f64::from(k / n)));
+        let positions = points.map(|[x, y]| Vector3::new(x, y, 0.0)).collect();
+        let cells = (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| row * n + column));
+        let faces: Vec<Vec<u32>> = cells.flat_map(|a| cell(a, n)).collect();
+        Surface { positions, faces: faces.iter().map(Vec::as_slice).collect::<Faces>() }
+    }
+
+    fn quads(a: u32, n: u32) -> Vec<Vec<u32>> {
+        vec![vec![a, a + 1, a + n + 1, a + n]]
+    }
+
+    fn triangles(a: u32, n: u32) -> Vec<Vec<u32>> {
+        vec![vec![a, a + 1, a + n], vec![a + 1, a + n + 1, a + n]]
+    }
+
+    fn energy<const N: usize>(rows: &[HingeRow<f64, N>], x: &[Vector3<f64>]) -> f64 {
+        let vector = |row: &HingeRow<f64, N>| -> Vector3<f64> {
+            (0..N).map(|k| x[row.points[k] as usize] * row.weights[k]).sum()
+        };
+        rows.iter().map(|row| vector(row).norm_squared() / 2.0).sum()
+    }
+
+    /// Energy per area and B of a mesh bent to z = (p x² + 2 q x y + r y²) / 2; a border of cells is left out of
+    /// the area by the growth of the energy from one size to the next.
+    fn density(at: impl Fn(f64, f64) -> [f64; 2] + Copy, cell: Faced, [p, q, r]: [f64; 3]) -> f64 {
+        let of = |n: u32| {
+            let surface = mesh(n, at, cell);
+            let rows = rows::<f64>(&surface, |point| point);
+            let bend = |x: &Vector3<f64>| (p * x.x * x.x + 2.0 * q * x.x * x.y + r * x.y * x.y) / 2.0;
+            let bent: Vec<_> = surface.positions.iter().map(|x| Vector3::new(x.x, x.y, bend(x))).collect();
+            let area: f64 = surface.faces.triangles().map(|t| triangle_area(&surface, t)).sum();
+            (energy(&rows.of_four, &bent) + energy(&rows.of_six, &bent), area)
+        };
+        // What grows with the square of the size, without what grows with its border.
+        let [(e1, a1), (e2, a2), (e3, a3)] = [of(11), of(21), of(31)];
+        (e3 - 2.0 * e2 + e1) / (a3 - 2.0 * a2 + a1)
+    }
+
+    const CURVATURES: [[f64; 3]; 5] =
+        [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.5], [0.5, -0.5, 0.5]];
+
+    #[test]
+    fn a_grid_of_any_cells_is_a_plate_without_preference() {
+        for side in [[1.0, 1.0], [1.0, 2.5], [0.3, 0.1]] {
+            for [p, q, r] in CURVATURES {
+                let found = density(|x, y| [x * side[0], y * side[1]], quads, [p, q, r]);
+                let plate = (p * p + r * r + 2.0 * q * q) / 2.0;
+                assert!((found / plate - 1.0).abs() < 1e-9, "{side:?}, {:?}: {found}", [p, q, r]);
+            }
+        }
+    }
+
+    #[test]
+    fn equilateral_triangles_are_a_plate_of_a_known_ratio() {
+        let at = |x: f64, y: f64| [x + y / 2.0, y * 0.75f64.sqrt()];
+        for [p, q, r] in CURVATURES {
+            let found = density(at, triangles, [p, q, r]);
+            let nu = -1.0 / 3.0;
+            let plate = (p * p + r * r + 2.0 * nu * p * r + 2.0 * (1.0 - nu) * q * q) / 2.0;
+            assert!((found / plate - 1.0).abs() < 1e-9, "{:?}: {found} for {plate}", [p, q, r]);
+        }
+    }
+
+    #[test]
+    fn crooked_quads_that_lie_flat_do_not_bend() {
+        let crooked = |x: f64, y: f64| [x + 0.3 * (x * y).sin(), y + 0.2 * (x - y).cos()];
+        let surface = mesh(9, crooked, quads);
+        let rows = rows::<f64>(&surface, |point| point);
+        assert_eq!((rows.of_six.len(), rows.of_four.len()), (2 * 7 * 8, 64));
+        assert!(
+            rows.of_six.iter().all(|row| row.rest == 0.0) && rows.of_four.iter().all(|row| row.rest == 0.0)
+        );
+        let flat = energy(&rows.of_six, &surface.positions) + energy(&rows.of_four, &surface.positions);
+        assert!(flat < 1e-24, "{flat:e}");
+    }
+}

@@ -1,0 +1,205 @@
+//! Strips that bend under their weight or a load, and that buckle.
+
+use nucleus_core::{BuildError, Stiffness};
+
+use super::elastica::{self, Curve};
+use super::rig::{DENSITY, Rig, STRIP, Vec3, membrane, sheet};
+use super::{Allowed, Case, Finding};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "cantilever",
+        about: "A strip of 50 elements, clamped level, bends under its own weight, Γ = w L³ / B. Drop over reach of \
+            its tip, against Euler's elastica by shooting; Romero et al. 2021 use the same curve.",
+        run: cantilever,
+    },
+    Case {
+        name: "cantilever-fine",
+        about: "The same with 100 elements, where it curves the most: the error falls with the square of their length.",
+        run: cantilever_fine,
+    },
+    Case {
+        name: "elastica",
+        about: "The tip of a weightless strip is held where a load P L² / B would hold it; then so does its tip lie, \
+            in degrees, and its middle, over L.",
+        run: elastica,
+    },
+    Case {
+        name: "lateral-buckling",
+        about: "A strip on edge, clamped at one end, buckles sideways under its own weight at q L³ / √(EI GJ) = \
+            12.854 (Michell, Prandtl). A plate of Poisson's ratio nought has GJ = 2 EI. Kicked sideways, and then \
+            left alone: how far its tip is out of its plane from 6 to 10 s, over how far from 2 to 6 s.",
+        run: lateral,
+    },
+    Case {
+        name: "column",
+        about: "A strip that stands on its end falls over at w L³ / B = 7.8373 (Greenhill). Kicked sideways, and \
+            then left alone: how far it leans from 6 to 10 s, over how far from 2 to 6 s.",
+        run: column,
+    },
+];
+
+/// B in N·m of all strips; with L = 1 m a strip swings at 3.5 rad/s whatever its weight.
+const BEND: f64 = 0.2;
+
+/// A clamp that holds two rows of points holds the strip up to midway between them: the free length begins there.
+struct Strip {
+    rig: Rig,
+    /// Columns of points, two of which are held.
+    columns: usize,
+}
+
+impl Strip {
+    /// One metre of `elements` along `u`, `width` along `v` in `across` cells.
+    fn new(
+        [elements, across]: [u32; 2],
+        width: f64,
+        [u, v]: [Vec3; 2],
+        evaluations: f64,
+    ) -> Result<Self, BuildError> {
+        let cell = 1.0 / (f64::from(elements) + 0.5);
+        let columns = elements + 2;
+        let length = cell * f64::from(columns - 1);
+        let origin = -u * cell / 2.0 - v * width / 2.0;
+        let surface = sheet([columns, across + 1], origin, u * length, v * width);
+        let mut rig = Rig::new(surface, STRIP, evaluations)?;
+        let columns = columns as usize;
+        rig.hold((0..=across as usize).flat_map(|row| [row * columns, row * columns + 1]));
+        Ok(Self { rig, columns })
+    }
+
+    /// The middle of a column, counted from the clamp.
+    fn column(&self, column: usize) -> Vec3 {
+        let points = self.rig.points();
+        let rows = points.len() / self.columns;
+        (0..rows).map(|row| points[row * self.columns + column]).sum::<Vec3>() / rows as f64
+    }
+
+    fn tip(&self) -> Vec3 {
+        self.column(self.columns - 1)
+    }
+}
+
+/// A strip after it has come to rest under a gravity that makes `gamma`.
+fn droop(elements: u32, gamma: f64) -> Result<Curve, BuildError> {
+    let mut strip = Strip::new([elements, 1], 0.05, [Vec3::x(), Vec3::z()], 4000.0)?;
+    let gravity = gamma * BEND / DENSITY;
+    let weight = DENSITY * gravity;
+    // So stiff that its length changes by 1e-4.
+    strip.rig.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(1e4 * weight.max(BEND)) };
+    strip.rig.frame.gravity = -Vec3::y() * gravity;
+    strip.rig.slow_down(2.0 * 3.5f64.max(gravity.sqrt()));
+    strip.rig.settle(1e-5 * gravity.sqrt(), 72);
+    let (tip, before) = (strip.tip(), strip.column(strip.columns - 2));
+    let along = tip - before;
+    Ok(Curve { tip_angle: (-along.y).atan2(along.x), out: tip.x, down: -tip.y })
+}
+
+fn heavy(elements: u32, gammas: &[f64]) -> Result<Vec<Finding>, BuildError> {
+    let finding = |&gamma: &f64| {
+        let (exact, found) = (elastica::heavy(gamma), droop(elements, gamma)?);
+        let ratio = |curve: Curve| curve.down / curve.out;
+        Ok(Finding::new(format!("H/W at Γ = {gamma}"), ratio(exact), ratio(found), Allowed::Share(0.01)))
+    };
+    gammas.iter().map(finding).collect()
+}
+
+fn cantilever() -> Result<Vec<Finding>, BuildError> {
+    heavy(50, &[0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0, 200.0, 500.0, 1000.0])
+}
+
+fn cantilever_fine() -> Result<Vec<Finding>, BuildError> {
+    heavy(100, &[200.0, 500.0, 1000.0])
+}
+
+fn elastica() -> Result<Vec<Finding>, BuildError> {
+    let mut findings = Vec::new();
+    for load in [1.0, 3.0, 10.0] {
+        let exact = elastica::tip_loaded(load);
+        let mut strip = Strip::new([50, 1], 0.05, [Vec3::x(), Vec3::z()], 4000.0)?;
+        strip.rig.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(1e4 * BEND * load) };
+        strip.rig.frame.gravity = Vec3::zeros();
+        strip.rig.slow_down(10.0);
+        carry_tip(&mut strip, exact, 24);
+        strip.rig.settle(1e-5, 48);
+        let along = strip.tip() - strip.column(strip.columns - 2);
+        // The last hinge lies half an element before the middle of the last element.
+        let degrees = (-along.y).atan2(along.x).to_degrees();
+        let quantity = format!("tip angle at P L²/B = {load}, degrees");
+        findings.push(Finding::new(quantity, exact.tip_angle.to_degrees(), degrees, Allowed::Share(0.01)));
+    }
+    Ok(findings)
+}
+
+/// Carries the tip to where it is to be, along a line, in some frames.
+fn carry_tip(strip: &mut Strip, goal: Curve, frames: u32) {
+    let columns = strip.columns;
+    let held = strip.rig.frame.pins.clone();
+    let tips = [columns - 1, 2 * columns - 1];
+    for frame in 0..frames {
+        let place = |point: usize, at: f64| {
+            let from = strip.rig.surface.positions[point];
+            let to = Vec3::new(goal.out, -goal.down, from.z);
+            // A bow, not a line, so that the strip is never stretched.
+            let (share, bow) = (at, (std::f64::consts::PI * at).sin() * 0.15);
+            from + (to - from) * share - Vec3::new(bow, 0.0, 0.0)
+        };
+        let shares = [frame, frame + 1].map(|k| f64::from(k) / f64::from(frames));
+        let pin = |&point: &usize| nucleus_core::Pin {
+            point: nucleus_core::PointId(point as u32),
+            start: place(point, shares[0]),
+            end: place(point, shares[1]),
+            ..held[0]
+        };
+        let pins = held.iter().copied().chain(tips.iter().map(pin)).collect();
+        strip.rig.frame.pins = pins;
+        strip.rig.step();
+    }
+    for pin in &mut strip.rig.frame.pins {
+        pin.start = pin.end;
+    }
+}
+
+/// After a kick along `aside`: how far the tip goes that way between 6 and 10 s, over how far between 2 and 6 s. Near the
+/// critical load a strip of these measures swings at some 1 rad/s if it swings at all.
+fn growth(mut strip: Strip, gravity: f64, aside: Vec3) -> f64 {
+    strip.rig.frame.gravity = -Vec3::y() * gravity;
+    let start = strip.tip().dot(&aside);
+    let mut far = Vec::new();
+    for frame in 0..240 {
+        strip.rig.cloth().local_force = if frame < 6 { aside * 1e-5 * BEND } else { Vec3::zeros() };
+        strip.rig.step();
+        far.push((strip.tip().dot(&aside) - start).abs());
+    }
+    let most = |range: std::ops::Range<usize>| far[range].iter().copied().fold(0.0, f64::max);
+    most(144..240) / most(48..144)
+}
+
+fn lateral() -> Result<Vec<Finding>, BuildError> {
+    let width = 0.05;
+    // q = ρ b g, EI = B b, GJ = 2 B b.
+    let critical = 12.854 * 2f64.sqrt() * BEND / DENSITY;
+    let growth_at = |share: f64| -> Result<f64, BuildError> {
+        let mut strip = Strip::new([40, 2], width, [Vec3::x(), Vec3::y()], 1500.0)?;
+        strip.rig.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(2e5) };
+        Ok(growth(strip, share * critical, Vec3::z()))
+    };
+    buckling(growth_at)
+}
+
+fn column() -> Result<Vec<Finding>, BuildError> {
+    let critical = 7.8373 * BEND / DENSITY;
+    let growth_at = |share: f64| -> Result<f64, BuildError> {
+        let mut strip = Strip::new([50, 1], 0.05, [Vec3::y(), Vec3::z()], 1500.0)?;
+        strip.rig.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(5e4) };
+        Ok(growth(strip, share * critical, Vec3::x()))
+    };
+    buckling(growth_at)
+}
+
+fn buckling(growth_at: impl Fn(f64) -> Result<f64, BuildError>) -> Result<Vec<Finding>, BuildError> {
+    Ok(vec![
+        Finding::new("growth at 0.95 of the critical load", 1.1, growth_at(0.95)?, Allowed::AtMost),
+        Finding::new("growth at 1.05 of the critical load", 3.0, growth_at(1.05)?, Allowed::AtLeast),
+    ])
+}

@@ -1,0 +1,181 @@
+//! Friction and bounce, on the ground plane and round a cylinder.
+
+use nucleus_core::{
+    BuildError, Cloth, ClothLists, Collider, ColliderFrame, Faces, GroundPlane, Mass, ModelBuilder, Surface,
+};
+
+use super::rig::{DENSITY, GRAVITY, Rig, Vec3, membrane, sheet};
+use super::{Allowed, Case, Finding};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "incline",
+        about: "A sheet of 10 cm lies on a plane that falls off by 1 in 2, so that it is held by a friction of 0.5 and \
+            more. Where it slides, the way after a second is (g / 2)(sin θ - μ cos θ).",
+        run: incline,
+    },
+    Case {
+        name: "restitution",
+        about: "A sheet is dropped from 1 m on a plane that gives back the share e of its speed: it rises to e².",
+        run: restitution,
+    },
+    Case {
+        name: "capstan",
+        about: "A ribbon lies over half a cylinder; one end hangs down, the other farther. It slips when the pull of \
+            the one is more than exp(μ π) times that of the other, the weight on the cylinder included.",
+        run: capstan,
+    },
+];
+
+const THICKNESS: f64 = 0.001;
+const LINKS: ClothLists = ClothLists { stretch: true, cross_links: true, ..ClothLists::NONE };
+
+/// A sheet of 10 cm on a plane through the origin.
+fn on_plane(normal: Vec3, friction: f64, height: f64) -> Result<Rig, BuildError> {
+    let along = Vec3::new(normal.y, -normal.x, 0.0);
+    let origin = normal * (THICKNESS + height) - along * 0.05 - Vec3::z() * 0.05;
+    let mut rig = Rig::new(sheet([5, 5], origin, Vec3::z() * 0.1, along * 0.1), LINKS, 480.0)?;
+    rig.cloth().stiffness = membrane(1e3);
+    rig.cloth().thickness = THICKNESS;
+    rig.cloth().friction = 0.0;
+    rig.frame.plane = Some(GroundPlane { origin: Vec3::zeros(), normal, bounce: 0.0, friction });
+    Ok(rig)
+}
+
+fn incline() -> Result<Vec<Finding>, BuildError> {
+    let normal = Vec3::new(1.0, 2.0, 0.0).normalize();
+    let (sin, cos) = (normal.x, normal.y);
+    let along = Vec3::new(normal.y, -normal.x, 0.0);
+    let slid = |friction: f64| -> Result<f64, BuildError> {
+        let mut rig = on_plane(normal, friction, 0.0)?;
+        let start = rig.point(12);
+        rig.run(24);
+        Ok((rig.point(12) - start).dot(&along))
+    };
+    let way = |friction: f64| GRAVITY / 2.0 * (sin - friction * cos);
+    let mut findings = vec![
+        Finding::new(
+            "way at μ = 0.505 in a second, over the length",
+            1e-4,
+            slid(0.505)? / 0.1,
+            Allowed::AtMost,
+        ),
+        Finding::new("way at μ = 0.495 in a second, m", way(0.495), slid(0.495)?, Allowed::Share(0.01)),
+    ];
+    for friction in [0.0, 0.2, 0.4] {
+        let quantity = format!("way at μ = {friction} in a second, m");
+        findings.push(Finding::new(quantity, way(friction), slid(friction)?, Allowed::Share(0.01)));
+    }
+    Ok(findings)
+}
+
+fn restitution() -> Result<Vec<Finding>, BuildError> {
+    let mut findings = Vec::new();
+    for bounce in [0.3, 0.6, 0.9] {
+        let mut rig = on_plane(Vec3::y(), 0.0, 1.0)?;
+        if let Some(plane) = &mut rig.frame.plane {
+            plane.bounce = bounce;
+        }
+        rig.frame.duration /= 8.0;
+        // It meets the plane after 0.45 s and is highest e times as long after that.
+        let first = (2.0 / GRAVITY).sqrt();
+        let frames = |seconds: f64| (seconds / rig.frame.duration) as u32;
+        let (before, after) = (frames(first * 1.05), frames(first * bounce * 1.6));
+        rig.run(before);
+        let mut highest = 0.0f64;
+        for _ in 0..after {
+            rig.step();
+            highest = highest.max(rig.point(12).y - THICKNESS);
+        }
+        let quantity = format!("height after a bounce of {bounce}, m");
+        findings.push(Finding::new(quantity, bounce * bounce, highest, Allowed::Share(0.01)));
+    }
+    Ok(findings)
+}
+
+const RADIUS: f64 = 0.1;
+const ROPE_FRICTION: f64 = 0.3;
+/// Metres of ribbon that hang on the lighter side.
+const SHORT: f64 = 0.1;
+
+/// Metres in half a second: less than this is not slipping.
+const MOST_CREEP: f64 = 5e-3;
+
+/// The metres of ribbon that just hold [`SHORT`]: dT/dφ = μ (T - w R cos φ) + w R sin φ over the upper half, φ from
+/// the horizontal on the lighter side, T + the weight's part pressing on the cylinder. In metres of ribbon, w = 1.
+fn long_side(radius: f64) -> f64 {
+    let steps = 100_000;
+    let h = std::f64::consts::PI / f64::from(steps);
+    let slope = |phi: f64, pull: f64| {
+        // Upwards from the lighter side the ribbon's own weight adds to the pull, downwards it takes from it; what
+        // presses on the cylinder is the pull and the part of the weight along the radius.
+        radius * phi.cos() + ROPE_FRICTION * (pull + radius * phi.sin())
+    };
+    (0..steps).fold(SHORT, |pull, step| {
+        let phi = f64::from(step) * h;
+        let middle = pull + h / 2.0 * slope(phi, pull);
+        pull + h * slope(phi + h / 2.0, middle)
+    })
+}
+
+fn capstan() -> Result<Vec<Finding>, BuildError> {
+    let radius = RADIUS + THICKNESS;
+    let exact = long_side(radius);
+    let (mut low, mut high) = (SHORT, 2.0 * exact);
+    for _ in 0..7 {
+        let middle = (low + high) / 2.0;
+        if ribbon_slip(radius, middle)? > MOST_CREEP { high = middle } else { low = middle }
+    }
+    let quantity = "longest end that is held, m";
+    Ok(vec![Finding::new(quantity, exact, (low + high) / 2.0, Allowed::Share(0.02))])
+}
+
+fn ribbon_slip(radius: f64, long: f64) -> Result<f64, BuildError> {
+    let length = SHORT + std::f64::consts::PI * radius + long;
+    let columns = 121u32;
+    // Laid out straight, then wound: so it is longer than its links by the difference of arc and chord, 1e-5.
+    let mut ribbon = sheet([columns, 2], Vec3::zeros(), Vec3::x() * length, Vec3::z() * 0.01);
+    for p in &mut ribbon.positions {
+        let on = p.x - SHORT;
+        let turned = (on / radius).clamp(0.0, std::f64::consts::PI);
+        let below = on.min(0.0) - (on - std::f64::consts::PI * radius).max(0.0);
+        *p = Vec3::new(-radius * turned.cos(), radius * turned.sin() + below, p.z);
+        if on > std::f64::consts::PI * radius {
+            p.y = -(on - std::f64::consts::PI * radius);
+        }
+    }
+    let mut builder = ModelBuilder::new();
+    let lists = ClothLists { bend: true, ..LINKS };
+    builder.cloth(Cloth { surface: ribbon.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+    builder.collider(Collider { surface: cylinder() })?;
+    let mut rig = Rig::of(builder, ribbon, 240.0);
+    rig.cloth().stiffness = membrane(500.0);
+    rig.cloth().thickness = THICKNESS / 2.0;
+    rig.cloth().friction = ROPE_FRICTION;
+    let thickness = THICKNESS / 2.0;
+    rig.frame.colliders =
+        vec![ColliderFrame { collide: true, thickness, friction: 0.0, ..ColliderFrame::default() }];
+    // What the ribbon does to become taut is not slip.
+    rig.run(6);
+    let end = columns as usize - 1;
+    let start = rig.point(end).y;
+    rig.run(12);
+    Ok(start - rig.point(end).y)
+}
+
+/// A cylinder along z, 96 round.
+fn cylinder() -> Surface {
+    let round = 96u32;
+    let mut surface = Surface { positions: Vec::new(), faces: Faces::default() };
+    for z in [-0.05, 0.06] {
+        for k in 0..round {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(round)).sin_cos();
+            surface.positions.push(Vec3::new(RADIUS * cos, RADIUS * sin, z));
+        }
+    }
+    for k in 0..round {
+        let next = (k + 1) % round;
+        surface.faces.push(&[k, next, next + round, k + round]);
+    }
+    surface
+}

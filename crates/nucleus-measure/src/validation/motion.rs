@@ -1,0 +1,158 @@
+//! Falls and swings, and what is conserved.
+
+use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
+
+use super::rig::{CLOTH, DENSITY, GRAVITY, Rig, STRIP, Vec3, areas, membrane, sheet};
+use super::{Allowed, Case, Finding};
+
+pub const CASES: &[Case] = &[
+    Case {
+        name: "pendulum",
+        about: "A rod of 1 m swings about a hinge. Its period over that of small swings is 1 / agm(1, cos(α / 2)).",
+        run: pendulum,
+    },
+    Case {
+        name: "terminal-velocity",
+        about: "A sheet falls flat through air whose drag is linear: v = g τ (1 - exp(-t / τ)), in m/s.",
+        run: terminal_velocity,
+    },
+    Case {
+        name: "momentum",
+        about: "A sheet in empty space is pushed and turned, and then left alone for a second: the change of its \
+            momentum and of its angular momentum, over what they were.",
+        run: momentum,
+    },
+    Case {
+        name: "energy",
+        about: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: the most energy of motion and height \
+            that it ever has over what it had at first, in J.",
+        run: energy,
+    },
+];
+
+fn pendulum() -> Result<Vec<Finding>, BuildError> {
+    [30.0, 60.0, 90.0, 120.0, 150.0].into_iter().map(swing).collect()
+}
+
+fn swing(degrees: f64) -> Result<Finding, BuildError> {
+    let (sin, cos) = f64::to_radians(degrees).sin_cos();
+    // Two parallel rods and a bar: a pendulum in the plane across the bar.
+    let rods = sheet([2, 2], Vec3::zeros(), Vec3::z() * 0.5, Vec3::new(sin, -cos, 0.0));
+    let mut rig = Rig::new(rods, ClothLists { stretch: true, ..ClothLists::NONE }, 4000.0)?;
+    rig.cloth().stiffness = membrane(1e5);
+    rig.hold([0, 1]);
+    rig.frame.duration /= 4.0;
+    let (mut crossings, mut before) = (Vec::new(), sin);
+    for step in 1..4 * 24 * 8 {
+        rig.step();
+        let now = rig.point(2).x;
+        if before > 0.0 && now <= 0.0 {
+            crossings.push((f64::from(step) - now / (now - before)) * rig.frame.duration);
+        }
+        before = now;
+    }
+    let small = std::f64::consts::TAU / GRAVITY.sqrt();
+    let found = crossings.get(1).map_or(f64::NAN, |second| (second - crossings[0]) / small);
+    let exact = 1.0 / agm(1.0, (degrees.to_radians() / 2.0).cos());
+    Ok(Finding::new(
+        format!("period at {degrees}°, over that of small swings"),
+        exact,
+        found,
+        Allowed::Share(0.005),
+    ))
+}
+
+/// The arithmetic-geometric mean.
+fn agm(a: f64, b: f64) -> f64 {
+    (0..40).fold((a, b), |(a, b), _| ((a + b) / 2.0, (a * b).sqrt())).0
+}
+
+fn terminal_velocity() -> Result<Vec<Finding>, BuildError> {
+    let flat = sheet([5, 5], Vec3::zeros(), Vec3::x(), Vec3::z());
+    let mut rig = Rig::new(flat, STRIP, 96.0)?;
+    rig.cloth().stiffness = membrane(1e4);
+    let rate = 4.0;
+    rig.slow_down(rate);
+    rig.cloth().tangential_drag = 0.0;
+    let mut findings = Vec::new();
+    let mut speeds = Vec::new();
+    for (seconds, frames) in [(0.25f64, 6), (0.5, 6), (3.0, 60)] {
+        rig.run(frames);
+        rig.solver.velocities(CLOTH, 1.0, &mut speeds);
+        let exact = GRAVITY / rate * (1.0 - (-rate * seconds).exp());
+        let found = -f64::from(speeds[12][1]);
+        findings.push(Finding::new(
+            format!("speed after {seconds} s, m/s"),
+            exact,
+            found,
+            Allowed::Share(0.01),
+        ));
+    }
+    Ok(findings)
+}
+
+/// Momentum in kg m/s and angular momentum in kg m²/s.
+fn momenta(rig: &Rig) -> (Vec3, Vec3) {
+    let mut speeds = Vec::new();
+    rig.solver.velocities(CLOTH, 1.0, &mut speeds);
+    let masses = areas(&rig.surface).into_iter().map(|area| area * DENSITY);
+    let points = rig.points();
+    let pushes = masses.zip(&speeds).map(|(mass, v)| Vec3::from(v.map(f64::from)) * mass);
+    pushes
+        .zip(&points)
+        .fold((Vec3::zeros(), Vec3::zeros()), |(p, l), (push, x)| (p + push, l + x.cross(&push)))
+}
+
+fn momentum() -> Result<Vec<Finding>, BuildError> {
+    let mut findings = Vec::new();
+    for evaluations in [96.0, 768.0] {
+        let (push, turn) = drift(evaluations)?;
+        let name = |what| format!("change of {what} in a second, {evaluations} evaluations");
+        findings.push(Finding::new(name("momentum"), 1e-6, push, Allowed::AtMost));
+        findings.push(Finding::new(name("angular momentum"), 1e-4, turn, Allowed::AtMost));
+    }
+    Ok(findings)
+}
+
+fn drift(evaluations: f64) -> Result<(f64, f64), BuildError> {
+    let mut tilted = sheet([17, 17], Vec3::zeros(), Vec3::x(), Vec3::z());
+    tilted.positions.iter_mut().for_each(|p| p.y = 0.1 * (5.0 * p.x).sin() * (4.0 * p.z).cos());
+    let mut rig = Rig::new(tilted, STRIP, evaluations)?;
+    rig.cloth().stiffness = Stiffness { bend: Some(1e-4), ..membrane(1e4) };
+    rig.frame.gravity = Vec3::zeros();
+    // Pushed while one corner is held, it turns about that, and then flies off.
+    rig.cloth().local_force = Vec3::new(0.002, 0.02, 0.004);
+    rig.hold([0]);
+    rig.run(12);
+    rig.cloth().local_force = Vec3::zeros();
+    rig.frame.pins.clear();
+    rig.run(1);
+    let (p, l) = momenta(&rig);
+    rig.run(24);
+    let (p1, l1) = momenta(&rig);
+    let change = |before: Vec3, after: Vec3| (after - before).norm() / before.norm();
+    Ok((change(p, p1), change(l, l1)))
+}
+
+fn energy() -> Result<Vec<Finding>, BuildError> {
+    let mut findings = Vec::new();
+    for (name, cross_links) in [("squares", false), ("squares with cross links", true)] {
+        for evaluations in [24.0, 96.0, 192.0] {
+            let cloth = sheet([31, 31], Vec3::zeros(), Vec3::x(), Vec3::z());
+            let lists = ClothLists { stretch: true, cross_links, ..ClothLists::NONE };
+            let mut rig = Rig::new(cloth, lists, evaluations)?;
+            rig.cloth().stiffness = membrane(1e4);
+            rig.hold([0, 30]);
+            let masses: Vec<f64> = areas(&rig.surface).into_iter().map(|area| area * DENSITY).collect();
+            let mut most = f64::NEG_INFINITY;
+            for _ in 0..36 {
+                let kinetic = rig.step().kinetic_energy;
+                let height: f64 = rig.points().iter().zip(&masses).map(|(p, mass)| p.y * mass).sum();
+                most = most.max(kinetic + GRAVITY * height);
+            }
+            let quantity = format!("{name}, {evaluations} evaluations: energy gained, J");
+            findings.push(Finding::new(quantity, 2e-5, most, Allowed::AtMost));
+        }
+    }
+    Ok(findings)
+}

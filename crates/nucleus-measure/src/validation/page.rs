@@ -1,0 +1,110 @@
+//! The results as a page of Markdown.
+
+use std::fmt::Write;
+
+use super::{Allowed, Case, Finding};
+
+/// The page: a section per case, with a table of what was found.
+///
+/// # Errors
+/// Never in practice: text is written into memory.
+pub fn page(results: &[(Case, Vec<Finding>)]) -> Result<String, std::fmt::Error> {
+    let all: Vec<&Finding> = results.iter().flat_map(|(_, findings)| findings).collect();
+    let right = all.iter().filter(|finding| finding.holds()).count();
+    let mut page = String::from(
+        "# Validation\n\n\
+         The solver against exact physics: `nucleus validate` runs this, and `--write` makes this page.\n\
+         Everything is in double precision and SI units, so that what is left is the error of the method.\n\n",
+    );
+    writeln!(page, "{right} of {} figures are within what is allowed.", all.len())?;
+    let wrong: Vec<String> = results
+        .iter()
+        .flat_map(|(case, findings)| findings.iter().filter(|f| !f.holds()).map(move |f| (case, f)))
+        .map(|(case, finding)| format!("- {}: {}, {}", case.name, finding.quantity, finding.verdict()))
+        .collect();
+    if !wrong.is_empty() {
+        writeln!(page, "These are not:\n\n{}", wrong.join("\n"))?;
+    }
+    for (case, findings) in results {
+        writeln!(page, "\n## {}\n\n{}\n", case.name, case.about)?;
+        page.push_str("| figure | exact | found | error | allowed | |\n|---|---:|---:|---:|---:|---|\n");
+        for finding in findings {
+            writeln!(page, "| {} |", finding.cells().join(" | "))?;
+        }
+    }
+    Ok(page)
+}
+
+impl Finding {
+    /// Figure, exact, found, error, what is allowed, and a word on the outcome.
+    pub fn cells(&self) -> [String; 6] {
+        let (exact, allowed) = match self.allowed {
+            Allowed::Share(most) => (figure(self.exact), format!("{} %", figure(100.0 * most))),
+            Allowed::Margin(most) => (figure(self.exact), figure(most)),
+            Allowed::AtMost => (String::new(), format!("≤ {}", figure(self.exact))),
+            Allowed::AtLeast => (String::new(), format!("≥ {}", figure(self.exact))),
+        };
+        let word = if self.holds() { "ok" } else { "**fails**" };
+        [self.quantity.clone(), exact, figure(self.found), self.error_in_words(), allowed, word.to_owned()]
+    }
+
+    /// What was found against what is allowed.
+    fn verdict(&self) -> String {
+        let [_, exact, found, error, allowed, _] = self.cells();
+        match self.error() {
+            Some(_) => format!("{found} for {exact}: off by {error}, allowed {allowed}"),
+            None => format!("{found}, allowed {allowed}"),
+        }
+    }
+
+    fn error_in_words(&self) -> String {
+        match (self.error(), self.allowed) {
+            (Some(error), Allowed::Share(_)) => format!("{} %", signed(100.0 * error)),
+            (Some(error), _) => signed(error),
+            (None, _) => String::new(),
+        }
+    }
+}
+
+/// Five digits that matter.
+fn figure(x: f64) -> String {
+    match x.abs() {
+        size if size == 0.0 || !size.is_finite() => format!("{x}"),
+        size if !(1e-3..1e6).contains(&size) => format!("{x:.2e}"),
+        size => {
+            let digits = (4 - size.log10().floor() as i32).clamp(0, 7) as usize;
+            let text = format!("{x:.digits$}");
+            if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.').to_owned()
+            } else {
+                text
+            }
+        }
+    }
+}
+
+/// Two digits, with a sign.
+fn signed(x: f64) -> String {
+    let digits =
+        if x == 0.0 || !x.is_finite() { 0 } else { (1 - x.abs().log10().floor() as i32).clamp(0, 6) };
+    let digits = digits as usize;
+    format!("{x:+.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_names_what_fails_with_its_figure() {
+        let case = super::super::cases().next().expect("there are cases");
+        let findings = vec![
+            Finding::new("right", 2.0, 2.01, Allowed::Share(0.01)),
+            Finding::new("wrong", 2.0, 2.5, Allowed::Margin(0.1)),
+        ];
+        let page = page(&[(case, findings)]).expect("memory takes text");
+        assert!(page.contains("1 of 2 figures"), "{page}");
+        assert!(page.contains("wrong, 2.5 for 2: off by +0.50, allowed 0.1"), "{page}");
+        assert!(page.contains("| right | 2 | 2.01 | +0.50 % | 1 % | ok |"), "{page}");
+    }
+}
