@@ -3,11 +3,14 @@
 //! | You want to know…                         | Read             |
 //! |-------------------------------------------|------------------|
 //! | where the scenes of the gallery come from | [`gallery`]      |
+//! | how a run is audited in a test            | [`audited`]      |
 //! | how a test runs and records a scene       | [`record`]       |
 //!
 //! **Invariant:** nothing here is used by the program.
 
+mod audit;
 pub mod gallery;
 mod recording;
 
+pub use audit::{Audited, audited};
 pub use recording::{Recording, record};

@@ -104,6 +104,7 @@ impl<R: Real> Solver<R> {
         watch.enter(Stage::Velocity);
         self.follow_positions(schedule);
         self.bounce(frame, schedule, span.to);
+        watch.step(span.to, self);
     }
 
     /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.

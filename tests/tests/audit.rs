@@ -1,0 +1,50 @@
+//! Nothing passes through anything, found apart from the solver. `cargo xtask ci` audits the gallery to its end.
+
+use std::fs;
+
+use nucleus_graph::checks::Check;
+use nucleus_tests::gallery::{program, program_of, scene, scenes};
+use nucleus_tests::{Audited, audited};
+
+/// Frames of each scene that are run here.
+const FRAMES: usize = 12;
+
+// EVIDENCE: N2.3-2, N2.3-3, N2.3-4  in every scene that promises it, nothing passes through anything
+#[test]
+fn nothing_passes_through_anything_in_scenes_that_promise_it() {
+    let mut looked_at = 0;
+    for file in scenes() {
+        let scene = scene(&fs::read_to_string(&file).expect("it is text"), &file);
+        if scene.checks.iter().any(Check::needs_audit) {
+            audited(&program(&scene), FRAMES, 2).assert_clean(&file.display().to_string());
+            looked_at += 1;
+        }
+    }
+    assert!(looked_at >= 10, "{looked_at} scenes promise it");
+}
+
+/// A small sheet that hangs in the way of a ball that comes at so many metres a second.
+fn shot(speed: f64, sub_steps: u32, thickness: f64) -> Audited {
+    let way = speed / 24.0;
+    let program = program_of(&format!(
+        r#""n": nucleus(subSteps: {sub_steps}, evaluations: 24),
+           "plane": polyPlane(width: 1, height: 1, subdivisions: (12, 12), rotate: (90, 0, 0)),
+           "sheet": nCloth(inputMesh: "plane", thickness: {thickness}),
+           "sphere": polySphere(radius: 0.2, subdivisions: (16, 10), tx: 0.03, ty: 0.05, tz: keys([(1, {}), (3, {})])),
+           "ball": nRigid(inputMesh: "sphere", thickness: {thickness})"#,
+        -0.3 - 0.7 * way,
+        0.3 + 1.3 * way
+    ));
+    audited(&program, 6, 1)
+}
+
+// EVIDENCE: N1.3-3, N2.4-8  whatever the speed, the substeps and the thickness, a ball does not get through
+#[test]
+fn a_ball_does_not_get_through_a_sheet_at_any_speed() {
+    for speed in [1.0, 10.0, 100.0, 1000.0] {
+        for (sub_steps, thickness) in [(1, 0.01), (3, 0.01), (3, 0.0)] {
+            let name = format!("{speed} m/s, {sub_steps} substeps, thickness {thickness}");
+            shot(speed, sub_steps, thickness).assert_clean(&name);
+        }
+    }
+}
