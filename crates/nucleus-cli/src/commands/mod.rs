@@ -3,9 +3,12 @@
 mod attrs;
 mod cache_info;
 mod check;
+mod diff;
 mod export;
+mod film;
 mod info;
 mod play;
+mod recover;
 mod render;
 mod run;
 mod scene_info;
@@ -24,6 +27,8 @@ pub enum Command {
     Play(play::Play),
     Render(render::Render),
     Export(export::Export),
+    Diff(diff::Diff),
+    Recover(recover::Recover),
     Attrs(attrs::Attrs),
 }
 
@@ -37,6 +42,8 @@ impl Command {
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
             Self::Export(export) => export.run(),
+            Self::Diff(diff) => diff.run(),
+            Self::Recover(recover) => recover.run(),
             Self::Attrs(attrs) => attrs.run(),
         }
     }

@@ -21,6 +21,9 @@ pub struct Play {
     /// Only print the address.
     #[arg(long)]
     no_open: bool,
+    /// Replace the cache of a scene that was run before.
+    #[arg(long)]
+    force: bool,
 }
 
 impl Play {
@@ -29,7 +32,7 @@ impl Play {
         let cache = match cache_file::is_cache(&self.file) {
             true => self.file,
             false => {
-                let run = Run::of(self.file);
+                let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
                 match run.run()? {
                     ended @ (Outcome::Refused | Outcome::Interrupted) => return Ok(ended),
