@@ -22,4 +22,4 @@ pub use error::ViewError;
 pub use picture::{
     AnimationWriter, Bounds, Camera, Colouring, Film, GifWriter, Ground, Image, Kind, Object, Style, draw,
 };
-pub use player::{Player, serve};
+pub use player::{Player, serve, serve_both};
