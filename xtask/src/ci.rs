@@ -48,6 +48,7 @@ fn readme_commands(root: &Path) -> anyhow::Result<()> {
     ensure!(!commands.is_empty(), "README.md has no block of shell commands");
     for text in commands {
         println!("-- {text}");
+        clear_the_way(root, &text)?;
         let mut words = text.split_whitespace();
         let mut command = Command::new(words.next().unwrap_or_default());
         command.args(words).current_dir(root);
@@ -58,6 +59,14 @@ fn readme_commands(root: &Path) -> anyhow::Result<()> {
         }
     }
     Ok(())
+}
+
+/// Takes away the cache that the same command has left the time before: `nucleus run` replaces none by itself.
+fn clear_the_way(root: &Path, command: &str) -> anyhow::Result<()> {
+    let scene = command.split_whitespace().find(|word| word.ends_with(".ron"));
+    let stem = scene.and_then(|scene| Path::new(scene).file_stem());
+    let Some(cache) = stem.map(|stem| root.join(stem).with_extension("mcap")) else { return Ok(()) };
+    if cache.exists() { fs::remove_file(&cache).context("the cache of the last time") } else { Ok(()) }
 }
 
 /// Every scene with its own checks.

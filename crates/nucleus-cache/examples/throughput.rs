@@ -1,12 +1,13 @@
-//! Writes and reads a waving sheet and prints megabytes of positions per second, and memory per point.
+//! Writes and reads a waving sheet and prints megabytes of positions per second, memory per point, and how long
+//! it takes to get to any frame.
 //!
-//! `cargo run --release -p nucleus-cache --example throughput -- 1000 20` (points along a side, frames).
+//! `cargo run --release -p nucleus-cache --example throughput -- 1000 20` (points along a side, frames; then `compact`).
 
 use std::error::Error;
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use nucleus_cache::{ObjectInfo, ObjectKind, Playback, Recorder, RunInfo, Source};
+use nucleus_cache::{ObjectInfo, ObjectKind, Packing, Playback, Recorder, RunInfo, Source};
 use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver};
 
 /// A sheet of a metre, with waves that make every float differ from frame to frame.
@@ -36,15 +37,17 @@ impl StateView for Sheet {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u32>());
+    let mut arguments =
+        std::env::args().skip(1).filter(|word| word != "compact").map(|argument| argument.parse::<u32>());
     let side = arguments.next().transpose()?.unwrap_or(129);
     let frames = arguments.next().transpose()?.unwrap_or(120) as i32;
+    let packing = if std::env::args().any(|word| word == "compact") { Packing::Small } else { Packing::Fast };
     let path = std::env::temp_dir().join("nucleus-throughput.mcap");
     let raw = 12.0e-6 * f64::from(side * side) * f64::from(frames);
     let before = peak_kilobytes();
 
-    let run = RunInfo { start: 0, end: frames, ..RunInfo::default() };
-    let mut recorder = Recorder::create(&path, &run, vec![(Source::Cloth(ClothId(0)), sheet(side))])?;
+    let run = RunInfo { start: 0, end: frames, packing, ..RunInfo::default() };
+    let mut recorder = Recorder::replace(&path, &run, vec![(Source::Cloth(ClothId(0)), sheet(side))])?;
     recorder.record_start(&Sheet { side, time: 0.0 })?;
     let mut seconds = 0.0;
     for frame in 1..=frames {
@@ -70,8 +73,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::hint::black_box(cache.positions(0, moment)?);
     }
     println!("read {:.0} MB/s, open {opened:.2} ms", raw / begin.elapsed().as_secs_f64());
+    let (middle, worst) = seek(&mut cache)?;
+    println!("seek {middle:.2} ms, at worst {worst:.2} ms, in {:.2} GB", 1e-9 * recorded.bytes as f64);
     std::fs::remove_file(path)?;
     Ok(())
+}
+
+/// Milliseconds to read the sheet at a moment anywhere in the run: the median of 101, and the longest.
+fn seek(cache: &mut Playback) -> Result<(f64, f64), Box<dyn Error>> {
+    let moments = cache.moments().len();
+    let mut times = Vec::new();
+    for k in 0..101 {
+        let begin = Instant::now();
+        std::hint::black_box(cache.positions(0, 7_919 * k % moments)?);
+        times.push(begin.elapsed().as_secs_f64() * 1e3);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok((times[50], times[100]))
 }
 
 fn sheet(side: u32) -> ObjectInfo {

@@ -8,6 +8,10 @@ use mcap::records::{MessageHeader, Record, op};
 /// Bytes before the body of a record: its kind and its length.
 pub(crate) const RECORD_HEAD: u64 = 9;
 
+/// Bytes of a chunk's body besides the word for its compression and its records: two times, a size, a checksum,
+/// and the lengths of both.
+const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4 + 8;
+
 /// Where a chunk lies in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ChunkPlace {
@@ -77,6 +81,10 @@ impl Chunk {
             return None;
         }
         let Ok(Record::Chunk { header, data }) = mcap::parse_record(opcode, body) else { return None };
+        // A length that has grown would hide what follows.
+        if body.len() != CHUNK_HEAD + header.compression.len() + data.len() {
+            return None;
+        }
         self.records.clear();
         match header.compression.as_str() {
             // One byte more than stated shows that the statement is wrong, whatever it says.

@@ -5,6 +5,8 @@
 //! | how a run is written, and what a full disk does     | [`Recorder`]                        |
 //! | how a frame is found and read back                  | [`Playback`]                        |
 //! | what a killed run or a flipped byte costs           | [`Loss`]                            |
+//! | where two runs differ first                         | [`compare`]                         |
+//! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
 //! | what is known of the run: scene, frames, units      | [`RunInfo`]                         |
 //! | the bytes of a message                              | `points.rs` and `topology.rs`       |
 //! | how one frame is kept from harming another          | `stream.rs`, `chunk.rs`             |
@@ -15,18 +17,35 @@
 //!
 //! **Invariant:** this crate knows no scene and no node; a cache opens without them. Same run, same bytes.
 //!
-//! ```no_run
+//! A cache in five lines:
+//!
+//! ```
+//! # use nucleus_cache::{ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
+//! # use nucleus_core::{Cloth, ClothLists, Faces, Mass, ModelBuilder, Solver, Surface};
+//! # let folder = tempfile::tempdir()?;
+//! # std::env::set_current_dir(&folder)?;
+//! # let faces = Faces::from_iter([&[0_u32, 1, 2][..]]);
+//! # let rest = vec![[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]];
+//! # let positions = rest.iter().map(|&p: &[f32; 3]| nalgebra::Vector3::from(p.map(f64::from))).collect();
+//! # let surface = Surface { positions, faces: faces.clone() };
+//! # let mut builder = ModelBuilder::new();
+//! # let cloth = builder.cloth(Cloth { surface, mass: Mass::PerPoint(1.0), lists: ClothLists::NONE })?;
+//! # let object = ObjectInfo { name: "sheet".to_owned(), kind: ObjectKind::Cloth, faces, rest };
+//! # let mut recorder = Recorder::create("hang.mcap", &RunInfo::default(), vec![(Source::Cloth(cloth), object)])?;
+//! # recorder.record_start(&Solver::<f32>::new(builder, 1))?;
+//! # recorder.finish()?;
 //! let mut cache = nucleus_cache::Playback::open("hang.mcap")?;
 //! let last = cache.moments().len() - 1;
 //! for object in 0..cache.objects().len() {
-//!     let points = cache.positions(object, last)?;
-//!     println!("{}: {:?}", cache.objects()[object].name, points[0]);
+//!     println!("{}: {:?}", cache.objects()[object].name, cache.positions(object, last)?[0]);
 //! }
+//! # assert_eq!(cache.positions(0, last)?[1], [1.0, 1.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod chunk;
 mod contents;
+mod diff;
 mod loss;
 mod moment;
 mod object;
@@ -36,6 +55,7 @@ mod points;
 mod provenance;
 mod record_error;
 mod recorder;
+mod recover;
 mod run;
 mod salvage;
 mod shuffle;
@@ -46,12 +66,15 @@ mod target;
 mod topic_file;
 mod topology;
 
+pub use diff::{Comparison, Difference, PointDifference, compare};
 pub use loss::Loss;
 pub use moment::RecordedMoment;
 pub use object::{ObjectInfo, ObjectKind, Source};
 pub use open_error::{OpenError, ReadError};
-pub use playback::Playback;
+pub use playback::{Playback, Sizes};
 pub use record_error::RecordError;
 pub use recorder::{FrameRecorder, Recorded, Recorder};
-pub use run::{Detail, RunInfo};
+pub use recover::{RecoverError, Recovered};
+pub use run::{Detail, Packing, Plane, RunInfo};
+pub use target::unfinished;
 pub use topic_file::TopicFile;

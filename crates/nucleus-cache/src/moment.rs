@@ -49,5 +49,6 @@ pub(crate) fn list(run: &RunInfo, contents: &Contents, channels: &[u16]) -> Vec<
 pub(crate) fn missing(run: &RunInfo, moments: &[RecordedMoment]) -> Vec<i32> {
     let frames: BTreeSet<i32> = moments.iter().map(|moment| moment.frame).collect();
     let last = frames.last().copied().unwrap_or(run.start).min(run.end);
-    (run.start..=last).filter(|frame| !frames.contains(frame)).collect()
+    let expected = (run.start..=last).filter(|&frame| run.detail.takes(frame, run.start, run.end));
+    expected.filter(|frame| !frames.contains(frame)).collect()
 }

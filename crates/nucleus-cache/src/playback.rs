@@ -27,13 +27,22 @@ pub struct Playback<R = BufReader<File>> {
     bytes: u64,
     library: String,
     run: RunInfo,
-    contents: Contents,
-    loss: Loss,
+    pub(crate) contents: Contents,
+    pub(crate) loss: Loss,
     objects: Vec<ObjectInfo>,
     points_channels: Vec<u16>,
     moments: Vec<RecordedMoment>,
-    chunk: Chunk,
+    pub(crate) chunk: Chunk,
     loaded: Option<usize>,
+}
+
+/// How the bytes of a cache are shared out.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Sizes {
+    /// Bytes of all messages of a channel, unpacked, by topic.
+    pub channels: BTreeMap<String, u64>,
+    /// Bytes of all frames in the file.
+    pub packed: u64,
 }
 
 impl Playback {
@@ -131,6 +140,30 @@ impl<R: Read + Seek> Playback<R> {
         })
     }
 
+    /// Bytes of each channel before they were packed, by topic, and all bytes of frames once packed. Reads the
+    /// whole file; damaged frames are left out.
+    ///
+    /// # Errors
+    /// When the system fails to read.
+    pub fn sizes(&mut self) -> Result<Sizes, ReadError> {
+        let mut sizes = Sizes::default();
+        for index in 0..self.contents.chunks.len() {
+            let packed = self.contents.chunks[index].bytes.clone();
+            match self.load(index) {
+                Ok(()) => {}
+                Err(ReadError::Damaged { .. }) => continue,
+                Err(error) => return Err(error),
+            }
+            sizes.packed += packed.end - packed.start;
+            for (header, data) in self.chunk.messages() {
+                let topic = self.contents.channels.get(&header.channel_id).map(|channel| &channel.topic);
+                let bytes = sizes.channels.entry(topic.cloned().unwrap_or_default()).or_default();
+                *bytes += data.len() as u64;
+            }
+        }
+        Ok(sizes)
+    }
+
     /// Positions of an object at a moment, in scene units. An object that does not move keeps its last ones.
     ///
     /// # Errors
@@ -205,7 +238,7 @@ impl<R: Read + Seek> Playback<R> {
     }
 
     /// Makes `index` the chunk in memory.
-    fn load(&mut self, index: usize) -> Result<(), ReadError> {
+    pub(crate) fn load(&mut self, index: usize) -> Result<(), ReadError> {
         if self.loaded == Some(index) {
             return Ok(());
         }

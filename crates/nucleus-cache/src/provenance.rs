@@ -5,21 +5,23 @@ use std::collections::BTreeMap;
 use mcap::records::Metadata;
 
 use crate::open_error::OpenError;
-use crate::run::{Detail, RunInfo};
+use crate::run::{Detail, Packing, Plane, RunInfo};
 
 /// The layout written here. A reader refuses a higher one.
 const FORMAT: u32 = 1;
 pub(crate) const PROFILE: &str = "nucleus";
 const SCENE: &str = "nucleus.scene";
 const RUN: &str = "nucleus.run";
+const GROUND: &str = "ground";
 /// The key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 
 impl RunInfo {
     pub(crate) fn to_metadata(&self) -> [Metadata; 2] {
         let detail = match self.detail {
-            Detail::Frames => "frames",
-            Detail::Substeps => "substeps",
+            Detail::Frames => "frames".to_owned(),
+            Detail::Substeps => "substeps".to_owned(),
+            Detail::Every(n) => format!("every {n}"),
         };
         let mut run = self.extra.clone();
         run.extend(
@@ -29,12 +31,18 @@ impl RunInfo {
                 ("end", self.end.to_string()),
                 ("fps", self.frames_per_second.to_string()),
                 ("units_per_metre", self.units_per_metre.to_string()),
-                ("record", detail.to_owned()),
+                ("record", detail),
                 ("velocities", self.velocities.to_string()),
                 ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ]
             .map(|(key, value)| (key.to_owned(), value)),
         );
+        if let Some(Plane { origin, normal }) = self.ground {
+            run.insert(
+                GROUND.to_owned(),
+                origin.iter().chain(&normal).map(f64::to_string).collect::<Vec<_>>().join(" "),
+            );
+        }
         let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
             .map(|(key, value)| (key.to_owned(), value.clone()));
         [sealed(SCENE, scene.into()), sealed(RUN, run)]
@@ -65,6 +73,8 @@ impl RunInfo {
             units_per_metre: run.parse("units_per_metre")?,
             detail: run.detail()?,
             velocities: run.parse("velocities")?,
+            ground: run.ground()?,
+            packing: Packing::default(),
             version,
             extra: run.0,
         };
@@ -107,10 +117,25 @@ impl Keys {
     }
 
     fn detail(&mut self) -> Result<Detail, OpenError> {
-        match self.0.remove("record").unwrap_or_default().as_str() {
+        let value = self.0.remove("record").unwrap_or_default();
+        match value.as_str() {
             "frames" => Ok(Detail::Frames),
             "substeps" => Ok(Detail::Substeps),
-            other => Err(OpenError::BadValue { key: "record", value: other.to_owned() }),
+            other => {
+                let every = other.strip_prefix("every ").and_then(|n| n.parse().ok()).filter(|&n| n > 0);
+                every.map(Detail::Every).ok_or(OpenError::BadValue { key: "record", value })
+            }
+        }
+    }
+
+    /// Six numbers: a point, and the normal.
+    fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
+        let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.split(' ').map(|x| x.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, z, a, b, c]) => Ok(Some(Plane { origin: [x, y, z], normal: [a, b, c] })),
+            _ => Err(OpenError::BadValue { key: GROUND, value }),
         }
     }
 }
@@ -122,8 +147,13 @@ mod tests {
     #[test]
     fn what_is_written_of_a_run_is_what_is_read() {
         let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
-        let run = RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ..RunInfo::default() };
-        assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
+        let ground = Some(Plane { origin: [0.1, -2.0, 0.0], normal: [0.0, 1.0, 1e-9] });
+        let run =
+            RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ground, ..RunInfo::default() };
+        for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
+            let run = RunInfo { detail, ..run.clone() };
+            assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
+        }
     }
 
     /// What a run with one value exchanged is refused with.

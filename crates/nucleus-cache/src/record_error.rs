@@ -15,6 +15,27 @@ pub enum RecordError {
         /// The file in the way.
         path: PathBuf,
     },
+    /// A cache would replace another.
+    #[error("`{}` exists; `--force` replaces it, `-o` names another file", path.display())]
+    Exists {
+        /// The cache in the way.
+        path: PathBuf,
+    },
+    /// A run that was killed has left its cache behind.
+    #[error(
+        "`{0}` is left of a run that was killed; `nucleus recover {0}` saves its frames, `--force` replaces it",
+        path.display()
+    )]
+    Unfinished {
+        /// What it has left behind.
+        path: PathBuf,
+    },
+    /// Another run is writing this cache.
+    #[error("`{}` is being written by another run", path.display())]
+    InUse {
+        /// The file it writes.
+        path: PathBuf,
+    },
     /// A cache would replace a folder or a device.
     #[error("`{}` is not a file; give the name of a file to write", path.display())]
     NotAFile {

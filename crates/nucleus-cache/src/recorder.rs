@@ -15,6 +15,7 @@ use crate::record_error::RecordError;
 use crate::run::{Detail, RunInfo};
 use crate::shuffle::shuffle;
 use crate::stream::Stream;
+use crate::target::{Places, Target};
 use crate::{target, topology};
 
 /// Records a run.
@@ -33,7 +34,8 @@ use crate::{target, topology};
 /// # Ok(()) }
 /// ```
 ///
-/// A recorder that is dropped before [`finish`](Self::finish) leaves a file that plays to its last whole frame.
+/// The file grows under its name with `.part` behind it, and has its name when it is whole. A recorder that is
+/// dropped before [`finish`](Self::finish) leaves a `.part` that plays to its last whole frame.
 pub struct Recorder<W: Write + Seek = File> {
     stream: Stream<W>,
     run: RunInfo,
@@ -41,6 +43,7 @@ pub struct Recorder<W: Write + Seek = File> {
     report_channel: u16,
     last_frame: i32,
     moments: u64,
+    places: Option<Places>,
     /// What went wrong inside the step, where it could not be said.
     trouble: Option<RecordError>,
     // Reused for every message.
@@ -54,6 +57,8 @@ struct Track {
     source: Source,
     channel: u16,
     points: usize,
+    /// Whether it has moved since it was last recorded.
+    has_moved: bool,
 }
 
 /// What has been recorded.
@@ -68,17 +73,42 @@ pub struct Recorded {
 }
 
 impl Recorder<File> {
-    /// Begins a cache at `path`. An older cache there is replaced; any other file is left alone.
+    /// Begins a cache at `path`, where nothing may be yet.
     ///
     /// # Errors
-    /// When something else is in the way, the file cannot be made, or the description contradicts itself.
+    /// When something is in the way, the file cannot be made, or the description contradicts itself.
     pub fn create(
         path: impl AsRef<Path>,
         run: &RunInfo,
         objects: Vec<(Source, ObjectInfo)>,
     ) -> Result<Self, RecordError> {
+        Self::at(path.as_ref(), run, objects, false)
+    }
+
+    /// Begins a cache at `path` that takes the place of an older one when it is whole. Any other file there is
+    /// left alone.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn replace(
+        path: impl AsRef<Path>,
+        run: &RunInfo,
+        objects: Vec<(Source, ObjectInfo)>,
+    ) -> Result<Self, RecordError> {
+        Self::at(path.as_ref(), run, objects, true)
+    }
+
+    fn at(
+        path: &Path,
+        run: &RunInfo,
+        objects: Vec<(Source, ObjectInfo)>,
+        replace: bool,
+    ) -> Result<Self, RecordError> {
         check(run, &objects)?;
-        Self::to_writer(target::create(path.as_ref())?, run, objects)
+        let Target { file, places } = target::create(path, replace)?;
+        let mut recorder = Self::to_writer(file, run, objects)?;
+        recorder.places = Some(places);
+        Ok(recorder)
     }
 }
 
@@ -94,12 +124,13 @@ impl<W: Write + Seek> Recorder<W> {
     ) -> Result<Self, RecordError> {
         check(run, &objects)?;
         let mut recorder = Self {
-            stream: Stream::create(target)?,
+            stream: Stream::create(target, run.packing)?,
             run: run.clone(),
             tracks: Vec::with_capacity(objects.len()),
             report_channel: 0,
             last_frame: run.start,
             moments: 0,
+            places: None,
             trouble: None,
             values: Vec::new(),
             message: Vec::new(),
@@ -152,6 +183,9 @@ impl<W: Write + Seek> Recorder<W> {
     /// When writing fails; the frames before are in the file all the same.
     pub fn finish(self) -> Result<Recorded, RecordError> {
         let (frames, bytes) = self.stream.finish()?;
+        if let Some(places) = self.places {
+            places.settle().map_err(|source| RecordError::Write { frames, bytes, source })?;
+        }
         Ok(Recorded { frames, moments: self.moments, bytes })
     }
 
@@ -160,28 +194,43 @@ impl<W: Write + Seek> Recorder<W> {
         for record in self.run.to_metadata() {
             self.stream.metadata(&record)?;
         }
-        let topology_schema = self.stream.schema(topology::ENCODING, topology::SCHEMA)?;
-        let points_schema = self.stream.schema(points::ENCODING, points::SCHEMA)?;
+        let schemas = self.stream.own_schemas()?;
         self.report_channel = self.stream.channel("/report", 0, "json")?;
-        for (source, object) in objects {
+        let mut meshes = Vec::with_capacity(objects.len());
+        for (source, object) in &objects {
             let (name, points) = (object.name.clone(), object.rest.len());
             let mesh =
-                self.stream.channel(&format!("/{name}/topology"), topology_schema, topology::ENCODING)?;
-            let channel = self.stream.channel(&format!("/{name}/points"), points_schema, points::ENCODING)?;
+                self.stream.channel(&format!("/{name}/topology"), schemas.topology, topology::ENCODING)?;
+            let channel =
+                self.stream.channel(&format!("/{name}/points"), schemas.points, points::ENCODING)?;
+            meshes.push(mesh);
+            self.tracks.push(Track { name, source: *source, channel, points, has_moved: false });
+        }
+        for ((_, object), mesh) in objects.into_iter().zip(meshes) {
             topology::write(object, &mut self.message);
             self.stream.send(&Stamp::start(self.run.start), mesh, &self.message)?;
-            self.tracks.push(Track { name, source, channel, points });
         }
         Ok(())
+    }
+
+    /// Keeps in mind which colliders move while nothing is recorded.
+    fn note_motion(&mut self, state: &dyn StateView) {
+        for track in &mut self.tracks {
+            if let Source::Collider(id) = track.source {
+                track.has_moved |= state.collider_moved(id);
+            }
+        }
     }
 
     /// Writes one message per object that may have changed.
     fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
         let units = self.run.units_per_metre;
         for k in 0..self.tracks.len() {
-            let Track { source, channel, points, .. } = self.tracks[k];
+            let Track { source, channel, points, has_moved, .. } = self.tracks[k];
             match source {
-                Source::Collider(id) if stamp.substep > 0 && !state.collider_moved(id) => continue,
+                Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
+                    continue;
+                }
                 Source::Collider(id) => state.collider_positions(id, units, &mut self.values),
                 Source::Cloth(id) => state.positions(id, units, &mut self.values),
             }
@@ -200,6 +249,7 @@ impl<W: Write + Seek> Recorder<W> {
                 shuffle(&self.values, &mut self.message);
             }
             self.stream.send(&stamp, channel, &self.message)?;
+            self.tracks[k].has_moved = false;
         }
         self.moments += 1;
         Ok(())
@@ -213,8 +263,17 @@ pub struct FrameRecorder<'a, W: Write + Seek = File> {
 
 impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
     fn substep(&mut self, moment: Moment, state: &dyn StateView) {
-        let wanted = self.recorder.run.detail == Detail::Substeps || moment.ends_frame();
-        if !wanted || self.recorder.trouble.is_some() {
+        let RunInfo { detail, start, end, .. } = self.recorder.run;
+        let wanted = match detail {
+            Detail::Substeps => true,
+            Detail::Frames => moment.ends_frame(),
+            Detail::Every(_) => moment.ends_frame() && detail.takes(self.recorder.last_frame, start, end),
+        };
+        if self.recorder.trouble.is_some() {
+            return;
+        }
+        if !wanted {
+            self.recorder.note_motion(state);
             return;
         }
         let frame = self.recorder.last_frame;

@@ -10,6 +10,39 @@ pub enum Detail {
     Frames,
     /// The end of each substep.
     Substeps,
+    /// The end of every so manieth frame after the start, and of the last.
+    Every(u32),
+}
+
+impl Detail {
+    /// Whether the end of `frame` is recorded in a run from `start` to `end`.
+    pub(crate) fn takes(self, frame: i32, start: i32, end: i32) -> bool {
+        match self {
+            Self::Every(n) => {
+                frame == end || (i64::from(frame) - i64::from(start)) % i64::from(n.max(1)) == 0
+            }
+            Self::Frames | Self::Substeps => true,
+        }
+    }
+}
+
+/// How much time is spent on making a cache small. Nothing is ever lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Packing {
+    /// As fast as a disk.
+    #[default]
+    Fast,
+    /// As small as can be.
+    Small,
+}
+
+/// A plane that everything rests on, in scene units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    /// A point of it.
+    pub origin: [f64; 3],
+    /// Its normal.
+    pub normal: [f64; 3],
 }
 
 /// What a cache says about the run it holds.
@@ -31,6 +64,10 @@ pub struct RunInfo {
     pub detail: Detail,
     /// Whether velocities follow the positions (units per second). Doubles the size.
     pub velocities: bool,
+    /// The ground plane, if the scene uses one.
+    pub ground: Option<Plane>,
+    /// How much time is spent on making the file small. Not stored: any reader reads both.
+    pub packing: Packing,
     /// The version of Nucleus that wrote the cache. A recorder sets it.
     pub version: String,
     /// Anything else worth keeping. Keys of the format itself are ignored when writing.
@@ -49,6 +86,8 @@ impl Default for RunInfo {
             units_per_metre: 1.0,
             detail: Detail::Frames,
             velocities: false,
+            ground: None,
+            packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: BTreeMap::new(),
         }
@@ -64,6 +103,9 @@ impl RunInfo {
         let backwards = || {
             (self.end < self.start).then(|| format!("frame {} ends before frame {}", self.end, self.start))
         };
+        if self.detail == Detail::Every(0) {
+            return Some("every 0th frame cannot be recorded".to_owned());
+        }
         positive("frames per second", self.frames_per_second)
             .or_else(|| positive("units per metre", self.units_per_metre))
             .or_else(backwards)

@@ -5,22 +5,43 @@ use std::io::{BufWriter, Seek, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use mcap::records::Metadata;
+use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
-use crate::points::Stamp;
+use crate::points::{self, Stamp};
 use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
+use crate::run::Packing;
 use crate::tally::Tally;
+use crate::topology;
 
 /// Level 3 makes files 1 % smaller than level 1 at the same speed.
-const ZSTD_LEVEL: u32 = 3;
+const FAST: u32 = 3;
+/// The highest level that needs no more memory to read.
+const SMALL: u32 = 19;
 
 /// An MCAP file that grows. Every failure says how far it got.
 pub(crate) struct Stream<W: Write + Seek> {
     writer: Writer<BufWriter<Tally<W>>>,
     progress: Progress,
     sequence: u32,
+}
+
+/// The numbers of the schemas that a cache uses.
+pub(crate) struct Schemas {
+    pub topology: u16,
+    pub points: u16,
+}
+
+impl Schemas {
+    /// The schema of an encoding; 0, which is none, for those that need none.
+    pub fn of(&self, encoding: &str) -> u16 {
+        match encoding {
+            topology::ENCODING => self.topology,
+            points::ENCODING => self.points,
+            _ => 0,
+        }
+    }
 }
 
 /// How much is safe.
@@ -31,10 +52,10 @@ struct Progress {
 
 impl<W: Write + Seek> Stream<W> {
     /// Begins a file in an empty `target`.
-    pub fn create(target: W) -> Result<Self, RecordError> {
+    pub fn create(target: W, packing: Packing) -> Result<Self, RecordError> {
         let (tally, length) = Tally::new(target);
         let progress = Progress { frames: 0, length };
-        let writer = progress.check(options().create(BufWriter::new(tally)))?;
+        let writer = progress.check(options(packing).create(BufWriter::new(tally)))?;
         Ok(Self { writer, progress, sequence: 0 })
     }
 
@@ -47,6 +68,14 @@ impl<W: Write + Seek> Stream<W> {
         self.progress.check(self.writer.add_schema(name, "text", text.as_bytes()))
     }
 
+    /// Adds the schemas of a cache.
+    pub fn own_schemas(&mut self) -> Result<Schemas, RecordError> {
+        Ok(Schemas {
+            topology: self.schema(topology::ENCODING, topology::SCHEMA)?,
+            points: self.schema(points::ENCODING, points::SCHEMA)?,
+        })
+    }
+
     pub fn channel(&mut self, topic: &str, schema: u16, encoding: &str) -> Result<u16, RecordError> {
         self.progress.check(self.writer.add_channel(schema, topic, encoding, &BTreeMap::new()))
     }
@@ -54,6 +83,13 @@ impl<W: Write + Seek> Stream<W> {
     pub fn send(&mut self, stamp: &Stamp, channel: u16, message: &[u8]) -> Result<(), RecordError> {
         self.sequence = self.sequence.wrapping_add(1);
         let header = stamp.header(channel, self.sequence);
+        self.progress.check(self.writer.write_to_known_channel(&header, message))
+    }
+
+    /// Adds a message as it was in another file.
+    pub fn copy(&mut self, channel: u16, header: &MessageHeader, message: &[u8]) -> Result<(), RecordError> {
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = MessageHeader { channel_id: channel, sequence: self.sequence, ..*header };
         self.progress.check(self.writer.write_to_known_channel(&header, message))
     }
 
@@ -87,12 +123,16 @@ impl Progress {
 }
 
 /// One chunk per flush, compressed on the calling thread: the same run gives the same bytes.
-fn options() -> WriteOptions {
+fn options(packing: Packing) -> WriteOptions {
+    let level = match packing {
+        Packing::Fast => FAST,
+        Packing::Small => SMALL,
+    };
     WriteOptions::new()
         .profile(PROFILE)
         .library(concat!("nucleus ", env!("CARGO_PKG_VERSION")))
         .compression(Some(Compression::Zstd))
-        .compression_level(ZSTD_LEVEL)
+        .compression_level(level)
         .compression_threads(0)
         .chunk_size(None)
 }

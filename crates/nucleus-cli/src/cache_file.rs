@@ -8,6 +8,15 @@ use nucleus_cache::{OpenError, Playback};
 /// Opens a cache; the error names the file.
 pub fn open(path: &Path) -> Result<Playback> {
     Playback::open(path).map_err(|error| match error {
+        OpenError::Io { .. } if nucleus_cache::unfinished(path).exists() => {
+            let part = nucleus_cache::unfinished(path);
+            let part = part.display();
+            anyhow!(
+                "there is no `{}` yet; its run is going on or was killed: `nucleus play {part}` shows how far it \
+                 came, `nucleus recover {part}` makes it whole",
+                path.display()
+            )
+        }
         OpenError::Io { .. } | OpenError::Folder { .. } => anyhow!(error),
         other => anyhow!(other).context(format!("cannot open `{}`", path.display())),
     })

@@ -1,19 +1,19 @@
 //! From a program to a recorder: what the cache is to say of the run.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::str::FromStr;
 
 use anyhow::{Context, Result, bail};
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
+use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source};
 use nucleus_graph::compile::{self, Program};
 use nucleus_graph::{Simulation, scene};
 
 /// What is recorded of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Record {
-    /// The end of every frame.
-    Frames,
-    /// The end of every substep.
-    Substeps,
+    /// Moments of it.
+    Moments(Detail),
     /// Nothing.
     None,
 }
@@ -22,43 +22,85 @@ impl Record {
     /// What is asked for, or else what the scene wants.
     pub fn of(asked: Option<Self>, program: &Program) -> Self {
         asked.unwrap_or(match program.record() {
-            scene::Record::Frames => Self::Frames,
-            scene::Record::Substeps => Self::Substeps,
+            scene::Record::Frames => Self::Moments(Detail::Frames),
+            scene::Record::Substeps => Self::Moments(Detail::Substeps),
+            scene::Record::Every(n) => Self::Moments(Detail::Every(n)),
+            scene::Record::None => Self::None,
         })
     }
+}
 
-    fn detail(self) -> Option<Detail> {
-        match self {
-            Self::Frames => Some(Detail::Frames),
-            Self::Substeps => Some(Detail::Substeps),
-            Self::None => None,
+impl FromStr for Record {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let every = || text.strip_prefix("every:")?.trim().parse().ok().filter(|&n| n > 0);
+        match text {
+            "frames" => Ok(Self::Moments(Detail::Frames)),
+            "substeps" => Ok(Self::Moments(Detail::Substeps)),
+            "none" => Ok(Self::None),
+            _ => every().map(|n| Self::Moments(Detail::Every(n))).ok_or_else(|| {
+                "write frames, substeps, every:10 (each tenth frame and the last) or none".to_owned()
+            }),
         }
     }
+}
+
+/// How a cache is to be written.
+#[derive(Debug, Clone, Copy)]
+pub struct Manner {
+    /// What is recorded.
+    pub record: Record,
+    /// Whether velocities are, too.
+    pub velocities: bool,
+    /// Whether an older cache may be replaced.
+    pub force: bool,
+    /// Whether it is to be as small as can be, at the cost of time.
+    pub compact: bool,
 }
 
 /// Begins the cache of a run at its start frame; none if nothing is to be recorded.
 pub fn begin(
     simulation: &Simulation,
-    record: Record,
+    manner: Manner,
     out: &Path,
     scene: (&Path, &str),
 ) -> Result<Option<Recorder>> {
-    let Some(detail) = record.detail() else { return Ok(None) };
+    let Record::Moments(detail) = manner.record else { return Ok(None) };
     let program = simulation.program();
     let (start, end) = frames(program)?;
+    let units = program.units_per_metre();
+    let plane = program.first_input().plane;
     let run = RunInfo {
         scene_path: scene.0.display().to_string(),
         scene_text: scene.1.to_owned(),
         start,
         end,
         frames_per_second: program.time().fps,
-        units_per_metre: program.units_per_metre(),
+        units_per_metre: units,
         detail,
+        velocities: manner.velocities,
+        ground: plane
+            .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
+        packing: if manner.compact { Packing::Small } else { Packing::Fast },
+        extra: provenance(),
         ..RunInfo::default()
     };
-    let mut recorder = Recorder::create(out, &run, objects(simulation))?;
+    let objects = objects(simulation);
+    let recorder = match manner.force {
+        true => Recorder::replace(out, &run, objects),
+        false => Recorder::create(out, &run, objects),
+    };
+    let mut recorder = recorder?;
     recorder.record_start(simulation.state())?;
     Ok(Some(recorder))
+}
+
+/// What else is worth knowing of a run. Nothing that may change from one run of a scene to the next, such as
+/// the date or the number of threads: the same run gives the same bytes.
+fn provenance() -> BTreeMap<String, String> {
+    let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
+    BTreeMap::from([("machine".to_owned(), machine), ("scalar".to_owned(), "f32".to_owned())])
 }
 
 /// First and last frame of a program.

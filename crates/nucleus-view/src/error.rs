@@ -41,6 +41,14 @@ pub enum ViewError {
         /// What the encoder said.
         source: png::EncodingError,
     },
+    /// The film could not be encoded or its bytes not be written.
+    #[error("cannot write the film `{}`", path.display())]
+    Gif {
+        /// The file.
+        path: PathBuf,
+        /// What the encoder said.
+        source: gif::EncodingError,
+    },
     /// A frame of an animation has not the size of the others.
     #[error("`{}` has frames of {}x{}, not {}x{}", path.display(), expected[0], expected[1], found[0], found[1])]
     FrameSize {

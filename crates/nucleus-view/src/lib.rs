@@ -6,6 +6,7 @@
 //! | where the camera stands when none is given   | [`Camera::framing`]      |
 //! | how a cache becomes pictures                 | [`Film`]                 |
 //! | how frames become an animated PNG            | [`AnimationWriter`]      |
+//! | how frames become a GIF                      | [`GifWriter`]            |
 //! | how a browser gets the player and the cache  | [`serve()`]              |
 //! | how the player reads a cache                 | `assets/player/cache.js` |
 //! | how strain becomes a colour                  | [`Colouring::Strain`]    |
@@ -19,6 +20,6 @@ mod player;
 
 pub use error::ViewError;
 pub use picture::{
-    AnimationWriter, Bounds, Camera, Colouring, Film, Ground, Image, Kind, Object, Style, draw,
+    AnimationWriter, Bounds, Camera, Colouring, Film, GifWriter, Ground, Image, Kind, Object, Style, draw,
 };
-pub use player::{Player, serve};
+pub use player::{Player, serve, serve_both};

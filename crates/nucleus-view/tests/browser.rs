@@ -7,11 +7,11 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use nucleus_view::serve;
+use nucleus_view::{Player, serve, serve_both};
 use sample::Sample;
 
 /// A page that takes longer than this hangs.
-const PATIENCE: Duration = Duration::from_secs(90);
+const PATIENCE: Duration = Duration::from_secs(180);
 
 /// What a browser shows of a cache.
 struct Seen {
@@ -44,16 +44,17 @@ fn chromium() -> Option<&'static Path> {
 
 /// Serves the cache and looks at it; `wish` is what stands behind the # of the address.
 fn look(chromium: &Path, cache: &Path, wish: &str) -> Seen {
-    look_with(
-        chromium,
-        cache,
-        wish,
-        &["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-    )
+    look_with(chromium, cache, wish, SOFTWARE)
 }
 
+/// Graphics without a graphics card.
+const SOFTWARE: &[&str] = &["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
 fn look_with(chromium: &Path, cache: &Path, wish: &str, graphics: &[&str]) -> Seen {
-    let player = serve(cache, 0).unwrap();
+    look_at(&serve(cache, 0).unwrap(), chromium, wish, graphics)
+}
+
+fn look_at(player: &Player, chromium: &Path, wish: &str, graphics: &[&str]) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let screen = folder.path().join("screen.png");
     let page = folder.path().join("page.html");
@@ -76,6 +77,11 @@ fn look_with(chromium: &Path, cache: &Path, wish: &str, graphics: &[&str]) -> Se
             panic!("the page hangs");
         }
         thread::sleep(Duration::from_millis(20));
+    }
+    // With `NUCLEUS_SCREENS` set to a folder, what was seen is kept there to be looked at.
+    if let Some(kept) = std::env::var_os("NUCLEUS_SCREENS") {
+        let name = wish.replace(['&', '='], "_");
+        std::fs::copy(&screen, PathBuf::from(kept).join(format!("{name}.png"))).unwrap();
     }
     Seen { page: std::fs::read_to_string(page).unwrap(), pixels: pixels(&screen) }
 }
@@ -128,9 +134,9 @@ fn a_run_that_was_killed_plays_as_far_as_it_came() {
     let mut recorder = sample::begin(&path, Sample::default());
     (2..=9).for_each(|frame| sample::step(&mut recorder, Sample::default(), frame));
     // As after a kill: the last frame half written, and no index.
-    let bytes = std::fs::read(&path).unwrap();
+    let bytes = std::fs::read(nucleus_cache::unfinished(&path)).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 5000]).unwrap();
-    std::mem::forget(recorder);
+    drop(recorder);
     let seen = look(chromium, &path, "frame=24");
     assert!(seen.page.contains(r#"data-frame="8""#), "{}", seen.page);
     assert!(seen.page.contains("The run was cut short: frames 1 to 8 are shown."), "{}", seen.page);
@@ -217,4 +223,42 @@ fn what_is_no_cache_is_refused_in_plain_words() {
         assert!(seen.page.contains(r#"data-state="error""#), "{message}: {}", seen.page);
         assert!(seen.page.contains(message), "{message}: {}", seen.page);
     }
+}
+
+#[test]
+fn speed_colours_everything_that_moves_and_has_a_legend() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=12&speed=0.5");
+    assert!(seen.page.contains("speed, units a second"), "{}", seen.page);
+    let warm = seen.share(|[red, green, blue]| {
+        *red > 110 && i32::from(*red) > i32::from(*green) + 25 && *green >= *blue
+    });
+    assert!(warm > 0.01, "the waving end is fast: {warm}");
+}
+
+#[test]
+fn the_curve_fills_with_the_reports_of_all_frames() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=20");
+    assert!(seen.page.contains(r#"data-known="23""#), "the start has no report: {}", seen.page);
+}
+
+#[test]
+fn two_runs_are_shown_one_over_the_other_or_side_by_side_with_their_difference() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let [one, two] = ["one", "two"].map(|name| folder.path().join(name).with_extension("mcap"));
+    sample::write(&one, Sample::default());
+    sample::write(&two, Sample { late: true, ..Sample::default() });
+    let player = serve_both(&one, &two, 0).unwrap();
+    let over = look_at(&player, chromium, "frame=12&difference=0.05", SOFTWARE);
+    assert!(over.page.contains("distance, units"), "{}", over.page);
+    let net = |seen: &Seen| seen.share(|[red, green, blue]| *blue > 150 && *green > 110 && *red < 150);
+    assert!(net(&over) > 0.005, "the other run is a net over this one: {}", net(&over));
+    let beside = look_at(&player, chromium, "frame=12&twin=beside", SOFTWARE);
+    let indigo =
+        |seen: &Seen| seen.share(|[red, _, blue]| *blue > 90 && i32::from(*blue) > 2 * i32::from(*red));
+    assert!(indigo(&beside) > 0.01 && indigo(&beside) > 2.0 * indigo(&look(chromium, &one, "frame=12")));
 }

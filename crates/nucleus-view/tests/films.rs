@@ -3,7 +3,7 @@
 mod sample;
 
 use nucleus_cache::Playback;
-use nucleus_view::{Camera, Film, Ground, Style, ViewError};
+use nucleus_view::{Camera, Film, GifWriter, Ground, Style, ViewError};
 use sample::{FRAMES, Sample};
 
 fn small() -> Style {
@@ -75,3 +75,60 @@ fn a_damaged_frame_is_said_to_be_damaged() {
     let mut cache = Playback::open(&path).unwrap();
     assert!(matches!(Film::of(&mut cache, 1, small()), Err(ViewError::Read { .. })));
 }
+
+#[test]
+fn a_gif_has_every_frame_and_plays_as_fast_as_the_run() {
+    let (folder, mut cache) = recorded(Sample::default());
+    let path = folder.path().join("film.gif");
+    let mut film = Film::of(&mut cache, 1, small()).unwrap();
+    let mut file = GifWriter::create(&path, small().size, film.fps()).unwrap();
+    for place in 0..film.len() {
+        file.push(&film.picture(place).unwrap()).unwrap();
+    }
+    file.finish().unwrap();
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(std::fs::File::open(&path).unwrap()).unwrap();
+    let (mut frames, mut hundredths, mut worst) = (0, 0, 0.0_f64);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        hundredths += u32::from(frame.delay);
+        let picture = film.picture(frames).unwrap();
+        let shown = frame.buffer.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
+        let off: f64 = shown.zip(picture.bytes()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
+        worst = worst.max(off / picture.bytes().len() as f64);
+        frames += 1;
+    }
+    assert_eq!((frames, hundredths), (24, 100), "24 frames of 1/24 s are a second");
+    assert!(worst < 3.0, "256 colours are off by {worst} of 255 on average");
+}
+
+#[test]
+fn the_floor_is_the_plane_that_the_scene_rests_on() {
+    let (_folder, mut cache) = recorded(Sample { plane: Some(-1.5), ..Sample::default() });
+    let camera = Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0 };
+    let at = |cache: &mut Playback, ground| {
+        let style = Style { ground, ..small() };
+        Film::of(cache, 1, style).unwrap().seen_by(camera).picture(0).unwrap()
+    };
+    let found = at(&mut cache, Ground::Below);
+    assert_eq!(found, at(&mut cache, Ground::At(-1.5)));
+    assert_ne!(found, at(&mut cache, Ground::At(0.0)));
+}
+
+/// The bytes of a picture are the same on every machine, so they can be held against a sum taken once, of a
+/// picture that was looked at.
+#[test]
+fn a_picture_of_the_sample_is_the_one_that_was_looked_at() {
+    let (_folder, mut cache) = recorded(Sample::default());
+    let image =
+        Film::of(&mut cache, 1, Style { size: [320, 180], ..Style::default() }).unwrap().picture(12).unwrap();
+    if let Some(kept) = std::env::var_os("NUCLEUS_SCREENS") {
+        image.write_png(std::path::Path::new(&kept).join("golden.png")).unwrap();
+    }
+    let sum = image.bytes().iter().fold(0xcbf2_9ce4_8422_2325_u64, |sum, byte| {
+        (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    assert_eq!(sum, GOLDEN, "{sum:#018x}; if it was meant to change, look at it and write the new sum here");
+}
+
+const GOLDEN: u64 = 0x07e2_645b_9158_7d6b;

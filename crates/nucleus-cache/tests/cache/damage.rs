@@ -59,6 +59,24 @@ fn a_flipped_bit_is_never_played_and_never_makes_a_panic() {
         let tail_lost = whole.starts_with(&played);
         assert!(tail_lost, "byte {at}: played {played:?}, named as lost {lost:?}");
         assert!(played.len() == whole.len() || cache.loss().cut_off, "byte {at}: {}", cache.loss());
+        assert!(played.len() as i32 >= END - START, "byte {at} costs more than one frame: {played:?}");
+    }
+}
+
+#[test]
+fn a_killed_run_with_a_damaged_length_loses_that_frame_only() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let begin = summary.chunk_indexes[3].chunk_start_offset as usize;
+    let killed = &bytes[..chunk_ends(&bytes)[6] as usize];
+    for at in begin..begin + 9 {
+        for bit in 0..8 {
+            let mut flipped = killed.to_vec();
+            flipped[at] ^= 1 << bit;
+            let mut cache = open(&flipped).unwrap();
+            assert_eq!(cache.loss().frames, [START + 3], "byte {at}, bit {bit}");
+            assert_eq!(frames_that_play(&mut cache).len(), 6);
+        }
     }
 }
 
@@ -109,4 +127,26 @@ fn a_run_that_ends_early_but_is_closed_has_lost_nothing() {
     let cache = open(&bytes).unwrap();
     assert!(cache.loss().is_none(), "{}", cache.loss());
     assert_eq!((cache.moments().len(), cache.run().end), (3, END));
+}
+
+/// One cache for each way in which reading has ended while millions of damaged ones were tried; see the example
+/// `fuzz`.
+#[test]
+fn no_cache_of_the_corpus_makes_the_reader_panic() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let bytes = std::fs::read(entry.unwrap().path()).unwrap();
+        seen += 1;
+        let Ok(mut cache) = open(&bytes) else { continue };
+        for object in 0..cache.objects().len() {
+            for moment in 0..cache.moments().len() {
+                let _ =
+                    cache.velocities(object, moment).map(drop).and(cache.positions(object, moment).map(drop));
+            }
+        }
+        cache.verify().unwrap();
+        cache.reports().unwrap();
+    }
+    assert!(seen > 20, "the corpus is there: {seen}");
 }

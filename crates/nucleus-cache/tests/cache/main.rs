@@ -1,7 +1,9 @@
 //! The cache as others use it: recorded, damaged, refused, and played back.
 
+mod compared;
 mod damage;
 mod falling;
 mod full_disk;
+mod recovered;
 mod refusals;
 mod round_trip;

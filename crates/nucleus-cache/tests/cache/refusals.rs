@@ -60,20 +60,56 @@ fn a_later_layout_is_refused_with_both_versions() {
 }
 
 #[test]
-fn an_older_cache_is_replaced_and_any_other_file_is_not() {
+fn a_cache_is_replaced_only_when_that_is_asked_for_and_any_other_file_never() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
-    fs::write(&path, falling::whole_run(&falling::with_substeps()).0).unwrap();
-    let mut recorder = Recorder::create(&path, &falling::run_info(), falling::objects()).unwrap();
+    let older = falling::whole_run(&falling::with_substeps()).0;
+    fs::write(&path, &older).unwrap();
+    assert!(matches!(create_error(&path), RecordError::Exists { .. }));
+    let mut recorder = Recorder::replace(&path, &falling::run_info(), falling::objects()).unwrap();
     falling::record(&mut recorder, falling::END).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), older, "the older one is there until the new one is whole");
     recorder.finish().unwrap();
-    assert!(Playback::open(&path).unwrap().loss().is_none());
+    assert_eq!(Playback::open(&path).unwrap().run(), &falling::run_info());
 
     fs::write(&path, "my thesis").unwrap();
-    assert!(matches!(create_error(&path), RecordError::NotOurs { .. }));
+    let replaced = Recorder::replace(&path, &falling::run_info(), falling::objects());
+    assert!(matches!(replaced, Err(RecordError::NotOurs { .. })));
     assert_eq!(fs::read_to_string(&path).unwrap(), "my thesis");
     assert!(matches!(create_error(folder.path()), RecordError::NotAFile { .. }));
     assert!(matches!(create_error(&folder.path().join("no/such/run.mcap")), RecordError::Create { .. }));
+}
+
+#[test]
+fn a_cache_has_its_name_when_it_is_whole_and_not_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    let growing = nucleus_cache::unfinished(&path);
+    let mut recorder = Recorder::create(&path, &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, falling::START + 3).unwrap();
+    assert!(!path.exists());
+    assert_eq!(Playback::open(&growing).unwrap().moments().len(), 4, "it can be read while it grows");
+    assert!(matches!(create_error(&path), RecordError::InUse { .. }));
+    drop(recorder); // as after a kill
+    assert!(matches!(create_error(&path), RecordError::Unfinished { .. }));
+    let mut recorder = Recorder::replace(&path, &falling::run_info(), falling::objects()).unwrap();
+    falling::record(&mut recorder, falling::END).unwrap();
+    recorder.finish().unwrap();
+    assert!(path.exists() && !growing.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_written_to_is_told_by_the_system() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+    let path = folder.path().join("run.mcap");
+    // Whoever may do everything is not stopped by permissions.
+    if fs::write(folder.path().join("probe"), "").is_err() {
+        assert!(matches!(create_error(&path), RecordError::Create { .. }));
+    }
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 #[test]

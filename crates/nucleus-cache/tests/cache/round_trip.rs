@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use nucleus_cache::{Playback, RunInfo};
+use nucleus_cache::{Detail, Playback, RunInfo};
 
 use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS};
 
@@ -100,4 +100,30 @@ fn any_mcap_reader_finds_channels_schemas_and_one_chunk_per_frame() {
     assert_eq!(topics[3..], ["/floor/topology", "/report"]);
     let schema = |name: &str| summary.schemas.values().any(|s| s.name == name && s.encoding == "text");
     assert!(schema("nucleus.points.v1") && schema("nucleus.topology.v1"));
+}
+
+#[test]
+fn every_third_frame_and_the_last_are_recorded_and_what_moved_between_is_not_forgotten() {
+    // The collider moves in the third frame after the start, which is recorded, or in one before or after.
+    for n in [2, 3, 4, 5] {
+        let run = RunInfo { detail: Detail::Every(n), ..falling::run_info() };
+        let mut cache = open(&run);
+        let frames: Vec<i32> = cache.moments().iter().map(|moment| moment.frame).collect();
+        let mut expected: Vec<i32> = (START..=END).step_by(n as usize).collect();
+        if expected.last() != Some(&END) {
+            expected.push(END);
+        }
+        assert_eq!(frames, expected);
+        assert!(cache.loss().is_none(), "{}", cache.loss());
+        for moment in 0..frames.len() {
+            let shoved = if frames[moment] >= SHOVE { 100.0 } else { 0.0 };
+            assert_eq!(
+                cache.positions(1, moment).unwrap()[0][0],
+                shoved,
+                "every {n}, frame {}",
+                frames[moment]
+            );
+        }
+        assert_eq!(cache.reports().unwrap().len() as i32, END - START, "reports are of every frame");
+    }
 }

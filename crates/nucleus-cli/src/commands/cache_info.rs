@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Playback};
+use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Playback, Sizes};
 use serde_json::json;
 
 use crate::figures;
 
 /// For people.
-pub fn as_text(name: &str, cache: &Playback) -> Result<String, std::fmt::Error> {
+pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String, std::fmt::Error> {
     let run = cache.run();
     let mut text = String::new();
     let scene = if run.scene_path.is_empty() { "an unnamed scene" } else { &run.scene_path };
@@ -18,6 +18,19 @@ pub fn as_text(name: &str, cache: &Playback) -> Result<String, std::fmt::Error> 
     writeln!(text, "  recorded    {}", detail(cache))?;
     writeln!(text, "  units       {} to the metre", figures::number(run.units_per_metre))?;
     writeln!(text, "  size        {}", figures::bytes(cache.bytes()))?;
+    match sizes {
+        Some(sizes) => {
+            let raw: u64 = sizes.channels.values().sum();
+            let share = figures::percent((1000.0 * sizes.packed as f64 / raw.max(1) as f64).round() / 1000.0);
+            writeln!(
+                text,
+                "  packed      {} to {}, {share}",
+                figures::bytes(raw),
+                figures::bytes(sizes.packed)
+            )?;
+        }
+        None => writeln!(text, "  packed      not counted in a file of this size; --verify does")?,
+    }
     writeln!(text, "  lost        {}", cache.loss())?;
     for (key, value) in &run.extra {
         writeln!(text, "  {key:<11} {value}")?;
@@ -34,13 +47,15 @@ pub fn as_text(name: &str, cache: &Playback) -> Result<String, std::fmt::Error> 
         )?;
     }
     for (topic, encoding, messages) in cache.channels() {
-        writeln!(text, "channel {topic}: {encoding}, {}", figures::count(messages, "message"))?;
+        let bytes = channel_bytes(sizes, topic).map(|bytes| format!(", {}", figures::bytes(bytes)));
+        let messages = figures::count(messages, "message");
+        writeln!(text, "channel {topic}: {encoding}, {messages}{}", bytes.unwrap_or_default())?;
     }
     Ok(text)
 }
 
 /// For machines.
-pub fn as_json(cache: &Playback) -> serde_json::Value {
+pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
     let run = cache.run();
     let objects: Vec<_> = cache
         .objects()
@@ -57,7 +72,7 @@ pub fn as_json(cache: &Playback) -> serde_json::Value {
         .collect();
     let channels: Vec<_> = cache
         .channels()
-        .map(|(topic, encoding, messages)| json!({ "topic": topic, "encoding": encoding, "messages": messages }))
+        .map(|(topic, encoding, messages)| json!({ "topic": topic, "encoding": encoding, "messages": messages, "bytes": channel_bytes(sizes, topic) }))
         .collect();
     let loss = cache.loss();
     json!({
@@ -84,6 +99,8 @@ pub fn as_json(cache: &Playback) -> serde_json::Value {
             "frames": loss.frames,
             "text": loss.to_string(),
         },
+        "ground": run.ground.map(|plane| json!({ "origin": plane.origin, "normal": plane.normal })),
+        "packed_bytes": sizes.map(|sizes| sizes.packed),
         "extra": run.extra,
         "objects": objects,
         "channels": channels,
@@ -104,11 +121,17 @@ fn frames(cache: &Playback) -> String {
     }
 }
 
-fn detail(cache: &Playback) -> &'static str {
+fn detail(cache: &Playback) -> String {
     match cache.run().detail {
-        Detail::Frames => "frames",
-        Detail::Substeps => "substeps",
+        Detail::Frames => "frames".to_owned(),
+        Detail::Substeps => "substeps".to_owned(),
+        Detail::Every(n) => format!("every {n} frames"),
     }
+}
+
+/// Bytes of a channel before they were packed.
+fn channel_bytes(sizes: Option<&Sizes>, topic: &str) -> Option<u64> {
+    sizes.map(|sizes| sizes.channels.get(topic).copied().unwrap_or_default())
 }
 
 fn kind(kind: ObjectKind) -> &'static str {

@@ -9,12 +9,15 @@ use super::{cache_info, scene_info};
 use crate::outcome::Outcome;
 use crate::{cache_file, output, scene_file};
 
+/// Bytes of a cache whose channels are counted without being asked to.
+const COUNTED: u64 = 500_000_000;
+
 /// Tells what a scene compiles to, or what a cache holds and has lost.
 #[derive(Debug, Args)]
 pub struct Info {
     /// The scene (.ron) or the cache (.mcap).
     file: PathBuf,
-    /// Read every frame of the cache and check it.
+    /// Read every frame of the cache, check it, and count the bytes of each channel.
     #[arg(long)]
     verify: bool,
     /// Print one JSON object.
@@ -33,9 +36,15 @@ impl Info {
         if self.verify {
             cache.verify()?;
         }
+        // All frames have to be unpacked for that, which takes a while in a large file.
+        let sizes = if self.verify || cache.bytes() <= COUNTED { Some(cache.sizes()?) } else { None };
         match self.json {
-            true => output::print_json(&cache_info::as_json(&cache))?,
-            false => output::print(&cache_info::as_text(&self.file.display().to_string(), &cache)?)?,
+            true => output::print_json(&cache_info::as_json(&cache, sizes.as_ref()))?,
+            false => output::print(&cache_info::as_text(
+                &self.file.display().to_string(),
+                &cache,
+                sizes.as_ref(),
+            )?)?,
         }
         Ok(if cache.loss().is_none() { Outcome::Fine } else { Outcome::Trouble })
     }

@@ -3,10 +3,13 @@
 mod attrs;
 mod cache_info;
 mod check;
+mod diff;
 mod export;
 mod extremes;
+mod film;
 mod info;
 mod play;
+mod recover;
 mod render;
 mod run;
 mod scene_info;
@@ -27,6 +30,8 @@ pub enum Command {
     Play(play::Play),
     Render(render::Render),
     Export(export::Export),
+    Diff(diff::Diff),
+    Recover(recover::Recover),
     Attrs(attrs::Attrs),
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
@@ -43,6 +48,8 @@ impl Command {
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
             Self::Export(export) => export.run(),
+            Self::Diff(diff) => diff.run(),
+            Self::Recover(recover) => recover.run(),
             Self::Attrs(attrs) => attrs.run(),
             Self::Extremes(extremes) => extremes.run(),
             Self::Trade(trade) => trade.run(),

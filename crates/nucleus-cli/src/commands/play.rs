@@ -15,12 +15,18 @@ use crate::{cache_file, output};
 pub struct Play {
     /// The cache (.mcap) or the scene (.ron).
     file: PathBuf,
+    /// Another cache (.mcap) to compare it with.
+    #[arg(long, value_name = "CACHE")]
+    with: Option<PathBuf>,
     /// The port to serve on; any free one if it is 0.
     #[arg(long, default_value_t = 0)]
     port: u16,
     /// Only print the address.
     #[arg(long)]
     no_open: bool,
+    /// Replace the cache of a scene that was run before.
+    #[arg(long)]
+    force: bool,
 }
 
 impl Play {
@@ -29,7 +35,7 @@ impl Play {
         let cache = match cache_file::is_cache(&self.file) {
             true => self.file,
             false => {
-                let run = Run::of(self.file);
+                let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
                 match run.run()? {
                     ended @ (Outcome::Refused | Outcome::Interrupted) => return Ok(ended),
@@ -40,7 +46,13 @@ impl Play {
         };
         // A file that cannot be shown is better refused here than by the page.
         drop(cache_file::open_and_warn(&cache)?);
-        let player = nucleus_view::serve(&cache, self.port)?;
+        let player = match &self.with {
+            None => nucleus_view::serve(&cache, self.port)?,
+            Some(other) => {
+                drop(cache_file::open_and_warn(other)?);
+                nucleus_view::serve_both(&cache, other, self.port)?
+            }
+        };
         output::print(&format!("playing `{}` at {} (Ctrl-C ends it)\n", cache.display(), player.url()))?;
         if !self.no_open {
             open_browser(&player.url());

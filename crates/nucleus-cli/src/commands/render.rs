@@ -7,18 +7,25 @@ use clap::Args;
 use nucleus_cache::{ObjectKind, Playback};
 use nucleus_view::{Bounds, Camera, Colouring, Film, Image, Style};
 
+use super::film::{self, Way};
+use crate::frame_range::FrameRange;
 use crate::outcome::Outcome;
+use crate::progress::Steps;
 use crate::{cache_file, figures, output};
 
-/// Draws a frame of a cache as a PNG, or the whole run as an animated PNG.
+/// Draws a cache: a frame as a PNG, or the run as an animated PNG, a GIF, a film, or a picture for each frame.
+///
+/// What is written follows from the name: `hang.png` is a still (with --animate an animated PNG), `hang.gif` a
+/// GIF, `hang.mp4`, `.mov` or `.webm` a film if ffmpeg is installed, and `frames/hang.####.png` a picture for each
+/// frame, with its number.
 #[derive(Debug, Args)]
 pub struct Render {
     /// The cache (.mcap).
     file: PathBuf,
     /// The frame to draw; the last one if none is given.
-    #[arg(long, conflicts_with = "animate", allow_negative_numbers = true)]
+    #[arg(long, conflicts_with_all = ["animate", "frames"], allow_negative_numbers = true)]
     frame: Option<i32>,
-    /// The picture to write; the cache's name with `.png` if none is given.
+    /// What to write; the cache's name with `.png` if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
     /// Width and height in pixels.
@@ -27,9 +34,21 @@ pub struct Render {
     /// Draw all frames, as an animated PNG.
     #[arg(long)]
     animate: bool,
+    /// Frames to draw: so many (`48`) or from one to another (`10..58`).
+    #[arg(long, allow_hyphen_values = true)]
+    frames: Option<FrameRange>,
     /// Draw only every so many frames.
-    #[arg(long, default_value_t = 1, requires = "animate", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
+    /// Where the eye is, in scene units: `x,y,z`. The camera frames the run by itself if this is not given.
+    #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
+    eye: Option<[f32; 3]>,
+    /// The point in the middle of the picture, in scene units; that of the run if not given.
+    #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
+    target: Option<[f32; 3]>,
+    /// Vertical field of view in degrees.
+    #[arg(long, default_value_t = 30.0, value_parser = parse_view)]
+    fov: f32,
     /// Colour cloth by its strain; full colour at this strain (0.05 is 5 %).
     #[arg(long, value_name = "FULL_SCALE", num_args = 0..=1, default_missing_value = "0.05")]
     strain: Option<f32>,
@@ -48,29 +67,42 @@ impl Render {
                 PathBuf::from(self.file.file_stem().context("the cache has no name")?).with_extension("png")
             }
         };
-        let drawn = match self.animate {
-            true => self.animate(&mut cache, &out)?,
-            false => self.still(&mut cache, &out)?,
+        let drawn = match Way::of(&out, self.animate)? {
+            Way::Still => self.still(&mut cache, &out)?,
+            way => self.film(&mut cache, &out, way)?,
         };
-        let size = figures::bytes(std::fs::metadata(&out)?.len());
-        output::print(&format!("{drawn} in `{}` ({size})\n", out.display()))?;
+        output::print(&format!("{drawn}\n"))?;
         Ok(Outcome::Fine)
     }
 
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = cache_file::moment(cache, self.frame)?;
         let frame = cache.moments()[moment].frame;
-        let camera = camera(cache, moment, self.size)?;
+        let camera = self.seen_from(camera(cache, moment, self.size)?);
         // The floor is that of the whole run, found from a few of its frames.
         let every = cache.moments().len() / 24;
         Film::of(cache, every, self.style())?.seen_by(camera).moment(moment)?.write_png(out)?;
-        Ok(format!("frame {frame}"))
+        Ok(format!("frame {frame} in {}", sized(out)?))
     }
 
-    fn animate(&self, cache: &mut Playback, out: &Path) -> Result<String> {
+    fn film(&self, cache: &mut Playback, out: &Path, way: Way) -> Result<String> {
+        let start = cache.moments().first().context("the cache holds no frame")?.frame;
         let mut film = Film::of(cache, self.every as usize, self.style())?;
-        film.write(out)?;
-        Ok(figures::count(film.len(), "frame"))
+        if let Some(frames) = self.frames {
+            let (first, last) = frames.within(start).context("there are not so many frames")?;
+            film = film.between(first, last).context("none of these frames was recorded")?;
+        }
+        let camera = self.seen_from(film.camera());
+        let mut film = film.seen_by(camera);
+        let mut steps = Steps::new("drawing");
+        let result = film::write(&mut film, out, way, self.size, &mut |share| steps.show(share));
+        steps.end();
+        let place = result?;
+        let count = figures::count(film.len(), "frame");
+        Ok(match way {
+            Way::Sequence => format!("{count} in `{}`", place.display()),
+            _ => format!("{count} in {}", sized(out)?),
+        })
     }
 
     fn style(&self) -> Style {
@@ -80,6 +112,24 @@ impl Render {
         };
         Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
     }
+
+    /// The camera as it was asked for; what was not asked for is as in `own`.
+    fn seen_from(&self, own: Camera) -> Camera {
+        let target = self.target.unwrap_or(own.target);
+        match (self.eye, self.target) {
+            (Some(eye), _) => Camera { eye, target, field_of_view: self.fov },
+            (None, Some(_)) => {
+                let eye = [0, 1, 2].map(|axis| own.eye[axis] - own.target[axis] + target[axis]);
+                Camera { eye, target, field_of_view: self.fov }
+            }
+            (None, None) => own,
+        }
+    }
+}
+
+/// `` `hang.gif` (1.2 MB) ``.
+fn sized(path: &Path) -> Result<String> {
+    Ok(format!("`{}` ({})", path.display(), figures::bytes(std::fs::metadata(path)?.len())))
 }
 
 /// A camera that holds what is simulated as it is at this moment; all objects, if nothing is.
@@ -93,6 +143,22 @@ fn camera(cache: &mut Playback, moment: usize, size: [u32; 2]) -> Result<Camera>
         }
     }
     Ok(Camera::framing(if stage.is_empty() { &all } else { &stage }, size))
+}
+
+fn parse_point(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> =
+        text.split(',').map(|x| x.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err("write it as x,y,z".to_owned()),
+    }
+}
+
+fn parse_view(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(angle) if (1.0..=150.0).contains(&angle) => Ok(angle),
+        _ => Err("an angle of 1 to 150 degrees".to_owned()),
+    }
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

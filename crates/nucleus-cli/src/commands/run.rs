@@ -16,7 +16,7 @@ use crate::account::{Account, FrameFigures};
 use crate::frame_range::FrameRange;
 use crate::outcome::Outcome;
 use crate::progress::Progress;
-use crate::recording::{self, Record};
+use crate::recording::{self, Manner, Record};
 use crate::simulate::{Ending, simulate};
 use crate::summary::Summary;
 use crate::{interrupt, output, quality, scene_file};
@@ -35,9 +35,18 @@ pub struct Run {
     /// Cores to use; all if none are given. The result is the same, bit for bit.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// What to record, instead of what the scene says.
-    #[arg(long)]
+    /// What to record, instead of what the scene says: frames, substeps, every:10 or none.
+    #[arg(long, value_name = "WHAT")]
     record: Option<Record>,
+    /// Record velocities too; the cache becomes twice as large.
+    #[arg(long)]
+    velocities: bool,
+    /// Write the smallest cache, without loss, at the cost of time.
+    #[arg(long)]
+    compact: bool,
+    /// Replace a cache that exists.
+    #[arg(long)]
+    force: bool,
     /// The cache to write; the scene's name with `.mcap` if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
@@ -55,12 +64,15 @@ pub struct Run {
 
 impl Run {
     /// A run of a scene with everything else left as it is.
-    pub fn of(scene: PathBuf) -> Self {
+    pub fn of(scene: PathBuf, force: bool) -> Self {
         Self {
             scene,
             frames: None,
             threads: None,
             record: None,
+            velocities: false,
+            compact: false,
+            force,
             out: None,
             audit: false,
             quality: None,
@@ -98,8 +110,9 @@ impl Run {
         }
         let mut judge = Judge::new(program.checks(), program.mass());
         let record = Record::of(self.record, &program);
+        let manner = Manner { record, velocities: self.velocities, force: self.force, compact: self.compact };
         let out = self.out()?;
-        let mut recorder = recording::begin(&simulation, record, &out, (&self.scene, &text))?;
+        let mut recorder = recording::begin(&simulation, manner, &out, (&self.scene, &text))?;
         let mut progress = Progress::new(end.abs_diff(start));
         let mut tell = |figures: &FrameFigures, account: &Account| {
             progress.show(account);

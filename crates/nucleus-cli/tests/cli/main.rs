@@ -1,6 +1,7 @@
 //! The built binary, as a shell sees it: what it prints, and the code it ends with.
 
 mod attrs;
+mod caches;
 mod check;
 mod extremes;
 mod info;

@@ -60,13 +60,15 @@ fn frames_and_what_is_recorded_can_be_chosen() {
     let folder = folder();
     scene(folder.path(), 5, "");
     let moments = |arguments: &[&str]| {
-        let output = nucleus(folder.path(), &[&["run", "drape.ron", "-o", "x.mcap"], arguments].concat());
+        let output =
+            nucleus(folder.path(), &[&["run", "drape.ron", "-o", "x.mcap", "--force"], arguments].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         nucleus_cache::Playback::open(folder.path().join("x.mcap")).unwrap().moments().len()
     };
     assert_eq!(moments(&["--frames", "3"]), 3);
     assert_eq!(moments(&["--frames", "2..9"]), 8);
     assert_eq!(moments(&["--frames", "3", "--record", "substeps"]), 1 + 2 * 2);
+    assert_eq!(moments(&["--record", "every:3"]), 3, "frames 1, 4 and 5");
     let output = nucleus(folder.path(), &["run", "drape.ron", "--record", "none", "-o", "none.mcap"]);
     assert_eq!(output.status.code(), Some(0));
     assert!(!folder.path().join("none.mcap").exists());

@@ -41,6 +41,10 @@ pub enum Record {
     Frames,
     /// The end of every substep.
     Substeps,
+    /// The end of every so manieth frame, and of the last; above zero.
+    Every(u32),
+    /// Nothing.
+    None,
 }
 
 impl PartialEq for Scene {

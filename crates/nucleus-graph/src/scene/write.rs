@@ -16,8 +16,13 @@ use super::read::INTERPOLATIONS;
 pub fn write_scene(scene: &Scene) -> String {
     let TimeSpan { start, end, fps } = scene.time;
     let mut text = format!("Scene(\n    time: (start: {start}, end: {end}, fps: {fps}),\n");
-    if scene.record == Record::Substeps {
-        text.push_str("    record: substeps,\n");
+    match scene.record {
+        Record::Frames => {}
+        Record::Substeps => text.push_str("    record: substeps,\n"),
+        Record::Every(n) => {
+            let _ = writeln!(text, "    record: every({n}),");
+        }
+        Record::None => text.push_str("    record: none,\n"),
     }
     text.push_str("    nodes: {\n");
     let mut nodes: Vec<(NodeId, &Node)> =

@@ -40,6 +40,17 @@ export class Cache {
     return this.run.start + Math.round((this.frames[index].end / 1e9) * this.run.fps);
   }
 
+  // The first frame of this number or a later one; the last if there is none.
+  indexOf(number) {
+    const index = this.frames.findIndex((_, k) => this.frameNumber(k) >= number);
+    return index < 0 ? this.frames.length - 1 : index;
+  }
+
+  // What the solver said about a frame; null if nothing.
+  async report(index) {
+    return (await this.unpack(this.frames[index])).report;
+  }
+
   // Seconds from the start of the run to the end of the frame at `index`.
   time(index) {
     return this.frames[index].end / 1e9;
@@ -167,7 +178,14 @@ function readRun(metadata) {
     fps: Math.max(number("fps", 24), 1e-3),
     version: run.get("version") ?? "",
     scene: scene.get("path") ?? "",
+    floor: levelPlane(run.get("ground")),
   };
+}
+
+// The height of a plane given as point and normal, if it is level.
+function levelPlane(text) {
+  const [, y, , a, b, c] = (text ?? "").split(" ").map(Number);
+  return Number.isFinite(y) && b > 0.999 * Math.hypot(a, b, c) ? y : null;
 }
 
 function readReport(data) {

@@ -14,13 +14,17 @@ const KEYS = {
   End: ({ timeline }) => timeline.step(Infinity),
   l: (player) => player.toggleLoop(),
   f: (player) => player.frameAll(),
-  w: (player) => player.toggle("wireframe"),
-  s: (player) => player.toggle("strain"),
-  "[": (player) => player.setFullScale(player.scene.look.fullScale / 2),
-  "]": (player) => player.setFullScale(player.scene.look.fullScale * 2),
+  w: (player) => player.toggleWireframe(),
+  s: (player) => player.colourBy("strain"),
+  v: (player) => player.colourBy("speed"),
+  d: (player) => player.colourBy("difference"),
+  b: (player) => player.nextTwin(),
+  c: () => byId("curve").toggleAttribute("hidden"),
+  "[": (player) => player.scaleColours(0.5),
+  "]": (player) => player.scaleColours(2),
   "?": () => byId("help").toggleAttribute("open"),
 };
-const BUTTONS = { play: " ", loop: "l", wireframe: "w", strain: "s", all: "f" };
+const BUTTONS = { play: " ", loop: "l", wireframe: "w", strain: "s", speed: "v", difference: "d", twin: "b", all: "f" };
 
 export function listen(player) {
   document.addEventListener("keydown", (event) => {
@@ -38,6 +42,7 @@ export function listen(player) {
     });
   }
   listenToTracks(player);
+  listenToCurve(player);
   listenToFiles(player);
   window.addEventListener("resize", player.redraw);
   window.addEventListener("hashchange", () => player.timeline && applyAddress(player));
@@ -52,6 +57,21 @@ function listenToTracks(player) {
     player.timeline.pause();
     player.timeline.go(player.timeline.index, Number(target.value));
   });
+}
+
+// A click on the curve goes to its frame, a drag through its frames.
+function listenToCurve(player) {
+  const curve = byId("curve");
+  const go = (event) => {
+    const share = (event.clientX - curve.getBoundingClientRect().left) / Math.max(1, curve.clientWidth);
+    player.timeline.pause();
+    player.timeline.go(Math.round(share * player.timeline.last));
+  };
+  curve.addEventListener("pointerdown", (event) => {
+    curve.setPointerCapture(event.pointerId);
+    go(event);
+  });
+  curve.addEventListener("pointermove", (event) => event.buttons & 1 && go(event));
 }
 
 function listenToFiles(player) {
@@ -69,12 +89,20 @@ export async function applyAddress(player) {
   const wish = new URLSearchParams(location.hash.slice(1));
   const { timeline, scene } = player;
   if (wish.has("frame")) {
-    await timeline.go(timeline.indexOf(Number(wish.get("frame"))));
+    await timeline.go(timeline.cache.indexOf(Number(wish.get("frame"))));
   }
-  if (Number(wish.get("strain")) > 0) {
-    player.setFullScale(Number(wish.get("strain")));
+  for (const colour of ["strain", "speed", "difference"].filter((name) => wish.has(name))) {
+    player.setFullScale(colour, Number(wish.get(colour)));
+    if (scene.look.colour !== colour) {
+      player.colourBy(colour);
+    }
   }
-  ["wireframe", "strain"].filter((look) => wish.has(look) && !scene.look[look]).forEach((look) => player.toggle(look));
+  if (wish.has("wireframe") && !scene.look.wireframe) {
+    player.toggleWireframe();
+  }
+  if (["over", "beside", "off"].includes(wish.get("twin"))) {
+    player.placeTwin(wish.get("twin"));
+  }
   if (wish.has("play")) {
     timeline.play();
   }

@@ -11,7 +11,7 @@ async function start() {
   const served = await UrlSource.find("/cache.mcap");
   if (!served) {
     showState("empty", "Drop a cache here", "or choose a file");
-  } else if (await player.open(served)) {
+  } else if (await player.open(served, await UrlSource.find("/other.mcap"))) {
     await applyAddress(player);
   }
 }

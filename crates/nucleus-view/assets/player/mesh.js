@@ -25,6 +25,7 @@ export class Mesh {
     this.normals = new Float32Array(3 * this.count);
     this.strain = new Float32Array(this.count);
     this.isLost = new Uint8Array(this.count);
+    this.shift = [0, 0, 0]; // added to all positions: where the twin of another run stands
     this.take(topology.rest);
     this.restLengths = Float32Array.from({ length: this.edges.length / 2 }, (_, e) => this.length(e));
     this.shown = null; // the positions last taken
@@ -41,13 +42,13 @@ export class Mesh {
     this.drawnTriangles = this.lost ? this.withoutLost(this.triangles, 3) : this.triangles;
     this.drawnEdges = this.lost ? this.withoutLost(this.edges, 2) : this.edges;
     this.updateNormals();
-    this.strainOf = null;
+    this.coloured = null;
     return true;
   }
 
   // Copies positions to vertices, and the box round them. A lost point becomes the origin: it is not drawn.
   take(points) {
-    const { positions, vertexPoint, isLost } = this;
+    const { positions, vertexPoint, isLost, shift } = this;
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (let v = 0; v < this.count; v += 1) {
       const at = 3 * vertexPoint[v];
@@ -57,7 +58,7 @@ export class Mesh {
       }
       isLost[v] = isFound ? 0 : 1;
       for (let axis = 0; axis < 3; axis += 1) {
-        const x = isFound ? points[at + axis] : 0;
+        const x = isFound ? points[at + axis] + shift[axis] : 0;
         positions[3 * v + axis] = x;
         low[axis] = isFound && x < low[axis] ? x : low[axis];
         high[axis] = isFound && x > high[axis] ? x : high[axis];
@@ -78,6 +79,17 @@ export class Mesh {
         strain[a] = Math.abs(x) > Math.abs(strain[a]) ? x : strain[a];
         strain[b] = Math.abs(x) > Math.abs(strain[b]) ? x : strain[b];
       }
+    }
+  }
+
+  // Of each vertex, how far its point is from where it is in `others`, times a factor; 0 without others.
+  updateDistance(others, factor) {
+    const { strain, vertexPoint, isLost, shown } = this;
+    strain.fill(0);
+    for (let v = 0; others && v < this.count; v += 1) {
+      const at = 3 * vertexPoint[v];
+      const [x, y, z] = [shown[at] - others[at], shown[at + 1] - others[at + 1], shown[at + 2] - others[at + 2]];
+      strain[v] = isLost[v] ? 0 : Math.sqrt(x * x + y * y + z * z) * factor || 0;
     }
   }
 

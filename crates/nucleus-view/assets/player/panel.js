@@ -63,12 +63,18 @@ export function showFigures(report, lostPoints) {
   byId("figures").hidden = rows.length === 0;
 }
 
-export function showLegend({ strain, fullScale }) {
-  byId("legend").hidden = !strain;
-  byId("ramp").style.background = `linear-gradient(to right, ${STRAIN.map(css).join(", ")})`;
-  const write = (x) => `${Number((x * 100).toPrecision(3))} %`;
-  byId("shorter").textContent = `−${write(fullScale)}`;
-  byId("longer").textContent = `+${write(fullScale)}`;
+// Strain goes both ways from the middle of the legend; a speed or a distance goes up from its left end.
+export function showLegend({ colour, scales }) {
+  byId("legend").hidden = colour === "object";
+  const isStrain = colour === "strain";
+  const colours = isStrain ? STRAIN : STRAIN.slice(2);
+  byId("told").textContent = { strain: "strain", speed: "speed, units a second", difference: "distance, units" }[colour] ?? "";
+  byId("ramp").style.background = `linear-gradient(to right, ${colours.map(css).join(", ")})`;
+  const full = scales[colour] ?? 0;
+  const write = (x) => (isStrain ? `${Number((x * 100).toPrecision(3))} %` : `${Number(x.toPrecision(3))}`);
+  byId("shorter").textContent = isStrain ? `−${write(full)}` : "0";
+  byId("middle").textContent = isStrain ? "0" : write(full / 2);
+  byId("longer").textContent = isStrain ? `+${write(full)}` : write(full);
 }
 
 export function showMoment(cache, { index, frame, substep, substeps, moment, moments, time }) {

@@ -2,10 +2,12 @@
 
 import { Cache } from "./cache.js";
 import { Camera } from "./camera.js";
+import { Curve } from "./curve.js";
 import { byId, showFigures, showLegend, showMoment, showNotice, showObjects, showState } from "./panel.js";
 import { Scene, boxOf } from "./scene.js";
 import { Timeline } from "./timeline.js";
 
+const COLOURINGS = ["strain", "speed", "difference"];
 const NOWHERE = { low: [-1, -1, -1], high: [1, 1, 1] };
 
 export class Player {
@@ -19,7 +21,7 @@ export class Player {
   }
 
   // Opens a source; resolves when its first picture is there. False if it is no cache.
-  async open(source) {
+  async open(source, other = null) {
     this.timeline?.pause();
     this.timeline = null;
     showNotice("");
@@ -27,6 +29,7 @@ export class Player {
     const tell = (share) => showState("loading", `Searching ${source.name}`, `${Math.round(share * 100)} %`);
     try {
       const cache = await Cache.open(source, tell);
+      this.other = other && (await Cache.open(other, tell));
       await this.present(cache, source.name);
       showState("ready");
       return true;
@@ -39,7 +42,8 @@ export class Player {
   async present(cache, name) {
     const { scene } = this;
     const last = cache.frames.length - 1;
-    scene.setObjects(cache.objects);
+    scene.setObjects(cache.objects, this.other?.objects);
+    ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
     await this.survey(cache, [...new Set([last, last >> 1, 0])]);
     document.title = `${name} – Nucleus`;
     byId("name").textContent = cache.run.scene || name;
@@ -49,6 +53,8 @@ export class Player {
     showLoss(cache);
     this.timeline = new Timeline(cache, (index, moment) => this.show(cache, index, moment));
     await this.timeline.go(0);
+    this.curve = new Curve(byId("curve"), cache);
+    this.curve.fill();
   }
 
   // Looks at a few frames to find the room that the run takes up.
@@ -66,7 +72,7 @@ export class Player {
     const stage = boxOf(moving.filter(Boolean)) ?? NOWHERE;
     // A collider may be a landscape, which reaches far below what one looks at.
     const extent = Math.max(...stage.high.map((x, axis) => x - stage.low[axis]));
-    const floor = Math.max(boxOf(all)?.low[1] ?? 0, stage.low[1] - extent * 1.5);
+    const floor = cache.run.floor ?? Math.max(boxOf(all)?.low[1] ?? 0, stage.low[1] - extent * 1.5);
     scene.setStage({ low: [stage.low[0], Math.min(stage.low[1], floor), stage.low[2]], high: stage.high }, floor);
     camera.frame(stage, scene.aspect);
   }
@@ -74,11 +80,14 @@ export class Player {
   async show(cache, index, moment) {
     try {
       const state = await cache.state(index, moment);
+      const twin = await this.twinOf(cache, state);
+      await this.findSpeed(cache, state);
       if (cache !== this.timeline?.cache) {
         return; // another file was opened meanwhile
       }
       this.timeline.moments = state.moments;
-      this.scene.update(state.positions);
+      this.scene.update(state.positions, twin);
+      this.curve?.mark(index);
       showMoment(cache, state);
       showFigures(state.report, this.scene.lostPoints);
       this.redraw();
@@ -88,18 +97,78 @@ export class Player {
     }
   }
 
-  toggle(look) {
-    this.scene.look[look] = !this.scene.look[look];
-    byId(look).setAttribute("aria-pressed", this.scene.look[look]);
+  // The positions of the other run at the same time, if there is one.
+  async twinOf(cache, { frame, substep, substeps }) {
+    if (!this.other) {
+      return [];
+    }
+    const index = this.other.indexOf(frame);
+    const { moments } = await this.other.state(index);
+    // The same share of the frame, however finely each was recorded.
+    const moment = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * moments) - 1);
+    return (await this.other.state(index, moment)).positions;
+  }
+
+  // Where everything was a frame ago, for its speed.
+  async findSpeed(cache, state) {
+    const before = this.scene.look.colour === "speed" && state.index > 0 ? await cache.state(state.index - 1) : null;
+    this.scene.things.forEach((thing, k) => {
+      const seconds = before && state.time - before.time;
+      thing.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
+      thing.mesh.coloured = null;
+    });
+  }
+
+  toggleWireframe() {
+    const { look } = this.scene;
+    look.wireframe = !look.wireframe;
+    byId("wireframe").setAttribute("aria-pressed", look.wireframe);
+    this.redraw();
+  }
+
+  // Lets colours tell something; asked a second time, they tell objects apart again.
+  colourBy(what) {
+    const { look } = this.scene;
+    if (what === "difference" && !this.other) {
+      return;
+    }
+    look.colour = look.colour === what ? "object" : what;
+    COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));
+    showLegend(look);
+    this.timeline.go(this.timeline.index, this.timeline.moment); // speeds are found when they are wanted
+    this.redraw();
+  }
+
+  // The value that has the full colour.
+  setFullScale(what, value) {
+    if (value > 0) {
+      this.scene.look.scales[what] = Math.min(1e6, Math.max(1e-7, value));
+    }
     showLegend(this.scene.look);
     this.redraw();
   }
 
-  // The strain that has the full colour.
-  setFullScale(strain) {
-    this.scene.look.fullScale = Math.min(10, Math.max(1e-4, strain));
-    showLegend(this.scene.look);
+  scaleColours(factor) {
+    const { colour, scales } = this.scene.look;
+    if (colour !== "object") {
+      this.setFullScale(colour, scales[colour] * factor);
+    }
+  }
+
+  placeTwin(where) {
+    this.scene.placeTwins(where);
+    byId("twin").textContent = where;
+    if (where === "beside") {
+      this.frameAll(); // else the other run stands outside the picture
+    }
     this.redraw();
+  }
+
+  nextTwin() {
+    if (this.other) {
+      const places = ["over", "beside", "off"];
+      this.placeTwin(places[(places.indexOf(this.scene.look.twin) + 1) % places.length]);
+    }
   }
 
   toggleLoop() {

@@ -7,6 +7,7 @@ import { cross, multiply, normalise, orthographic, scale, view } from "./matrix.
 import { DEPTH, FLOOR, LINES, PARTICLES, SURFACE } from "./shaders.js";
 
 const BACKGROUND = [0.0075, 0.0085, 0.0105];
+const TWIN = [0.09, 0.27, 0.42];
 const [TRIANGLES, EDGES] = [0, 1];
 const [POSITION, NORMAL, STRAINED] = [0, 1, 2];
 
@@ -21,17 +22,43 @@ export class Scene {
     this.shadow = depthTarget(this.gl, 2048);
     this.empty = this.gl.createVertexArray();
     this.things = [];
-    this.look = { wireframe: false, strain: false, fullScale: 0.05 };
+    this.twins = [];
+    // What colours tell: "object", "strain", "speed" or "difference"; each has a full scale of its own.
+    this.look = { wireframe: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
 
-  // Replaces the objects.
-  setObjects(objects) {
-    this.things.forEach(({ vertices }) => vertices.delete());
+  // Replaces the objects; `twins` are those of a run that is compared with, or none.
+  setObjects(objects, twins = []) {
+    this.things.concat(this.twins).forEach(({ vertices }) => vertices.delete());
     const colours = objectColours(objects);
-    this.things = objects.map(({ name, topology }, k) => ({
-      name, points: topology.points, mesh: new Mesh(topology), colour: colours[k], isShown: true,
+    const thing = ({ name, topology }, colour) => ({
+      name, points: topology.points, mesh: new Mesh(topology), colour, isShown: true,
       vertices: new VertexArray(this.gl, [3, 3, 1]),
-    }));
+    });
+    this.things = objects.map((object, k) => thing(object, colours[k]));
+    this.twins = twins.map((object) => thing(object, TWIN));
+    for (const one of this.things) {
+      one.twin = this.twins.find(({ name, points }) => name === one.name && points === one.points);
+    }
+  }
+
+  // Puts the twins over the objects, beside them or out of sight.
+  placeTwins(where) {
+    this.look.twin = where;
+    const width = this.stage.high[0] - this.stage.low[0];
+    for (const twin of this.twins) {
+      const points = twin.mesh.shown;
+      twin.mesh.shift = [where === "beside" ? width * 1.15 : 0, 0, 0];
+      twin.mesh.shown = null; // so that the same points are news
+      this.takePoints([twin], [points]);
+    }
+    this.hasOldShadow = true;
+  }
+
+  // Those of the other run that are to be seen; an object that is hidden hides its twin.
+  get drawnTwins() {
+    const isShown = ({ name }) => this.things.find((thing) => thing.name === name)?.isShown ?? true;
+    return this.look.twin === "off" ? [] : this.twins.filter(isShown);
   }
 
   // `stage` is the box of all that moves, over the run; the floor lies under it.
@@ -42,8 +69,16 @@ export class Scene {
   }
 
   // Takes the positions of a moment, one array for each object.
-  update(positions) {
-    this.things.forEach(({ mesh, vertices }, k) => {
+  update(positions, twins = []) {
+    this.takePoints(this.things, positions);
+    this.takePoints(this.twins, twins);
+  }
+
+  takePoints(things, positions) {
+    things.forEach(({ mesh, vertices }, k) => {
+      if (!positions[k]) {
+        return;
+      }
       const before = mesh.drawnTriangles;
       if (mesh.update(positions[k])) {
         vertices.set(POSITION, mesh.positions);
@@ -64,7 +99,7 @@ export class Scene {
 
   // The box round all shown objects that move, or round all shown ones; null if nothing is shown.
   bounds() {
-    const shown = this.things.filter(({ isShown }) => isShown);
+    const shown = this.things.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.twins : []);
     const moving = shown.filter(({ mesh }) => mesh.kind !== "collider");
     return boxOf((moving.length > 0 ? moving : shown).map(({ mesh }) => mesh.bounds));
   }
@@ -92,6 +127,7 @@ export class Scene {
     this.drawFloor(eye);
     gl.enable(gl.DEPTH_TEST);
     this.things.filter(({ isShown }) => isShown).forEach((thing) => this.drawThing(thing, eye));
+    this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawThing(twin, eye));
     gl.bindVertexArray(null);
   }
 
@@ -124,7 +160,7 @@ export class Scene {
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(2.5, 8);
     this.use(programs.depth, light);
-    for (const { mesh, vertices, isShown } of this.things) {
+    for (const { mesh, vertices, isShown } of this.things.concat(this.look.twin === "beside" ? this.twins : [])) {
       if (isShown && mesh.kind !== "particles") {
         vertices.draw(gl.TRIANGLES, TRIANGLES);
       }
@@ -147,7 +183,38 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  drawThing({ mesh, vertices, colour }, eye) {
+  // Finds what the colours of a mesh tell, if that is not known yet.
+  colourMesh({ mesh, vertices, before, twin }, isColoured) {
+    const { colour } = this.look;
+    if (isColoured && mesh.coloured !== colour) {
+      mesh.coloured = colour;
+      if (colour === "strain") {
+        mesh.updateStrain();
+      } else if (colour === "speed") {
+        mesh.updateDistance(before?.positions, before ? 1 / before.seconds : 0);
+      } else {
+        mesh.updateDistance(twin?.mesh.shown, 1);
+      }
+      vertices.set(STRAINED, mesh.strain);
+    } else if (!mesh.hasStrain) {
+      vertices.set(STRAINED, mesh.strain); // zeros: an attribute without data cannot be drawn
+    }
+    mesh.hasStrain = true;
+  }
+
+  // The other run as a net over this one.
+  drawEdges({ mesh, vertices }, eye) {
+    if (mesh.kind === "particles") {
+      return;
+    }
+    const { gl } = this;
+    gl.enable(gl.BLEND);
+    this.use(this.programs.lines, { ...eye, ink: [0.35, 0.75, 1, 0.8] });
+    vertices.draw(gl.LINES, EDGES);
+    gl.disable(gl.BLEND);
+  }
+
+  drawThing({ mesh, vertices, colour, before, twin }, eye) {
     const { gl, programs, look } = this;
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
@@ -156,20 +223,13 @@ export class Scene {
       gl.drawArrays(gl.POINTS, 0, mesh.count);
       return;
     }
-    const isColoured = look.strain && mesh.kind === "cloth";
-    if (isColoured && mesh.strainOf !== mesh.shown) {
-      mesh.updateStrain();
-      mesh.strainOf = mesh.shown;
-      vertices.set(STRAINED, mesh.strain);
-    } else if (!mesh.hasStrain) {
-      vertices.set(STRAINED, mesh.strain); // zeros: an attribute without data cannot be drawn
-    }
-    mesh.hasStrain = true;
-    this.use(programs.surface, { ...eye, colour, "ramp[0]": STRAIN.flat(), fullScale: isColoured ? look.fullScale : 0 });
+    const isColoured = look.colour !== "object" && (look.colour !== "strain" || mesh.kind === "cloth");
+    this.colourMesh({ mesh, vertices, before, twin }, isColoured);
+    this.use(programs.surface, { ...eye, colour, "ramp[0]": STRAIN.flat(), fullScale: isColoured ? look.scales[look.colour] : 0 });
     vertices.draw(gl.TRIANGLES, TRIANGLES);
     if (look.wireframe) {
       gl.enable(gl.BLEND);
-      this.use(programs.lines, eye);
+      this.use(programs.lines, { ...eye, ink: [0, 0, 0, 0.5] });
       vertices.draw(gl.LINES, EDGES);
       gl.disable(gl.BLEND);
     }
@@ -185,6 +245,8 @@ export class Scene {
         gl.uniform1f(place, value);
       } else if (value?.length === 16) {
         gl.uniformMatrix4fv(place, false, value);
+      } else if (value?.length === 4) {
+        gl.uniform4fv(place, value);
       } else if (value) {
         gl.uniform3fv(place, value);
       }

@@ -73,7 +73,8 @@ void main() {
 }`,
   fragment: `${HEAD}
 out vec4 shown;
-void main() { shown = vec4(0.0, 0.0, 0.0, 0.5); }`,
+uniform vec4 ink;
+void main() { shown = ink; }`,
 };
 
 export const PARTICLES = {

@@ -90,12 +90,6 @@ export class Timeline {
     }
   }
 
-  // The first frame of this number or a later one; the last if there is none.
-  indexOf(number) {
-    const index = this.cache.frames.findIndex((_, k) => this.cache.frameNumber(k) >= number);
-    return index < 0 ? this.last : index;
-  }
-
   // The last frame that ends at or before a time.
   frameAt(time) {
     let [low, high] = [0, this.last];

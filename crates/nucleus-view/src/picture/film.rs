@@ -42,9 +42,37 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         }
         let (stage, floor) = survey(cache, &moments)?;
         let camera = Camera::framing(&stage, style.size);
+        // A level plane that the scene rests on is the floor; a slanted one cannot be drawn.
+        let plane = cache.run().ground.filter(|plane| plane.normal[1] > 0.999 * norm(plane.normal));
+        let floor = plane.map_or(floor, |plane| Ground::At(plane.origin[1] as f32));
         let ground = if style.ground == Ground::Below { floor } else { style.ground };
         let fps = cache.run().frames_per_second / every as f64;
         Ok(Self { cache, moments, fps, camera, style: Style { ground, ..style } })
+    }
+
+    /// The same, of the frames from `first` to `last` only; the framing stays that of the whole run.
+    ///
+    /// # Errors
+    /// If none of them was recorded.
+    pub fn between(mut self, first: i32, last: i32) -> Result<Self, ViewError> {
+        let moments = self.cache.moments();
+        self.moments.retain(|&moment| (first..=last).contains(&moments[moment].frame));
+        if self.moments.is_empty() { Err(ViewError::NoMoment) } else { Ok(self) }
+    }
+
+    /// Pictures per second.
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// The camera that everything is seen by.
+    pub fn camera(&self) -> Camera {
+        self.camera
+    }
+
+    /// The frame that a picture shows.
+    pub fn frame(&self, place: usize) -> i32 {
+        self.cache.moments()[self.moments[place.min(self.moments.len() - 1)]].frame
     }
 
     /// The same, seen by another camera.
@@ -99,6 +127,10 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
         objects.iter().for_each(|object| all.include(object.positions));
     }
     Ok((stage, Ground::At(super::floor_below(&all, &stage))))
+}
+
+fn norm(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Positions of every object at a moment.

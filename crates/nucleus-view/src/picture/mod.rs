@@ -5,6 +5,7 @@ mod bounds;
 mod camera;
 mod depth_map;
 mod film;
+mod gif;
 mod glyphs;
 mod ground;
 mod image;
@@ -22,6 +23,7 @@ pub use animation::AnimationWriter;
 pub use bounds::Bounds;
 pub use camera::Camera;
 pub use film::Film;
+pub use gif::GifWriter;
 pub use image::Image;
 pub use object::{Colouring, Ground, Kind, Object, Style};
 

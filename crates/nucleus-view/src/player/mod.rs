@@ -6,4 +6,4 @@ mod request;
 mod response;
 mod server;
 
-pub use server::{Player, serve};
+pub use server::{Player, serve, serve_both};

@@ -31,6 +31,7 @@ const ASSETS: &[Asset] = assets![
     "/player/colours.js" as SCRIPT,
     "/player/controls.js" as SCRIPT,
     "/player/crc.js" as SCRIPT,
+    "/player/curve.js" as SCRIPT,
     "/player/gl.js" as SCRIPT,
     "/player/main.js" as SCRIPT,
     "/player/matrix.js" as SCRIPT,

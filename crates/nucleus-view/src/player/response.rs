@@ -7,12 +7,15 @@ use std::path::Path;
 use super::page::{self, Asset};
 use super::range::{Wanted, wanted};
 use super::request::Request;
+use super::server::Caches;
 
 /// Where the page finds the cache, whatever its file is called.
 const CACHE: &str = "/cache.mcap";
+/// Where it finds the one to compare it with, if there is one.
+const OTHER: &str = "/other.mcap";
 
 /// Answers one request. Only the page's own files and the cache exist; no path leads anywhere else.
-pub(super) fn answer(request: &Request, cache: &Path, to: &mut impl Write) -> io::Result<()> {
+pub(super) fn answer(request: &Request, caches: &Caches, to: &mut impl Write) -> io::Result<()> {
     let with_body = match request.method.as_str() {
         "GET" => true,
         "HEAD" => false,
@@ -21,8 +24,10 @@ pub(super) fn answer(request: &Request, cache: &Path, to: &mut impl Write) -> io
     if !request.is_for_this_machine() {
         return refuse(to, "403 Forbidden", "");
     }
-    if request.path == CACHE {
-        return send_cache(request, cache, with_body, to);
+    match (request.path.as_str(), &caches.other) {
+        (CACHE, _) => return send_cache(request, &caches.shown, with_body, to),
+        (OTHER, Some(other)) => return send_cache(request, other, with_body, to),
+        _ => {}
     }
     match page::asset(&request.path) {
         Some(asset) => send_asset(asset, with_body, to),

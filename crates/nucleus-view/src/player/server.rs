@@ -15,6 +15,14 @@ use crate::ViewError;
 /// A browser that takes longer than this to ask or to listen has gone away.
 const PATIENCE: Duration = Duration::from_secs(30);
 
+/// The caches that the page can have.
+#[derive(Debug)]
+pub(super) struct Caches {
+    pub shown: PathBuf,
+    /// One to compare it with.
+    pub other: Option<PathBuf>,
+}
+
 /// A player that is being served. Dropping it stops the server.
 #[derive(Debug)]
 pub struct Player {
@@ -28,14 +36,28 @@ pub struct Player {
 /// # Errors
 /// If the cache cannot be read or the port is taken. What the file holds is for the page to say.
 pub fn serve(path: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
-    let path = path.as_ref().to_path_buf();
-    check_is_file(&path).map_err(|source| ViewError::Open { path: path.clone(), source })?;
+    serve_caches(Caches { shown: path.as_ref().to_path_buf(), other: None }, port)
+}
+
+/// Serves the player with two caches, to be compared; else as [`serve`].
+///
+/// # Errors
+/// As [`serve`].
+pub fn serve_both(path: impl AsRef<Path>, other: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
+    let (shown, other) = (path.as_ref().to_path_buf(), Some(other.as_ref().to_path_buf()));
+    serve_caches(Caches { shown, other }, port)
+}
+
+fn serve_caches(caches: Caches, port: u16) -> Result<Player, ViewError> {
+    for path in [Some(&caches.shown), caches.other.as_ref()].into_iter().flatten() {
+        check_is_file(path).map_err(|source| ViewError::Open { path: path.clone(), source })?;
+    }
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
     let listener = listener.map_err(|source| ViewError::Listen { port, source })?;
     let address = listener.local_addr().map_err(|source| ViewError::Listen { port, source })?;
     let stopping = Arc::new(AtomicBool::new(false));
     let stop = Arc::clone(&stopping);
-    let server = thread::spawn(move || accept(&listener, &path.into(), &stop));
+    let server = thread::spawn(move || accept(&listener, &caches.into(), &stop));
     Ok(Player { address, stopping, server: Some(server) })
 }
 
@@ -82,16 +104,16 @@ fn check_is_file(path: &Path) -> io::Result<()> {
     }
 }
 
-fn accept(listener: &TcpListener, cache: &Arc<PathBuf>, stopping: &AtomicBool) {
+fn accept(listener: &TcpListener, caches: &Arc<Caches>, stopping: &AtomicBool) {
     for connection in listener.incoming() {
         if stopping.load(Ordering::SeqCst) {
             return;
         }
         match connection {
             Ok(connection) => {
-                let cache = Arc::clone(cache);
+                let caches = Arc::clone(caches);
                 // A browser that hangs up early is no trouble of ours.
-                thread::spawn(move || drop(converse(&connection, &cache)));
+                thread::spawn(move || drop(converse(&connection, &caches)));
             }
             // Out of file handles, say: wait for some to be given back.
             Err(_) => thread::sleep(Duration::from_millis(50)),
@@ -99,12 +121,12 @@ fn accept(listener: &TcpListener, cache: &Arc<PathBuf>, stopping: &AtomicBool) {
     }
 }
 
-fn converse(connection: &TcpStream, cache: &Path) -> io::Result<()> {
+fn converse(connection: &TcpStream, caches: &Caches) -> io::Result<()> {
     connection.set_read_timeout(Some(PATIENCE))?;
     connection.set_write_timeout(Some(PATIENCE))?;
     let mut to = BufWriter::new(connection);
     match Request::read(&mut BufReader::new(connection))? {
-        Some(request) => response::answer(&request, cache, &mut to)?,
+        Some(request) => response::answer(&request, caches, &mut to)?,
         None => response::refuse_nonsense(&mut to)?,
     }
     to.flush()

@@ -7,7 +7,7 @@ use std::f32::consts::{PI, TAU};
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorded, Recorder, RunInfo, Source};
+use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo, Source};
 use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver, StepReport};
 
 pub const FRAMES: i32 = 24;
@@ -25,6 +25,10 @@ pub struct Sample {
     pub substeps: bool,
     /// From the middle of the run on, one point in fifty is not a number.
     pub broken: bool,
+    /// The flag waves a frame later than it should.
+    pub late: bool,
+    /// Height of a ground plane.
+    pub plane: Option<f64>,
 }
 
 /// Writes a sample. Its last frame is [`FRAMES`], its first 1.
@@ -41,6 +45,7 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
     let run = RunInfo {
         scene_path: "scenes/sample.ron".into(),
         end: FRAMES,
+        ground: sample.plane.map(|y| Plane { origin: [0.0, y, 0.0], normal: [0.0, 1.0, 0.0] }),
         detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
         ..RunInfo::default()
     };
@@ -54,6 +59,7 @@ pub fn step(recorder: &mut Recorder, sample: Sample, frame: i32) {
     let mut watching = recorder.frame(frame).unwrap();
     for substep in 1..=SUBSTEPS {
         let time = (frame - 2) as f32 + substep as f32 / SUBSTEPS as f32;
+        let time = if sample.late { time - 1.0 } else { time };
         let broken = sample.broken && frame > FRAMES / 2;
         watching.substep(Moment { substep, substeps: SUBSTEPS }, &State { time, frame, broken });
     }

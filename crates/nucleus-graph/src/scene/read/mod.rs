@@ -105,11 +105,29 @@ fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
     match &node.value {
         syntax::Value::Word(word) if word == "frames" => Some(Record::Frames),
         syntax::Value::Word(word) if word == "substeps" => Some(Record::Substeps),
+        syntax::Value::Word(word) if word == "none" => Some(Record::None),
+        syntax::Value::Tuple { name: Some(name), items } if name.text == "every" => {
+            every(items).or_else(|| {
+                let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
+                error.help("`every(10)` records each tenth frame and the last");
+                None
+            })
+        }
         other => {
             let error =
                 findings.error(&node.span, format!("`record` takes a word, found {}", value::found(other)));
-            error.help("write `record: frames` or `record: substeps`");
+            error.help("write `frames`, `substeps`, `every(10)` or `none`");
             None
         }
+    }
+}
+
+/// `every(10)`.
+fn every(items: &[Node]) -> Option<Record> {
+    match items {
+        [Node { value: syntax::Value::Number(n), .. }] if n.fract() == 0.0 && (1.0..=1e9).contains(n) => {
+            Some(Record::Every(*n as u32))
+        }
+        _ => None,
     }
 }

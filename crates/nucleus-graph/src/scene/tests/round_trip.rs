@@ -229,3 +229,25 @@ fn a_scene_is_written_as_a_person_would() {
     assert_eq!(written, expected);
     assert_eq!(scene(&write_scene(&read)), read);
 }
+
+#[test]
+fn what_is_recorded_is_read_as_it_was_written() {
+    for (text, expected) in [
+        ("frames", Record::Frames),
+        ("substeps", Record::Substeps),
+        ("every(10)", Record::Every(10)),
+        ("none", Record::None),
+    ] {
+        let scene =
+            format!("Scene(time: (start: 1, end: 2, fps: 24), record: {text}, nodes: {{\"n\": nucleus()}})");
+        let (scene, _) = read_scene_text(&scene, Path::new("a.ron")).unwrap();
+        assert_eq!(scene.record, expected);
+        let (again, _) = read_scene_text(&write_scene(&scene), Path::new("a.ron")).unwrap();
+        assert_eq!(again.record, expected);
+    }
+    for text in ["every(0)", "every(1.5)", "every(1, 2)", "every(-1)", "every", "often"] {
+        let scene =
+            format!("Scene(time: (start: 1, end: 2, fps: 24), record: {text}, nodes: {{\"n\": nucleus()}})");
+        assert!(read_scene_text(&scene, Path::new("a.ron")).is_err(), "{text}");
+    }
+}

@@ -1,0 +1,77 @@
+//! Two caches, held against each other.
+
+use std::io::Cursor;
+
+use nucleus_cache::{Detail, Difference, Playback, Recorder, RunInfo, compare};
+use nucleus_core::{Moment, StepObserver};
+
+use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
+
+fn open(bytes: Vec<u8>) -> Playback<Cursor<Vec<u8>>> {
+    Playback::read(Cursor::new(bytes)).unwrap()
+}
+
+fn run(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
+    open(falling::whole_run(run).0)
+}
+
+/// A run in which, from a frame on, every height is that of another frame.
+fn astray(from: i32) -> Playback<Cursor<Vec<u8>>> {
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &falling::run_info(), falling::objects()).unwrap();
+    recorder.record_start(&Falling::INITIAL).unwrap();
+    for frame in START + 1..=END {
+        let mut observer = recorder.frame(frame).unwrap();
+        let state = Falling { frame: if frame >= from { frame - 1 } else { frame }, substep: SUBSTEPS };
+        observer.substep(Moment { substep: SUBSTEPS, substeps: SUBSTEPS }, &state);
+        recorder.end_frame(&()).unwrap();
+    }
+    recorder.finish().unwrap();
+    open(file.contents())
+}
+
+#[test]
+fn a_cache_does_not_differ_from_itself_however_finely_time_was_recorded() {
+    let same = compare(&mut run(&falling::run_info()), &mut run(&falling::with_substeps()), 0.0).unwrap();
+    assert_eq!((same.differences, same.rms, same.largest), (vec![], 0.0, None));
+    assert_eq!(same.moments as i32, END - START + 1);
+}
+
+#[test]
+fn the_first_place_that_differs_is_named_with_its_distance() {
+    let (from, mut one, mut two) = (START + 3, run(&falling::run_info()), astray(START + 3));
+    let comparison = compare(&mut one, &mut two, 0.0).unwrap();
+    let Difference::Points(first) = &comparison.differences[0] else { panic!("{comparison:?}") };
+    let heights = [from - 1, from].map(|frame| Falling { frame, substep: SUBSTEPS }.height());
+    assert_eq!((first.frame, first.point, first.points), (from, 0, 4));
+    assert_eq!(first.object, falling::objects()[0].1.name);
+    assert_eq!(first.distance, 100.0 * f64::from(heights[0] - heights[1]));
+    let largest = comparison.largest.unwrap();
+    assert_eq!(largest.frame, END, "the gap grows");
+    let allowed = compare(&mut one, &mut two, largest.farthest.1).unwrap();
+    assert!(allowed.differences.iter().all(|difference| !matches!(difference, Difference::Points(_))));
+    assert!(comparison.rms > 0.0 && comparison.rms < largest.farthest.1);
+}
+
+#[test]
+fn frames_and_objects_that_one_of_them_lacks_are_named() {
+    let short = RunInfo { end: END - 2, ..falling::run_info() };
+    let mut objects = falling::objects();
+    objects[1].1.name = "ceiling".to_owned();
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &short, objects).unwrap();
+    falling::record(&mut recorder, short.end).unwrap();
+    recorder.finish().unwrap();
+    let comparison = compare(&mut run(&falling::run_info()), &mut open(file.contents()), 0.0).unwrap();
+    let object = |name: &str, in_first| Difference::Object { name: name.to_owned(), in_first };
+    let moment = Difference::Moment { frame: END - 1, substep: 1, in_first: true };
+    assert_eq!(comparison.differences, [object("floor", true), object("ceiling", false), moment]);
+    let every = RunInfo { detail: Detail::Every(2), ..falling::run_info() };
+    let coarse = compare(&mut run(&every), &mut run(&falling::run_info()), 0.0).unwrap();
+    assert!(
+        coarse
+            .differences
+            .iter()
+            .all(|difference| matches!(difference, Difference::Moment { in_first: false, .. }))
+    );
+}

@@ -1,0 +1,50 @@
+//! What survives of a damaged file becomes a file that is whole.
+
+use std::io::Cursor;
+
+use nucleus_cache::{Playback, compare};
+
+use crate::falling::{self, Shared};
+
+fn recovered(bytes: &[u8]) -> (Vec<u8>, nucleus_cache::Recovered, Playback<Cursor<Vec<u8>>>) {
+    let mut damaged = Playback::read(Cursor::new(bytes.to_vec())).unwrap();
+    let file = Shared::default();
+    let recovered = damaged.recover(file.clone()).unwrap();
+    (file.contents(), recovered, damaged)
+}
+
+#[test]
+fn a_file_cut_off_anywhere_is_whole_again_with_all_that_it_still_had() {
+    let (bytes, _) = falling::whole_run(&falling::with_substeps());
+    for cut in (0..bytes.len()).step_by(7) {
+        let Ok(mut damaged) = Playback::read(Cursor::new(bytes[..cut].to_vec())) else { continue };
+        let (saved, recovered, _) = recovered(&bytes[..cut]);
+        let mut cache = Playback::read(Cursor::new(saved)).unwrap();
+        assert!(!cache.loss().cut_off && !cache.loss().index, "cut at {cut}: {}", cache.loss());
+        let comparison = compare(&mut damaged, &mut cache, 0.0).unwrap();
+        assert_eq!(comparison.differences, [], "cut at {cut}");
+        assert_eq!(comparison.moments, damaged.moments().len());
+        assert_eq!(cache.run(), damaged.run());
+        assert_eq!(recovered.damaged, 0);
+    }
+}
+
+#[test]
+fn a_sound_file_is_recovered_byte_for_byte() {
+    let (bytes, _) = falling::whole_run(&falling::with_substeps());
+    let (saved, recovered, damaged) = recovered(&bytes);
+    assert_eq!((recovered.bytes, saved.len() as u64), (bytes.len() as u64, bytes.len() as u64));
+    assert!(saved == bytes && damaged.loss().is_none());
+}
+
+#[test]
+fn damaged_frames_are_left_out_and_named() {
+    let (mut bytes, _) = falling::whole_run(&falling::run_info());
+    let chunk = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[4].clone();
+    bytes[(chunk.chunk_start_offset + chunk.chunk_length) as usize - 9] ^= 1;
+    let (saved, recovered, damaged) = recovered(&bytes);
+    assert_eq!((recovered.frames as i32, recovered.damaged), (falling::END - falling::START, 1));
+    assert_eq!(damaged.loss().frames, [falling::START + 4]);
+    let mut cache = Playback::read(Cursor::new(saved)).unwrap();
+    assert_eq!(cache.verify().unwrap().frames, [falling::START + 4], "what is gone stays named");
+}

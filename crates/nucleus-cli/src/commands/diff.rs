@@ -1,0 +1,133 @@
+//! `nucleus diff`: where two caches differ first, and by how much.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use nucleus_cache::{Comparison, Difference, PointDifference, compare};
+use serde_json::{Value, json};
+
+use crate::outcome::Outcome;
+use crate::{cache_file, figures, output};
+
+/// Compares two caches: names the first frame, substep, object and point that differ, and the largest distance.
+///
+/// Exits with 0 if they show the same and with 1 if they do not. How finely time was recorded makes no difference.
+#[derive(Debug, Args)]
+pub struct Diff {
+    /// A cache (.mcap).
+    first: PathBuf,
+    /// Another.
+    second: PathBuf,
+    /// Distances up to this, in scene units, are no difference; at 0 every bit counts.
+    #[arg(long, default_value_t = 0.0, value_parser = parse_tolerance)]
+    tolerance: f64,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Diff {
+    /// Compares them.
+    pub fn run(self) -> Result<Outcome> {
+        let mut first = cache_file::open_and_warn(&self.first)?;
+        let mut second = cache_file::open_and_warn(&self.second)?;
+        let comparison = compare(&mut first, &mut second, self.tolerance)?;
+        match self.json {
+            true => output::print_json(&as_json(&comparison))?,
+            false => output::print(&self.as_text(&comparison)?)?,
+        }
+        Ok(if comparison.differences.is_empty() { Outcome::Fine } else { Outcome::Trouble })
+    }
+
+    fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
+        let moments = figures::count(comparison.moments, "moment");
+        if comparison.differences.is_empty() {
+            let how = if self.tolerance > 0.0 { "within the tolerance" } else { "in every bit" };
+            return Ok(format!("the same {how}, {moments} compared\n"));
+        }
+        let mut text = String::new();
+        for difference in &comparison.differences {
+            writeln!(text, "{}", self.line(difference))?;
+        }
+        if let Some(largest) = &comparison.largest {
+            let (point, distance) = largest.farthest;
+            writeln!(
+                text,
+                "largest: {} at {}, `{}` point {point}; root mean square {} over {moments}",
+                figures::number(distance),
+                place(largest),
+                largest.object,
+                figures::number(comparison.rms),
+            )?;
+        }
+        Ok(text)
+    }
+
+    fn line(&self, difference: &Difference) -> String {
+        let name = |in_first: &bool| if *in_first { self.first.display() } else { self.second.display() };
+        match difference {
+            Difference::Object { name: object, in_first } => {
+                format!("object `{object}` is in `{}` only", name(in_first))
+            }
+            Difference::Mesh { name } => {
+                format!("object `{name}` has other faces or another number of points")
+            }
+            Difference::Moment { frame, in_first, .. } => {
+                format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
+            }
+            Difference::Points(found) => format!(
+                "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
+                found.object,
+                place(found),
+                found.point,
+                figures::number(found.distance),
+                figures::count(found.points, "point"),
+                found.farthest.0,
+                figures::number(found.farthest.1),
+            ),
+            _ => "something else differs".to_owned(),
+        }
+    }
+}
+
+/// `frame 12`, `frame 12 substep 3`.
+fn place(found: &PointDifference) -> String {
+    format!("frame {} substep {}", found.frame, found.substep)
+}
+
+fn as_json(comparison: &Comparison) -> Value {
+    let points = |found: &PointDifference| {
+        json!({
+            "object": found.object, "frame": found.frame, "substep": found.substep, "point": found.point,
+            "distance": found.distance, "points": found.points,
+            "farthest": { "point": found.farthest.0, "distance": found.farthest.1 },
+        })
+    };
+    let differences = comparison.differences.iter().map(|difference| match difference {
+        Difference::Object { name, in_first } => {
+            json!({ "object": name, "only_in": 1 + u8::from(!in_first) })
+        }
+        Difference::Mesh { name } => json!({ "mesh": name }),
+        Difference::Moment { frame, substep, in_first } => {
+            json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
+        }
+        Difference::Points(found) => json!({ "points": points(found) }),
+        _ => Value::Null,
+    });
+    json!({
+        "same": comparison.differences.is_empty(),
+        "moments": comparison.moments,
+        "differences": differences.collect::<Vec<_>>(),
+        "rms": comparison.rms,
+        "largest": comparison.largest.as_ref().map(points),
+    })
+}
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if f64::is_finite(tolerance) && tolerance >= 0.0 => Ok(tolerance),
+        _ => Err("a tolerance is a number, nought or above".to_owned()),
+    }
+}

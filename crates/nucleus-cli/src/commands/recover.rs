@@ -1,0 +1,75 @@
+//! `nucleus recover`: what survives of a damaged cache.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+
+use crate::outcome::Outcome;
+use crate::{cache_file, figures, output};
+
+/// Writes what survives of a damaged cache, or of a run that was killed, as a cache that is whole.
+///
+/// Every frame whose checksum holds is copied bit for bit; the others are named. The damaged file stays as it is.
+#[derive(Debug, Args)]
+pub struct Recover {
+    /// The damaged cache (.mcap, .mcap.part).
+    file: PathBuf,
+    /// The cache to write; the name without `.part`, or else with `.recovered.mcap`, if none is given.
+    #[arg(short, long)]
+    out: Option<PathBuf>,
+    /// Replace a file that exists.
+    #[arg(long)]
+    force: bool,
+}
+
+impl Recover {
+    /// Recovers it. Frames that are lost for good are trouble.
+    pub fn run(self) -> Result<Outcome> {
+        let mut cache = cache_file::open(&self.file)?;
+        let out = self.out()?;
+        ensure!(out != self.file, "a damaged file is not overwritten; give another name with `-o`");
+        if out.exists() && !self.force {
+            bail!("`{}` exists; `--force` replaces it, `-o` names another file", out.display());
+        }
+        // Written beside its place, so that nothing half-written ever has the final name.
+        let mut beside = out.clone().into_os_string();
+        beside.push(".recovering");
+        let beside = PathBuf::from(beside);
+        let target = File::create(&beside).with_context(|| format!("cannot write `{}`", out.display()))?;
+        let before = cache.loss().to_string();
+        let recovered = match cache.recover(target).map_err(anyhow::Error::from) {
+            Ok(recovered) => recovered,
+            Err(error) => {
+                // What was begun is of no use; if it cannot be removed either, it says so by its name.
+                let _ = fs::remove_file(&beside);
+                return Err(error.context(format!("cannot recover to `{}`", out.display())));
+            }
+        };
+        fs::rename(&beside, &out).with_context(|| format!("cannot write `{}`", out.display()))?;
+        let frames = figures::count(recovered.frames, "frame");
+        let size = figures::bytes(recovered.bytes);
+        output::print(&format!(
+            "`{}`: {before}\n{frames} in `{}` ({size})\n",
+            self.file.display(),
+            out.display()
+        ))?;
+        let lost = !cache.loss().frames.is_empty();
+        if lost {
+            output::print(&format!("lost for good: {}\n", cache.loss()))?;
+        }
+        Ok(if lost { Outcome::Trouble } else { Outcome::Fine })
+    }
+
+    fn out(&self) -> Result<PathBuf> {
+        if let Some(out) = &self.out {
+            return Ok(out.clone());
+        }
+        let stem = self.file.file_stem().context("the cache has no name")?;
+        let is_part = self.file.extension().is_some_and(|end| end == "part");
+        let name =
+            if is_part { PathBuf::from(stem) } else { Path::new(stem).with_extension("recovered.mcap") };
+        Ok(self.file.with_file_name(name))
+    }
+}

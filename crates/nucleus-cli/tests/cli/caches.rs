@@ -1,0 +1,128 @@
+//! `nucleus export`, `diff` and `recover`, and what `run` does to caches that are there.
+
+use std::fs;
+
+use crate::sample::{END, assert_refused, cache, folder, nucleus, scene, stderr, stdout};
+
+#[test]
+fn an_export_takes_its_format_from_the_name_it_is_given() {
+    let folder = folder();
+    cache(folder.path());
+    let output = nucleus(folder.path(), &["export", "fall.mcap", "-o", "fall.usda"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("6 samples of 1 object as usda in `fall.usda` (1 file, "));
+    assert!(fs::read_to_string(folder.path().join("fall.usda")).unwrap().starts_with("#usda 1.0"));
+    let again = nucleus(folder.path(), &["export", "fall.mcap", "-o", "fall.usda"]);
+    assert_refused(&again, "`fall.usda` exists; `--force` replaces it");
+    let output =
+        nucleus(folder.path(), &["export", "fall.mcap", "--as", "obj", "--frames", "2..4", "--every", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let written = fs::read_dir(folder.path().join("fall_obj")).unwrap().count();
+    assert_eq!(written, 2);
+}
+
+#[test]
+fn an_export_that_cannot_be_made_says_what_there_is() {
+    let folder = folder();
+    cache(folder.path());
+    let export = |more: &[&str]| nucleus(folder.path(), &[&["export", "fall.mcap"], more].concat());
+    assert_refused(&export(&[]), "give `--as` one of obj, ply, pc2");
+    assert_refused(&export(&["--as", "obj", "--object", "shirt"]), "it has `sheet`");
+    assert_refused(&export(&["--as", "obj", "--frames", "90..99"]), "the cache has 1 to 6");
+}
+
+#[test]
+fn the_same_scene_run_twice_makes_caches_that_do_not_differ() {
+    let folder = folder();
+    scene(folder.path(), 6, "");
+    for (out, threads) in [("a.mcap", "1"), ("b.mcap", "2")] {
+        let run = nucleus(folder.path(), &["run", "drape.ron", "-o", out, "--threads", threads]);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    }
+    let output = nucleus(folder.path(), &["diff", "a.mcap", "b.mcap"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stdout(&output), "the same in every bit, 6 moments compared\n");
+    let [a, b] = ["a.mcap", "b.mcap"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert!(a == b, "the files are the same too");
+}
+
+#[test]
+fn caches_that_differ_are_told_apart_by_frame_object_and_point() {
+    let folder = folder();
+    scene(folder.path(), 6, "");
+    assert_eq!(nucleus(folder.path(), &["run", "drape.ron", "-o", "a.mcap"]).status.code(), Some(0));
+    let text = fs::read_to_string(folder.path().join("drape.ron")).unwrap();
+    fs::write(
+        folder.path().join("drape.ron"),
+        text.replace("spaceScale: 0.01,", "spaceScale: 0.01, gravity: 9.7,"),
+    )
+    .unwrap();
+    assert_eq!(nucleus(folder.path(), &["run", "drape.ron", "-o", "b.mcap"]).status.code(), Some(0));
+    let output = nucleus(folder.path(), &["diff", "a.mcap", "b.mcap"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stdout(&output).contains("first in `cloth1`: frame 2 substep 1, point 0 by "),
+        "{}",
+        stdout(&output)
+    );
+    let json = nucleus(folder.path(), &["diff", "a.mcap", "b.mcap", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!((&said["same"], &said["differences"][0]["points"]["frame"]), (&false.into(), &2.into()));
+    let wide = nucleus(folder.path(), &["diff", "a.mcap", "b.mcap", "--tolerance", "5"]);
+    assert_eq!(wide.status.code(), Some(0), "{}", stdout(&wide));
+}
+
+#[test]
+fn a_damaged_cache_is_recovered_beside_itself() {
+    let folder = folder();
+    let path = cache(folder.path());
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let output = nucleus(folder.path(), &["recover", "fall.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("the file was cut off"), "{}", stdout(&output));
+    let info = nucleus(folder.path(), &["info", "fall.recovered.mcap", "--verify"]);
+    assert_eq!(info.status.code(), Some(0), "{}", stdout(&info));
+    assert_eq!(fs::metadata(&path).unwrap().len(), bytes.len() as u64 / 2, "the damaged one is left alone");
+    assert_refused(&nucleus(folder.path(), &["recover", "fall.mcap"]), "`fall.recovered.mcap` exists");
+    assert_refused(
+        &nucleus(folder.path(), &["recover", "fall.mcap", "-o", "fall.mcap"]),
+        "is not overwritten",
+    );
+}
+
+#[test]
+fn a_run_replaces_a_cache_only_when_it_is_told_to() {
+    let folder = folder();
+    scene(folder.path(), 3, "");
+    let run = |more: &[&str]| nucleus(folder.path(), &[&["run", "drape.ron"], more].concat());
+    assert_eq!(run(&[]).status.code(), Some(0));
+    let before = fs::read(folder.path().join("drape.mcap")).unwrap();
+    assert_refused(&run(&[]), "`drape.mcap` exists; `--force` replaces it");
+    assert_eq!(fs::read(folder.path().join("drape.mcap")).unwrap(), before);
+    assert_eq!(run(&["--force", "--record", "every:2", "--velocities", "--compact"]).status.code(), Some(0));
+    let info = stdout(&nucleus(folder.path(), &["info", "drape.mcap"]));
+    assert!(info.contains("recorded    every 2 frames"), "{info}");
+    fs::write(folder.path().join("drape.mcap"), "my thesis").unwrap();
+    assert_refused(&run(&["--force"]), "is not a nucleus cache");
+}
+
+#[test]
+fn info_tells_what_each_channel_takes() {
+    let folder = folder();
+    cache(folder.path());
+    let output = nucleus(folder.path(), &["info", "fall.mcap", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let points = said["channels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|channel| channel["topic"] == "/sheet/points")
+        .unwrap();
+    // A head of 32 bytes and four points of twelve, in each frame.
+    assert_eq!(points["bytes"], END * (32 + 4 * 12));
+    assert!(
+        stdout(&nucleus(folder.path(), &["info", "fall.mcap"]))
+            .contains("/points: nucleus.points.v1, 6 messages, 480 bytes")
+    );
+}
