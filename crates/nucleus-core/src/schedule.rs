@@ -114,7 +114,7 @@ impl<R: Real> Schedule<R> {
         Span { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
     }
 
-    /// Which way a time step sweeps, counted from the start of the frame (in parts, where steps are split).
+    /// Which way a time step sweeps, counted from the start of the frame.
     ///
     /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small part that turns modes
     /// into each other, and feeds them. Where links close odd rings that part is there in every order, and an

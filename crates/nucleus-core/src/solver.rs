@@ -35,6 +35,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) terms: Vec<f64>,
     /// Contact among cloths; none where no two can ever meet.
     pub(crate) mutual: Option<Mutual<R>>,
+    /// Whether anything touched anything in the last frame.
+    pub(crate) touches: bool,
     /// Heights of anchors above the ground plane; empty where the scene uses none.
     pub(crate) heights: Vec<R>,
     pub(crate) team: Team,
@@ -68,6 +70,7 @@ impl<R: Real> Solver<R> {
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
             mutual,
+            touches: false,
             cloths: models,
             colliders,
             state,

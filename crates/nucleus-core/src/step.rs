@@ -1,6 +1,7 @@
 //! One frame, told as a story.
 
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 
 use crate::air::{self, Air};
 use crate::collision::resolve::Tally;
@@ -13,7 +14,7 @@ use crate::refuse::Refused;
 use crate::relax;
 use crate::report::StepReport;
 use crate::scalar::Real;
-use crate::schedule::{Round, Schedule, Span};
+use crate::schedule::{Direction, Round, Schedule, Span};
 use crate::solver::Solver;
 use crate::velocity;
 
@@ -22,6 +23,7 @@ struct Step<'a, R> {
     schedule: &'a Schedule<R>,
     index: u32,
     span: Span,
+    direction: Direction,
 }
 
 impl<R: Real> Solver<R> {
@@ -50,21 +52,25 @@ impl<R: Real> Solver<R> {
         watch.enter(Stage::FrameStart);
         self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
         let fastest = self.fastest(frame);
+        // What is held or lies on something would tremble under sweeps that turn: not converged, each way has a
+        // balance of its own. Only what flies freely can be stirred for long.
+        let is_free = frame.pins.is_empty() && !self.touches;
         for substep in 1..=schedule.substeps {
             watch.enter(Stage::Normals);
             self.find_normals();
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
+                let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
                 let parts = self.parts(frame, &schedule, span, &fastest);
                 if parts == 1 {
-                    let now = Step { schedule: &schedule, index: step, span };
+                    let now = Step { schedule: &schedule, index: step, span, direction };
                     self.advance(frame, &now, &fastest, &mut tally, watch);
                     continue;
                 }
                 let split = schedule.split(frame, parts);
                 for part in 0..parts {
                     let (index, span) = (step * parts + part, span.part(part, parts));
-                    let now = Step { schedule: &split, index, span };
+                    let now = Step { schedule: &split, index, span, direction };
                     self.advance(frame, &now, &fastest, &mut tally, watch);
                 }
             }
@@ -74,6 +80,7 @@ impl<R: Real> Solver<R> {
             watch.substep(Moment { substep, substeps: schedule.substeps }, self);
         }
         watch.enter(Stage::Report);
+        self.touches = tally.contacts.load(Ordering::Relaxed) > 0;
         self.report(frame, &schedule, &tally)
     }
 
@@ -86,7 +93,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
-        let Step { schedule, index, span } = *now;
+        let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
         self.keep_start();
         self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
@@ -94,7 +101,7 @@ impl<R: Real> Solver<R> {
             match round {
                 Round::Relax(sweeps) => {
                     watch.enter(Stage::Relax);
-                    relax::sweep(self, &schedule.sweeps[sweeps.clone()], schedule.direction(index));
+                    relax::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
                 }
                 Round::MeetEachOther => self.meet(frame, schedule, span, tally, watch),
                 Round::Collide => self.meet_colliders(frame, schedule, span, tally, watch),
