@@ -34,17 +34,30 @@ pub fn node_type(name: &str) -> Option<&'static NodeType> {
     TYPES.iter().copied().find(|node_type| node_type.name == name)
 }
 
-static TYPES: [&NodeType; 10] = [
+static TYPES: [&NodeType; 23] = [
     &nucleus::NUCLEUS,
     &n_cloth::N_CLOTH,
     &n_rigid::N_RIGID,
+    &n_particle::N_PARTICLE,
     &dynamic_constraint::DYNAMIC_CONSTRAINT,
+    &n_component::N_COMPONENT,
+    &point_emitter::POINT_EMITTER,
+    &gravity_field::GRAVITY_FIELD,
+    &turbulence_field::TURBULENCE_FIELD,
+    &vortex_field::VORTEX_FIELD,
+    &drag_field::DRAG_FIELD,
+    &air_field::AIR_FIELD,
+    &radial_field::RADIAL_FIELD,
+    &uniform_field::UNIFORM_FIELD,
+    &volume_axis_field::VOLUME_AXIS_FIELD,
+    &newton_field::NEWTON_FIELD,
     &mesh::MESH,
     &poly_plane::POLY_PLANE,
     &poly_sphere::POLY_SPHERE,
     &poly_cube::POLY_CUBE,
     &poly_cylinder::POLY_CYLINDER,
     &transform::TRANSFORM,
+    &time::TIME,
 ];
 
 impl NodeType {

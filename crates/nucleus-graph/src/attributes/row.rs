@@ -26,6 +26,12 @@ pub struct Attribute {
     pub extension: bool,
     /// Whether it may change from frame to frame.
     pub keyable: bool,
+    /// It holds many: each element is a plug of its own, `inputActive[2]`.
+    pub multi: bool,
+    /// A connection can begin here.
+    pub readable: bool,
+    /// A connection can end here.
+    pub writable: bool,
     /// Where it takes effect.
     pub effect: Effect,
     pub(super) doc: &'static str,
@@ -49,6 +55,8 @@ pub enum Effect {
     Solved(&'static str),
     /// Nowhere yet: it can be set, and whoever sets it is told.
     NotYet,
+    /// Nowhere, and in Maya neither: it can be set, and whoever sets it is told.
+    Never,
 }
 
 /// Rows are compared by identity: there is one static per row.

@@ -21,6 +21,6 @@ node_table! {
     }
     "Nucleus (open)" {
         /// The transform it moves along with.
-        PARENT: Plugged = node("parent", "parent").solved("graph").extension();
+        PARENT: Plugged = node("parent", "parent", None).solved("graph").extension();
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::animation::{Curve, Tangent};
-use crate::attributes::{Attribute, Choice, Kind, RampPoint, Value, n_base};
+use crate::attributes::{Attribute, Choice, ColorPoint, Kind, RampPoint, Value, n_base};
 use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
 use super::document::{Record, Scene, TimeSpan};
@@ -85,6 +85,7 @@ fn held(value: &Value, row: &Attribute) -> String {
         Value::Floats(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Vectors(vectors) => list(vectors.iter().map(|vector| triple(*vector))),
         Value::Ramp(points) => list(points.iter().map(ramp_point)),
+        Value::ColorRamp(points) => list(points.iter().map(color_point)),
         Value::Components(parts) => list(parts.iter().map(|part| quoted(&part.to_string()))),
     }
 }
@@ -142,10 +143,20 @@ fn key(frame: f64, value: String, tangent: Tangent, row: &Attribute) -> String {
 }
 
 fn ramp_point(point: &RampPoint) -> String {
-    let RampPoint { position, value, interpolation } = point;
+    let way = way_on(point.interpolation);
+    format!("({}, {}{way})", point.position, point.value)
+}
+
+fn color_point(point: &ColorPoint) -> String {
+    let way = way_on(point.interpolation);
+    format!("({}, {}{way})", point.position, triple(point.color))
+}
+
+/// How a ramp goes on to its next point, unless that is the usual way.
+fn way_on(interpolation: Choice) -> String {
     match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
-        Some(&"linear") | None => format!("({position}, {value})"),
-        Some(word) => format!("({position}, {value}, {word})"),
+        Some(&"linear") | None => String::new(),
+        Some(word) => format!(", {word}"),
     }
 }
 

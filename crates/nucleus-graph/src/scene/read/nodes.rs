@@ -82,7 +82,7 @@ impl NodeReader<'_, '_> {
         let label = format!("`{}` of `{}`", row.name, self.draft.name);
         self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
         match row.kind {
-            Kind::Node => {
+            Kind::Node(_) => {
                 let Some(name) = text(&label, node, self.findings) else { return };
                 let (node_id, name, span) = (self.id, name.to_owned(), node.span.clone());
                 self.links.references.push(Reference { node: node_id, row, name, span });
@@ -178,10 +178,12 @@ impl NodeReader<'_, '_> {
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&word.span, error.to_string());
         }
-        if row.effect == Effect::NotYet {
-            let message = format!("`{}` of `{}` has no effect yet", row.name, self.draft.name);
-            self.findings.warning(&word.span, message);
-        }
+        let lacks = match row.effect {
+            Effect::Solved(_) => return,
+            Effect::NotYet => "has no effect yet",
+            Effect::Never => "has no effect: nothing uses it, in Maya neither",
+        };
+        self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.draft.name));
     }
 
     /// Notes that something is set; whether it is the first time.
@@ -206,7 +208,7 @@ impl NodeReader<'_, '_> {
         let rows = node_type.attributes();
         let parts: Vec<String> =
             rows.iter().filter_map(|row| row.parts()).flatten().map(|(long, _)| long).collect();
-        let settable = rows.iter().filter(|row| row.kind != Kind::Plug).map(|row| row.name);
+        let settable = rows.iter().filter(|row| !matches!(row.kind, Kind::Plug(_))).map(|row| row.name);
         let near = nearest(&word.text, settable.chain(parts.iter().map(String::as_str)));
         let message =
             format!("`{name}` is of type {}, which has no attribute `{}`", node_type.name, word.text);

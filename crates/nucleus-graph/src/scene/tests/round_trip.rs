@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::Simulation;
 use crate::animation::{Curve, Key, Tangent};
-use crate::attributes::{Attribute, Kind, RampPoint, Range, Value};
+use crate::attributes::{Attribute, ColorPoint, Kind, RampPoint, Range, Value};
 use crate::compile::{Program, compile};
 
 /// Any finite number of a range.
@@ -36,6 +36,15 @@ fn values(row: &'static Attribute) -> BoxedStrategy<Value> {
             .prop_map(|(position, value, k)| RampPoint { position, value, interpolation: Choice(k) })
             .prop_map(|point| Value::Ramp(Cow::Owned(vec![point; 2])))
             .boxed(),
+        Kind::ColorRamp => (number(), number(), 0..4)
+            .prop_map(|(position, x, k)| ColorPoint {
+                position,
+                color: [x, 0.0, x],
+                interpolation: Choice(k),
+            })
+            .prop_map(|point| Value::ColorRamp(Cow::Owned(vec![point; 2])))
+            .boxed(),
+        Kind::Ints => prop::collection::vec(any::<u32>(), 0..4).prop_map(Value::Ints).boxed(),
         _ => Just(Value::Components(Vec::new())).boxed(),
     }
 }
@@ -86,7 +95,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
     let rows =
         nodes.iter().flat_map(|(id, node)| node.node_type().attributes().into_iter().map(|row| (*id, row)));
     let settable = |row: &&Attribute| {
-        !matches!(row.kind, Kind::Plug | Kind::Node | Kind::Together(_) | Kind::Components)
+        !matches!(row.kind, Kind::Plug(_) | Kind::Node(_) | Kind::Together(_) | Kind::Components)
             && row.name != "startFrame"
     };
     let rows: Vec<_> = rows.filter(|(_, row)| settable(row)).collect();
