@@ -1,6 +1,6 @@
 //! What emitters and fields share.
 
-use super::key::{int, plug, toggle, vector, vectors};
+use super::key::{int, node, plug, toggle, vector, vectors};
 use super::table::node_table;
 use super::transform::TRANSFORM;
 use super::{Data, Plugged};
@@ -11,6 +11,10 @@ node_table! {
     "Connections" {
         /// The object it belongs to.
         OWNER: Plugged = plug("owner", "ow", Data::Message);
+    }
+    "Nucleus (open)" {
+        /// The object it acts on, or emits into.
+        TARGET: Plugged = node("target", "target", None).solved("graph").extension();
     }
     "Owner" {
         /// Out of use in Maya.

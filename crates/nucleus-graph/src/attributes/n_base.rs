@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::key::{choice, float, floats, int, node, plug, ramp, text, toggle, vector, vectors};
 use super::particle::PARTICLE;
 use super::table::node_table;
 use super::{Choice, Data, Plugged, RampPoint};
@@ -176,6 +176,8 @@ node_table! {
         FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES);
     }
     "Nucleus (open)" {
+        /// A material to take values from: one of `nucleus presets`, or a file of your own, `"mine.ron"`. What is set here counts more.
+        PRESET: String = text("preset", "preset").solved("graph").extension();
         /// The nucleus it belongs to; the only one of the scene when left out.
         NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("graph").extension();
     }

@@ -1,10 +1,13 @@
 //! Node types, and how they inherit: the nearest row wins.
 
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::OnceLock;
+
 use super::row::Attribute;
 use super::*;
 
 /// A type of node.
-#[derive(Debug)]
 pub struct NodeType {
     /// Maya's name of the type, which scenes use.
     pub name: &'static str,
@@ -15,6 +18,14 @@ pub struct NodeType {
     /// Inherited attributes that it does not show. They can still be read and written.
     pub hides: &'static [&'static str],
     pub(super) doc: &'static str,
+    pub(super) index: OnceLock<HashMap<&'static str, &'static Attribute>>,
+}
+
+/// Its name is enough to tell it by.
+impl fmt::Debug for NodeType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Types are compared by identity: there is one static per type.
@@ -79,8 +90,19 @@ impl NodeType {
     /// The attribute of this long or short name. A long name goes before a short one, and within each the
     /// row nearest to this type wins.
     pub fn attribute(&'static self, name: &str) -> Option<&'static Attribute> {
+        self.index.get_or_init(|| self.by_name()).get(name).copied()
+    }
+
+    fn by_name(&'static self) -> HashMap<&'static str, &'static Attribute> {
         let rows = || self.lineage().flat_map(|ancestor| ancestor.rows).copied();
-        rows().find(|row| row.name == name).or_else(|| rows().find(|row| row.short == name))
+        let mut index = HashMap::new();
+        for row in rows() {
+            index.entry(row.name).or_insert(row);
+        }
+        for row in rows() {
+            index.entry(row.short).or_insert(row);
+        }
+        index
     }
 
     /// The vector attribute that has a part of this long or short name, and which part it is.

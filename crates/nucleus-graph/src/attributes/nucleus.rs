@@ -10,7 +10,7 @@ node_table! {
     NUCLEUS = "nucleus", inherits Some(&TRANSFORM), hides [];
     "General" {
         /// Solves at all; when off, everything keeps the state it has.
-        ENABLE: bool = toggle("enable", "ena", true);
+        ENABLE: bool = toggle("enable", "ena", true).solved("simulation");
     }
     "Gravity and Wind" {
         /// Acceleration of free fall; metres are scene units times `spaceScale`.
@@ -60,11 +60,11 @@ node_table! {
     }
     "Time Attributes" {
         /// The time it solves for; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("simulation");
         /// The frame at which everything is in its initial state, and where a run begins. Left out, it is the first frame of the scene.
         START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("simulation").fixed();
         /// How many frames a single evaluation may leap over and still be solved.
-        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0);
+        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0).solved("simulation");
     }
     "Nucleus (open)" {
         /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.

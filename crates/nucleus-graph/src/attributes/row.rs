@@ -1,10 +1,11 @@
 //! One row of a table: everything there is to say about one attribute.
 
+use std::fmt;
+
 use super::kind::Kind;
 use super::value::{Choice, Value};
 
 /// An attribute of a node type.
-#[derive(Debug)]
 pub struct Attribute {
     /// Maya's long name, which scenes use.
     pub name: &'static str,
@@ -57,6 +58,13 @@ pub enum Effect {
     NotYet,
     /// Nowhere, and in Maya neither: it can be set, and whoever sets it is told.
     Never,
+}
+
+/// Its name is enough to tell it by.
+impl fmt::Debug for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Rows are compared by identity: there is one static per row.

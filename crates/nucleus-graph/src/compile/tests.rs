@@ -43,8 +43,18 @@ fn model(program: &Program) -> String {
 
 /// The input of a frame when nothing has moved since the start.
 fn input(program: &Program, frame: i64) -> FrameInput {
-    let start = |cloth: ClothId, point: PointId| program.cloths[cloth.index()].start[point.index()];
-    program.input(frame, &mut Grips::default(), &start)
+    let start = |cloth: ClothId, point: PointId| program.model().positions(cloth)[point.index()];
+    solved(program, frame, &mut Grips::default(), &start)
+}
+
+/// The input of the frame that ends at `frame`.
+fn solved(
+    program: &Program,
+    frame: i64,
+    grips: &mut Grips,
+    position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
+) -> FrameInput {
+    program.stretch(0, [frame - 1, frame].map(|frame| frame as f64), 1.0, false).input(grips, position)
 }
 
 fn lists(cloth: &str) -> String {
@@ -67,7 +77,7 @@ fn lengths_are_scaled_and_accelerations_are_not() {
     assert_eq!(input.wind, Vector3::new(3.0, 0.0, 0.0));
     assert_eq!(input.plane.map(|plane| plane.origin), Some(Vector3::new(0.0, -0.5, 0.0)));
     assert_eq!(input.cloths[0].thickness, 0.02);
-    assert_eq!(centimetres.cloths[0].start[0], Vector3::new(-1.0, 1.0, 1.0));
+    assert_eq!(centimetres.model().positions(ClothId(0))[0], Vector3::new(-1.0, 1.0, 1.0));
     assert_eq!(centimetres.units_per_metre(), 100.0);
 }
 
@@ -218,7 +228,7 @@ fn the_length_of_a_direction_does_not_matter_and_zero_is_none() {
 fn a_run_begins_at_the_start_frame_with_things_where_they_are_then() {
     let moving = r#""p": polyPlane(tx: keys([(1, 0), (11, 10)])), "c": nCloth(inputMesh: "p")"#;
     let late = program(&format!(r#""n": nucleus(startFrame: 5), {moving}"#));
-    assert_eq!((late.time().start, late.cloths[0].start[0].x), (5, 3.5));
+    assert_eq!((late.time().start, late.model().positions(ClothId(0))[0].x), (5, 3.5));
     assert_eq!(program(&format!(r#""n": nucleus(), {moving}"#)).time().start, 1);
     let never = refused(&format!(r#""n": nucleus(startFrame: 25), {moving}"#));
     assert_eq!(never, "`startFrame` of `n` comes after the last frame, 24");
@@ -277,7 +287,7 @@ proptest! {
         ];
         let text = |order: &[usize]| order.iter().map(|&k| nodes[k]).collect::<Vec<_>>().join(", ");
         let (given, sorted) = (program(&text(&order)), program(&text(&[0, 1, 2, 3, 4, 5, 6])));
-        prop_assert_eq!(&given.graph, &sorted.graph);
+        prop_assert_eq!(given.graph(), sorted.graph());
         prop_assert_eq!(model(&given), model(&sorted));
         prop_assert_eq!(given.objects(), sorted.objects());
         prop_assert_eq!(given.first_input(), sorted.first_input());

@@ -22,8 +22,8 @@ pub(super) fn read(
     node: &Node,
     findings: &mut Findings,
 ) -> Option<Setting> {
-    if let Some(list) = keys::keyed(node) {
-        return keys::read(label, row, list, findings);
+    if let Some(keyed) = keys::keyed(node) {
+        return keys::read(label, row, keyed, findings);
     }
     if let Kind::Vector(_) = row.kind {
         let parts = triple(label, row, node, findings)?;
@@ -66,7 +66,7 @@ pub(super) fn read_part(
     findings: &mut Findings,
 ) -> Option<Channel> {
     match keys::keyed(node) {
-        Some(list) => keys::read_part(label, row, list, findings).map(Channel::Keyed),
+        Some(keyed) => keys::read_part(label, row, keyed, findings).map(Channel::Keyed),
         None => number_within(label, row, node, findings).map(Channel::Fixed),
     }
 }
