@@ -5,8 +5,12 @@ mod cache_info;
 mod check;
 mod export;
 mod extremes;
+mod fmt;
+mod graph;
 mod info;
+mod new;
 mod play;
+mod presets;
 mod render;
 mod run;
 mod scene_info;
@@ -29,6 +33,10 @@ pub enum Command {
     Attrs(attrs::Attrs),
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
+    Presets(presets::Presets),
+    Graph(graph::Graph),
+    Fmt(fmt::Fmt),
+    New(new::New),
 }
 
 impl Command {
@@ -44,6 +52,10 @@ impl Command {
             Self::Attrs(attrs) => attrs.run(),
             Self::Extremes(extremes) => extremes.run(),
             Self::Trade(trade) => trade.run(),
+            Self::Presets(presets) => presets.run(),
+            Self::Graph(graph) => graph.run(),
+            Self::Fmt(fmt) => fmt.run(),
+            Self::New(new) => new.run(),
         }
     }
 }

@@ -10,3 +10,4 @@ mod render;
 mod run;
 mod sample;
 mod trade;
+mod scenes;
