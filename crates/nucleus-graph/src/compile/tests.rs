@@ -86,8 +86,14 @@ fn lengths_are_scaled_and_accelerations_are_not() {
 fn a_list_is_on_only_if_its_attribute_is_ever_other_than_zero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
-    assert_eq!(lists(nothing), "stretch: false, shear: false, bend: false, air: false, damp: false");
-    assert_eq!(lists(""), "stretch: true, shear: false, bend: true, air: true, damp: true");
+    assert_eq!(
+        lists(nothing),
+        "stretch: false, shear: false, bend: false, air: false, damp: false, self_collision: true"
+    );
+    assert_eq!(
+        lists(""),
+        "stretch: true, shear: false, bend: true, air: true, damp: true, self_collision: true"
+    );
     for (cloth, list) in [
         ("bendResistance: keys([(1, 0), (20, 1)])", "bend: true"),
         ("bendResistance: keys([(1, 0), (20, 0)])", "bend: false"),
@@ -169,8 +175,10 @@ fn every_attribute_of_cloth_reaches_its_place() {
 #[test]
 fn a_cloth_on_which_nothing_is_set_has_the_solvers_own_defaults() {
     let cloths = program(&sheet("", "")).first_input().cloths;
-    let expected = ClothFrame { thickness: cloths[0].thickness, ..ClothFrame::default() };
-    assert_eq!(cloths, [expected]);
+    let thickness = cloths[0].thickness;
+    // Cloth meets itself, unless it is told not to; the solver by itself knows of no thickness.
+    let self_collision = SelfCollision { on: true, thickness, ..ClothFrame::default().self_collision };
+    assert_eq!(cloths, [ClothFrame { thickness, self_collision, ..ClothFrame::default() }]);
     // Two sides of 2 by 2; one face. 0.5 % of sqrt(8).
     assert!((cloths[0].thickness - 0.005 * 8f64.sqrt()).abs() < 1e-15);
 }
@@ -257,7 +265,7 @@ fn an_attribute_at_its_default_equals_the_attribute_left_out() {
         let (id, _) = scene.graph.of_type(node_type).next().expect("one of each");
         for row in node_type.attributes() {
             // These are worked out when they are left out.
-            if ["thickness", "startFrame"].contains(&row.name) {
+            if ["thickness", "startFrame", "selfCollisionFlag", "selfCollideWidthScale"].contains(&row.name) {
                 continue;
             }
             let Some(default) = row.default.clone() else { continue };

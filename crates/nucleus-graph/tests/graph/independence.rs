@@ -46,6 +46,34 @@ fn each_nucleus_has_its_own_gravity_and_its_own_time() {
     assert!(height("c2", 3) < height("c2", 0));
 }
 
+// EVIDENCE: N3.1-3  an object can ignore the solver's gravity, and a field hangs on the object it is given to alone
+#[test]
+fn an_object_can_ignore_gravity_and_a_field_acts_on_one_object() {
+    let nodes = r#""n": nucleus(airDensity: 0),
+        "p1": polyPlane(), "c1": nCloth(inputMesh: "p1", ignoreSolverGravity: true),
+        "p2": polyPlane(tx: 9), "c2": nCloth(inputMesh: "p2"), "f": turbulenceField(target: "c2")"#;
+    let program = program(&of_nodes(nodes, ""));
+    assert_eq!(after(&program, 2, "c1"), after(&program, 0, "c1"));
+    assert_ne!(after(&program, 2, "c2"), after(&program, 0, "c2"));
+    let graph = program.graph();
+    let [field, c1, c2] = ["f", "c1", "c2"].map(|name| graph.find(name).expect(name));
+    assert!(graph.leaving(field).all(|wire| wire.to.node == c2) && graph.leaving(field).count() == 1);
+    assert!(graph.arriving(field).all(|wire| wire.from.node != c1));
+}
+
+// EVIDENCE: N3.1-7  objects are cloth, particles and colliders, and a collider is passive
+#[test]
+fn a_collider_is_moved_by_its_mesh_alone() {
+    let nodes = r#""n": nucleus(), "p": polyCube(ty: 3), "r": nRigid(inputMesh: "p"), "q": nParticle()"#;
+    let program = program(&of_nodes(nodes, ""));
+    assert_eq!(after(&program, 3, "r"), after(&program, 0, "r"), "it does not fall");
+    let wires: Vec<String> =
+        program.graph().connections().map(|wire| program.graph().describe(wire.to)).collect();
+    assert!(
+        wires.contains(&"n.inputPassive[0]".to_owned()) && wires.contains(&"n.inputActive[0]".to_owned())
+    );
+}
+
 // EVIDENCE: N3.1-2  only what is connected to the nucleus is solved
 #[test]
 fn what_is_not_connected_is_not_solved_and_changes_nothing() {
@@ -141,7 +169,7 @@ proptest! {
             ];
             let nodes: Vec<&str> = order.iter().map(|&k| nodes[k].as_str()).collect();
             let mut wires =
-                vec![format!(r#"("{b}.translateY", "{c}.lift")"#), format!(r#"("{t}.tx", "{r}.friction")"#)];
+                [format!(r#"("{b}.translateY", "{c}.lift")"#), format!(r#"("{t}.tx", "{r}.friction")"#)];
             if turned {
                 wires.reverse();
             }

@@ -175,7 +175,7 @@ fn the_reader_is_fuzzed() {
     let begin = std::time::Instant::now();
     let mut dice = Dice(begin.elapsed().as_nanos() as u64 ^ u64::from(std::process::id()));
     let mut known = std::collections::BTreeSet::new();
-    let mut pool: Vec<String> = gallery().into_iter().map(|(_, text)| text).collect();
+    let mut pool: Vec<String> = gallery().into_iter().map(|(_, text)| text.replace("EVIDENCE", "")).collect();
     for entry in fs::read_dir(corpus()).expect("the corpus is there") {
         let text =
             String::from_utf8_lossy(&fs::read(entry.expect("an entry").path()).expect("read")).into_owned();

@@ -98,7 +98,12 @@ fn pick(graph: &Graph, index: &Index) -> NodeId {
 fn plug(graph: &Graph, choice: &PlugChoice) -> Plug {
     let node = pick(graph, &choice.node);
     let rows: Vec<&'static Attribute> = graph.node(node).node_type().attributes();
-    Plug { node, attribute: *choice.row.get(&rows), index: choice.index, part: choice.part }
+    Plug {
+        node,
+        attribute: choice.row.get::<&'static Attribute>(&rows),
+        index: choice.index,
+        part: choice.part,
+    }
 }
 
 impl StateMachineTest for Whole {
@@ -113,7 +118,7 @@ impl StateMachineTest for Whole {
         let before = graph.clone();
         let refused = match change {
             Change::Add { name, node_type } => {
-                let added = graph.add(&name, *node_type.get(node_types()));
+                let added = graph.add(&name, node_type.get::<&'static NodeType>(node_types()));
                 assert!(added.is_ok() || before.find(&name).is_some());
                 assert!(names.0.contains_key(&name));
                 added.is_err()
@@ -184,7 +189,11 @@ impl StateMachineTest for Whole {
                 let node = pick(&graph, &node);
                 let set: Vec<&'static str> = graph.node(node).settings().keys().copied().collect();
                 if !set.is_empty() {
-                    let row = graph.node(node).node_type().attribute(*setting.get(&set)).expect("it is set");
+                    let row = graph
+                        .node(node)
+                        .node_type()
+                        .attribute(setting.get::<&'static str>(&set))
+                        .expect("it is set");
                     assert!(graph.unset(node, row));
                 }
                 false
