@@ -9,5 +9,5 @@ mod play;
 mod render;
 mod run;
 mod sample;
-mod trade;
 mod scenes;
+mod trade;
