@@ -36,7 +36,7 @@ pub fn simulate(
             return Ok((account, Ending::Interrupted));
         }
         let begin = Instant::now();
-        let frame = i32::try_from(simulation.frame() + 1).context("there are too many frames")?;
+        let frame = i32::try_from(simulation.next_frame()).context("there are too many frames")?;
         let figures = match advance(simulation, frame, recorder, judge) {
             Ok(figures) => figures,
             Err(error) => return Ok((account, Ending::Lost(error.into()))),

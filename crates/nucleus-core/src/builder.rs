@@ -1,6 +1,8 @@
 //! The door: what comes in here is checked once, and refused with the element named.
 //! From [`ModelBuilder::finish`] on, nothing can be invalid.
 
+use nalgebra::Vector3;
+
 use crate::ids::{ClothId, ColliderId};
 use crate::model::point_masses;
 use crate::refuse::{FARTHEST, is_usable};
@@ -159,6 +161,11 @@ impl ModelBuilder {
     /// The cloths, by their ids.
     pub fn cloths(&self) -> &[Cloth] {
         &self.cloths
+    }
+
+    /// Where the points of a cloth start, in metres.
+    pub fn positions(&self, cloth: ClothId) -> &[Vector3<f64>] {
+        &self.cloths[cloth.index()].surface.positions
     }
 
     /// Adds a collider.

@@ -1,21 +1,43 @@
-//! The loop over frames: evaluates the animation, calls the solver.
+//! The loop over frames: evaluates the animation, calls the solvers.
 
 use nucleus_audit::World;
-use nucleus_core::{FrameInput, PointId, Real, Solver, StateView, StepObserver, StepReport};
+use nucleus_core::{
+    ClothId, FrameInput, Moment, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport,
+};
 
+use crate::attributes::nucleus;
 use crate::audit::{Audit, Audited, Closeness};
 use crate::compile::{Grips, Object, Program};
+
+use plan::Leap;
+use view::{Merge, View};
+
+mod plan;
+mod view;
 
 /// A run of a program, at some frame of it.
 ///
 /// It begins at the start frame with everything in its initial state. Every [`advance`](Self::advance)
-/// solves one frame more (N3.1-6).
+/// solves one frame more (N3.1-6), or several where the scene is evaluated only every so many frames.
+/// Nuclei are solved one after another, and none knows of the others.
 pub struct Simulation<R: Real = f32> {
     program: Program,
+    runs: Vec<Run<R>>,
+    frame: i64,
+    threads: usize,
+    audit: Option<Audit>,
+}
+
+/// One nucleus while it runs.
+struct Run<R: Real> {
     solver: Solver<R>,
     grips: Grips,
-    frame: i64,
-    audit: Option<Audit>,
+    /// Where the time of the nucleus stands, in frames.
+    now: f64,
+    /// The frame of the scene at which it was evaluated last.
+    evaluated: f64,
+    /// What was evaluated last has not been solved.
+    left_out: bool,
 }
 
 /// What the solver says about a frame.
@@ -23,7 +45,7 @@ pub struct Simulation<R: Real = f32> {
 pub struct FrameReport {
     /// The frame that was reached.
     pub frame: i64,
-    /// What happened on the way there.
+    /// What happened on the way there; of several nuclei the worst of each figure.
     pub report: StepReport,
     /// How often something passed through something on the way there; nothing where no audit looks.
     pub passed_through: Option<u64>,
@@ -32,20 +54,16 @@ pub struct FrameReport {
 impl<R: Real> Simulation<R> {
     /// A run at its start frame. `threads` is the number of cores to use; it never changes a bit of the result.
     pub fn new(program: &Program, threads: usize) -> Self {
-        Self {
-            solver: Solver::new(program.model().clone(), threads),
-            grips: Grips::default(),
-            frame: program.time().start,
-            program: program.clone(),
-            audit: None,
-        }
+        let frame = program.time().start;
+        let runs = (0..program.universes().len()).map(|k| Run::new(program, k, threads)).collect();
+        Self { runs, frame, threads, program: program.clone(), audit: None }
     }
 
     /// Has the run audited from here on.
     pub fn begin_audit(&mut self, closeness: Closeness) {
-        let pins = self.next_input(&mut self.grips.clone()).pins;
-        let rules = |world: &World| self.program.kept_apart(self.frame + 1, &pins, world);
-        self.audit = Some(Audit::new(self.objects(), closeness, &self.solver, rules));
+        let pins = self.next_pins();
+        let rules = |world: &World| self.program.kept_apart(self.next_frame(), &pins, world);
+        self.audit = Some(Audit::new(self.objects(), closeness, self.state(), rules));
     }
 
     /// What the audit has come to, if there is one.
@@ -53,9 +71,18 @@ impl<R: Real> Simulation<R> {
         self.audit.as_ref()
     }
 
-    pub(crate) fn next_input(&self, grips: &mut Grips) -> FrameInput {
-        let position = |cloth, point: PointId| self.solver.point(cloth, point.index());
-        self.program.input(self.frame + 1, grips, &position)
+    /// What is held in the next frame, by the ids of the program.
+    pub(crate) fn next_pins(&self) -> Vec<Pin> {
+        let to = self.next_frame() as f64;
+        let pins =
+            self.runs.iter().zip(self.program.universes()).enumerate().flat_map(|(k, (run, universe))| {
+                let position = |cloth, point: PointId| run.solver.point(cloth, point.index());
+                let stretch = self.program.stretch(k, [run.evaluated, to], to - run.evaluated, run.left_out);
+                let pins = stretch.input(&mut run.grips.clone(), &position).pins;
+                let first = universe.cloths().start;
+                pins.into_iter().map(move |pin| Pin { cloth: ClothId(first + pin.cloth.0), ..pin })
+            });
+        pins.collect()
     }
 
     /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
@@ -70,27 +97,87 @@ impl<R: Real> Simulation<R> {
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
         watch: &mut dyn StepObserver,
     ) -> FrameReport {
-        let frame = self.frame + 1;
-        let mut grips = std::mem::take(&mut self.grips);
-        let mut input = self.next_input(&mut grips);
-        self.grips = grips;
-        change(&self.solver, &mut input);
-        let (report, passed_through) = match &mut self.audit {
-            None => (self.solver.step(&input, watch), None),
-            Some(audit) => {
-                let before = audit.account().found();
-                audit.begin_frame(frame, |world| self.program.kept_apart(frame, &input.pins, world));
-                let report = self.solver.step(&input, &mut Audited::new(audit, watch));
-                (report, Some(audit.account().found() - before))
-            }
+        let frame = self.next_frame();
+        let Some(mut audit) = self.audit.take() else {
+            return FrameReport { frame, report: self.solve(frame, change, watch), passed_through: None };
         };
-        self.frame = frame;
+        let pins = self.next_pins();
+        audit.begin_frame(frame, |world| self.program.kept_apart(frame, &pins, world));
+        let before = audit.account().found();
+        let report = self.solve(frame, change, &mut Audited::new(&mut audit, watch));
+        let passed_through = Some(audit.account().found() - before);
+        self.audit = Some(audit);
         FrameReport { frame, report, passed_through }
+    }
+
+    /// Solves everything up to a frame.
+    fn solve(
+        &mut self,
+        frame: i64,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        watch: &mut dyn StepObserver,
+    ) -> StepReport {
+        let leaps = self.plan(frame);
+        let total = leaps.iter().map(|leap| leap.substeps).sum();
+        let mut done = 0;
+        let mut report: Option<StepReport> = None;
+        for leap in leaps {
+            let seen = self.leap(&leap, change, &mut Watched { watch: &mut *watch, done, total });
+            done += leap.substeps;
+            report = Some(report.map_or(seen, |before| worst(&before, &seen, leap.is_new_time)));
+        }
+        if total == 0 {
+            watch.substep(Moment { substep: 1, substeps: 1 }, self.state());
+        }
+        self.frame = frame;
+        report.unwrap_or_default()
+    }
+
+    /// Solves a stretch of time of one nucleus.
+    fn leap(
+        &mut self,
+        leap: &Leap,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        watched: &mut Watched,
+    ) -> StepReport {
+        if leap.begins_anew {
+            self.runs[leap.universe] = Run::new(&self.program, leap.universe, self.threads);
+        }
+        let (before, rest) = self.runs.split_at_mut(leap.universe);
+        let Some((run, after)) = rest.split_first_mut() else { return StepReport::default() };
+        let stretch = self.program.stretch(leap.universe, leap.frames, leap.elapsed, leap.leaps);
+        let solver = &run.solver;
+        let position = |cloth, point: PointId| solver.point(cloth, point.index());
+        let mut input = stretch.input(&mut run.grips, &position);
+        change(&run.solver, &mut input);
+        if before.is_empty() && after.is_empty() && watched.total == leap.substeps {
+            return run.solver.step(&input, watched.watch);
+        }
+        let others = before.iter().map(|run| &run.solver as &dyn StateView);
+        let others: Vec<&dyn StateView> = others.chain(after.iter().map(|run| &run.solver as _)).collect();
+        let mut merge = Merge {
+            watch: &mut *watched.watch,
+            done: watched.done,
+            own: leap.substeps,
+            total: watched.total,
+            universe: leap.universe,
+            others,
+            program: &self.program,
+        };
+        run.solver.step(&input, &mut merge)
     }
 
     /// The frame it is at.
     pub fn frame(&self) -> i64 {
         self.frame
+    }
+
+    /// The frame that it will be at after the next [`advance`](Self::advance). The last frame is never leapt
+    /// over.
+    pub fn next_frame(&self) -> i64 {
+        let next = self.frame + (self.program.every() as i64).max(1);
+        let end = self.program.time().end;
+        if self.frame < end { next.min(end) } else { next }
     }
 
     /// Whether the last frame has been reached.
@@ -103,24 +190,80 @@ impl<R: Real> Simulation<R> {
         self.program.objects()
     }
 
-    /// Scene units in a metre.
+    /// Scene units in a metre, for the first nucleus.
     pub fn units_per_metre(&self) -> f64 {
         self.program.units_per_metre()
     }
 
     /// The state as it is, at the start frame too.
     pub fn state(&self) -> &dyn StateView {
-        &self.solver
+        match self.runs.as_slice() {
+            [only] => &only.solver,
+            _ => self,
+        }
     }
 
-    /// The solver.
+    /// The solver of the first nucleus.
     pub fn solver(&self) -> &Solver<R> {
-        &self.solver
+        &self.runs[0].solver
+    }
+
+    /// The solvers of all nuclei, in the order of the program.
+    pub fn solvers(&self) -> impl Iterator<Item = &Solver<R>> {
+        self.runs.iter().map(|run| &run.solver)
     }
 
     /// What it runs.
     pub fn program(&self) -> &Program {
         &self.program
+    }
+
+    fn view(&self) -> View<'_> {
+        let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
+        View { program: &self.program, parts }
+    }
+}
+
+impl<R: Real> Run<R> {
+    fn new(program: &Program, universe: usize, threads: usize) -> Self {
+        let universe = &program.universes()[universe];
+        let start = universe.start() as f64;
+        let now = program.graph().at(start).get(universe.nucleus(), &nucleus::CURRENT_TIME);
+        Self {
+            solver: Solver::new(universe.model().clone(), threads),
+            grips: Grips::default(),
+            now,
+            evaluated: start,
+            left_out: false,
+        }
+    }
+}
+
+/// Whoever watches a frame, and how much of it is over.
+struct Watched<'a> {
+    watch: &'a mut dyn StepObserver,
+    done: u32,
+    total: u32,
+}
+
+/// The worst of two accounts: of two nuclei at one time, or of a nucleus at two times in a row.
+fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
+    StepReport {
+        max_strain: a.max_strain.max(b.max_strain),
+        strain_99: a.strain_99.max(b.strain_99),
+        min_gap: a.min_gap.min(b.min_gap),
+        min_cloth_gap: a.min_cloth_gap.min(b.min_cloth_gap),
+        limited: if in_a_row { b.limited } else { a.limited + b.limited },
+        contacts: a.contacts + b.contacts,
+        pairs: a.pairs + b.pairs,
+        broad_phases: a.broad_phases + b.broad_phases,
+        caught: a.caught + b.caught,
+        crossed: a.crossed + b.crossed,
+        unproven: a.unproven + b.unproven,
+        trapped: if in_a_row { b.trapped } else { a.trapped + b.trapped },
+        kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
+        finite: a.finite && b.finite,
+        refused: if a.refused.count > 0 { a.refused } else { b.refused },
     }
 }
 

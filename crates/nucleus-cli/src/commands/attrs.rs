@@ -15,7 +15,7 @@ use crate::{figures, output};
 pub struct Attrs {
     /// The type of node, such as `nCloth`; all types are listed if none is given.
     node: Option<String>,
-    /// Attributes too that Maya does not show, or that have no effect yet.
+    /// Attributes too that are kept from view: what a node inherits and does not use, and inner workings.
     #[arg(long)]
     all: bool,
 }
@@ -56,7 +56,7 @@ fn list_types() -> Result<String, std::fmt::Error> {
 
 /// The attributes in groups, each with its default, range and unit, and what it does.
 fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Error> {
-    let shown = |row: &&Attribute| all || !node_type.keeps_from_view(row) && row.effect != Effect::NotYet;
+    let shown = |row: &&Attribute| all || !node_type.keeps_from_view(row);
     let rows: Vec<&Attribute> = node_type.attributes().into_iter().filter(shown).collect();
     let left_out = node_type.attributes().len() - rows.len();
     let mut text = format!("{}: {}\n", node_type.name, node_type.doc());
@@ -67,12 +67,16 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
         writeln!(text, "\n{group}")?;
         for row in rows.iter().filter(|row| row.group == group) {
             let name = format!("{} ({})", row.name, row.short);
-            let without_effect = if row.effect == Effect::NotYet { " No effect yet." } else { "" };
+            let without_effect = match row.effect {
+                Effect::Solved(_) => "",
+                Effect::NotYet => " No effect yet.",
+                Effect::Never => " No effect, in Maya neither.",
+            };
             writeln!(text, "  {name:<36} {}\n      {}{without_effect}", facts(row), row.doc())?;
         }
     }
     if left_out > 0 {
-        writeln!(text, "\n{left_out} more are hidden or have no effect yet: `--all` shows them")?;
+        writeln!(text, "\n{left_out} more are hidden: `--all` shows them")?;
     }
     Ok(text)
 }
@@ -99,10 +103,11 @@ fn kind(row: &Attribute) -> String {
         Kind::Floats => "list of float".to_owned(),
         Kind::Vectors => "list of vector".to_owned(),
         Kind::Ramp => "ramp".to_owned(),
+        Kind::ColorRamp => "ramp of colours".to_owned(),
         Kind::Components => "components".to_owned(),
-        Kind::Node => "node".to_owned(),
+        Kind::Node(_) => "node".to_owned(),
         Kind::Together(names) => names.join(", "),
-        Kind::Plug => "connected only".to_owned(),
+        Kind::Plug(_) => "connected only".to_owned(),
     }
 }
 

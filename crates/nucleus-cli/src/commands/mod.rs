@@ -7,8 +7,12 @@ mod diff;
 mod export;
 mod extremes;
 mod film;
+mod fmt;
+mod graph;
 mod info;
+mod new;
 mod play;
+mod presets;
 mod recover;
 mod render;
 mod run;
@@ -36,6 +40,10 @@ pub enum Command {
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
     Validate(validate::Validate),
+    Presets(presets::Presets),
+    Graph(graph::Graph),
+    Fmt(fmt::Fmt),
+    New(new::New),
 }
 
 impl Command {
@@ -54,6 +62,10 @@ impl Command {
             Self::Extremes(extremes) => extremes.run(),
             Self::Trade(trade) => trade.run(),
             Self::Validate(validate) => validate.run(),
+            Self::Presets(presets) => presets.run(),
+            Self::Graph(graph) => graph.run(),
+            Self::Fmt(fmt) => fmt.run(),
+            Self::New(new) => new.run(),
         }
     }
 }

@@ -19,10 +19,23 @@ fn hidden_attributes_are_shown_on_request() {
 }
 
 #[test]
+fn what_has_no_effect_yet_is_listed_and_says_so() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["attrs", "turbulenceField"]));
+    let (_, row) = said.split_once("frequency (frq)").expect("it is listed");
+    assert!(row.lines().nth(1).is_some_and(|line| line.ends_with("No effect yet.")), "{said}");
+}
+
+#[test]
 fn without_a_type_all_types_are_listed() {
     let folder = folder();
     let said = stdout(&nucleus(folder.path(), &["attrs"]));
-    assert!(["nucleus", "nCloth", "nRigid"].iter().all(|name| said.contains(name)), "{said}");
+    assert!(
+        ["nucleus", "nCloth", "nRigid", "nParticle", "pointEmitter", "newtonField"]
+            .iter()
+            .all(|name| said.contains(name)),
+        "{said}"
+    );
 }
 
 #[test]

@@ -10,4 +10,5 @@ mod play;
 mod render;
 mod run;
 mod sample;
+mod scenes;
 mod trade;

@@ -9,6 +9,48 @@ pub enum Tangent {
     Linear,
     /// Smooth: at a key the curve is parallel to the line through its two neighbours, at the ends it is flat.
     Spline,
+    /// Level at the key.
+    Flat,
+    /// Smooth like a spline, but never beyond its keys: level where the keys turn back, and at the ends.
+    Auto,
+}
+
+/// How a curve goes on before its first and after its last key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Infinity {
+    /// It stays.
+    #[default]
+    Constant,
+    /// It goes straight on as it leaves its end.
+    Linear,
+    /// It begins anew.
+    Cycle,
+    /// It begins anew from where it has come to.
+    CycleOffset,
+    /// It runs back and forth.
+    Oscillate,
+}
+
+impl Tangent {
+    /// All of them, as scenes write them.
+    pub const WORDS: [(&'static str, Self); 5] = [
+        ("stepped", Self::Stepped),
+        ("linear", Self::Linear),
+        ("spline", Self::Spline),
+        ("flat", Self::Flat),
+        ("auto", Self::Auto),
+    ];
+}
+
+impl Infinity {
+    /// All of them, as scenes write them.
+    pub const WORDS: [(&'static str, Self); 5] = [
+        ("constant", Self::Constant),
+        ("linear", Self::Linear),
+        ("cycle", Self::Cycle),
+        ("cycleOffset", Self::CycleOffset),
+        ("oscillate", Self::Oscillate),
+    ];
 }
 
 /// A value at a frame.
@@ -54,10 +96,15 @@ pub enum CurveError {
     },
 }
 
-/// Keys in order of time. Constant before the first and after the last.
+/// Values are kept within this, so that differences of two never overflow.
+const LARGEST: f64 = f64::MAX / 16.0;
+
+/// Keys in order of time, and how it goes on on both sides of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     keys: Vec<Key>,
+    before: Infinity,
+    after: Infinity,
 }
 
 impl Curve {
@@ -71,7 +118,7 @@ impl Curve {
         }
         for &Key { frame, value, .. } in &keys {
             // Beyond this, differences of two could overflow.
-            if !(frame.abs() < f64::MAX / 4.0 && value.abs() < f64::MAX / 16.0) {
+            if !(frame.abs() < f64::MAX / 4.0 && value.abs() < LARGEST) {
                 return Err(CurveError::NotFinite { frame, value });
             }
         }
@@ -84,7 +131,17 @@ impl Curve {
                 return Err(CurveError::OutOfOrder { frame, previous });
             }
         }
-        Ok(Self { keys })
+        Ok(Self { keys, before: Infinity::Constant, after: Infinity::Constant })
+    }
+
+    /// The same curve, going on in these ways before its first and after its last key.
+    pub fn going_on(self, before: Infinity, after: Infinity) -> Self {
+        Self { before, after, ..self }
+    }
+
+    /// How it goes on before its first and after its last key.
+    pub fn infinities(&self) -> [Infinity; 2] {
+        [self.before, self.after]
     }
 
     /// A curve that always has the same value.
@@ -102,10 +159,54 @@ impl Curve {
 
     /// The value at a frame.
     pub fn value_at(&self, frame: f64) -> f64 {
+        let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
+        if frame < first.frame {
+            self.outside(frame, first, self.before)
+        } else if frame > last.frame {
+            self.outside(frame, last, self.after)
+        } else {
+            self.inside(frame)
+        }
+    }
+
+    /// The value between the first and the last key.
+    fn inside(&self, frame: f64) -> f64 {
         match self.keys.partition_point(|key| key.frame <= frame) {
             0 => self.keys[0].value,
             after if after == self.keys.len() => self.keys[after - 1].value,
             after => self.stretch(after - 1).value_at(frame),
+        }
+    }
+
+    /// The value beyond the key at one end.
+    fn outside(&self, frame: f64, end: Key, infinity: Infinity) -> f64 {
+        let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
+        let span = last.frame - first.frame;
+        if span == 0.0 {
+            return end.value;
+        }
+        let rounds = ((frame - first.frame) / span).floor();
+        // The rest of a division is exact, the product of a count is not.
+        let rest = first.frame + (frame - first.frame).rem_euclid(span);
+        let value = match infinity {
+            Infinity::Constant => end.value,
+            Infinity::Linear => end.value + (frame - end.frame) * self.end_slope(end.frame == first.frame),
+            Infinity::Cycle => self.inside(rest),
+            Infinity::CycleOffset => self.inside(rest) + rounds * (last.value - first.value),
+            Infinity::Oscillate if rounds % 2.0 == 0.0 => self.inside(rest),
+            Infinity::Oscillate => self.inside(last.frame - (rest - first.frame)),
+        };
+        value.clamp(-LARGEST, LARGEST)
+    }
+
+    /// The slope with which the curve leaves one of its ends, per frame.
+    fn end_slope(&self, at_first: bool) -> f64 {
+        let stretch = self.stretch(if at_first { 0 } else { self.keys.len() - 2 });
+        let frames = stretch.to.frame - stretch.from.frame;
+        match stretch.shape {
+            Shape::Held => 0.0,
+            Shape::Straight => (stretch.to.value - stretch.from.value) / frames,
+            Shape::Cubic { leaving, arriving } => (if at_first { leaving } else { arriving }) / frames,
         }
     }
 
@@ -119,7 +220,8 @@ impl Curve {
     pub fn range(&self) -> (f64, f64) {
         let last = self.keys[self.keys.len() - 1].value;
         let stretches = (0..self.keys.len() - 1).map(|start| self.stretch(start).range());
-        stretches.fold((last, last), |all, one| (all.0.min(one.0), all.1.max(one.1)))
+        let inside = stretches.fold((last, last), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+        if self.leaves_its_keys() { (-LARGEST, LARGEST) } else { inside }
     }
 
     /// A number that the size of no value exceeds. Zero only if the curve is never anything else.
@@ -128,12 +230,23 @@ impl Curve {
         high.max(-low)
     }
 
+    /// Whether it goes on and on beyond the values of its keys.
+    fn leaves_its_keys(&self) -> bool {
+        let last = self.keys.len() - 1;
+        let rises = |infinity, at_first| match infinity {
+            Infinity::Linear => self.end_slope(at_first) != 0.0,
+            Infinity::CycleOffset => self.keys[last].value != self.keys[0].value,
+            _ => false,
+        };
+        last > 0 && (rises(self.before, true) || rises(self.after, false))
+    }
+
     /// The way from one key to the next.
     fn stretch(&self, start: usize) -> Stretch {
         let (from, to) = (self.keys[start], self.keys[start + 1]);
         let rise = to.value - from.value;
         let along = |key: usize| match self.keys[key].tangent {
-            Tangent::Spline => self.slope(key) * (to.frame - from.frame),
+            Tangent::Spline | Tangent::Flat | Tangent::Auto => self.slope(key) * (to.frame - from.frame),
             Tangent::Linear | Tangent::Stepped => rise,
         };
         let shape = match (from.tangent, to.tangent) {
@@ -144,13 +257,25 @@ impl Curve {
         Stretch { from, to, shape }
     }
 
-    /// The slope at a spline key, per frame.
+    /// The slope at a key that has a smooth tangent, per frame.
     fn slope(&self, key: usize) -> f64 {
-        if key == 0 || key + 1 == self.keys.len() {
+        if key == 0 || key + 1 == self.keys.len() || self.keys[key].tangent == Tangent::Flat {
             return 0.0;
         }
-        let (before, after) = (self.keys[key - 1], self.keys[key + 1]);
-        (after.value - before.value) / (after.frame - before.frame)
+        let (before, at, after) = (self.keys[key - 1], self.keys[key], self.keys[key + 1]);
+        let through = (after.value - before.value) / (after.frame - before.frame);
+        if self.keys[key].tangent == Tangent::Spline {
+            return through;
+        }
+        let coming = (at.value - before.value) / (at.frame - before.frame);
+        let going = (after.value - at.value) / (after.frame - at.frame);
+        if coming * going <= 0.0 {
+            return 0.0;
+        }
+        // Up to three times the slope of the way on either side, a cubic does not swing beyond its keys
+        // (Fritsch and Carlson 1980).
+        let most = 3.0 * coming.abs().min(going.abs());
+        through.clamp(-most, most)
     }
 }
 

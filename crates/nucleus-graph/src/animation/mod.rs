@@ -17,5 +17,5 @@ mod transform;
 
 pub use affine::Affine;
 pub use angle::sin_cos_degrees;
-pub use curve::{Curve, CurveError, Key, Tangent};
+pub use curve::{Curve, CurveError, Infinity, Key, Tangent};
 pub use transform::Transform;

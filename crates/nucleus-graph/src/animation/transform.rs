@@ -7,7 +7,7 @@ use super::angle::sin_cos_degrees;
 
 /// Where a thing stands, how it is turned and how large it is, relative to its parent.
 ///
-/// Points are scaled, then turned about x, then y, then z (Maya's default order), then moved. The pivots
+/// Points are scaled, then turned about the three axes (x, then y, then z, unless another order is chosen), then moved. The pivots
 /// are at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
@@ -15,6 +15,8 @@ pub struct Transform {
     pub translate: Vector3<f64>,
     /// How far it is turned about each axis, in degrees.
     pub rotate: Vector3<f64>,
+    /// The axes in the order in which it is turned about them.
+    pub order: [usize; 3],
     /// Factors along its own axes.
     pub scale: Vector3<f64>,
 }
@@ -23,7 +25,9 @@ impl Transform {
     /// Where points of the thing go in the space of its parent.
     pub fn affine(&self) -> Affine {
         let [x, y, z] = [self.rotate.x, self.rotate.y, self.rotate.z].map(sin_cos_degrees);
-        let linear = about_z(z) * about_y(y) * about_x(x) * Matrix3::from_diagonal(&self.scale);
+        let turns = [about_x(x), about_y(y), about_z(z)];
+        let [first, second, third] = self.order.map(|axis| turns[axis]);
+        let linear = third * second * first * Matrix3::from_diagonal(&self.scale);
         Affine { linear, offset: self.translate }
     }
 
@@ -35,7 +39,12 @@ impl Transform {
 
 impl Default for Transform {
     fn default() -> Self {
-        Self { translate: Vector3::zeros(), rotate: Vector3::zeros(), scale: Vector3::repeat(1.0) }
+        Self {
+            translate: Vector3::zeros(),
+            rotate: Vector3::zeros(),
+            order: [0, 1, 2],
+            scale: Vector3::repeat(1.0),
+        }
     }
 }
 
@@ -65,6 +74,7 @@ mod tests {
             translate,
             rotate,
             scale,
+            ..Transform::default()
         })
     }
 
@@ -74,11 +84,15 @@ mod tests {
             translate: Vector3::new(10.0, 20.0, 30.0),
             rotate: Vector3::new(90.0, 90.0, 0.0),
             scale: Vector3::new(1.0, 2.0, 1.0),
+            ..Transform::default()
         };
         // y, doubled, goes to z about x, and from there to x about y.
         assert_eq!(transform.point(Vector3::y()), Vector3::new(12.0, 20.0, 30.0));
         let z_last = Transform { rotate: Vector3::new(90.0, 0.0, 90.0), ..Transform::default() };
         assert_eq!(z_last.point(Vector3::y()), Vector3::z());
+        // z first takes y to -x, and about x that stays.
+        let z_first = Transform { order: [2, 0, 1], ..z_last };
+        assert_eq!(z_first.point(Vector3::y()), -Vector3::x());
     }
 
     proptest! {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::key::{choice, components, float, int, node, plug, ramp, toggle};
 use super::table::node_table;
 use super::transform::TRANSFORM;
-use super::{Choice, Component, Plugged, RampPoint};
+use super::{Choice, Component, Data, Plugged, RampPoint};
 
 /// 1 everywhere.
 const FULL: &[RampPoint] = &[RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) }];
@@ -33,7 +33,7 @@ node_table! {
         /// What it takes hold of: `["cloth1.vtx[0]", "cloth1.vtx[8:16]", "cloth1.vtx[*]"]`.
         COMPONENTS: Vec<Component> = components("components", "components").solved("pin").extension();
         /// The nucleus it belongs to; the only one of the scene when left out.
-        NUCLEUS: Plugged = node("nucleus", "nucleus").solved("graph").extension();
+        NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("graph").extension();
     }
     "General" {
         /// Acts at all. A constraint that is switched on takes hold of things where they are then.
@@ -121,18 +121,22 @@ node_table! {
     }
     "Out of use" {
         /// Out of use in Maya.
-        ITERATIONS: i64 = int("iterations", "itr", 20).hidden();
+        ITERATIONS: i64 = int("iterations", "itr", 20).hidden().unused();
         /// Out of use in Maya.
-        COLLIDE: bool = toggle("collide", "cld", true).hidden();
+        COLLIDE: bool = toggle("collide", "cld", true).hidden().unused();
     }
     "Connections" {
         /// The time it is evaluated for; driven by `time1.outTime`.
         CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden();
         /// Its members.
-        COMPONENT_IDS: Plugged = plug("componentIds", "cid");
+        COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi();
         /// The constraint at the start.
-        EVAL_START: Plugged = plug("evalStart", "evs");
+        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output();
         /// The constraint as it is now.
-        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc");
+        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output();
+    }
+    "Internal" {
+        /// Takes part in the simulation at all.
+        IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).hidden();
     }
 }

@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
-use super::kind::Kind;
+use super::kind::{Data, Kind};
 use super::row::{Attribute, Effect, Range};
-use super::value::{Choice, Component, RampPoint, Value};
+use super::value::{Choice, ColorPoint, Component, RampPoint, Value};
 
 /// A row whose values are read as `T`.
 #[derive(Debug)]
@@ -37,7 +37,8 @@ macro_rules! read_as {
 
 read_as! {
     bool: Bool, i64: Int, f64: Float, [f64; 3]: Vector, Choice: Choice, String: Text, Vec<u32>: Ints,
-    Vec<f64>: Floats, Vec<[f64; 3]>: Vectors, Cow<'static, [RampPoint]>: Ramp, Vec<Component>: Components,
+    Vec<f64>: Floats, Vec<[f64; 3]>: Vectors, Cow<'static, [RampPoint]>: Ramp,
+    Cow<'static, [ColorPoint]>: ColorRamp, Vec<Component>: Components,
 }
 
 /// A switch.
@@ -104,19 +105,24 @@ pub(super) const fn ramp(
     Key::new(name, short, Kind::Ramp, Some(Value::Ramp(Cow::Borrowed(default)))).fixed()
 }
 
+/// A ramp of colours, empty when not set.
+pub(super) const fn color_ramp(name: &'static str, short: &'static str) -> Key<Cow<'static, [ColorPoint]>> {
+    Key::new(name, short, Kind::ColorRamp, Some(Value::ColorRamp(Cow::Borrowed(&[])))).fixed()
+}
+
 /// Parts of objects.
 pub(super) const fn components(name: &'static str, short: &'static str) -> Key<Vec<Component>> {
     Key::new(name, short, Kind::Components, Some(Value::Components(Vec::new()))).fixed()
 }
 
-/// The name of another node.
-pub(super) const fn node(name: &'static str, short: &'static str) -> Key<Plugged> {
-    Key::new(name, short, Kind::Node, None).fixed()
+/// The name of another node, and what flows from it.
+pub(super) const fn node(name: &'static str, short: &'static str, data: Option<Data>) -> Key<Plugged> {
+    Key::new(name, short, Kind::Node(data), None).fixed()
 }
 
 /// What is only ever connected.
-pub(super) const fn plug(name: &'static str, short: &'static str) -> Key<Plugged> {
-    Key::new(name, short, Kind::Plug, None).fixed().hidden()
+pub(super) const fn plug(name: &'static str, short: &'static str, data: Data) -> Key<Plugged> {
+    Key::new(name, short, Kind::Plug(data), None).fixed().hidden()
 }
 
 /// Several attributes in one go.
@@ -139,6 +145,9 @@ impl<T> Key<T> {
             hidden: false,
             extension: false,
             keyable: true,
+            multi: false,
+            readable: true,
+            writable: true,
             effect: Effect::NotYet,
             doc: "",
         };
@@ -178,6 +187,30 @@ impl<T> Key<T> {
     /// Not shown to users.
     pub(super) const fn hidden(mut self) -> Self {
         self.row.hidden = true;
+        self
+    }
+
+    /// It holds many.
+    pub(super) const fn multi(mut self) -> Self {
+        self.row.multi = true;
+        self
+    }
+
+    /// Worked out by the node: nothing can be connected to it.
+    pub(super) const fn output(mut self) -> Self {
+        self.row.writable = false;
+        self
+    }
+
+    /// Taken in by the node: nothing can be connected from it.
+    pub(super) const fn sink(mut self) -> Self {
+        self.row.readable = false;
+        self
+    }
+
+    /// Without effect in Maya too.
+    pub(super) const fn unused(mut self) -> Self {
+        self.row.effect = Effect::Never;
         self
     }
 

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::key::{choice, float, floats, int, node, plug, ramp, text, toggle, vector, vectors};
 use super::particle::PARTICLE;
 use super::table::node_table;
-use super::{Choice, Plugged, RampPoint};
+use super::{Choice, Data, Plugged, RampPoint};
 
 /// What a map is taken from.
 pub(super) const MAP_TYPES: &[(i32, &str)] = &[(0, "None"), (1, "Per-vertex"), (2, "Texture")];
@@ -21,7 +21,7 @@ node_table! {
     N_BASE = "nBase", inherits Some(&PARTICLE), hides [];
     "General" {
         /// The mesh node that it is made from.
-        INPUT_MESH: Plugged = node("inputMesh", "imsh").solved("graph");
+        INPUT_MESH: Plugged = node("inputMesh", "imsh", Some(Data::Mesh)).solved("graph");
     }
     "Collisions" {
         /// How far the surface reaches out; two objects touch at the sum of theirs. Worked out from the size of the mesh when left out.
@@ -111,15 +111,15 @@ node_table! {
     }
     "Caching" {
         /// Positions that come from a cache.
-        POSITIONS: Plugged = plug("positions", "poss");
+        POSITIONS: Plugged = plug("positions", "poss", Data::Vectors);
         /// Velocities that come from a cache.
-        VELOCITIES: Plugged = plug("velocities", "vels");
+        VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors);
         /// Solver state that comes from a cache.
-        INTERNAL_STATE: Plugged = plug("internalState", "inst");
+        INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle);
         /// Takes the state from a cache instead of solving.
         PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false);
         /// Everything that comes from a cache of particles.
-        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad");
+        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle);
     }
     "Collision Properties Maps" {
         /// Texture that varies thickness.
@@ -176,17 +176,27 @@ node_table! {
         FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES);
     }
     "Nucleus (open)" {
+        /// A material to take values from: one of `nucleus presets`, or a file of your own, `"mine.ron"`. What is set here counts more.
+        PRESET: String = text("preset", "preset").solved("graph").extension();
         /// The nucleus it belongs to; the only one of the scene when left out.
-        NUCLEUS: Plugged = node("nucleus", "nucleus").solved("graph").extension();
+        NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("graph").extension();
     }
     "Connections" {
         /// Its state as its nucleus has solved it.
-        NEXT_STATE: Plugged = plug("nextState", "nxst");
+        NEXT_STATE: Plugged = plug("nextState", "nxst", Data::State).sink();
         /// Its state as its nucleus is to see it.
-        CURRENT_STATE: Plugged = plug("currentState", "cust");
+        CURRENT_STATE: Plugged = plug("currentState", "cust", Data::State).output();
         /// Its initial state.
-        START_STATE: Plugged = plug("startState", "stst");
+        START_STATE: Plugged = plug("startState", "stst", Data::State).output();
         /// Which object of its nucleus it is.
-        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid");
+        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output();
+    }
+    "Internal" {
+        /// Solved, as cloth and particles are; off for colliders. Set when the node is created.
+        ACTIVE: bool = toggle("active", "actv", true).hidden();
+        /// Time of the evaluation before.
+        LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden();
+        /// Gives positions in the space of its own transform.
+        LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden();
     }
 }

@@ -4,22 +4,49 @@ use super::key::{choice, float, floats, int, plug, toggle};
 use super::n_base::MAP_TYPES;
 use super::n_base::N_BASE;
 use super::table::node_table;
-use super::{Choice, Plugged};
+use super::{Choice, Data, Plugged};
 
 node_table! {
     /// A mesh that behaves as cloth.
-    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides ["dieOnEmissionVolumeExit", "lifespanMode", "lifespanRandom", "expressionsAfterDynamics", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail", "inheritFactor", "currentTime", "startFrame", "inputGeometrySpace", "enforceCountFromHistory", "targetGeometrySpace", "goalSmoothness", "cacheData", "traceDepth", "particleRenderType"];
+    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [
+    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
+    "worldVelocityInObjectSpace", "lastWorldVelocity", "acceleration0", "emitterId0", "useStartupCache",
+    "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition", "cachedWorldPosition",
+    "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass0", "massCache",
+    "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId", "nextId0", "birthTime",
+    "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId", "dieOnEmissionVolumeExit",
+    "isFull", "newParticles", "collisionEvents", "death", "lifespanMode", "lifespanRandom", "finalLifespanPP",
+    "generalSeed", "randState", "expressionsAfterDynamics", "executeCreationExpression",
+    "executeRuntimeBeforeDynamicsExpression", "executeRuntimeAfterDynamicsExpression", "input", "output", "time",
+    "frame", "internalRuntimeExpression", "internalRuntimeBeforeDynamicsExpression",
+    "internalRuntimeAfterDynamicsExpression", "internalCreationExpression", "currentParticle", "diedLastTime",
+    "netEmittedLastTime", "startEmittedIndex", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld",
+    "maxCount", "levelOfDetail", "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass",
+    "fieldDataDeltaTime", "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime",
+    "currentTime", "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime",
+    "cachedTime", "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
+    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace", "goalSmoothness",
+    "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth", "collisions",
+    "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction", "collisionOffset",
+    "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed", "eventRandState",
+    "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit", "eventDie", "eventRandom",
+    "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents", "eventNameCount",
+    "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections", "inheritColor",
+    "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone", "timeLastComputed",
+    "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType", "disableCloudAxis", "normalizeVelocity",
+    "samplerPerParticleData", "ownerPPFieldData", "deformedPosition", "useCustomCache",
+];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
         /// Out of use in Maya.
-        SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0);
+        SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0).unused();
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]);
     }
     "Dynamic Properties" {
         /// A mesh to take rest lengths and angles from, in place of the initial state.
-        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh");
+        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh", Data::Mesh);
         /// Whether a resistance belongs to a link, or to the cloth however finely it is divided.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]);
         /// Resistance of links that are longer than at rest.
@@ -203,7 +230,7 @@ node_table! {
     }
     "Hidden" {
         /// Left over from early versions of Maya.
-        NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).hidden();
+        NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).hidden().unused();
         /// An experiment of Maya's with stretch.
         MINIMAL_STRETCH: bool = toggle("minimalStretch", "msso", false).hidden();
         /// An experiment of Maya's with bending.
@@ -217,6 +244,8 @@ node_table! {
     }
     "Connections" {
         /// The solved mesh in world space.
-        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh");
+        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh", Data::Mesh).output();
+        /// The mesh as it is at the start.
+        OUTPUT_START_MESH: Plugged = plug("outputStartMesh", "otms", Data::Mesh).output();
     }
 }

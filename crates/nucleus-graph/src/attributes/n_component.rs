@@ -1,8 +1,9 @@
 //! Parts of objects, as constraints see them. Made by the short form of a constraint.
 
-use super::key::{choice, float, ints, plug};
+use super::key::{choice, float, floats, int, ints, plug};
+use super::n_base::MAP_TYPES;
 use super::table::node_table;
-use super::{Choice, Plugged};
+use super::{Choice, Data, Plugged};
 
 node_table! {
     /// A part of one object that a constraint takes hold of.
@@ -21,12 +22,38 @@ node_table! {
         /// Factor on the constraint's tangent strength here.
         TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0);
         /// The elements listed.
-        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("pin");
+        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("pin").multi();
     }
     "Connections" {
         /// The object it is a part of.
-        OBJECT_ID: Plugged = plug("objectId", "obid");
+        OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId);
         /// The part, for a constraint.
-        OUT_COMPONENT: Plugged = plug("outComponent", "ocp");
+        OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output();
+        /// A mesh to take elements from.
+        SURFACE: Plugged = plug("surface", "srf", Data::Mesh);
+    }
+    "Internal" {
+        /// Number of the set that elements come from.
+        COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden();
+    }
+    "Component Maps" {
+        /// Texture that varies strength.
+        STRENGTH_MAP: f64 = float("strengthMap", "stnm", 1.0);
+        /// Factor on strength at each point.
+        STRENGTH_PER_VERTEX: Vec<f64> = floats("strengthPerVertex", "spv");
+        /// Texture that varies glue strength.
+        GLUE_STRENGTH_MAP: f64 = float("glueStrengthMap", "gstm", 1.0);
+        /// Factor on glue strength at each point.
+        GLUE_STRENGTH_PER_VERTEX: Vec<f64> = floats("glueStrengthPerVertex", "gspv");
+        /// Texture that varies weight.
+        WEIGHT_MAP: f64 = float("weightMap", "wemp", 1.0);
+        /// Factor on weight at each point.
+        WEIGHT_PER_VERTEX: Vec<f64> = floats("weightPerVertex", "wpv");
+        /// Whether strength is varied by nothing, by point, or by a texture.
+        STRENGTH_MAP_TYPE: Choice = choice("strengthMapType", "smt", 2, MAP_TYPES);
+        /// Whether glue strength is varied by nothing, by point, or by a texture.
+        GLUE_STRENGTH_MAP_TYPE: Choice = choice("glueStrengthMapType", "gsmt", 2, MAP_TYPES);
+        /// Whether weight is varied by nothing, by point, or by a texture.
+        WEIGHT_MAP_TYPE: Choice = choice("weightMapType", "wmt", 2, MAP_TYPES);
     }
 }

@@ -1,10 +1,13 @@
 //! Node types, and how they inherit: the nearest row wins.
 
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::OnceLock;
+
 use super::row::Attribute;
 use super::*;
 
 /// A type of node.
-#[derive(Debug)]
 pub struct NodeType {
     /// Maya's name of the type, which scenes use.
     pub name: &'static str,
@@ -15,6 +18,14 @@ pub struct NodeType {
     /// Inherited attributes that it does not show. They can still be read and written.
     pub hides: &'static [&'static str],
     pub(super) doc: &'static str,
+    pub(super) index: OnceLock<HashMap<&'static str, &'static Attribute>>,
+}
+
+/// Its name is enough to tell it by.
+impl fmt::Debug for NodeType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Types are compared by identity: there is one static per type.
@@ -34,17 +45,30 @@ pub fn node_type(name: &str) -> Option<&'static NodeType> {
     TYPES.iter().copied().find(|node_type| node_type.name == name)
 }
 
-static TYPES: [&NodeType; 10] = [
+static TYPES: [&NodeType; 23] = [
     &nucleus::NUCLEUS,
     &n_cloth::N_CLOTH,
     &n_rigid::N_RIGID,
+    &n_particle::N_PARTICLE,
     &dynamic_constraint::DYNAMIC_CONSTRAINT,
+    &n_component::N_COMPONENT,
+    &point_emitter::POINT_EMITTER,
+    &gravity_field::GRAVITY_FIELD,
+    &turbulence_field::TURBULENCE_FIELD,
+    &vortex_field::VORTEX_FIELD,
+    &drag_field::DRAG_FIELD,
+    &air_field::AIR_FIELD,
+    &radial_field::RADIAL_FIELD,
+    &uniform_field::UNIFORM_FIELD,
+    &volume_axis_field::VOLUME_AXIS_FIELD,
+    &newton_field::NEWTON_FIELD,
     &mesh::MESH,
     &poly_plane::POLY_PLANE,
     &poly_sphere::POLY_SPHERE,
     &poly_cube::POLY_CUBE,
     &poly_cylinder::POLY_CYLINDER,
     &transform::TRANSFORM,
+    &time::TIME,
 ];
 
 impl NodeType {
@@ -66,8 +90,19 @@ impl NodeType {
     /// The attribute of this long or short name. A long name goes before a short one, and within each the
     /// row nearest to this type wins.
     pub fn attribute(&'static self, name: &str) -> Option<&'static Attribute> {
+        self.index.get_or_init(|| self.by_name()).get(name).copied()
+    }
+
+    fn by_name(&'static self) -> HashMap<&'static str, &'static Attribute> {
         let rows = || self.lineage().flat_map(|ancestor| ancestor.rows).copied();
-        rows().find(|row| row.name == name).or_else(|| rows().find(|row| row.short == name))
+        let mut index = HashMap::new();
+        for row in rows() {
+            index.entry(row.name).or_insert(row);
+        }
+        for row in rows() {
+            index.entry(row.short).or_insert(row);
+        }
+        index
     }
 
     /// The vector attribute that has a part of this long or short name, and which part it is.

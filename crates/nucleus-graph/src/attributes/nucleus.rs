@@ -3,14 +3,14 @@
 use super::key::{choice, float, int, plug, toggle, vector};
 use super::table::node_table;
 use super::transform::TRANSFORM;
-use super::{Choice, Plugged};
+use super::{Choice, Data, Plugged};
 
 node_table! {
     /// A solver: only what belongs to the same one interacts. Holds gravity, wind, the ground plane and the quality settings.
     NUCLEUS = "nucleus", inherits Some(&TRANSFORM), hides [];
     "General" {
         /// Solves at all; when off, everything keeps the state it has.
-        ENABLE: bool = toggle("enable", "ena", true);
+        ENABLE: bool = toggle("enable", "ena", true).solved("simulation");
     }
     "Gravity and Wind" {
         /// Acceleration of free fall; metres are scene units times `spaceScale`.
@@ -60,11 +60,11 @@ node_table! {
     }
     "Time Attributes" {
         /// The time it solves for; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("simulation");
         /// The frame at which everything is in its initial state, and where a run begins. Left out, it is the first frame of the scene.
         START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("simulation").fixed();
         /// How many frames a single evaluation may leap over and still be solved.
-        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0);
+        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0).solved("simulation");
     }
     "Nucleus (open)" {
         /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.
@@ -82,18 +82,30 @@ node_table! {
     }
     "Connections" {
         /// Current state of each active object.
-        INPUT_ACTIVE: Plugged = plug("inputActive", "niao");
+        INPUT_ACTIVE: Plugged = plug("inputActive", "niao", Data::State).multi();
         /// Initial state of each active object.
-        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias");
+        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias", Data::State).multi();
         /// Current state of each collider.
-        INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo");
+        INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo", Data::State).multi();
         /// Initial state of each collider.
-        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips");
+        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi();
         /// Each constraint as it is now.
-        INPUT_CURRENT: Plugged = plug("inputCurrent", "ic");
+        INPUT_CURRENT: Plugged = plug("inputCurrent", "ic", Data::Constraint).multi();
         /// Each constraint as it is at the start.
-        INPUT_START: Plugged = plug("inputStart", "is");
+        INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi();
         /// Solved state of each active object.
-        OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao");
+        OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao", Data::State).multi().output();
+    }
+    "Internal" {
+        /// Time of the solve before.
+        LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden();
+        /// Number of the evaluation.
+        EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden();
+        /// Leaves out setting up objects.
+        SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden();
+        /// `startFrame` as a time.
+        START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden();
+        /// Reading it makes the node evaluate.
+        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden();
     }
 }

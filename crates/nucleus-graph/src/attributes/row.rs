@@ -1,10 +1,11 @@
 //! One row of a table: everything there is to say about one attribute.
 
+use std::fmt;
+
 use super::kind::Kind;
 use super::value::{Choice, Value};
 
 /// An attribute of a node type.
-#[derive(Debug)]
 pub struct Attribute {
     /// Maya's long name, which scenes use.
     pub name: &'static str,
@@ -26,6 +27,12 @@ pub struct Attribute {
     pub extension: bool,
     /// Whether it may change from frame to frame.
     pub keyable: bool,
+    /// It holds many: each element is a plug of its own, `inputActive[2]`.
+    pub multi: bool,
+    /// A connection can begin here.
+    pub readable: bool,
+    /// A connection can end here.
+    pub writable: bool,
     /// Where it takes effect.
     pub effect: Effect,
     pub(super) doc: &'static str,
@@ -49,6 +56,15 @@ pub enum Effect {
     Solved(&'static str),
     /// Nowhere yet: it can be set, and whoever sets it is told.
     NotYet,
+    /// Nowhere, and in Maya neither: it can be set, and whoever sets it is told.
+    Never,
+}
+
+/// Its name is enough to tell it by.
+impl fmt::Debug for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Rows are compared by identity: there is one static per row.

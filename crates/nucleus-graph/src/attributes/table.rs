@@ -27,6 +27,7 @@ macro_rules! node_table {
             rows: &[$($(&$key.row,)*)*],
             hides: &[$($hides),*],
             doc: concat!($($type_doc),+),
+            index: std::sync::OnceLock::new(),
         };
         $($(
             $(#[doc = $doc])+

@@ -1,5 +1,7 @@
 use super::*;
 
+mod maya;
+
 fn all_types() -> impl Iterator<Item = &'static NodeType> {
     let made = [&time::TIME, &n_component::N_COMPONENT];
     node_types().iter().copied().chain(made).flat_map(NodeType::lineage)
@@ -15,7 +17,9 @@ fn every_row_is_described_and_has_a_default_within_its_range() {
             assert!(!row.group.is_empty(), "{name}");
             match &row.default {
                 Some(value) => assert!(row.kind.admits(value), "{name}"),
-                None => assert!(matches!(row.kind, Kind::Node | Kind::Plug | Kind::Together(_)), "{name}"),
+                None => {
+                    assert!(matches!(row.kind, Kind::Node(_) | Kind::Plug(_) | Kind::Together(_)), "{name}")
+                }
             }
             match row.default {
                 Some(Value::Float(x)) => assert!(row.range.contains(x), "{name}"),

@@ -15,12 +15,12 @@ node_table! {
         /// Factors along its own axes.
         SCALE: [f64; 3] = vector("scale", "s", [1.0, 1.0, 1.0], ["sx", "sy", "sz"]).min(-1e9).max(1e9).solved("animation");
         /// The order of the three rotations.
-        ROTATE_ORDER: super::Choice = choice("rotateOrder", "ro", 0, &[(0, "xyz"), (1, "yzx"), (2, "zxy"), (3, "xzy"), (4, "yxz"), (5, "zyx")]).fixed();
+        ROTATE_ORDER: super::Choice = choice("rotateOrder", "ro", 0, &[(0, "xyz"), (1, "yzx"), (2, "zxy"), (3, "xzy"), (4, "yxz"), (5, "zyx")]).solved("animation").fixed();
         /// Whether Maya draws it.
         VISIBILITY: bool = toggle("visibility", "v", true);
     }
     "Nucleus (open)" {
         /// The transform it moves along with.
-        PARENT: Plugged = node("parent", "parent").solved("graph").extension();
+        PARENT: Plugged = node("parent", "parent", None).solved("graph").extension();
     }
 }

@@ -26,6 +26,8 @@ pub enum Value {
     Vectors(Vec<[f64; 3]>),
     /// A curve over 0 to 1.
     Ramp(Cow<'static, [RampPoint]>),
+    /// Colours over 0 to 1.
+    ColorRamp(Cow<'static, [ColorPoint]>),
     /// Parts of objects.
     Components(Vec<Component>),
 }
@@ -41,6 +43,17 @@ pub struct RampPoint {
     pub position: f64,
     /// Its value there.
     pub value: f64,
+    /// How it goes on to the next point.
+    pub interpolation: Choice,
+}
+
+/// One point of a ramp of colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColorPoint {
+    /// Where on the ramp, 0 to 1.
+    pub position: f64,
+    /// Red, green and blue there.
+    pub color: [f64; 3],
     /// How it goes on to the next point.
     pub interpolation: Choice,
 }

@@ -101,7 +101,7 @@ fn what_is_told_to_pass_through_may() {
     let program = program(&held);
     let mut run = Simulation::<f64>::new(&program, 1);
     run.begin_audit(Closeness::Steps);
-    let pins = run.next_input(&mut Default::default()).pins;
+    let pins = run.next_pins();
     let world =
         World::new(vec![Body { points: 49, ..Body::default() }, Body { points: 86, ..Body::default() }]);
     let mut all = Rules::default();

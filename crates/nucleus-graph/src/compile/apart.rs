@@ -4,9 +4,9 @@ use nucleus_audit::{Rules, World};
 use nucleus_core::Pin;
 
 use crate::attributes::{n_base, nucleus};
-use crate::graph::Node;
+use crate::graph::{Moment, NodeId};
 
-use super::program::{ObjectKind, Program};
+use super::program::{ObjectKind, Program, Universe};
 
 impl Program {
     /// The rules of the frame that ends at `frame`, over all objects in their order. Colliders and pinned points go
@@ -14,9 +14,10 @@ impl Program {
     pub(crate) fn kept_apart(&self, frame: i64, pins: &[Pin], world: &World) -> Rules {
         let mut rules = Rules::default();
         let objects = self.objects();
+        let moment = self.graph().at(frame as f64);
         for a in 0..objects.len() {
             for b in a..objects.len() {
-                if !self.meet(a, b, frame as f64) {
+                if !self.meet(a, b, &moment) {
                     rules.ignore(a, b);
                 }
             }
@@ -32,23 +33,32 @@ impl Program {
         rules
     }
 
-    /// Whether two objects meet, or one itself.
-    fn meet(&self, a: usize, b: usize, frame: f64) -> bool {
-        let [one, other] = [a, b].map(|object| self.node_of(self.objects()[object].kind));
+    /// Whether two objects meet, or one itself. What hangs on different nuclei never does.
+    fn meet(&self, a: usize, b: usize, moment: &Moment) -> bool {
+        let [(one, here), (other, there)] = [a, b].map(|object| self.node_of(self.objects()[object].kind));
         if a == b {
-            return one.at(&n_base::SELF_COLLIDE, frame);
+            return moment.get(one, &n_base::SELF_COLLIDE);
         }
-        let collide = one.at(&n_base::COLLIDE, frame) && other.at(&n_base::COLLIDE, frame);
+        let collide = moment.get(one, &n_base::COLLIDE) && moment.get(other, &n_base::COLLIDE);
         let are_cloths = [a, b].iter().all(|&k| matches!(self.objects()[k].kind, ObjectKind::Cloth(_)));
-        let range = self.graph.node(self.nucleus).at(&nucleus::COLLISION_LAYER_RANGE, frame);
-        let layers = one.at(&n_base::COLLISION_LAYER, frame) - other.at(&n_base::COLLISION_LAYER, frame);
-        collide && !(are_cloths && layers.abs() >= range)
+        let range = moment.get(here.nucleus, &nucleus::COLLISION_LAYER_RANGE);
+        let layers = moment.get(one, &n_base::COLLISION_LAYER) - moment.get(other, &n_base::COLLISION_LAYER);
+        here.nucleus == there.nucleus && collide && !(are_cloths && layers.abs() >= range)
     }
 
-    fn node_of(&self, kind: ObjectKind) -> &Node {
-        self.graph.node(match kind {
-            ObjectKind::Cloth(cloth) => self.cloths[cloth.index()].node,
-            ObjectKind::Collider(collider) => self.colliders[collider.index()].node,
-        })
+    /// The node of an object, and the nucleus that it belongs to.
+    fn node_of(&self, kind: ObjectKind) -> (NodeId, &Universe) {
+        let holds = |universe: &&Universe| match kind {
+            ObjectKind::Cloth(cloth) => universe.cloths().contains(&cloth.0),
+            ObjectKind::Collider(collider) => universe.colliders().contains(&collider.0),
+        };
+        let universe = self.universes().iter().find(holds).unwrap_or(&self.universes()[0]);
+        let node = match kind {
+            ObjectKind::Cloth(cloth) => universe.cloths[(cloth.0 - universe.first_cloth) as usize].node,
+            ObjectKind::Collider(collider) => {
+                universe.colliders[(collider.0 - universe.first_collider) as usize].node
+            }
+        };
+        (node, universe)
     }
 }

@@ -1,7 +1,8 @@
 //! What a frame brings: every attribute as it is at the end of the frame, and where things move.
 //!
-//! Animation is evaluated here, once per frame (N2.4-6). The solver interpolates positions linearly inside
-//! it (N2.4-7).
+//! Animation is evaluated here, once per frame or evaluation (N2.4-6). The solver interpolates positions
+//! linearly inside it (N2.4-7). Colliders are pulled first, then cloth, then constraints; what none of them
+//! needs is not evaluated at all.
 
 use nalgebra::Vector3;
 use nucleus_core::{
@@ -10,75 +11,119 @@ use nucleus_core::{
 
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, nucleus};
-use crate::graph::{Node, NodeId};
+use crate::graph::{Graph, Moment, NodeId};
 
 use super::objects::{CLASSIC, ClothSource, ColliderSource};
 use super::pins::Grips;
-use super::program::Program;
+use super::program::{Program, Universe};
 use super::self_collision::elements;
+use super::shape::Points;
+
+/// A stretch of time that is solved in one go: from one evaluation to the next.
+pub(crate) struct Stretch<'p> {
+    pub(super) universe: &'p Universe,
+    pub(super) graph: &'p Graph,
+    pub(super) from: Moment<'p>,
+    pub(super) to: Moment<'p>,
+    /// Seconds of the animation.
+    pub(super) seconds: f64,
+    /// It begins at the start frame: everything is where it was made.
+    pub(super) is_first: bool,
+    /// What was evaluated last is not where this begins.
+    pub(super) leaps: bool,
+}
 
 impl Program {
-    /// The input of the first frame, as an example of what a frame costs.
+    /// The input of the first frame of the first nucleus, as an example of what a frame costs.
     pub fn first_input(&self) -> FrameInput {
-        let start = |cloth: ClothId, point: PointId| self.cloths[cloth.index()].start[point.index()];
-        self.input(self.time.start + 1, &mut Grips::default(), &start)
+        let start = self.universes()[0].start as f64;
+        self.stretch(0, [start, start + 1.0], 1.0, false)
+            .input(&mut Grips::default(), &|_, _| Vector3::zeros())
     }
 
-    /// The input of the frame that ends at `frame`. `position` is where points are when it begins, in metres.
+    /// The nodes whose values the first nucleus needs for a frame, in the order in which it asks for them.
+    pub fn pulled(&self, frame: i64) -> Vec<NodeId> {
+        let stretch = self.stretch(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
+        stretch.input(&mut Grips::default(), &|_, _| Vector3::zeros());
+        stretch.to.pulled()
+    }
+
+    /// What moves a nucleus from one frame to another, which may be broken; `elapsed` is how many frames that
+    /// is to the nucleus.
+    pub(crate) fn stretch(
+        &self,
+        universe: usize,
+        frames: [f64; 2],
+        elapsed: f64,
+        leaps: bool,
+    ) -> Stretch<'_> {
+        let universe = &self.whole.universes[universe];
+        let graph = &self.whole.graph;
+        let [from, to] = frames.map(|frame| graph.at(frame));
+        let seconds = elapsed / self.whole.time.fps;
+        Stretch { universe, graph, from, to, seconds, is_first: frames[0] <= universe.start as f64, leaps }
+    }
+}
+
+impl Stretch<'_> {
+    /// The input of the solver. `position` is where points are when it begins, in metres.
     pub(crate) fn input(
         &self,
-        frame: i64,
         grips: &mut Grips,
         position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
     ) -> FrameInput {
-        let nucleus = self.graph.node(self.nucleus);
-        let at = frame as f64;
-        let space = self.nucleus_space(at);
+        let (nucleus, to) = (self.universe.nucleus, &self.to);
+        let space = self.nucleus_space();
         let along = |direction: &Key<[f64; 3]>, size: &Key<f64>| {
-            unit(space.linear * Vector3::from(nucleus.at(direction, at))) * nucleus.at(size, at)
+            unit(space.linear * Vector3::from(to.get(nucleus, direction))) * to.get(nucleus, size)
         };
         FrameInput {
-            duration: nucleus.at(&nucleus::TIME_SCALE, at) / self.time.fps,
-            substeps: nucleus.at(&nucleus::SUB_STEPS, at) as u32,
-            collision_iterations: nucleus.at(&nucleus::MAX_COLLISION_ITERATIONS, at) as f64,
-            resistance: match nucleus.get(&nucleus::RESISTANCE_MODEL) {
+            duration: to.get(nucleus, &nucleus::TIME_SCALE) * self.seconds,
+            substeps: to.get(nucleus, &nucleus::SUB_STEPS) as u32,
+            collision_iterations: to.get(nucleus, &nucleus::MAX_COLLISION_ITERATIONS) as f64,
+            resistance: match to.get(nucleus, &nucleus::RESISTANCE_MODEL) {
                 CLASSIC => ResistanceModel::Classic,
-                _ => ResistanceModel::Physical { evaluations: nucleus.at(&nucleus::EVALUATIONS, at) },
+                _ => ResistanceModel::Physical { evaluations: to.get(nucleus, &nucleus::EVALUATIONS) },
             },
             gravity: along(&nucleus::GRAVITY_DIRECTION, &nucleus::GRAVITY),
             wind: along(&nucleus::WIND_DIRECTION, &nucleus::WIND_SPEED),
-            air_density: nucleus.at(&nucleus::AIR_DENSITY, at),
-            plane: self.ground_plane(nucleus, at, &space),
-            layer_range: nucleus.at(&nucleus::COLLISION_LAYER_RANGE, at),
-            self_collision_iterations: self.self_collision_iterations(at),
-            cloths: self.cloths.iter().map(|cloth| self.cloth_frame(cloth, at)).collect(),
-            colliders: self.colliders.iter().map(|collider| self.collider_frame(collider, frame)).collect(),
-            pins: self.pins(frame, grips, position),
+            air_density: to.get(nucleus, &nucleus::AIR_DENSITY),
+            plane: self.ground_plane(&space),
+            layer_range: to.get(nucleus, &nucleus::COLLISION_LAYER_RANGE),
+            self_collision_iterations: self.self_collision_iterations(),
+            colliders: self.universe.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
+            cloths: self.universe.cloths.iter().map(|cloth| self.cloth_frame(cloth)).collect(),
+            pins: self.pins(grips, position),
         }
     }
 
     /// The space that directions and the ground plane are given in.
-    fn nucleus_space(&self, frame: f64) -> Affine {
-        let own = self.graph.node(self.nucleus).at(&nucleus::USE_TRANSFORM, frame);
-        if own { self.graph.placement(self.nucleus, frame) } else { Affine::identity() }
+    fn nucleus_space(&self) -> Affine {
+        let own = self.to.get(self.universe.nucleus, &nucleus::USE_TRANSFORM);
+        if own { self.to.placement(self.universe.nucleus) } else { Affine::identity() }
     }
 
-    fn ground_plane(&self, nucleus: &Node, frame: f64, space: &Affine) -> Option<GroundPlane> {
+    fn ground_plane(&self, space: &Affine) -> Option<GroundPlane> {
+        let (nucleus, to) = (self.universe.nucleus, &self.to);
+        if !to.get(nucleus, &nucleus::USE_PLANE) {
+            return None;
+        }
         // Normals go with the inverse transpose, or a scaled plane would tilt.
         let turn = space.linear.try_inverse().unwrap_or_default().transpose();
-        let normal = turn * Vector3::from(nucleus.at(&nucleus::PLANE_NORMAL, frame));
+        let normal = turn * Vector3::from(to.get(nucleus, &nucleus::PLANE_NORMAL));
+        let origin = space.point(Vector3::from(to.get(nucleus, &nucleus::PLANE_ORIGIN)));
         // A plane without a direction is nowhere.
-        (nucleus.at(&nucleus::USE_PLANE, frame) && normal != Vector3::zeros()).then(|| GroundPlane {
-            origin: self.units.point(space.point(Vector3::from(nucleus.at(&nucleus::PLANE_ORIGIN, frame)))),
+        (normal != Vector3::zeros()).then(|| GroundPlane {
+            origin: self.universe.units.point(origin),
             normal,
-            bounce: nucleus.at(&nucleus::PLANE_BOUNCE, frame),
-            friction: nucleus.at(&nucleus::PLANE_FRICTION, frame),
+            bounce: to.get(nucleus, &nucleus::PLANE_BOUNCE),
+            friction: to.get(nucleus, &nucleus::PLANE_FRICTION),
         })
     }
 
-    fn cloth_frame(&self, cloth: &ClothSource, frame: f64) -> ClothFrame {
-        let node = self.graph.node(cloth.node);
-        let number = |key: &Key<f64>| node.at(key, frame);
+    fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {
+        let (node, to) = (cloth.node, &self.to);
+        let number = |key: &Key<f64>| to.get(node, key);
         // Below nought there is none: the resistance counts.
         let stiffness = |key: &Key<f64>| Some(number(key)).filter(|stiffness| *stiffness >= 0.0);
         ClothFrame {
@@ -98,49 +143,52 @@ impl Program {
             drag: number(&n_cloth::DRAG),
             tangential_drag: number(&n_cloth::TANGENTIAL_DRAG),
             lift: number(&n_cloth::LIFT),
-            feels_gravity: !node.at(&n_cloth::IGNORE_SOLVER_GRAVITY, frame),
-            feels_wind: !node.at(&n_cloth::IGNORE_SOLVER_WIND, frame),
-            local_force: Vector3::from(node.at(&n_base::LOCAL_FORCE, frame)),
-            local_wind: Vector3::from(node.at(&n_base::LOCAL_WIND, frame)),
-            collide: node.at(&n_base::COLLIDE, frame),
-            thickness: self.thickness(cloth.node, cloth.default_thickness, frame),
+            feels_gravity: !to.get(node, &n_cloth::IGNORE_SOLVER_GRAVITY),
+            feels_wind: !to.get(node, &n_cloth::IGNORE_SOLVER_WIND),
+            local_force: Vector3::from(to.get(node, &n_base::LOCAL_FORCE)),
+            local_wind: Vector3::from(to.get(node, &n_base::LOCAL_WIND)),
+            collide: to.get(node, &n_base::COLLIDE),
+            thickness: self.thickness(node, cloth.default_thickness),
             friction: number(&n_base::FRICTION),
             bounce: number(&n_base::BOUNCE),
-            elements: elements(node.at(&n_base::COLLISION_FLAG, frame)),
+            elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),
-            self_collision: self.self_collision(cloth, frame),
+            self_collision: self.self_collision(cloth),
         }
     }
 
-    fn collider_frame(&self, collider: &ColliderSource, frame: i64) -> ColliderFrame {
-        let (node, at) = (self.graph.node(collider.node), frame as f64);
+    fn collider_frame(&self, collider: &ColliderSource) -> ColliderFrame {
+        let (node, to) = (collider.node, &self.to);
+        let (start, end) = self.collider_way(collider);
         ColliderFrame {
-            start: Vec::new(),
-            end: self.collider_end(collider, frame),
-            collide: node.at(&n_base::COLLIDE, at),
-            thickness: self.thickness(collider.node, collider.default_thickness, at),
-            friction: node.at(&n_base::FRICTION, at),
-            bounce: node.at(&n_base::BOUNCE, at),
+            start,
+            end,
+            collide: to.get(node, &n_base::COLLIDE),
+            thickness: self.thickness(node, collider.default_thickness),
+            friction: to.get(node, &n_base::FRICTION),
+            bounce: to.get(node, &n_base::BOUNCE),
         }
     }
 
-    /// Where the points of a collider are at a frame, in metres; nothing if they are where they were.
-    fn collider_end(&self, collider: &ColliderSource, frame: i64) -> Vec<Vector3<f64>> {
-        if collider.local.is_empty() {
-            return Vec::new();
-        }
-        let [before, now] = [frame - 1, frame].map(|frame| self.graph.placement(collider.mesh, frame as f64));
-        if before == now {
-            return Vec::new();
-        }
-        collider.local.iter().map(|point| self.units.point(now.point(*point))).collect()
+    /// Where the points of a collider are at both ends, in metres; nothing for where they were, or if they
+    /// stay.
+    fn collider_way(&self, collider: &ColliderSource) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+        let Some(shape) = &collider.shape else { return (Vec::new(), Vec::new()) };
+        let [before, now] =
+            [&self.from, &self.to].map(|moment| (moment.placement(collider.mesh), shape.at(moment)));
+        let points = |(placement, points): &(Affine, Points)| -> Vec<Vector3<f64>> {
+            points.iter().map(|point| self.universe.units.point(placement.point(*point))).collect()
+        };
+        let start = if self.leaps { points(&before) } else { Vec::new() };
+        let stays = before == now && !self.leaps;
+        (start, if stays { Vec::new() } else { points(&now) })
     }
 
     /// In metres.
-    pub(super) fn thickness(&self, node: NodeId, default: f64, frame: f64) -> f64 {
-        let node = self.graph.node(node);
-        let set = node.setting(&n_base::THICKNESS).is_some();
-        self.units.length(if set { node.at(&n_base::THICKNESS, frame) } else { default })
+    pub(super) fn thickness(&self, node: NodeId, default: f64) -> f64 {
+        let given = self.graph.is_given(node, &n_base::THICKNESS);
+        let units = if given { self.to.get(node, &n_base::THICKNESS) } else { default };
+        self.universe.units.length(units)
     }
 }
 

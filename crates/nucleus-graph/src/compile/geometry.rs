@@ -1,7 +1,6 @@
 //! The surfaces that mesh nodes stand for.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use nucleus_core::Surface;
 
@@ -13,10 +12,20 @@ use crate::mesh::{
 };
 use crate::scene::{Findings, Scene};
 
-/// Surfaces by node, each made once. In the space of the node, lengths in scene units.
+use super::shape::{Points, Shape};
+
+/// Meshes by node, each made once. In the space of the node, lengths in scene units.
 #[derive(Default)]
 pub(super) struct Geometry {
-    made: BTreeMap<NodeId, Option<Surface>>,
+    made: BTreeMap<NodeId, Option<Mesh>>,
+}
+
+/// A mesh as it is made.
+struct Mesh {
+    /// At the first frame, before any blend.
+    surface: Surface,
+    /// Its points from the first frame of the run on, where there is a file for each; else none.
+    frames: Vec<Points>,
 }
 
 impl Geometry {
@@ -27,26 +36,59 @@ impl Geometry {
         node: NodeId,
         findings: &mut Findings,
     ) -> Option<&Surface> {
+        self.mesh(scene, node, findings).map(|mesh| &mesh.surface)
+    }
+
+    /// The points of a node over time, blends included.
+    pub(super) fn shape(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<Shape> {
+        let mesh = self.mesh(scene, node, findings)?;
+        let points = mesh.surface.positions.len();
+        let own = match mesh.frames.as_slice() {
+            [] => Shape::fixed(mesh.surface.positions.as_slice().into()),
+            frames => Shape::sequence(frames.to_vec(), scene.time.start),
+        };
+        let Some(target) = scene.graph.blend_target(node) else { return Some(own) };
+        let others = self.surface(scene, target, findings)?.positions.len();
+        if others != points {
+            let [name, target] = [node, target].map(|id| scene.graph.node(id).name());
+            let place = scene.source.place(&format!("{name}.blendTarget"));
+            let message = format!(
+                "`{name}` cannot be blended into `{target}`: one has {points} points, the other {others}"
+            );
+            findings.error(&place, message);
+            return None;
+        }
+        let target = self.shape(scene, target, findings)?;
+        Some(own.blended(node, target))
+    }
+
+    /// Whether the points of a node stand where they are, seen from the node.
+    pub(super) fn is_fixed(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> bool {
+        let single = self.mesh(scene, node, findings).is_none_or(|mesh| mesh.frames.is_empty());
+        single && scene.graph.blend_target(node).is_none()
+    }
+
+    fn mesh(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<&Mesh> {
         self.made.entry(node).or_insert_with(|| make(scene, scene.graph.node(node), findings)).as_ref()
     }
 }
 
-fn make(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Surface> {
+fn make(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mesh> {
     let node_type = node.node_type();
-    let mut surface = if node_type == &mesh::MESH {
-        read_file(scene, node, findings)?
+    let mut mesh = if node_type == &mesh::MESH {
+        read_files(scene, node, findings)?
     } else {
         match primitive(node)? {
-            Ok(surface) => surface,
+            Ok(surface) => Mesh { surface, frames: Vec::new() },
             Err(error) => {
                 findings.error(&scene.source.place(node.name()), format!("`{}`: {error}", node.name()));
                 return None;
             }
         }
     };
-    let dropped = drop_degenerate_faces(&mut surface);
+    let dropped = drop_degenerate_faces(&mut mesh.surface);
     let place = scene.source.place(&format!("{}.file", node.name()));
-    if dropped > 0 && surface.faces.is_empty() {
+    if dropped > 0 && mesh.surface.faces.is_empty() {
         findings.error(&place, format!("`{}` has no face with an area", node.name()));
         return None;
     }
@@ -54,7 +96,7 @@ fn make(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Surface> 
         let message = format!("`{}` has {dropped} faces without area, which are left out", node.name());
         findings.warning(&place, message);
     }
-    Some(surface)
+    Some(mesh)
 }
 
 fn primitive(node: &Node) -> Option<Result<Surface, PrimitiveError>> {
@@ -87,7 +129,8 @@ fn count(number: i64) -> u32 {
     u32::try_from(number).unwrap_or_default()
 }
 
-fn read_file(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Surface> {
+/// The file of a mesh, or its files if there is one for each frame.
+fn read_files(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mesh> {
     let file = node.get(&mesh::FILE);
     let name = node.name();
     if file.is_empty() {
@@ -95,13 +138,49 @@ fn read_file(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Surf
         error.help("add `file: \"...\"`, an OBJ file");
         return None;
     }
-    let path: PathBuf = scene.source.path(&file);
-    match read_obj(&path) {
+    let place = scene.source.place(&format!("{name}.file"));
+    let read = |file: &str, findings: &mut Findings| match read_obj(scene.source.path(file)) {
         Ok(surface) => Some(surface),
         Err(error) => {
-            let place = scene.source.place(&format!("{name}.file"));
             findings.error(&place, error.to_string());
             None
         }
+    };
+    let Some(numbered) = Numbered::new(&file) else {
+        return Some(Mesh { surface: read(&file, findings)?, frames: Vec::new() });
+    };
+    let surface = read(&numbered.file(scene.time.start), findings)?;
+    let mut frames: Vec<Points> = vec![surface.positions.as_slice().into()];
+    for frame in scene.time.start + 1..=scene.time.end {
+        let file = numbered.file(frame);
+        let points = read(&file, findings)?.positions;
+        let (first, now) = (surface.positions.len(), points.len());
+        if now != first {
+            let message =
+                format!("`{name}` has {first} points at frame {}, but {now} in `{file}`", scene.time.start);
+            findings.error(&place, message).help("a mesh keeps its points from frame to frame");
+            return None;
+        }
+        frames.push(points.into());
+    }
+    Some(Mesh { surface, frames })
+}
+
+/// The name of a file with a run of `#` in it, which stand for the digits of the frame.
+struct Numbered<'a> {
+    before: &'a str,
+    digits: usize,
+    after: &'a str,
+}
+
+impl<'a> Numbered<'a> {
+    fn new(file: &'a str) -> Option<Self> {
+        let first = file.find('#')?;
+        let digits = file[first..].bytes().take_while(|byte| *byte == b'#').count();
+        Some(Self { before: &file[..first], digits, after: &file[first + digits..] })
+    }
+
+    fn file(&self, frame: i64) -> String {
+        format!("{}{frame:0digits$}{}", self.before, self.after, digits = self.digits)
     }
 }

@@ -6,6 +6,7 @@
 //! | how cloth and colliders get their shape and mass     | `objects.rs`     |
 //! | which lists a cloth needs                            | `lists.rs`       |
 //! | what a frame brings                                  | `frame.rs`       |
+//! | how meshes change their shape                        | `shape.rs`       |
 //! | what holds points, and where it takes hold of them   | `pins.rs`        |
 //! | what an audit is to find kept apart                  | `apart.rs`       |
 //! | where scene units become metres                      | `units.rs`       |
@@ -22,18 +23,24 @@ mod objects;
 mod pins;
 mod program;
 mod self_collision;
+mod shape;
 mod thickness;
+mod time;
 mod units;
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
+use crate::attributes::nucleus;
 use crate::graph::NodeId;
 use crate::scene::{Diagnostic, Findings, Scene};
 
-use objects::Compiler;
+use geometry::Geometry;
+use objects::{Compiled, Compiler};
+use program::Whole;
 
 pub(crate) use pins::Grips;
-pub use program::{Object, ObjectKind, Program};
+pub use program::{Object, ObjectKind, Program, Universe};
 
 /// Compiles a scene.
 ///
@@ -41,19 +48,62 @@ pub use program::{Object, ObjectKind, Program};
 /// All mistakes that can be found: missing and broken meshes, points that are not there ...
 pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    let program = Compiler::new(scene, &BTreeSet::new(), &mut findings).program();
-    let errors = findings.errors();
-    match program {
-        Some(program) if errors == 0 => Ok(program.with_warnings(findings.in_order())),
-        _ => Err(findings.in_order()),
+    let all = universes(scene, &BTreeSet::new(), &mut findings);
+    if all.is_empty() {
+        let error = findings.error(&(0..0), "there is nothing to solve: the scene has no nucleus");
+        error.help("add `\"nucleus1\": nucleus()`");
     }
+    if findings.errors() > 0 {
+        return Err(findings.in_order());
+    }
+    let (mut universes, mut objects, mut mass) = (Vec::new(), Vec::new(), 0.0);
+    for (universe, its_objects, its_mass) in all {
+        universes.push(universe);
+        objects.extend(its_objects);
+        mass += its_mass;
+    }
+    // Cloths of all nuclei, then colliders of all nuclei.
+    objects.sort_by_key(|object| matches!(object.kind, ObjectKind::Collider(_)));
+    let starts = universes.iter().map(|universe| universe.start);
+    let start = starts.min().unwrap_or(scene.time.start);
+    let whole = Whole {
+        graph: scene.graph.clone(),
+        time: crate::scene::TimeSpan { start, ..scene.time },
+        every: scene.every,
+        record: scene.record,
+        checks: scene.checks.clone(),
+        universes,
+        objects,
+        mass,
+        warnings: findings.in_order(),
+    };
+    Ok(Program { whole: Arc::new(whole) })
 }
 
 /// What compiling would find in those parts of a scene that could be read.
 pub(crate) fn survey(scene: &Scene, broken: &BTreeSet<NodeId>) -> Vec<Diagnostic> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    Compiler::new(scene, broken, &mut findings).objects();
+    universes(scene, broken, &mut findings);
     findings.in_order()
+}
+
+/// Each nucleus for itself, in the order of names. Of several, those without objects are left out.
+fn universes(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) -> Vec<Compiled> {
+    let mut geometry = Geometry::default();
+    let mut nuclei: Vec<NodeId> = scene.graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect();
+    nuclei.sort_by_key(|id| scene.graph.node(*id).name());
+    let mut all: Vec<Compiled> = Vec::new();
+    for nucleus in nuclei {
+        let before = all.last().map(|(universe, ..)| universe);
+        let compiled = Compiler::new(scene, nucleus, broken, &mut geometry, before, findings).compile();
+        all.push(compiled);
+    }
+    if all.iter().any(|(_, objects, _)| !objects.is_empty()) {
+        all.retain(|(_, objects, _)| !objects.is_empty());
+    } else {
+        all.truncate(1);
+    }
+    all
 }
 
 #[cfg(test)]

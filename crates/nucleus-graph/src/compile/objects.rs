@@ -2,17 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::Vector3;
-use nucleus_core::{BuildError, Cloth, ClothId, Collider, Faces, Mass, ModelBuilder, Surface};
+use nucleus_core::{BuildError, Cloth, ClothId, Collider, ColliderId, Faces, Mass, ModelBuilder, Surface};
 
-use crate::attributes::{Choice, Key, Plugged, n_base, n_cloth, nucleus};
-use crate::graph::NodeId;
-use crate::scene::{Findings, Scene, TimeSpan};
+use crate::attributes::{
+    Choice, Key, NodeType, Plugged, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape,
+};
+use crate::graph::{Moment, NodeId};
+use crate::scene::{Findings, Scene};
 
 use super::geometry::Geometry;
 use super::lists::lists;
-use super::program::{Object, ObjectKind, Program};
+use super::program::{Object, ObjectKind, Universe};
+use super::shape::Shape;
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
+use super::time;
 use super::units::Units;
 
 /// `resistanceModel: classic`.
@@ -26,8 +29,6 @@ pub(super) struct ClothSource {
     pub(super) default_thickness: f64,
     /// Whether its edges limit that.
     pub(super) is_dense: bool,
-    /// In metres, world space.
-    pub(super) start: Vec<Vector3<f64>>,
 }
 
 /// Where the frames of a collider come from.
@@ -37,143 +38,135 @@ pub(super) struct ColliderSource {
     pub(super) mesh: NodeId,
     /// In scene units.
     pub(super) default_thickness: f64,
-    /// Its points in the space of the mesh, in scene units; empty if it never moves.
-    pub(super) local: Vec<Vector3<f64>>,
+    /// Its points in the space of the mesh, in scene units; nothing if it never moves.
+    pub(super) shape: Option<Shape>,
 }
 
-/// Compiles one scene.
+/// Compiles one nucleus with all that belongs to it.
 pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     broken: &'a BTreeSet<NodeId>,
     pub(super) findings: &'a mut Findings,
-    nucleus: Option<NodeId>,
-    pub(super) units: Units,
-    /// Frames that are solved.
-    pub(super) time: TimeSpan,
-    geometry: Geometry,
-    model: ModelBuilder,
-    pub(super) cloths: Vec<ClothSource>,
-    colliders: Vec<ColliderSource>,
+    geometry: &'a mut Geometry,
+    /// The graph at the start.
+    pub(super) start: Moment<'a>,
+    pub(super) whole: Universe,
     objects: Vec<Object>,
     mass: f64,
 }
 
+/// A nucleus that has been compiled, its objects, and the mass of its cloth in kilograms.
+pub(super) type Compiled = (Universe, Vec<Object>, f64);
+
 impl<'a> Compiler<'a> {
-    /// `broken` are nodes of which not everything is known; nothing is said about them.
-    pub(super) fn new(scene: &'a Scene, broken: &'a BTreeSet<NodeId>, findings: &'a mut Findings) -> Self {
-        let nucleus = scene.graph.of_type(&nucleus::NUCLEUS).next();
-        let units = Units::new(nucleus.map_or(1.0, |(_, node)| node.get(&nucleus::SPACE_SCALE)));
-        Self {
-            scene,
-            broken,
-            findings,
-            nucleus: nucleus.map(|(id, _)| id),
-            units,
-            time: scene.time,
-            geometry: Geometry::default(),
+    /// `broken` are nodes of which not everything is known; nothing is said about them. `before` has been
+    /// compiled before.
+    pub(super) fn new(
+        scene: &'a Scene,
+        nucleus: NodeId,
+        broken: &'a BTreeSet<NodeId>,
+        geometry: &'a mut Geometry,
+        before: Option<&Universe>,
+        findings: &'a mut Findings,
+    ) -> Self {
+        let first = time::start(scene, nucleus, findings);
+        let start = scene.graph.at(first as f64);
+        let whole = Universe {
+            nucleus,
+            units: Units::new(start.get(nucleus, &nucleus::SPACE_SCALE)),
             model: ModelBuilder::new(),
             cloths: Vec::new(),
             colliders: Vec::new(),
-            objects: Vec::new(),
-            mass: 0.0,
-        }
-    }
-
-    /// The program, if there is a nucleus. It is only whole if no errors were found.
-    pub(super) fn program(mut self) -> Option<Program> {
-        let Some(nucleus) = self.nucleus else {
-            let error = self.findings.error(&(0..0), "there is nothing to solve: the scene has no nucleus");
-            error.help("add `\"nucleus1\": nucleus()`");
-            return None;
+            pins: Vec::new(),
+            start: first,
+            first_cloth: before.map_or(0, |before| before.cloths().end),
+            first_collider: before.map_or(0, |before| before.colliders().end),
         };
-        self.objects();
-        let pins = self.pins();
-        Some(Program {
-            graph: self.scene.graph.clone(),
-            nucleus,
-            units: self.units,
-            time: self.time,
-            record: self.scene.record,
-            checks: self.scene.checks.clone(),
-            model: self.model,
-            cloths: self.cloths,
-            colliders: self.colliders,
-            pins,
-            objects: self.objects,
-            mass: self.mass,
-            warnings: Vec::new(),
-        })
+        Self { scene, broken, findings, geometry, start, whole, objects: Vec::new(), mass: 0.0 }
     }
 
-    /// All objects of the nucleus; those that are broken, or made from something broken, are left out.
-    pub(super) fn objects(&mut self) {
-        self.start();
-        for cloth in self.members(&nucleus::INPUT_ACTIVE) {
+    /// All objects and constraints; those that are broken, or made from something broken, are left out. What
+    /// comes out is only whole if no errors were found.
+    pub(super) fn compile(mut self) -> Compiled {
+        for cloth in self.members(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
             self.cloth(cloth);
         }
-        for collider in self.members(&nucleus::INPUT_PASSIVE) {
+        for collider in self.members(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
             self.collider(collider);
         }
-        self.check_pinned_points();
+        self.whole.pins = self.pins();
+        if !self.objects.is_empty() {
+            time::check_driven(self.scene, self.whole.nucleus, self.findings);
+        }
+        (self.whole, self.objects, self.mass)
     }
 
-    /// The run begins where the scene's time and, if it says so, the nucleus have begun.
-    fn start(&mut self) {
-        let Some(node) = self.nucleus.map(|id| self.scene.graph.node(id)) else { return };
-        if node.setting(&nucleus::START_FRAME).is_none() {
-            return;
+    /// What is connected to an input of the nucleus, in the order of its elements. Only objects of a type can
+    /// be solved there.
+    fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
+        let graph = &self.scene.graph;
+        let mut members = Vec::new();
+        for (index, plug) in graph.elements(self.whole.nucleus, input) {
+            let (node, node_type) = (graph.node(plug.node), graph.node(plug.node).node_type());
+            if node_type.is_a(wanted) && !members.contains(&plug.node) {
+                members.push(plug.node);
+            } else if !node_type.is_a(&n_particle::N_PARTICLE) && !node_type.is_a(wanted) {
+                let place = self.scene.source.place(node.name());
+                let input = format!("{}.{}[{index}]", graph.node(self.whole.nucleus).name(), input.row.name);
+                let message = format!(
+                    "`{}` is of type {} and cannot be solved at `{input}`, which takes {}",
+                    node.name(),
+                    node_type.name,
+                    wanted.name
+                );
+                self.findings.error(&place, message);
+            }
         }
-        let start_frame = node.get(&nucleus::START_FRAME);
-        let place = self.scene.source.place(&format!("{}.startFrame", node.name()));
-        let TimeSpan { start, end, .. } = self.scene.time;
-        if start_frame > end as f64 {
-            let message = format!("`startFrame` of `{}` comes after the last frame, {end}", node.name());
-            self.findings.error(&place, message);
-        } else if start_frame > start as f64 {
-            self.time.start = start_frame.ceil() as i64;
-        } else if start_frame < start as f64 {
-            let message = format!("frames before {start}, where the scene's time begins, are not solved");
-            self.findings.warning(&place, message);
-        }
+        members.retain(|node| !self.broken.contains(node));
+        members
     }
 
-    /// What is connected to an input of the nucleus, in the order of its elements.
-    fn members(&self, input: &Key<Plugged>) -> Vec<NodeId> {
-        let wired = self.scene.graph.connections().iter();
-        let wired =
-            wired.filter(|c| Some(c.to.node) == self.nucleus && c.to.attribute.name == input.row.name);
-        let mut members: Vec<_> = wired.map(|c| (c.to.index, c.from.node)).collect();
-        members.sort_unstable();
-        members.into_iter().map(|(_, node)| node).filter(|node| !self.broken.contains(node)).collect()
+    /// Says so if a connection is missing without which an object is not solved as Maya would.
+    fn check_wired(&mut self, object: NodeId, inputs: &[&str]) {
+        let graph = &self.scene.graph;
+        for input in inputs {
+            let fed = graph.arriving(object).any(|wire| wire.to.attribute.name == *input);
+            if !fed {
+                let name = graph.node(object).name();
+                let message = format!("nothing is connected to `{name}.{input}`");
+                self.findings.warning(&self.scene.source.place(name), message);
+            }
+        }
     }
 
     fn cloth(&mut self, id: NodeId) -> Option<()> {
-        let graph = &self.scene.graph;
-        let (node, nucleus) = (graph.node(id), graph.node(self.nucleus?));
+        self.check_wired(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
         let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
         let is_dense = is_dense(&surface, CLOTH_SHARE);
-        let surface = self.units.surface(surface);
+        let surface = self.whole.units.surface(surface);
         self.warn_of_stiffness(id);
-        let point_mass = node.get(&n_base::POINT_MASS);
-        let mass = match nucleus.get(&nucleus::RESISTANCE_MODEL) {
+        let point_mass = self.start.get(id, &n_base::POINT_MASS);
+        let mass = match self.start.get(self.whole.nucleus, &nucleus::RESISTANCE_MODEL) {
             CLASSIC => Mass::PerPoint(point_mass),
             _ => Mass::PerArea(point_mass),
         };
-        self.warn_of_free_points(node.name(), mesh, &surface);
-        let start = surface.positions.clone();
+        self.warn_of_free_points(self.scene.graph.node(id).name(), mesh, &surface);
+        let points = surface.positions.len();
         let faces = surface.faces.clone();
         let kilograms = match mass {
-            Mass::PerPoint(mass) => mass * start.len() as f64,
+            Mass::PerPoint(mass) => mass * points as f64,
             Mass::PerArea(mass) => mass * area(&surface),
         };
-        match self.model.cloth(Cloth { surface, mass, lists: lists(node, nucleus) }) {
+        let lists = lists(&self.scene.graph, id, self.whole.nucleus);
+        match self.whole.model.cloth(Cloth { surface, mass, lists }) {
             Ok(cloth) => {
-                self.mass_and_object(node.name(), ObjectKind::Cloth(cloth), start.len(), faces, kilograms)
+                let kind = ObjectKind::Cloth(ClothId(self.whole.first_cloth + cloth.0));
+                self.mass_and_object(id, kind, points, faces, kilograms);
             }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.cloths.push(ClothSource { node: id, default_thickness, is_dense, start });
+        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense });
         Some(())
     }
 
@@ -181,8 +174,7 @@ impl<'a> Compiler<'a> {
     fn warn_of_stiffness(&mut self, cloth: NodeId) {
         use n_cloth::{BEND_STIFFNESS, COMPRESSION_STIFFNESS, SHEAR_STIFFNESS, STRETCH_STIFFNESS};
         let node = self.scene.graph.node(cloth);
-        let nucleus = self.nucleus.map(|id| self.scene.graph.node(id));
-        if nucleus.is_none_or(|nucleus| nucleus.get(&nucleus::RESISTANCE_MODEL) != CLASSIC) {
+        if self.start.get(self.whole.nucleus, &nucleus::RESISTANCE_MODEL) != CLASSIC {
             return;
         }
         for key in [&STRETCH_STIFFNESS, &COMPRESSION_STIFFNESS, &SHEAR_STIFFNESS, &BEND_STIFFNESS] {
@@ -199,40 +191,76 @@ impl<'a> Compiler<'a> {
     }
 
     fn collider(&mut self, id: NodeId) -> Option<()> {
+        self.check_wired(id, &[particle::CURRENT_TIME.row.name]);
         let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
-        let moves = self.scene.graph.moves(mesh);
-        let local = self.geometry.surface(self.scene, mesh, self.findings)?;
-        let local = if moves { local.positions.clone() } else { Vec::new() };
-        let surface = self.units.surface(surface);
+        let graph = &self.scene.graph;
+        let shape = if graph.moves(mesh) || !self.geometry.is_fixed(self.scene, mesh, self.findings) {
+            let shape = self.geometry.shape(self.scene, mesh, self.findings)?;
+            let blends = |node| graph.changes(node, &surface_shape::BLEND);
+            (graph.moves(mesh) || shape.changes(&blends)).then_some(shape)
+        } else {
+            None
+        };
+        let surface = self.whole.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());
-        let name = self.scene.graph.node(id).name();
-        match self.model.collider(Collider { surface }) {
-            Ok(collider) => self.mass_and_object(name, ObjectKind::Collider(collider), points, faces, 0.0),
+        match self.whole.model.collider(Collider { surface }) {
+            Ok(collider) => {
+                let kind = ObjectKind::Collider(ColliderId(self.whole.first_collider + collider.0));
+                self.mass_and_object(id, kind, points, faces, 0.0);
+            }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.colliders.push(ColliderSource { node: id, mesh, default_thickness, local });
+        self.whole.colliders.push(ColliderSource { node: id, mesh, default_thickness, shape });
         Some(())
     }
 
     /// The mesh that an object is made from, where it stands at the start; lengths in scene units.
     fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
         let graph = &self.scene.graph;
-        let mesh = graph.source(object, &n_base::INPUT_MESH)?;
+        let Some(mesh) = self.mesh_of(object) else {
+            let name = graph.node(object).name();
+            let error =
+                self.findings.error(&self.scene.source.place(name), format!("`{name}` has no `inputMesh`"));
+            error.help("connect a mesh's `worldMesh[0]` to it");
+            return None;
+        };
         if self.broken.contains(&mesh) {
             return None;
         }
-        let placement = graph.placement(mesh, self.time.start as f64);
+        let placement = self.start.placement(mesh);
+        let fixed = self.geometry.is_fixed(self.scene, mesh, self.findings);
         let mut surface = self.geometry.surface(self.scene, mesh, self.findings)?.clone();
+        if !fixed {
+            surface.positions =
+                self.geometry.shape(self.scene, mesh, self.findings)?.at(&self.start).to_vec();
+        }
         for position in &mut surface.positions {
             *position = placement.point(*position);
         }
         Some((mesh, surface))
     }
 
-    fn mass_and_object(&mut self, name: &str, kind: ObjectKind, points: usize, faces: Faces, kilograms: f64) {
+    /// The mesh that feeds an object. A mesh that only shows what another node gives out, as the output of a
+    /// cloth does, is no source of its own.
+    fn mesh_of(&self, object: NodeId) -> Option<NodeId> {
+        let graph = &self.scene.graph;
+        let mesh = graph.source(object, &n_base::INPUT_MESH)?;
+        let shows = graph.node(mesh).node_type().is_a(&surface_shape::SURFACE_SHAPE);
+        (shows && graph.source(mesh, &surface_shape::IN_MESH).is_none()).then_some(mesh)
+    }
+
+    fn mass_and_object(
+        &mut self,
+        node: NodeId,
+        kind: ObjectKind,
+        points: usize,
+        faces: Faces,
+        kilograms: f64,
+    ) {
         self.mass += kilograms;
-        self.objects.push(Object { name: name.to_owned(), kind, points, faces });
+        let name = self.scene.graph.node(node).name().to_owned();
+        self.objects.push(Object { name, kind, points, faces });
     }
 
     /// Points of no face are held by nothing: they run, but are seldom meant.
@@ -272,11 +300,10 @@ impl<'a> Compiler<'a> {
         None
     }
 
-    /// The cloth of this name.
-    pub(super) fn cloth_named(&self, name: &str) -> Option<(ClothId, &ClothSource)> {
-        let node = self.scene.graph.find(name)?;
-        let k = self.cloths.iter().position(|cloth| cloth.node == node)?;
-        Some((ClothId(k as u32), &self.cloths[k]))
+    /// The cloth of a node.
+    pub(super) fn cloth_of(&self, node: NodeId) -> Option<ClothId> {
+        let k = self.whole.cloths.iter().position(|cloth| cloth.node == node)?;
+        Some(ClothId(k as u32))
     }
 }
 

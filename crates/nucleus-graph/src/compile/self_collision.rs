@@ -2,40 +2,38 @@
 
 use nucleus_core::{Elements, SelfCollision};
 
+use super::frame::Stretch;
 use super::objects::{CLASSIC, ClothSource};
-use super::program::Program;
 use crate::attributes::{Choice, n_base, n_cloth, nucleus};
 
 /// `selfCollisionFlag` full surface.
 const FULL_SURFACE: i32 = 4;
 
-impl Program {
+impl Stretch<'_> {
     /// How a cloth meets itself at a frame.
-    pub(super) fn self_collision(&self, cloth: &ClothSource, frame: f64) -> SelfCollision {
-        let node = self.graph.node(cloth.node);
-        let classic = self.graph.node(self.nucleus).get(&nucleus::RESISTANCE_MODEL) == CLASSIC;
+    pub(super) fn self_collision(&self, cloth: &ClothSource) -> SelfCollision {
+        let (node, to) = (cloth.node, &self.to);
+        let classic = to.get(self.universe.nucleus, &nucleus::RESISTANCE_MODEL) == CLASSIC;
         // Left out, a flag is what Maya sets when it makes the cloth, or in Physical what lets nothing pass.
         let (vertex, vertex_face) = (1, 3);
         let created = if cloth.is_dense { (vertex, 3.0) } else { (vertex_face, 1.0) };
         let (made, width) = if classic { created } else { (FULL_SURFACE, 1.0) };
-        let is_set = node.setting(&n_base::SELF_COLLISION_FLAG).is_some();
-        let flag = if is_set { node.at(&n_base::SELF_COLLISION_FLAG, frame).0 } else { made };
-        let is_set = node.setting(&n_cloth::SELF_COLLIDE_WIDTH_SCALE).is_some();
-        let scale = if is_set { node.at(&n_cloth::SELF_COLLIDE_WIDTH_SCALE, frame) } else { width };
+        let is_given = self.graph.is_given(node, &n_base::SELF_COLLISION_FLAG);
+        let flag = if is_given { to.get(node, &n_base::SELF_COLLISION_FLAG).0 } else { made };
+        let is_given = self.graph.is_given(node, &n_cloth::SELF_COLLIDE_WIDTH_SCALE);
+        let scale = if is_given { to.get(node, &n_cloth::SELF_COLLIDE_WIDTH_SCALE) } else { width };
         SelfCollision {
-            on: node.at(&n_base::SELF_COLLIDE, frame),
-            thickness: self.thickness(cloth.node, cloth.default_thickness, frame) * scale,
+            on: to.get(node, &n_base::SELF_COLLIDE),
+            thickness: self.thickness(node, cloth.default_thickness) * scale,
             elements: elements(Choice(flag)),
             edges: flag == FULL_SURFACE,
         }
     }
 
     /// Passes in 1/24 s: as many as the cloth that wants most.
-    pub(super) fn self_collision_iterations(&self, frame: f64) -> f64 {
-        let of = |cloth: &ClothSource| {
-            self.graph.node(cloth.node).at(&n_base::MAX_SELF_COLLISION_ITERATIONS, frame) as f64
-        };
-        self.cloths.iter().map(of).fold(0.0, f64::max)
+    pub(super) fn self_collision_iterations(&self) -> f64 {
+        let of = |cloth: &ClothSource| self.to.get(cloth.node, &n_base::MAX_SELF_COLLISION_ITERATIONS) as f64;
+        self.universe.cloths.iter().map(of).fold(0.0, f64::max)
     }
 }
 

@@ -1,9 +1,11 @@
-//! What Maya's creation commands connect when they make cloth from a mesh, a collider from a mesh, or a
-//! constraint from components.
+//! What Maya's commands connect when they make cloth, a collider or particles of a nucleus, a constraint of
+//! components, or a field or emitter of an object.
+
+use std::collections::BTreeSet;
 
 use crate::attributes::{
-    Choice, Component, Key, Plugged, Selection, Value, dynamic_constraint, mesh, n_base, n_cloth,
-    n_component, nucleus, particle, surface_shape, time,
+    Choice, Component, Key, Plugged, Selection, Value, dyn_base, dynamic_constraint, field, mesh, n_base,
+    n_cloth, n_component, n_particle, n_rigid, nucleus, particle, point_emitter, surface_shape, time,
 };
 
 use super::error::GraphError;
@@ -18,21 +20,93 @@ const OBJECT: Choice = Choice(6);
 const LISTED: Choice = Choice(0);
 const ALL: Choice = Choice(2);
 
+/// What a creation command starts from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Creation {
+    /// An object of a nucleus; cloth and colliders are made from a mesh.
+    Object {
+        /// The mesh, for cloth and colliders.
+        mesh: Option<NodeId>,
+        /// The nucleus.
+        nucleus: NodeId,
+    },
+    /// A constraint on parts of objects.
+    Constraint {
+        /// The parts.
+        components: Vec<Component>,
+        /// The nucleus.
+        nucleus: NodeId,
+    },
+    /// A field or an emitter, and the object that it acts on or emits into.
+    Effect {
+        /// The object.
+        target: NodeId,
+    },
+}
+
 impl Graph {
+    /// Makes the connections that Maya's command makes for a node.
+    ///
+    /// # Errors
+    /// When the node is connected already.
+    pub fn create(&mut self, node: NodeId, creation: &Creation) -> Result<(), GraphError> {
+        let node_type = self.node(node).node_type();
+        match creation {
+            Creation::Object { mesh: Some(mesh), nucleus } if node_type.is_a(&n_cloth::N_CLOTH) => {
+                self.create_cloth(node, *mesh, *nucleus)
+            }
+            Creation::Object { mesh: Some(mesh), nucleus } if node_type.is_a(&n_rigid::N_RIGID) => {
+                self.create_collider(node, *mesh, *nucleus)
+            }
+            Creation::Object { nucleus, .. } => self.create_particles(node, *nucleus),
+            Creation::Constraint { components, nucleus } => {
+                self.create_constraint(node, components, *nucleus)
+            }
+            Creation::Effect { target } if node_type.is_a(&field::FIELD) => self.create_field(node, *target),
+            Creation::Effect { target } => self.create_emitter(node, *target),
+        }
+    }
+
+    /// What a node could have been created from, to be connected as it is; nothing if it is connected in some
+    /// other way.
+    pub fn creation(&self, node: NodeId) -> Option<Creation> {
+        let node_type = self.node(node).node_type();
+        if node_type.is_a(&n_base::N_BASE) {
+            let fed = |wire: &&super::Connection| wire.to.attribute.name == n_base::INPUT_MESH.row.name;
+            let mesh = self.arriving(node).find(fed).map(|wire| wire.from.node);
+            let nucleus = self.targets(node, &n_base::CURRENT_STATE).next()?.node;
+            if node_type.is_a(&n_particle::N_PARTICLE) {
+                return Some(Creation::Object { mesh: None, nucleus });
+            }
+            return mesh.map(|mesh| Creation::Object { mesh: Some(mesh), nucleus });
+        }
+        if node_type.is_a(&dynamic_constraint::DYNAMIC_CONSTRAINT) {
+            let nucleus = self.targets(node, &dynamic_constraint::EVAL_START).next()?.node;
+            self.node(node).setting(&dynamic_constraint::COMPONENTS)?;
+            let components = self.node(node).get(&dynamic_constraint::COMPONENTS);
+            return Some(Creation::Constraint { components, nucleus });
+        }
+        if node_type.is_a(&dyn_base::DYN_BASE) {
+            let mut fed = self.leaving(node).filter(|wire| wire.from.index == Some(0));
+            let target = fed.find(|wire| self.node(wire.to.node).node_type().is_a(&particle::PARTICLE))?;
+            return Some(Creation::Effect { target: target.to.node });
+        }
+        None
+    }
+
     /// Makes a mesh the input of a cloth, and the cloth an active object of a nucleus.
     ///
     /// # Errors
     /// When the cloth is connected already.
     pub fn create_cloth(&mut self, cloth: NodeId, mesh: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
-        self.drive_by_time(cloth, nucleus)?;
-        self.connect(element(mesh, &surface_shape::WORLD_MESH, 0), plug(cloth, &n_base::INPUT_MESH))?;
+        self.drive_by_time(cloth, &particle::CURRENT_TIME, Some(nucleus))?;
+        self.connect(
+            Plug::element(mesh, &surface_shape::WORLD_MESH, 0),
+            Plug::new(cloth, &n_base::INPUT_MESH),
+        )?;
         let output = self.make("outputCloth", &mesh::MESH, cloth);
-        self.connect(plug(cloth, &n_cloth::OUTPUT_MESH), plug(output, &surface_shape::IN_MESH))?;
-        let i = self.free_index(nucleus, &nucleus::INPUT_ACTIVE);
-        self.connect(plug(cloth, &n_base::CURRENT_STATE), element(nucleus, &nucleus::INPUT_ACTIVE, i))?;
-        self.connect(plug(cloth, &n_base::START_STATE), element(nucleus, &nucleus::INPUT_ACTIVE_START, i))?;
-        self.connect(element(nucleus, &nucleus::OUTPUT_OBJECTS, i), plug(cloth, &n_base::NEXT_STATE))?;
-        self.connect(plug(nucleus, &nucleus::START_FRAME), plug(cloth, &particle::START_FRAME))
+        self.connect(Plug::new(cloth, &n_cloth::OUTPUT_MESH), Plug::new(output, &surface_shape::IN_MESH))?;
+        self.connect_active(cloth, nucleus)
     }
 
     /// Makes a mesh the input of a collider, and the collider a passive object of a nucleus.
@@ -45,15 +119,78 @@ impl Graph {
         mesh: NodeId,
         nucleus: NodeId,
     ) -> Result<(), GraphError> {
-        self.drive_by_time(collider, nucleus)?;
-        self.connect(element(mesh, &surface_shape::WORLD_MESH, 0), plug(collider, &n_base::INPUT_MESH))?;
-        let j = self.free_index(nucleus, &nucleus::INPUT_PASSIVE);
-        self.connect(plug(collider, &n_base::CURRENT_STATE), element(nucleus, &nucleus::INPUT_PASSIVE, j))?;
+        self.drive_by_time(collider, &particle::CURRENT_TIME, Some(nucleus))?;
         self.connect(
-            plug(collider, &n_base::START_STATE),
-            element(nucleus, &nucleus::INPUT_PASSIVE_START, j),
+            Plug::element(mesh, &surface_shape::WORLD_MESH, 0),
+            Plug::new(collider, &n_base::INPUT_MESH),
         )?;
-        self.connect(plug(nucleus, &nucleus::START_FRAME), plug(collider, &particle::START_FRAME))
+        let (state, start) =
+            (Plug::new(collider, &n_base::CURRENT_STATE), Plug::new(collider, &n_base::START_STATE));
+        let j = self.free_index(nucleus, [&nucleus::INPUT_PASSIVE, &nucleus::INPUT_PASSIVE_START]);
+        self.connect(state, Plug::element(nucleus, &nucleus::INPUT_PASSIVE, j))?;
+        self.connect(start, Plug::element(nucleus, &nucleus::INPUT_PASSIVE_START, j))?;
+        self.connect(Plug::new(nucleus, &nucleus::START_FRAME), Plug::new(collider, &particle::START_FRAME))
+    }
+
+    /// Makes particles an active object of a nucleus.
+    ///
+    /// # Errors
+    /// When the particles are connected already.
+    pub fn create_particles(&mut self, particles: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
+        self.drive_by_time(particles, &particle::CURRENT_TIME, Some(nucleus))?;
+        self.connect_active(particles, nucleus)
+    }
+
+    /// Lets an emitter emit into particles.
+    ///
+    /// # Errors
+    /// When the emitter is connected already.
+    pub fn create_emitter(&mut self, emitter: NodeId, particles: NodeId) -> Result<(), GraphError> {
+        self.drive_by_time(emitter, &point_emitter::CURRENT_TIME, None)?;
+        let m = self.free_index(particles, [&particle::NEW_PARTICLES]);
+        let output = Plug::element(emitter, &point_emitter::OUTPUT, 0);
+        self.connect(output, Plug::element(particles, &particle::NEW_PARTICLES, m))?;
+        self.connect(
+            Plug::new(particles, &particle::IS_FULL),
+            Plug::element(emitter, &point_emitter::IS_FULL, 0),
+        )?;
+        let step = Plug::new(particles, &particle::TIME_STEP_SIZE);
+        self.connect(step, Plug::element(emitter, &point_emitter::DELTA_TIME, 0))?;
+        let inherit = Plug::new(particles, &particle::INHERIT_FACTOR);
+        self.connect(inherit, Plug::element(emitter, &point_emitter::INHERIT_FACTOR, 0))?;
+        let start = Plug::new(particles, &particle::START_TIME);
+        self.connect(start, Plug::element(emitter, &point_emitter::START_TIME, 0))?;
+        let seed = Plug::element(particles, &particle::SEED, m);
+        self.connect(seed, Plug::element(emitter, &point_emitter::SEED, 0))
+    }
+
+    /// Lets a field act on an object.
+    ///
+    /// # Errors
+    /// When the field is connected already.
+    pub fn create_field(&mut self, field: NodeId, object: NodeId) -> Result<(), GraphError> {
+        self.connect(Plug::new(object, &particle::FIELD_DATA), Plug::element(field, &field::INPUT_DATA, 0))?;
+        let q = (0..).find(|&q| {
+            let settings = Plug::element(object, &particle::PP_FIELD_DATA, q);
+            self.leaving(object).all(|wire| wire.from != settings)
+        });
+        let settings = Plug::element(object, &particle::PP_FIELD_DATA, q.unwrap_or_default());
+        self.connect(settings, Plug::element(field, &field::INPUT_PP_DATA, 0))?;
+        let r = self.free_index(object, [&particle::INPUT_FORCE]);
+        let force = Plug::element(field, &field::OUTPUT_FORCE, 0);
+        self.connect(force, Plug::element(object, &particle::INPUT_FORCE, r))
+    }
+
+    /// The same free index on three plugs of the nucleus, and the start frame back.
+    fn connect_active(&mut self, object: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
+        let i = self.free_index(nucleus, [&nucleus::INPUT_ACTIVE, &nucleus::INPUT_ACTIVE_START]);
+        let (state, start) =
+            (Plug::new(object, &n_base::CURRENT_STATE), Plug::new(object, &n_base::START_STATE));
+        self.connect(state, Plug::element(nucleus, &nucleus::INPUT_ACTIVE, i))?;
+        self.connect(start, Plug::element(nucleus, &nucleus::INPUT_ACTIVE_START, i))?;
+        let solved = Plug::element(nucleus, &nucleus::OUTPUT_OBJECTS, i);
+        self.connect(solved, Plug::new(object, &n_base::NEXT_STATE))?;
+        self.connect(Plug::new(nucleus, &nucleus::START_FRAME), Plug::new(object, &particle::START_FRAME))
     }
 
     /// Makes components members of a constraint, one node for each object they are parts of, and the
@@ -74,19 +211,22 @@ impl Graph {
             }
         }
         for (c, name) in (0..).zip(objects) {
-            let Some(object) = self.find(name) else { continue };
+            let Some(object) = self.find(name).filter(|id| self.node(*id).node_type().is_a(&n_base::N_BASE))
+            else {
+                continue;
+            };
             let parts = components.iter().filter(|component| component.object == name);
             let member = self.create_member(constraint, parts.map(|component| component.selection))?;
-            self.connect(plug(object, &n_base::NUCLEUS_ID), plug(member, &n_component::OBJECT_ID))?;
-            let id = element(constraint, &dynamic_constraint::COMPONENT_IDS, c);
-            self.connect(plug(member, &n_component::OUT_COMPONENT), id)?;
+            self.connect(Plug::new(object, &n_base::NUCLEUS_ID), Plug::new(member, &n_component::OBJECT_ID))?;
+            let id = Plug::element(constraint, &dynamic_constraint::COMPONENT_IDS, c);
+            self.connect(Plug::new(member, &n_component::OUT_COMPONENT), id)?;
         }
-        self.drive_by_time(constraint, nucleus)?;
-        let k = self.free_index(nucleus, &nucleus::INPUT_START);
-        let start = element(constraint, &dynamic_constraint::EVAL_START, 0);
-        self.connect(start, element(nucleus, &nucleus::INPUT_START, k))?;
-        let current = element(constraint, &dynamic_constraint::EVAL_CURRENT, 0);
-        self.connect(current, element(nucleus, &nucleus::INPUT_CURRENT, k))
+        self.drive_by_time(constraint, &dynamic_constraint::CURRENT_TIME, Some(nucleus))?;
+        let k = self.free_index(nucleus, [&nucleus::INPUT_START, &nucleus::INPUT_CURRENT]);
+        let start = Plug::element(constraint, &dynamic_constraint::EVAL_START, 0);
+        self.connect(start, Plug::element(nucleus, &nucleus::INPUT_START, k))?;
+        let current = Plug::element(constraint, &dynamic_constraint::EVAL_CURRENT, 0);
+        self.connect(current, Plug::element(nucleus, &nucleus::INPUT_CURRENT, k))
     }
 
     /// The component node of one object.
@@ -110,39 +250,33 @@ impl Graph {
             (&n_component::COMPONENT_INDICES.row, Value::Ints(listed)),
         ];
         for (row, value) in set {
-            self.set(member, row, Setting::Fixed(value))?;
+            self.put(member, row, Setting::Fixed(value))?;
         }
         Ok(member)
     }
 
     /// Connects the clock to a node and, the first time, to its nucleus.
-    fn drive_by_time(&mut self, node: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
-        let clock = self.of_type(&time::TIME).next().map(|(id, _)| id);
-        let clock = clock.unwrap_or_else(|| self.make("time", &time::TIME, nucleus));
-        let out_time = plug(clock, &time::OUT_TIME);
-        if self.source(nucleus, &nucleus::CURRENT_TIME).is_none() {
-            self.connect(out_time, plug(nucleus, &nucleus::CURRENT_TIME))?;
+    fn drive_by_time(
+        &mut self,
+        node: NodeId,
+        input: &'static Key<f64>,
+        nucleus: Option<NodeId>,
+    ) -> Result<(), GraphError> {
+        let out_time = Plug::new(self.clock(), &time::OUT_TIME);
+        if let Some(nucleus) = nucleus
+            && self.source(nucleus, &nucleus::CURRENT_TIME).is_none()
+        {
+            self.connect(out_time, Plug::new(nucleus, &nucleus::CURRENT_TIME))?;
         }
-        let is_constraint = self.node(node).node_type().is_a(&dynamic_constraint::DYNAMIC_CONSTRAINT);
-        let input = if is_constraint { &dynamic_constraint::CURRENT_TIME } else { &particle::CURRENT_TIME };
-        self.connect(out_time, plug(node, input))
+        self.connect(out_time, Plug::new(node, input))
     }
 
-    /// The first index at which nothing is connected.
-    fn free_index(&self, node: NodeId, input: &Key<Plugged>) -> u32 {
-        let taken = |index| {
-            let wanted =
-                |to: Plug| to.node == node && to.attribute.name == input.row.name && to.index == Some(index);
-            self.connections().iter().any(|connection| wanted(connection.to))
-        };
-        (0..).find(|&index| !taken(index)).unwrap_or_default()
+    /// The first index at which nothing is connected to any of some inputs.
+    fn free_index<const N: usize>(&self, node: NodeId, inputs: [&Key<Plugged>; N]) -> u32 {
+        let taken = self
+            .arriving(node)
+            .filter(|wire| inputs.iter().any(|key| key.row.name == wire.to.attribute.name));
+        let taken: BTreeSet<u32> = taken.filter_map(|wire| wire.to.index).collect();
+        (0..).find(|index| !taken.contains(index)).unwrap_or_default()
     }
-}
-
-fn plug<T>(node: NodeId, key: &'static Key<T>) -> Plug {
-    Plug { node, attribute: &key.row, index: None }
-}
-
-fn element<T>(node: NodeId, key: &'static Key<T>, index: u32) -> Plug {
-    Plug { node, attribute: &key.row, index: Some(index) }
 }

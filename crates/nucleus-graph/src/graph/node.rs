@@ -10,14 +10,23 @@ use super::setting::Setting;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub(super) u32);
 
+impl NodeId {
+    pub(super) fn place(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// A node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     pub(super) name: String,
     pub(super) node_type: &'static NodeType,
     pub(super) settings: BTreeMap<&'static str, Setting>,
+    /// What a preset sets, where nothing is set here.
+    pub(super) preset: BTreeMap<&'static str, Setting>,
     pub(super) parent: Option<NodeId>,
     pub(super) made_by: Option<NodeId>,
+    pub(super) blend_target: Option<NodeId>,
 }
 
 impl Node {
@@ -46,9 +55,18 @@ impl Node {
         &self.settings
     }
 
-    /// What is set on one attribute.
+    /// What is set on one attribute, here or by a preset.
     pub fn setting<T>(&self, key: &Key<T>) -> Option<&Setting> {
-        self.settings.get(key.row.name)
+        self.set_or_preset(key.row.name)
+    }
+
+    /// What its preset sets, by long name.
+    pub fn preset(&self) -> &BTreeMap<&'static str, Setting> {
+        &self.preset
+    }
+
+    pub(super) fn set_or_preset(&self, name: &str) -> Option<&Setting> {
+        self.settings.get(name).or_else(|| self.preset.get(name))
     }
 
     /// The value of an attribute that cannot change from frame to frame.
@@ -62,11 +80,19 @@ impl Node {
     /// When the node's type has no such attribute.
     pub fn at<T: FromValue>(&self, key: &Key<T>, frame: f64) -> T {
         let row = self.row(key);
-        let value = match self.settings.get(row.name) {
+        let value = match self.set_or_preset(row.name) {
             Some(setting) => T::from_value(&setting.at(frame, row)),
             None => row.default.as_ref().and_then(T::from_value),
         };
         value.unwrap_or_else(|| unreachable!("`{}` is read as what it holds", row.name))
+    }
+
+    /// What one of its attributes holds at a frame; nothing for what is only connected.
+    pub(super) fn value_at(&self, row: &'static Attribute, frame: f64) -> Option<Value> {
+        match self.set_or_preset(row.name) {
+            Some(setting) => Some(setting.at(frame, row)),
+            None => row.default.clone(),
+        }
     }
 
     /// Whether an attribute changes from frame to frame.

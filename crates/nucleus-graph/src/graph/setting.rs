@@ -110,11 +110,15 @@ impl From<Value> for Setting {
 }
 
 /// A curve's number as what the attribute holds.
-fn as_kind(x: f64, attribute: &Attribute) -> Value {
+pub(super) fn as_kind(x: f64, attribute: &Attribute) -> Value {
     match attribute.kind {
         Kind::Bool => Value::Bool(x >= 0.5),
         Kind::Int => Value::Int(attribute.range.clamp(x.round()) as i64),
-        Kind::Choice(_) => Value::Choice(Choice(x.round() as i32)),
+        Kind::Choice(words) => {
+            let near = |&&(index, _): &&(i32, &str)| (f64::from(index) - x).abs();
+            let nearest = words.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
+            Value::Choice(Choice(nearest.map_or(0, |&(index, _)| index)))
+        }
         _ => Value::Float(attribute.range.clamp(x)),
     }
 }

@@ -12,6 +12,8 @@ use super::source::Source;
 pub struct Scene {
     /// The frames of the run.
     pub time: TimeSpan,
+    /// Frames from one evaluation to the next: whole, or a part of one.
+    pub every: f64,
     /// What is recorded.
     pub record: Record,
     /// The nodes and their connections.
@@ -49,7 +51,7 @@ pub enum Record {
 
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
-        (self.time, self.record) == (other.time, other.record)
+        (self.time, self.every, self.record) == (other.time, other.every, other.record)
             && self.graph == other.graph
             && self.checks == other.checks
     }

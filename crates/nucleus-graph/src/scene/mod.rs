@@ -7,17 +7,21 @@
 //! | how a scene becomes text                     | [`write_scene`]               |
 //! | what is said about mistakes, and where       | [`Diagnostic`]                |
 //! | how an attribute is changed in a text        | [`edit::edit`]                |
+//! | what a material preset is                    | [`Preset`]                    |
 //! | RON itself                                   | [`syntax`]                    |
 //!
 //! **Invariant:** nothing in a file is passed over in silence. Whatever is read has an effect, or is a
 //! warning, or an error; and all of them are found in one go.
 
+mod comments;
 mod diagnostic;
 mod document;
 pub mod edit;
 mod findings;
 mod nearest;
+mod preset;
 mod read;
+mod short_form;
 mod source;
 pub mod syntax;
 mod write;
@@ -26,9 +30,10 @@ pub use diagnostic::{Diagnostic, Note, Severity};
 pub use document::{Record, Scene, TimeSpan};
 pub(crate) use findings::Findings;
 pub(crate) use nearest::nearest;
+pub use preset::{Preset, presets, read_preset};
 pub use read::{read_scene, read_scene_text};
 pub use source::Source;
-pub use write::write_scene;
+pub use write::{format_scene, write_scene};
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use super::*;
 use crate::attributes::{
     Choice, Component, Selection, dynamic_constraint, n_base, n_cloth, nucleus, poly_plane,
 };
-use crate::graph::{Channel, Setting};
+use crate::graph::{Channel, Graph, Setting};
 
 mod mistakes;
 mod round_trip;
@@ -56,7 +56,7 @@ fn everything_in_a_scene_is_read() {
 #[test]
 fn the_short_form_makes_the_connections() {
     let scene = scene(SHEET);
-    let wires: Vec<String> = scene.graph.connections().iter().map(|c| scene.graph.describe(c.to)).collect();
+    let wires: Vec<String> = scene.graph.connections().map(|c| scene.graph.describe(c.to)).collect();
     for input in
         ["cloth1.inputMesh", "nucleus1.inputActive[0]", "nucleus1.inputPassive[0]", "nucleus1.inputStart[0]"]
     {

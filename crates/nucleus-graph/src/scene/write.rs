@@ -2,20 +2,33 @@
 
 use std::fmt::Write;
 
-use crate::animation::{Curve, Tangent};
-use crate::attributes::{Attribute, Choice, Kind, RampPoint, Value, n_base};
+use crate::animation::{Curve, Infinity, Tangent};
+use crate::attributes::{Attribute, Choice, ColorPoint, Kind, RampPoint, Value, n_particle};
 use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
+use super::comments::Comments;
 use super::document::{Record, Scene, TimeSpan};
 use super::read::INTERPOLATIONS;
+use super::short_form::ShortForm;
 
 /// Writes a scene as RON that reads back to the same scene, to the bit.
 ///
 /// Nodes are in the order of their names, attributes in that of their tables. What creation commands make
-/// is left out, because reading makes it again.
+/// is left out, because reading makes it again; what differs from that is written connection by connection.
 pub fn write_scene(scene: &Scene) -> String {
+    write(scene, &Comments::default())
+}
+
+/// The same, with the comments of the text that the scene was read from, each where it belongs.
+pub fn format_scene(scene: &Scene, text: &str) -> String {
+    write(scene, &Comments::of(text, &scene.source))
+}
+
+fn write(scene: &Scene, comments: &Comments) -> String {
     let TimeSpan { start, end, fps } = scene.time;
-    let mut text = format!("Scene(\n    time: (start: {start}, end: {end}, fps: {fps}),\n");
+    let every = if scene.every == 1.0 { String::new() } else { format!(", every: {}", scene.every) };
+    let head = comments.head.iter().map(|comment| format!("{comment}\n")).collect::<String>();
+    let mut text = format!("{head}Scene(\n    time: (start: {start}, end: {end}, fps: {fps}{every}),\n");
     match scene.record {
         Record::Frames => {}
         Record::Substeps => text.push_str("    record: substeps,\n"),
@@ -25,56 +38,94 @@ pub fn write_scene(scene: &Scene) -> String {
         Record::None => text.push_str("    record: none,\n"),
     }
     text.push_str("    nodes: {\n");
+    let short = ShortForm::of(&scene.graph);
     let mut nodes: Vec<(NodeId, &Node)> =
-        scene.graph.iter().filter(|(_, node)| node.made_by().is_none()).collect();
+        scene.graph.iter().filter(|(id, _)| short.is_written(*id)).collect();
     nodes.sort_by_key(|(_, node)| node.name());
     for (id, node) in nodes {
-        write_node(&scene.graph, id, node, &mut text);
+        write_node(&scene.graph, id, node, (&short, comments), &mut text);
     }
     text.push_str("    },\n");
+    write_connections(&short.by_hand, &mut text);
     if !scene.checks.is_empty() {
         let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "    checks: [{}],", checks.join(", "));
     }
+    for comment in &comments.tail {
+        let _ = writeln!(text, "    {comment}");
+    }
     text + ")\n"
 }
 
-fn write_node(graph: &Graph, id: NodeId, node: &Node, text: &mut String) {
+/// What no short form says.
+fn write_connections(pairs: &[[String; 2]], text: &mut String) {
+    if pairs.is_empty() {
+        return;
+    }
+    text.push_str("    connections: [\n");
+    for [from, to] in pairs {
+        let _ = writeln!(text, "        ({}, {}),", quoted(from), quoted(to));
+    }
+    text.push_str("    ],\n");
+}
+
+fn write_node(graph: &Graph, id: NodeId, node: &Node, forms: (&ShortForm, &Comments), text: &mut String) {
+    let (short, comments) = forms;
     let (name, node_type) = (quoted(node.name()), node.node_type());
-    let fields: Vec<String> =
-        node_type.attributes().into_iter().flat_map(|row| fields_of(graph, id, row)).collect();
-    let _ = write!(text, "        {name}: {}(", node_type.name);
+    let rows = node_type.attributes().into_iter();
+    let fields: Vec<(&Attribute, String)> = rows
+        .flat_map(|row| fields_of(graph, id, row, short).into_iter().map(move |field| (row, field)))
+        .collect();
+    let head = format!("{name}: {}(", node_type.name);
+    let indent = "        ";
     match fields.as_slice() {
-        [] => text.push_str("),\n"),
-        [field] => {
-            let _ = writeln!(text, "{field}),");
+        [] => *text += &comments.line(node.name(), indent, &format!("{head}),")),
+        [(_, field)] if !comments.is_inside(node.name()) => {
+            *text += &comments.line(node.name(), indent, &format!("{head}{field}),"));
         }
         fields => {
-            text.push('\n');
-            for field in fields {
-                let _ = writeln!(text, "            {field},");
+            *text += &comments.line(node.name(), indent, &head);
+            let mut last = "";
+            for (row, field) in fields {
+                // The parts of a vector have one place together.
+                let place =
+                    if row.name == last { String::new() } else { format!("{}.{}", node.name(), row.name) };
+                *text += &comments.line(&place, "            ", &format!("{field},"));
+                last = row.name;
             }
-            text.push_str("        ),\n");
+            *text += "        ),\n";
         }
     }
 }
 
 /// `name: value` for one attribute, or for each part of it; nothing if it is not set.
-fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute) -> Vec<String> {
+fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortForm) -> Vec<String> {
     let node = graph.node(id);
     let target = match row.name {
-        "inputMesh" => graph.source(id, &n_base::INPUT_MESH),
         "parent" => node.parent(),
-        _ => None,
+        "blendTarget" => graph.blend_target(id),
+        name => short.names(id, name),
     };
     if let Some(target) = target {
         return vec![format!("{}: {}", row.name, quoted(graph.node(target).name()))];
     }
-    match node.settings().get(row.name) {
-        None => Vec::new(),
-        Some(Setting::Fixed(value)) => vec![format!("{}: {}", row.name, held(value, row))],
-        Some(Setting::Keyed(curve)) => vec![format!("{}: {}", row.name, keyed(curve, row))],
-        Some(Setting::Parts(channels)) => parts(channels, row),
+    let is_particles = node.node_type().is_a(&n_particle::N_PARTICLE);
+    if row.name == "nucleus"
+        && is_particles
+        && short.names(id, "joined").is_none()
+        && !short.is_wired(node.name())
+    {
+        return vec!["nucleus: \"\"".to_owned()];
+    }
+    node.settings().get(row.name).map_or_else(Vec::new, |setting| setting_lines(row, setting))
+}
+
+/// What is set on an attribute: `name: value`, or a line for each part of it.
+pub(super) fn setting_lines(row: &Attribute, setting: &Setting) -> Vec<String> {
+    match setting {
+        Setting::Fixed(value) => vec![format!("{}: {}", row.name, held(value, row))],
+        Setting::Keyed(curve) => vec![format!("{}: {}", row.name, keyed(curve, row))],
+        Setting::Parts(channels) => parts(channels, row),
     }
 }
 
@@ -90,6 +141,7 @@ fn held(value: &Value, row: &Attribute) -> String {
         Value::Floats(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Vectors(vectors) => list(vectors.iter().map(|vector| triple(*vector))),
         Value::Ramp(points) => list(points.iter().map(ramp_point)),
+        Value::ColorRamp(points) => list(points.iter().map(color_point)),
         Value::Components(parts) => list(parts.iter().map(|part| quoted(&part.to_string()))),
     }
 }
@@ -99,12 +151,12 @@ fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
     use Channel::{Fixed, Keyed};
     match channels {
         [Fixed(x), Fixed(y), Fixed(z)] => vec![format!("{}: {}", row.name, triple([*x, *y, *z]))],
-        [Keyed(x), Keyed(y), Keyed(z)] if same_times(x, y) && same_times(x, z) => {
+        [Keyed(x), Keyed(y), Keyed(z)] if alike(x, y) && alike(x, z) => {
             let key = |k: usize| {
                 let value = triple([x, y, z].map(|curve| curve.keys()[k].value));
                 key(x.keys()[k].frame, value, x.keys()[k].tangent, row)
             };
-            vec![format!("{}: keys({})", row.name, list((0..x.keys().len()).map(key)))]
+            vec![format!("{}: {}", row.name, keys(list((0..x.keys().len()).map(key)), x.infinities()))]
         }
         _ => {
             let names = row.parts().into_iter().flatten().map(|(long, _)| long);
@@ -117,9 +169,10 @@ fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
     }
 }
 
-/// Whether two curves have keys at the same frames, with the same tangents.
-fn same_times(a: &Curve, b: &Curve) -> bool {
-    a.keys().len() == b.keys().len()
+/// Whether two curves have keys at the same frames, with the same tangents, and go on in the same way.
+fn alike(a: &Curve, b: &Curve) -> bool {
+    a.infinities() == b.infinities()
+        && a.keys().len() == b.keys().len()
         && a.keys()
             .iter()
             .zip(b.keys())
@@ -132,25 +185,44 @@ fn keyed(curve: &Curve, row: &Attribute) -> String {
         Kind::Choice(_) => word(Choice(x as i32), row),
         _ => x.to_string(),
     };
-    format!("keys({})", list(curve.keys().iter().map(|k| key(k.frame, value(k.value), k.tangent, row))))
+    let list = list(curve.keys().iter().map(|k| key(k.frame, value(k.value), k.tangent, row)));
+    keys(list, curve.infinities())
+}
+
+/// Keys, and how they go on unless they stay.
+fn keys(list: String, infinities: [Infinity; 2]) -> String {
+    let word =
+        |infinity| Infinity::WORDS.iter().find(|(_, known)| *known == infinity).map_or("", |(word, _)| word);
+    match infinities {
+        [Infinity::Constant, Infinity::Constant] => format!("keys({list})"),
+        [Infinity::Constant, post] => format!("keys(at: {list}, post: {})", word(post)),
+        [pre, Infinity::Constant] => format!("keys(at: {list}, pre: {})", word(pre)),
+        [pre, post] => format!("keys(at: {list}, pre: {}, post: {})", word(pre), word(post)),
+    }
 }
 
 fn key(frame: f64, value: String, tangent: Tangent, row: &Attribute) -> String {
     let usual =
         if matches!(row.kind, Kind::Bool | Kind::Choice(_)) { Tangent::Stepped } else { Tangent::Linear };
-    match tangent {
-        tangent if tangent == usual => format!("({frame}, {value})"),
-        Tangent::Stepped => format!("({frame}, {value}, stepped)"),
-        Tangent::Linear => format!("({frame}, {value}, linear)"),
-        Tangent::Spline => format!("({frame}, {value}, spline)"),
-    }
+    let word = Tangent::WORDS.iter().find(|(_, known)| *known == tangent).map_or("", |(word, _)| word);
+    if tangent == usual { format!("({frame}, {value})") } else { format!("({frame}, {value}, {word})") }
 }
 
 fn ramp_point(point: &RampPoint) -> String {
-    let RampPoint { position, value, interpolation } = point;
+    let way = way_on(point.interpolation);
+    format!("({}, {}{way})", point.position, point.value)
+}
+
+fn color_point(point: &ColorPoint) -> String {
+    let way = way_on(point.interpolation);
+    format!("({}, {}{way})", point.position, triple(point.color))
+}
+
+/// How a ramp goes on to its next point, unless that is the usual way.
+fn way_on(interpolation: Choice) -> String {
     match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
-        Some(&"linear") | None => format!("({position}, {value})"),
-        Some(word) => format!("({position}, {value}, {word})"),
+        Some(&"linear") | None => String::new(),
+        Some(word) => format!(", {word}"),
     }
 }
 

@@ -118,3 +118,80 @@ proptest! {
         }
     }
 }
+
+fn line(after: Infinity) -> Curve {
+    let key = |frame, value| Key { frame, value, tangent: Tangent::Linear };
+    Curve::new(vec![key(0.0, 1.0), key(10.0, 3.0)]).expect("in order").going_on(Infinity::Constant, after)
+}
+
+#[track_caller]
+fn near<const N: usize>(found: [f64; N], expected: [f64; N]) {
+    let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(is_near, "{found:?} is not {expected:?}");
+}
+
+#[test]
+fn beyond_its_keys_a_curve_goes_on_as_it_is_told() {
+    let at = |infinity| [12.0, 25.0, 37.0].map(|frame| line(infinity).value_at(frame));
+    near(at(Infinity::Constant), [3.0, 3.0, 3.0]);
+    near(at(Infinity::Linear), [3.4, 6.0, 8.4]);
+    near(at(Infinity::Cycle), [1.4, 2.0, 2.4]);
+    near(at(Infinity::CycleOffset), [3.4, 6.0, 8.4]);
+    near(at(Infinity::Oscillate), [2.6, 2.0, 1.6]);
+}
+
+#[test]
+fn before_its_keys_a_curve_goes_on_as_it_is_told() {
+    let before = |infinity| line(Infinity::Constant).going_on(infinity, Infinity::Constant);
+    let at = |infinity| [-2.0, -15.0].map(|frame| before(infinity).value_at(frame));
+    near(at(Infinity::Constant), [1.0, 1.0]);
+    near(at(Infinity::Linear), [0.6, -2.0]);
+    near(at(Infinity::Cycle), [2.6, 2.0]);
+    near(at(Infinity::Oscillate), [1.4, 2.0]);
+    assert_eq!(line(Infinity::Cycle).value_at(-2.0), 1.0, "only before, not after");
+}
+
+#[test]
+fn a_flat_key_is_level_and_an_auto_key_is_level_where_keys_turn_back() {
+    for tangent in [Tangent::Flat, Tangent::Auto] {
+        let key = |frame, value| Key { frame, value, tangent };
+        let curve = Curve::new(vec![key(0.0, 0.0), key(10.0, 1.0), key(20.0, 0.0)]).expect("in order");
+        let slope = (curve.value_at(10.001) - curve.value_at(9.999)) / 0.002;
+        assert!(slope.abs() < 1e-3, "{tangent:?}: {slope}");
+    }
+    let key = |frame, value| Key { frame, value, tangent: Tangent::Auto };
+    let rising = Curve::new(vec![key(0.0, 0.0), key(10.0, 1.0), key(20.0, 2.0)]).expect("in order");
+    let slope = (rising.value_at(10.001) - rising.value_at(9.999)) / 0.002;
+    assert!((slope - 0.1).abs() < 1e-3, "it goes through: {slope}");
+}
+
+fn infinities() -> impl Strategy<Value = Infinity> {
+    prop::sample::select(Infinity::WORDS.map(|(_, infinity)| infinity).to_vec())
+}
+
+proptest! {
+    #[test]
+    fn an_auto_curve_never_swings_beyond_its_keys(values in prop::collection::vec(-5.0..5.0, 2..6), at in 0.0..1.0) {
+        let key = |(k, &value): (usize, &f64)| Key { frame: (k * k) as f64, value, tangent: Tangent::Auto };
+        let curve = Curve::new(values.iter().enumerate().map(key).collect()).expect("in order");
+        let frame = at * ((values.len() - 1) * (values.len() - 1)) as f64;
+        let k = curve.keys().partition_point(|key| key.frame <= frame).clamp(1, values.len() - 1);
+        let (a, b) = (values[k - 1], values[k]);
+        let value = curve.value_at(frame);
+        prop_assert!(value >= a.min(b) - 1e-12 && value <= a.max(b) + 1e-12, "{value} is not between {a} and {b}");
+    }
+
+    #[test]
+    fn a_curve_is_finite_everywhere(
+        values in prop::collection::vec(any::<f64>().prop_filter("in range", |x| x.abs() < 1e300), 1..5),
+        before in infinities(), after in infinities(), frame in -1e9..1e9,
+    ) {
+        let tangents = Tangent::WORDS;
+        let key = |(k, &value): (usize, &f64)| Key { frame: k as f64, value, tangent: tangents[k % 5].1 };
+        let curve = Curve::new(values.iter().enumerate().map(key).collect()).expect("in order");
+        let curve = curve.going_on(before, after);
+        let value = curve.value_at(frame);
+        let (low, high) = curve.range();
+        prop_assert!(value.is_finite() && value >= low && value <= high, "{value} is not in {low} to {high}");
+    }
+}

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::attributes::{NodeType, node_type, node_types};
-use crate::graph::NodeId;
+use crate::graph::{NodeId, is_a_name};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
@@ -46,8 +46,10 @@ pub(super) fn drafts<'a>(
     (drafts, names)
 }
 
-fn is_a_name(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | ':'))
+/// A node that is alone in its file and has no name.
+pub(super) fn lone<'a>(root: &'a Node, findings: &mut Findings) -> Option<Draft<'a>> {
+    let (node_type, fields) = typed("preset", root, findings)?;
+    Some(Draft { name: "preset", span: &root.span, node_type, fields })
 }
 
 fn typed<'a>(

@@ -1,19 +1,69 @@
-//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`.
+//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, and `keys(at: [...], post: cycle)` for those that go on.
 
-use crate::animation::{Curve, Key, Tangent};
+use crate::animation::{Curve, Infinity, Key, Tangent};
 use crate::attributes::{Attribute, Kind, Value as Held};
 use crate::graph::{Channel, Setting};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
-use crate::scene::syntax::{Node, Value};
+use crate::scene::syntax::{Node, Value, Word};
 
+use super::fields::listed;
 use super::value::{expected, found, number, single, triple};
 
-/// What stands inside `keys(...)`, if that is what a value is.
-pub(super) fn keyed(node: &Node) -> Option<&Node> {
+/// What stands inside `keys(...)`.
+pub(super) struct Keyed<'a> {
+    /// The keys.
+    list: &'a Node,
+    /// How it goes on before and after them, where that is said.
+    infinities: [Option<&'a Node>; 2],
+    /// Fields that `keys(...)` does not have.
+    strange: Vec<&'a Word>,
+}
+
+/// What stands inside `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`, if that is what a value is.
+pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
     match &node.value {
-        Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => items.first(),
+        Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => {
+            Some(Keyed { list: items.first()?, infinities: [None, None], strange: Vec::new() })
+        }
+        Value::Record { name: Some(name), fields } if name.text == "keys" => {
+            let field = |name: &str| fields.iter().find(|(word, _)| word.text == name).map(|(_, node)| node);
+            let strange = fields.iter().map(|(word, _)| word);
+            let strange = strange.filter(|word| !["at", "pre", "post"].contains(&word.text.as_str()));
+            Some(Keyed {
+                list: field("at").unwrap_or(node),
+                infinities: [field("pre"), field("post")],
+                strange: strange.collect(),
+            })
+        }
         _ => None,
+    }
+}
+
+impl Keyed<'_> {
+    /// How the curve goes on.
+    fn infinities(&self, label: &str, findings: &mut Findings) -> Option<[Infinity; 2]> {
+        let names: Vec<&str> = Infinity::WORDS.iter().map(|(name, _)| *name).collect();
+        for word in &self.strange {
+            let error = findings.error(&word.span, format!("the keys of {label} have no `{}`", word.text));
+            error.help("keys take `at`, `pre` and `post`");
+        }
+        let [pre, post] = self.infinities.map(|node| {
+            let Some(node) = node else { return Some(Infinity::Constant) };
+            let Value::Word(word) = &node.value else {
+                return expected(label, "a word for how its keys go on", node, findings);
+            };
+            let known = Infinity::WORDS.iter().find(|(name, _)| name == word);
+            if known.is_none() {
+                let error = findings.error(&node.span, format!("keys cannot go on by `{word}`"));
+                match nearest(word, names.iter().copied()) {
+                    Some(near) => error.did_you_mean(Some(near)),
+                    None => error.help(format!("they go on by {}", listed(&names))),
+                };
+            }
+            known.map(|(_, infinity)| *infinity)
+        });
+        if self.strange.is_empty() { Some([pre?, post?]) } else { None }
     }
 }
 
@@ -21,9 +71,11 @@ pub(super) fn keyed(node: &Node) -> Option<&Node> {
 pub(super) fn read(
     label: &str,
     row: &'static Attribute,
-    list: &Node,
+    keyed: Keyed,
     findings: &mut Findings,
 ) -> Option<Setting> {
+    let list = keyed.list;
+    let infinities = keyed.infinities(label, findings)?;
     if !may_be_keyed(label, row, list, findings) {
         return None;
     }
@@ -32,7 +84,7 @@ pub(super) fn read(
             read_keys(label, row, list, findings, |node, findings| triple(label, row, node, findings))?;
         let curves = [0, 1, 2].map(|part| {
             let part = keys.iter().map(|&(frame, value, tangent)| Key { frame, value: value[part], tangent });
-            curve(label, part.collect(), list, findings).map(Channel::Keyed)
+            curve(label, part.collect(), infinities, list, findings).map(Channel::Keyed)
         });
         let [x, y, z] = curves;
         return Some(Setting::Parts([x?, y?, z?]));
@@ -42,22 +94,24 @@ pub(super) fn read(
     };
     let keys = read_keys(label, row, list, findings, value)?;
     let keys = keys.into_iter().map(|(frame, value, tangent)| Key { frame, value, tangent });
-    curve(label, keys.collect(), list, findings).map(Setting::Keyed)
+    curve(label, keys.collect(), infinities, list, findings).map(Setting::Keyed)
 }
 
 /// Reads the keys of one part of a vector.
 pub(super) fn read_part(
     label: &str,
     row: &'static Attribute,
-    list: &Node,
+    keyed: Keyed,
     findings: &mut Findings,
 ) -> Option<Curve> {
+    let list = keyed.list;
+    let infinities = keyed.infinities(label, findings)?;
     if !may_be_keyed(label, row, list, findings) {
         return None;
     }
     let keys = read_keys(label, row, list, findings, |node, findings| number(label, node, findings))?;
     let keys = keys.into_iter().map(|(frame, value, tangent)| Key { frame, value, tangent });
-    curve(label, keys.collect(), list, findings)
+    curve(label, keys.collect(), infinities, list, findings)
 }
 
 fn may_be_keyed(label: &str, row: &'static Attribute, list: &Node, findings: &mut Findings) -> bool {
@@ -131,8 +185,10 @@ fn usual_tangent(row: &Attribute) -> Tangent {
     }
 }
 
+const TANGENTS: &str = "a tangent is `stepped`, `linear`, `spline`, `flat` or `auto`";
+
 fn read_tangent(node: &Node, findings: &mut Findings) -> Option<Tangent> {
-    let tangents = [("stepped", Tangent::Stepped), ("linear", Tangent::Linear), ("spline", Tangent::Spline)];
+    let tangents = Tangent::WORDS;
     if let Value::Word(word) = &node.value {
         if let Some((_, tangent)) = tangents.iter().find(|(name, _)| name == word) {
             return Some(*tangent);
@@ -140,21 +196,27 @@ fn read_tangent(node: &Node, findings: &mut Findings) -> Option<Tangent> {
         let error = findings.error(&node.span, format!("there is no tangent `{word}`"));
         match nearest(word, tangents.iter().map(|(name, _)| *name)) {
             Some(near) => error.did_you_mean(Some(near)),
-            None => error.help("a tangent is `stepped`, `linear` or `spline`"),
+            None => error.help(TANGENTS),
         };
         return None;
     }
     let error = findings.error(&node.span, format!("a tangent is a word, found {}", found(&node.value)));
-    error.help("a tangent is `stepped`, `linear` or `spline`");
+    error.help(TANGENTS);
     None
 }
 
-fn curve(label: &str, keys: Vec<Key>, list: &Node, findings: &mut Findings) -> Option<Curve> {
+fn curve(
+    label: &str,
+    keys: Vec<Key>,
+    [before, after]: [Infinity; 2],
+    list: &Node,
+    findings: &mut Findings,
+) -> Option<Curve> {
     let curve = Curve::new(keys);
     if let Err(error) = &curve {
         findings.error(&list.span, format!("the keys of {label} make no curve: {error}"));
     }
-    curve.ok()
+    curve.ok().map(|curve| curve.going_on(before, after))
 }
 
 fn as_number(value: &Held) -> f64 {

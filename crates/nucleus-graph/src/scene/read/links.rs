@@ -1,16 +1,18 @@
-//! Names that become connections: `inputMesh`, `nucleus`, `parent`, and the objects of components.
+//! Names that become connections: `inputMesh`, `nucleus`, `target`, `parent`, and the objects of components.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::attributes::{
-    Attribute, Choice, Component, NodeType, dynamic_constraint, n_base, n_cloth, nucleus, surface_shape,
-    transform,
+    Attribute, Choice, Component, NodeType, dyn_base, dynamic_constraint, n_base, n_cloth, n_particle,
+    nucleus, particle, surface_shape, transform,
 };
-use crate::graph::{Graph, GraphError, NodeId};
+use crate::graph::{Creation, Graph, NodeId};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::source::Source;
+
+use super::wires::Wires;
 
 /// What has been named while nodes were read.
 pub(super) struct Links {
@@ -32,44 +34,36 @@ pub(super) struct Reference {
     pub(super) span: Range<usize>,
 }
 
-/// Makes all connections.
-pub(super) fn connect(graph: &mut Graph, links: &Links, source: &Source, findings: &mut Findings) {
+/// Makes the connections that Maya's commands would make, in the order of names: objects first, then what is
+/// put on them.
+pub(super) fn connect(
+    graph: &mut Graph,
+    links: &Links,
+    wires: &Wires,
+    source: &mut Source,
+    findings: &mut Findings,
+) {
     let resolved = resolve(graph, links, findings);
-    for reference in &links.references {
-        if reference.row == &transform::PARENT.row
-            && let Some(&parent) = resolved.get(&(reference.node, reference.row.name))
-            && let Err(error) = graph.set_parent(reference.node, parent)
-        {
-            findings.error(&reference.span, error.to_string());
-        }
-    }
-    let members: Vec<(NodeId, &'static NodeType)> = graph
-        .iter()
-        .filter(|(_, node)| node.node_type().is_a(&n_base::N_BASE) || is_constraint(node.node_type()))
-        .map(|(id, node)| (id, node.node_type()))
-        .collect();
-    check_meshes(graph, &members, links, source, findings);
-    let Some(nucleus) = only_nucleus(graph, &members, links, source, findings) else { return };
-    let (constraints, objects): (Vec<_>, Vec<_>) = members.into_iter().partition(|(_, t)| is_constraint(t));
-    for (object, node_type) in objects {
-        let Some(&mesh) = resolved.get(&(object, n_base::INPUT_MESH.row.name)) else { continue };
-        let made = if node_type.is_a(&n_cloth::N_CLOTH) {
-            graph.create_cloth(object, mesh, nucleus)
-        } else {
-            graph.create_collider(object, mesh, nucleus)
-        };
-        report(made, object, graph, source, findings);
-    }
-    for (constraint, _) in constraints {
-        check_components(graph, constraint, links, source, findings);
-        let components = graph.node(constraint).get(&dynamic_constraint::COMPONENTS);
-        let made = graph.create_constraint(constraint, &components, nucleus);
-        report(made, constraint, graph, source, findings);
-    }
-}
-
-fn is_constraint(node_type: &'static NodeType) -> bool {
-    node_type.is_a(&dynamic_constraint::DYNAMIC_CONSTRAINT)
+    hang(graph, links, &resolved, findings);
+    blend(graph, links, &resolved, source, findings);
+    let mut joiner = Joiner {
+        ends: wires.ends(graph),
+        all: graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect(),
+        named: links.references.iter().map(|r| (r.node, r.row.name)).collect(),
+        graph,
+        links,
+        resolved,
+        source,
+        findings,
+        nuclei: BTreeMap::new(),
+        alone: false,
+    };
+    let nodes: Vec<(NodeId, &'static NodeType)> =
+        joiner.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
+    let of = |base: &'static NodeType| nodes.iter().filter(move |(_, node_type)| node_type.is_a(base));
+    of(&n_base::N_BASE).for_each(|&(id, node_type)| joiner.object(id, node_type));
+    of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| joiner.constraint(id));
+    of(&dyn_base::DYN_BASE).for_each(|&(id, _)| joiner.effect(id));
 }
 
 /// Finds the nodes that are named, each of the type that is wanted there.
@@ -80,9 +74,14 @@ fn resolve(
 ) -> BTreeMap<(NodeId, &'static str), NodeId> {
     let mut resolved = BTreeMap::new();
     for Reference { node, row, name, span } in &links.references {
+        let is_particles = graph.node(*node).node_type().is_a(&n_particle::N_PARTICLE);
+        if name.is_empty() && row.name == "nucleus" && is_particles {
+            continue;
+        }
         let (wanted, what): (&'static NodeType, _) = match row.name {
             "nucleus" => (&nucleus::NUCLEUS, "a nucleus"),
             "parent" => (&transform::TRANSFORM, "something that has a transform"),
+            "target" => (&particle::PARTICLE, "an object"),
             _ => (&surface_shape::SURFACE_SHAPE, "a mesh"),
         };
         match links.names.get(name) {
@@ -107,56 +106,229 @@ fn resolve(
     resolved
 }
 
-/// Every object needs a mesh.
-fn check_meshes(
-    graph: &Graph,
-    members: &[(NodeId, &'static NodeType)],
+/// Hangs nodes from their parents.
+fn hang(
+    graph: &mut Graph,
     links: &Links,
-    source: &Source,
+    resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     findings: &mut Findings,
 ) {
-    let given =
-        |id| links.references.iter().any(|r| r.node == id && r.row.name == n_base::INPUT_MESH.row.name);
-    for (id, node_type) in members {
-        if node_type.is_a(&n_base::N_BASE) && !given(*id) {
-            let name = graph.node(*id).name();
-            let place = source.place(name);
-            // A value of the wrong type has been reported already.
-            if source.place(&format!("{name}.{}", n_base::INPUT_MESH.row.name)) == place {
-                let error = findings.error(&place, format!("`{name}` has no `inputMesh`"));
-                error.help("add `inputMesh: \"...\"`, the name of a mesh node");
-            }
+    for reference in &links.references {
+        if reference.row == &transform::PARENT.row
+            && let Some(&parent) = resolved.get(&(reference.node, reference.row.name))
+            && let Err(error) = graph.set_parent(reference.node, parent)
+        {
+            findings.error(&reference.span, error.to_string());
         }
     }
 }
 
-/// The nucleus that everything belongs to.
-fn only_nucleus(
-    graph: &Graph,
-    members: &[(NodeId, &'static NodeType)],
+/// Tells meshes what they are blended into.
+fn blend(
+    graph: &mut Graph,
     links: &Links,
+    resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     source: &Source,
     findings: &mut Findings,
-) -> Option<NodeId> {
-    let all: Vec<NodeId> = graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect();
-    let place = |id: NodeId| source.place(graph.node(id).name());
-    match (all.as_slice(), members.first()) {
-        (&[only], _) => return Some(only),
-        ([], Some(&(member, _))) if links.names.values().all(Option::is_some) => {
-            let name = graph.node(member).name();
-            let error =
-                findings.error(&place(member), format!("there is no nucleus that `{name}` could belong to"));
-            error.help("add `\"nucleus1\": nucleus()`");
+) {
+    for reference in links.references.iter().filter(|r| r.row == &surface_shape::BLEND_TARGET.row) {
+        let Some(&target) = resolved.get(&(reference.node, reference.row.name)) else { continue };
+        if let Err(error) = graph.blend_into(reference.node, target) {
+            findings.error(&reference.span, error.to_string());
         }
-        (&[first, ref others @ ..], _) => {
-            for &other in others {
-                let message = "a scene can have only one nucleus so far";
-                findings.error(&place(other), message).note_at(&place(first), "the other one is here");
+    }
+    for (id, node) in graph.of_type(&surface_shape::SURFACE_SHAPE) {
+        let given =
+            links.references.iter().any(|r| r.node == id && r.row == &surface_shape::BLEND_TARGET.row);
+        if node.setting(&surface_shape::BLEND).is_some() && !given && graph.blend_target(id).is_none() {
+            let place = source.place(&format!("{}.blend", node.name()));
+            let warning = findings.warning(
+                &place,
+                format!("`blend` of `{}` does nothing: there is no `blendTarget`", node.name()),
+            );
+            warning.help("add `blendTarget: \"...\"`, a mesh of as many points");
+        }
+    }
+}
+
+/// Joins nodes to their nuclei.
+struct Joiner<'a> {
+    graph: &'a mut Graph,
+    links: &'a Links,
+    /// Attributes that connections made by hand leave from, and those they arrive at.
+    ends: [BTreeSet<(NodeId, &'static str)>; 2],
+    /// Attributes that name a node.
+    named: BTreeSet<(NodeId, &'static str)>,
+    /// All nuclei.
+    all: Vec<NodeId>,
+    resolved: BTreeMap<(NodeId, &'static str), NodeId>,
+    source: &'a mut Source,
+    findings: &'a mut Findings,
+    /// The nucleus of each object so far.
+    nuclei: BTreeMap<NodeId, NodeId>,
+    /// That there is no nucleus has been said.
+    alone: bool,
+}
+
+impl Joiner<'_> {
+    fn object(&mut self, id: NodeId, node_type: &'static NodeType) {
+        let is_particles = node_type.is_a(&n_particle::N_PARTICLE);
+        let mesh = self.resolved.get(&(id, n_base::INPUT_MESH.row.name)).copied();
+        if mesh.is_none() && !is_particles {
+            self.check_mesh(id);
+        }
+        if is_particles {
+            self.not_solved(id, "particles are");
+        }
+        if is_particles && self.is_left_alone(id) {
+            return;
+        }
+        // Its mesh may be broken: whether there is a nucleus for it can be told all the same.
+        let meant = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
+        if !is_particles && !meant && self.is_wired(id) {
+            return;
+        }
+        let Some(nucleus) = self.nucleus_of(id) else { return };
+        if mesh.is_some() || is_particles {
+            self.nuclei.insert(id, nucleus);
+            self.create(id, &Creation::Object { mesh: mesh.filter(|_| !is_particles), nucleus });
+        }
+    }
+
+    /// Whether connections by hand begin or end at a node.
+    fn is_wired(&self, id: NodeId) -> bool {
+        self.ends.iter().any(|ends| ends.range((id, "")..).next().is_some_and(|(node, _)| *node == id))
+    }
+
+    /// Particles have no mesh that would say that they are to be joined: they are, unless they are connected
+    /// by hand or belong to no nucleus, `nucleus: ""`.
+    fn is_left_alone(&self, id: NodeId) -> bool {
+        let mut references = self.links.references.iter();
+        self.is_wired(id) || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
+    }
+
+    fn constraint(&mut self, id: NodeId) {
+        check_type(self.graph, id, self.source, self.findings);
+        let listed = self.graph.node(id).setting(&dynamic_constraint::COMPONENTS).is_some();
+        if !listed && self.is_wired(id) {
+            return;
+        }
+        check_components(self.graph, id, self.links, self.source, self.findings);
+        if !listed {
+            return;
+        }
+        let components = self.graph.node(id).get(&dynamic_constraint::COMPONENTS);
+        let objects: Vec<NodeId> = components
+            .iter()
+            .filter_map(|component| self.graph.find(&component.object))
+            .filter(|object| self.nuclei.contains_key(object))
+            .collect();
+        let theirs: BTreeSet<NodeId> = objects.iter().map(|object| self.nuclei[object]).collect();
+        let theirs: Vec<NodeId> = theirs.into_iter().collect();
+        let given = self.given(id);
+        let nucleus = match (given, theirs.as_slice()) {
+            (Some(None), _) => return,
+            (Some(Some(nucleus)), _) => nucleus,
+            (None, &[only]) => only,
+            (None, _) => match self.nucleus_of(id) {
+                Some(nucleus) => nucleus,
+                None => return,
+            },
+        };
+        if let Some(stranger) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
+            self.refuse_stranger(id, nucleus, *stranger);
+            return;
+        }
+        self.create(id, &Creation::Constraint { components, nucleus });
+    }
+
+    fn effect(&mut self, id: NodeId) {
+        self.not_solved(id, "fields and emitters are");
+        if let Some(&target) = self.resolved.get(&(id, dyn_base::TARGET.row.name)) {
+            self.create(id, &Creation::Effect { target });
+        }
+    }
+
+    fn create(&mut self, id: NodeId, creation: &Creation) {
+        if let Err(error) = self.graph.create(id, creation) {
+            self.findings.error(&self.source.place(self.graph.node(id).name()), error.to_string());
+        }
+    }
+
+    fn not_solved(&mut self, id: NodeId, what: &str) {
+        let name = self.graph.node(id).name();
+        let message = format!("{what} not solved yet: `{name}` does nothing");
+        self.findings.warning(&self.source.place(name), message);
+    }
+
+    /// The nucleus that is named for a node: nothing if none is, and nothing inside if it is not there.
+    fn given(&self, id: NodeId) -> Option<Option<NodeId>> {
+        self.named.contains(&(id, "nucleus")).then(|| self.resolved.get(&(id, "nucleus")).copied())
+    }
+
+    /// The nucleus that a node belongs to: the one that is named, or the only one.
+    fn nucleus_of(&mut self, id: NodeId) -> Option<NodeId> {
+        if let Some(given) = self.given(id) {
+            return given;
+        }
+        let name = self.graph.node(id).name();
+        let place = self.source.place(name);
+        match self.all.as_slice() {
+            &[only] => return Some(only),
+            [] if self.links.names.values().all(Option::is_some) && !self.alone => {
+                self.alone = true;
+                let message = format!("there is no nucleus that `{name}` could belong to");
+                self.findings.error(&place, message).help("add `\"nucleus1\": nucleus()`");
+            }
+            [] => {}
+            several => {
+                let names: Vec<String> =
+                    several.iter().map(|id| format!("`{}`", self.graph.node(*id).name())).collect();
+                let message = format!("`{name}` could belong to {}", names.join(" or "));
+                let help = format!("say which: `nucleus: \"{}\"`", self.graph.node(several[0]).name());
+                self.findings.error(&place, message).help(help);
             }
         }
-        _ => {}
+        None
     }
-    None
+
+    /// Only what hangs on the same nucleus can be joined.
+    fn refuse_stranger(&mut self, constraint: NodeId, nucleus: NodeId, stranger: NodeId) {
+        let name = |id: NodeId| self.graph.node(id).name();
+        let message = format!(
+            "`{}` under `{}` takes hold of `{}` under `{}`",
+            name(constraint),
+            name(nucleus),
+            name(stranger),
+            name(self.nuclei[&stranger])
+        );
+        let place = self.source.place(&format!("{}.components", name(constraint)));
+        self.findings.error(&place, message).help("only what belongs to the same nucleus acts on each other");
+    }
+
+    /// Cloth and colliders need a mesh.
+    fn check_mesh(&mut self, id: NodeId) {
+        let given = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
+        let name = self.graph.node(id).name();
+        let place = self.source.place(name);
+        // A value of the wrong type has been reported already.
+        let misread = self.source.place(&format!("{name}.{}", n_base::INPUT_MESH.row.name)) != place;
+        if !given && !misread && !self.ends[1].contains(&(id, n_base::INPUT_MESH.row.name)) {
+            let error = self.findings.error(&place, format!("`{name}` has no `inputMesh`"));
+            error.help("add `inputMesh: \"...\"`, the name of a mesh node");
+        }
+    }
+}
+
+/// Says so if constraints of a type do nothing yet.
+fn check_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
+    let node = graph.node(constraint);
+    if node.get(&dynamic_constraint::CONSTRAINT_TYPE) != Choice(0) {
+        let name = node.name();
+        let place = source.place(&format!("{name}.constraintType"));
+        findings
+            .warning(&place, format!("constraints of this type have no effect yet: `{name}` does nothing"));
+    }
 }
 
 /// What a constraint takes hold of has to be there and be cloth.
@@ -169,12 +341,6 @@ fn check_components(
 ) {
     let node = graph.node(constraint);
     let name = node.name();
-    let constraint_type = node.get(&dynamic_constraint::CONSTRAINT_TYPE);
-    if constraint_type != Choice(0) {
-        let place = source.place(&format!("{name}.constraintType"));
-        findings
-            .warning(&place, format!("constraints of this type have no effect yet: `{name}` does nothing"));
-    }
     let components = node.get(&dynamic_constraint::COMPONENTS);
     let place = source.place(name);
     // One that could not be read has been reported already.
@@ -219,17 +385,5 @@ fn refuse_object(
     if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {
         let meant = Component { object: graph.node(cloth).name().to_owned(), ..component.clone() };
         error.did_you_mean(Some(&meant.to_string()));
-    }
-}
-
-fn report(
-    made: Result<(), GraphError>,
-    node: NodeId,
-    graph: &Graph,
-    source: &Source,
-    findings: &mut Findings,
-) {
-    if let Err(error) = made {
-        findings.error(&source.place(graph.node(node).name()), error.to_string());
     }
 }

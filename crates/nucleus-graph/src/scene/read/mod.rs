@@ -8,6 +8,7 @@
 //! | how an attribute's value is read, keyed or not       | `value.rs`, `keys.rs` |
 //! | what `"cloth1.vtx[0:8]"` means                       | `component.rs`  |
 //! | how names become connections                         | `links.rs`      |
+//! | how connections are made by hand                     | `wires.rs`      |
 
 mod checks;
 mod component;
@@ -18,13 +19,15 @@ mod links;
 mod nodes;
 mod time;
 mod value;
+mod wires;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::attributes::{Attribute, NodeType};
 use crate::compile;
-use crate::graph::NodeId;
+use crate::graph::{NodeId, Setting};
 
 use super::diagnostic::Diagnostic;
 use super::document::{Record, Scene, TimeSpan};
@@ -93,12 +96,13 @@ fn read_root(root: &Node, file: &Path, findings: &mut Findings) -> Option<(Scene
     let record = fields.take("record").and_then(|node| read_record(node, findings));
     let checks = fields.take("checks").map(|node| checks::read(node, findings));
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
-    fields.refuse_rest("a scene", &["time", "record", "nodes", "checks"], findings);
+    let wires = wires::read(fields.take("connections"), findings);
+    fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
     let mut source = Source::new(file);
-    let (graph, broken) = nodes::read_nodes(nodes?, &mut source, findings);
-    let time = time.unwrap_or(TimeSpan { start: 1, end: 1, fps: 24.0 });
+    let (graph, broken) = nodes::read_nodes(nodes?, &wires, &mut source, findings);
+    let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();
-    Some((Scene { time, record, graph, checks: checks.unwrap_or_default(), source }, broken))
+    Some((Scene { time, every, record, graph, checks: checks.unwrap_or_default(), source }, broken))
 }
 
 fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
@@ -130,4 +134,27 @@ fn every(items: &[Node]) -> Option<Record> {
         }
         _ => None,
     }
+}
+
+/// Reads a text that is one node without a name: what it sets.
+pub(super) fn read_lone_node(
+    text: &str,
+    findings: &mut Findings,
+) -> Option<(&'static NodeType, Vec<(&'static Attribute, Setting)>)> {
+    let root = match syntax::parse(text) {
+        Ok(root) => root,
+        Err(errors) => {
+            for error in errors {
+                findings.error(&error.span, error.message).help = error.help;
+            }
+            return None;
+        }
+    };
+    let draft = drafts::lone(&root, findings)?;
+    let node_type = draft.node_type;
+    let graph = nodes::read_lone(&draft, findings);
+    let (_, node) = graph.iter().find(|(_, node)| node.name() == draft.name)?;
+    let row = |name: &&'static str| node_type.attribute(name);
+    let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
+    Some((node_type, set.collect()))
 }

@@ -3,21 +3,26 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Effect, Kind, Value as Held};
-use crate::graph::{Channel, Graph, NodeId, Setting};
+use crate::attributes::{Attribute, Effect, Kind, Value as Held, n_base, time};
+use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
+use crate::scene::diagnostic::Severity;
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
+use crate::scene::preset::preset;
 use crate::scene::source::Source;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::component;
 use super::drafts::{Draft, drafts};
+use super::fields::listed;
 use super::links::{self, Links, Reference};
 use super::value::{expected, read, read_part, single, text};
+use super::wires::Wires;
 
 /// Reads all nodes and connects them. Also returns the nodes on which something could not be read.
 pub(super) fn read_nodes(
     node: &Node,
+    wires: &Wires,
     source: &mut Source,
     findings: &mut Findings,
 ) -> (Graph, BTreeSet<NodeId>) {
@@ -32,7 +37,15 @@ pub(super) fn read_nodes(
     drafts.sort_by_key(|draft| draft.name);
     let mut links = Links { names, references: Vec::new() };
     for draft in &drafts {
-        let Ok(id) = graph.add(draft.name, draft.node_type) else { continue };
+        let id = match graph.add(draft.name, draft.node_type) {
+            Ok(id) => id,
+            // The clock is there already.
+            Err(_) if draft.name == CLOCK && draft.node_type == &time::TIME => graph.clock(),
+            Err(error) => {
+                findings.error(draft.span, error.to_string()).help("give it another name");
+                continue;
+            }
+        };
         source.note(draft.name.to_owned(), draft.span);
         links.names.insert(draft.name.to_owned(), Some(id));
         let before = findings.errors();
@@ -42,8 +55,40 @@ pub(super) fn read_nodes(
             broken.insert(id);
         }
     }
-    links::connect(&mut graph, &links, source, findings);
+    links.names.entry(CLOCK.to_owned()).or_insert(Some(graph.clock()));
+    links::connect(&mut graph, &links, wires, source, findings);
+    let is_broken = |name: &str| links.names.get(name).is_some_and(Option::is_none);
+    wires.connect(&mut graph, &is_broken, findings);
     (graph, broken)
+}
+
+/// Reads a node that is alone. What would join it to others is refused.
+pub(super) fn read_lone(draft: &Draft, findings: &mut Findings) -> Graph {
+    let mut graph = Graph::new();
+    let Ok(id) = graph.add(draft.name, draft.node_type) else { return graph };
+    let mut links = Links { names: Default::default(), references: Vec::new() };
+    let mut source = Source::default();
+    let mut said = Findings::default();
+    NodeReader {
+        graph: &mut graph,
+        id,
+        draft,
+        source: &mut source,
+        findings: &mut said,
+        links: &mut links,
+        set: Vec::new(),
+    }
+    .fields();
+    // That something has no effect yet is told where the preset is used.
+    let errors = said.in_order().into_iter().filter(|said| said.severity == Severity::Error);
+    findings.extend(errors.collect());
+    for reference in &links.references {
+        findings.error(
+            &reference.span,
+            format!("a preset cannot set `{}`, which names a node", reference.row.name),
+        );
+    }
+    graph
 }
 
 /// Reads the attributes of one node.
@@ -82,12 +127,13 @@ impl NodeReader<'_, '_> {
         let label = format!("`{}` of `{}`", row.name, self.draft.name);
         self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
         match row.kind {
-            Kind::Node => {
+            Kind::Node(_) => {
                 let Some(name) = text(&label, node, self.findings) else { return };
                 let (node_id, name, span) = (self.id, name.to_owned(), node.span.clone());
                 self.links.references.push(Reference { node: node_id, row, name, span });
             }
             Kind::Components => self.components(&label, row, node),
+            Kind::Text if row == &n_base::PRESET.row => self.preset(&label, node),
             _ => {
                 if let Some(setting) = read(&label, row, node, self.findings) {
                     self.store(word, row, setting);
@@ -146,6 +192,43 @@ impl NodeReader<'_, '_> {
         }
     }
 
+    /// Takes a material.
+    fn preset(&mut self, label: &str, node: &Node) {
+        let Some(name) = text(label, node, self.findings) else { return };
+        if name.is_empty() {
+            return;
+        }
+        let preset = match preset(name, &|file| self.source.path(file)) {
+            Ok(preset) => preset,
+            Err((message, help)) => {
+                self.findings.error(&node.span, message).help(help);
+                return;
+            }
+        };
+        let node_type = self.draft.node_type;
+        if !node_type.is_a(preset.node_type) {
+            let message = format!(
+                "the preset `{name}` is for {}, but `{}` is of type {}",
+                preset.node_type.name, self.draft.name, node_type.name
+            );
+            self.findings.error(&node.span, message);
+            return;
+        }
+        let set = self.graph.apply_preset(self.id, &preset.settings);
+        let set = set.and_then(|()| {
+            self.graph.set(self.id, &n_base::PRESET.row, Setting::Fixed(Held::Text(name.to_owned())))
+        });
+        if let Err(error) = set {
+            self.findings.error(&node.span, error.to_string());
+        }
+        let idle = preset.settings.iter().filter(|(row, _)| !matches!(row.effect, Effect::Solved(_)));
+        let idle: Vec<&str> = idle.map(|(row, _)| row.name).collect();
+        if !idle.is_empty() {
+            let message = format!("the preset `{name}` sets {} too, without effect yet", listed(&idle));
+            self.findings.warning(&node.span, message);
+        }
+    }
+
     fn components(&mut self, label: &str, row: &'static Attribute, node: &Node) {
         let Value::List(items) = &node.value else {
             let example = format!("a list, like [\"{}\"]", "cloth1.vtx[0]");
@@ -178,10 +261,12 @@ impl NodeReader<'_, '_> {
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&word.span, error.to_string());
         }
-        if row.effect == Effect::NotYet {
-            let message = format!("`{}` of `{}` has no effect yet", row.name, self.draft.name);
-            self.findings.warning(&word.span, message);
-        }
+        let lacks = match row.effect {
+            Effect::Solved(_) => return,
+            Effect::NotYet => "has no effect yet",
+            Effect::Never => "has no effect: nothing uses it, in Maya neither",
+        };
+        self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.draft.name));
     }
 
     /// Notes that something is set; whether it is the first time.
@@ -206,7 +291,7 @@ impl NodeReader<'_, '_> {
         let rows = node_type.attributes();
         let parts: Vec<String> =
             rows.iter().filter_map(|row| row.parts()).flatten().map(|(long, _)| long).collect();
-        let settable = rows.iter().filter(|row| row.kind != Kind::Plug).map(|row| row.name);
+        let settable = rows.iter().filter(|row| !matches!(row.kind, Kind::Plug(_))).map(|row| row.name);
         let near = nearest(&word.text, settable.chain(parts.iter().map(String::as_str)));
         let message =
             format!("`{name}` is of type {}, which has no attribute `{}`", node_type.name, word.text);

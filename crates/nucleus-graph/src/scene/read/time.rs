@@ -10,8 +10,11 @@ use super::value::{found, number, whole_number};
 /// The most frames a number can name exactly.
 const MOST_FRAMES: f64 = 1e9;
 
-/// Reads the frames of a run.
-pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<TimeSpan> {
+/// Most frames from one evaluation to the next, and most evaluations in a frame.
+const MOST_EVERY: f64 = 1000.0;
+
+/// Reads the frames of a run, and how many of them lie between two evaluations.
+pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(TimeSpan, f64)> {
     let node = node?;
     let Value::Record { name: None, fields } = &node.value else {
         let message = format!("`time` takes start, end and frames per second, found {}", found(&node.value));
@@ -22,10 +25,12 @@ pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<TimeS
     let start = fields.take_required("start", "`start: 1`, the first frame", findings);
     let end = fields.take_required("end", "`end: 120`, the last frame", findings);
     let fps = fields.take_required("fps", "`fps: 24`, the frames per second", findings);
-    fields.refuse_rest("`time`", &["start", "end", "fps"], findings);
+    let every = fields.take("every");
+    fields.refuse_rest("`time`", &["start", "end", "fps", "every"], findings);
     let first = start.and_then(|node| frame("start", node, findings));
     let last = end.and_then(|node| frame("end", node, findings));
     let fps = fps.and_then(|node| frames_per_second(node, findings));
+    let every = every.map_or(Some(1.0), |node| evaluations(node, findings));
     let span = TimeSpan { start: first?, end: last?, fps: fps? };
     if span.start > span.end {
         let (start, end) = (start?, end?);
@@ -33,7 +38,7 @@ pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<TimeS
         findings.error(&end.span, message).note_at(&start.span, "the start is here");
         return None;
     }
-    Some(span)
+    Some((span, every?))
 }
 
 fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
@@ -54,4 +59,21 @@ fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
         return None;
     }
     Some(fps)
+}
+
+/// Every so many frames, or so many times in a frame.
+fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
+    let every = number("`every`", node, findings)?;
+    let whole = |x: f64| (1.0..=MOST_EVERY).contains(&x) && x.fract() == 0.0;
+    // 1/3 cannot be written exactly.
+    let parts = (1.0 / every).round();
+    if whole(every) {
+        return Some(every);
+    }
+    if whole(parts) && (every * parts - 1.0).abs() < 1e-6 {
+        return Some(1.0 / parts);
+    }
+    let message = format!("`every` must be a whole number of frames or a part of one, found {every}");
+    findings.error(&node.span, message).help("2 evaluates every other frame, 0.25 four times in each");
+    None
 }

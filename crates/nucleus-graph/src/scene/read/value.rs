@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Choice, Kind, RampPoint, Value as Held};
+use crate::attributes::{Attribute, Choice, ColorPoint, Kind, RampPoint, Value as Held};
 use crate::graph::{Channel, Setting};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
@@ -22,8 +22,8 @@ pub(super) fn read(
     node: &Node,
     findings: &mut Findings,
 ) -> Option<Setting> {
-    if let Some(list) = keys::keyed(node) {
-        return keys::read(label, row, list, findings);
+    if let Some(keyed) = keys::keyed(node) {
+        return keys::read(label, row, keyed, findings);
     }
     if let Kind::Vector(_) = row.kind {
         let parts = triple(label, row, node, findings)?;
@@ -44,7 +44,12 @@ pub(super) fn read(
         Kind::Ramp => Held::Ramp(Cow::Owned(list(label, row, node, findings, |node, findings| {
             ramp_point(label, node, findings)
         })?)),
-        Kind::Plug => {
+        Kind::ColorRamp => {
+            Held::ColorRamp(Cow::Owned(list(label, row, node, findings, |node, findings| {
+                color_point(label, row, node, findings)
+            })?))
+        }
+        Kind::Plug(_) => {
             findings.error(&node.span, format!("{label} can be connected, but not set"));
             return None;
         }
@@ -61,7 +66,7 @@ pub(super) fn read_part(
     findings: &mut Findings,
 ) -> Option<Channel> {
     match keys::keyed(node) {
-        Some(list) => keys::read_part(label, row, list, findings).map(Channel::Keyed),
+        Some(keyed) => keys::read_part(label, row, keyed, findings).map(Channel::Keyed),
         None => number_within(label, row, node, findings).map(Channel::Fixed),
     }
 }
@@ -234,19 +239,43 @@ pub(in crate::scene) const INTERPOLATIONS: [&str; 4] = ["none", "linear", "smoot
 
 /// `(0.5, 1)` or `(0.5, 1, smooth)`: a point of a ramp, straight on to the next unless a word says how.
 fn ramp_point(label: &str, node: &Node, findings: &mut Findings) -> Option<RampPoint> {
+    let (position, value, interpolation) = point_parts(label, "points of (position, value)", node, findings)?;
+    let [position, value] = [position, value].map(|item| number(label, item, findings));
+    Some(RampPoint { position: position?, value: value?, interpolation })
+}
+
+/// `(0.5, (1, 0, 0))` or `(0.5, (1, 0, 0), smooth)`.
+fn color_point(
+    label: &str,
+    row: &'static Attribute,
+    node: &Node,
+    findings: &mut Findings,
+) -> Option<ColorPoint> {
+    let what = "points of (position, (red, green, blue))";
+    let (position, color, interpolation) = point_parts(label, what, node, findings)?;
+    let (position, color) = (number(label, position, findings), triple(label, row, color, findings));
+    Some(ColorPoint { position: position?, color: color?, interpolation })
+}
+
+/// Position, value, and the word for the way to the next point.
+fn point_parts<'a>(
+    label: &str,
+    what: &str,
+    node: &'a Node,
+    findings: &mut Findings,
+) -> Option<(&'a Node, &'a Node, Choice)> {
     let (position, value, word) = match &node.value {
         Value::Tuple { name: None, items } => match items.as_slice() {
             [position, value] => (position, value, "linear"),
             [position, value, Node { value: Value::Word(word), .. }] => (position, value, word.as_str()),
-            _ => return expected(label, "points of (position, value)", node, findings),
+            _ => return expected(label, what, node, findings),
         },
-        _ => return expected(label, "points of (position, value)", node, findings),
+        _ => return expected(label, what, node, findings),
     };
-    let [position, value] = [position, value].map(|item| number(label, item, findings));
     let Some(index) = INTERPOLATIONS.iter().position(|name| *name == word) else {
         let error = findings.error(&node.span, format!("{label} has no interpolation `{word}`"));
         error.help(format!("it takes {}", listed(&INTERPOLATIONS)));
         return None;
     };
-    Some(RampPoint { position: position?, value: value?, interpolation: Choice(index as i32) })
+    Some((position, value, Choice(index as i32)))
 }

@@ -126,11 +126,135 @@ fn a_cloth_needs_a_mesh_and_a_nucleus() {
 }
 
 #[test]
-fn a_second_nucleus_is_refused() {
+fn of_two_nuclei_one_has_to_be_named() {
+    let two = |cloth: &str| {
+        with_nodes(&format!(r#""other": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p"{cloth})"#))
+    };
     expect(
-        &with_nodes(r#""other": nucleus()"#),
-        &[("\"other\"", "a scene can have only one nucleus so far", "")],
+        &two(""),
+        &[("\"c\"", "`c` could belong to `nucleus1` or `other`", "say which: `nucleus: \"nucleus1\"`")],
     );
+    expect(
+        &two(r#", nucleus: "p""#),
+        &[("\"p\"", "`nucleus` of `c` takes a nucleus, but `p` is of type polyPlane", "")],
+    );
+    scene(&two(r#", nucleus: "other""#));
+}
+
+#[test]
+fn a_constraint_joins_only_what_belongs_to_its_nucleus() {
+    let text = with_nodes(
+        r#""other": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p", nucleus: "other"),
+           "pin": dynamicConstraint(nucleus: "nucleus1", components: ["c.vtx[0]"])"#,
+    );
+    expect(
+        &text,
+        &[(
+            "[\"c.vtx[0]\"]",
+            "`pin` under `nucleus1` takes hold of `c` under `other`",
+            "only what belongs to the same nucleus acts on each other",
+        )],
+    );
+}
+
+#[test]
+fn connections_made_by_hand_are_checked_at_their_place() {
+    let wired = |pair: &str| {
+        with_nodes(r#""b": transform(), "p": polyPlane(), "c": nCloth(inputMesh: "p")"#)
+            .replace("})", &format!("}}, connections: [{pair}])"))
+    };
+    for (pair, at, message, help) in [
+        (
+            r#"("b.tx", "c.frictoin")"#,
+            "\"c.frictoin\"",
+            "`c` is of type nCloth, which has no attribute `frictoin`",
+            "did you mean `friction`?",
+        ),
+        (r#"("bb.tx", "c.friction")"#, "\"bb.tx\"", "there is no node `bb`", "did you mean `b`?"),
+        (
+            r#"("b", "c.friction")"#,
+            "\"b\"",
+            "`b` is not a plug",
+            "a plug is `node.attribute` or `node.attribute[0]`, like `time1.outTime`",
+        ),
+        (r#"("b.t", "c.friction")"#, "", "`b.translate` gives a vector, but `c.friction` takes a number", ""),
+        (
+            r#"("c.outputMesh", "c.inputMesh")"#,
+            "",
+            "`c.inputMesh` is connected already, from `p.worldMesh[0]`",
+            "",
+        ),
+        (
+            r#"("c.currentState", "nucleus1.inputActive")"#,
+            "",
+            "`nucleus1.inputActive` holds many: it needs an index, like `nucleus1.inputActive[0]`",
+            "",
+        ),
+        (
+            r#"("c.friction", "c.outputMesh")"#,
+            "",
+            "`c.outputMesh` is an output: nothing can be connected to it",
+            "",
+        ),
+        (
+            r#"("c.nextState", "nucleus1.inputActive[3]")"#,
+            "",
+            "`c.nextState` is an input: nothing comes out of it",
+            "",
+        ),
+        (r#"("b.tx[0]", "c.friction")"#, "", "`b.translateX[0]` does not hold many: it takes no index", ""),
+        (
+            r#"("b.tx", "b.ty"), ("b.ty", "b.tx")"#,
+            "(\"b.ty\", \"b.tx\")",
+            "`b.translateY` depends on `b.translateX`: connecting them would make a circle",
+            "",
+        ),
+        (
+            r#"("b.tx", "b.tx")"#,
+            "",
+            "`b.translateX` depends on `b.translateX`: connecting them would make a circle",
+            "",
+        ),
+        (
+            r#"3"#,
+            "3",
+            "a connection is a pair of plugs, found a number",
+            "write `connections: [(\"ball.translateY\", \"cloth1.friction\")]`, output first",
+        ),
+        (r#"("b.tx", 3)"#, "3", "a connection takes text in quotes, found a number", ""),
+    ] {
+        expect(&wired(pair), &[(if at.is_empty() { pair } else { at }, message, help)]);
+    }
+}
+
+#[test]
+fn a_blend_needs_a_mesh_of_as_many_points() {
+    let text = with_nodes(
+        r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(subdivisions: (2, 3)), "c": nCloth(inputMesh: "a")"#,
+    );
+    let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it reads");
+    let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("they differ");
+    assert!(errors[0].message.starts_with("`a` cannot be blended into `b`: one has "), "{errors:?}");
+    assert_eq!(&text[errors[0].span.clone()], "\"b\"");
+    let circle = with_nodes(r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(blendTarget: "a")"#);
+    assert_eq!(said(&circle)[0].1, "`b` cannot be blended into `a`, which is blended into it");
+}
+
+#[test]
+fn evaluations_divide_a_frame_or_leap_over_some() {
+    let every = |every: &str| {
+        format!("Scene(time: (start: 1, end: 9, fps: 24, every: {every}), nodes: {{\"n\": nucleus()}})")
+    };
+    for (written, read) in [("1", 1.0), ("2", 2.0), ("0.25", 0.25), ("0.3333333", 1.0 / 3.0)] {
+        assert_eq!(scene(&every(written)).every, read);
+    }
+    for written in ["0", "-1", "1.5", "0.4", "1e9"] {
+        let message = format!(
+            "`every` must be a whole number of frames or a part of one, found {}",
+            written.parse::<f64>().expect("a number")
+        );
+        assert_eq!(said(&every(written))[0].1, message);
+    }
 }
 
 #[test]

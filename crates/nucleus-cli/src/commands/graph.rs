@@ -1,0 +1,49 @@
+//! `nucleus graph`: the nodes of a scene and their connections, to be drawn.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use nucleus_graph::scene::read_scene;
+
+use crate::outcome::Outcome;
+use crate::{diagnostics, output};
+
+/// Writes the nodes of a scene and all connections, those that the short form makes too, as a diagram.
+#[derive(Debug, Args)]
+pub struct Graph {
+    /// The scene (.ron).
+    scene: PathBuf,
+    /// The language of the diagram.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Languages of diagrams.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+enum Format {
+    /// For Graphviz: `nucleus graph scene.ron | dot -Tsvg > scene.svg`.
+    #[default]
+    Dot,
+    /// For Markdown pages.
+    Mermaid,
+}
+
+impl Graph {
+    /// Prints the diagram.
+    pub fn run(self) -> Result<Outcome> {
+        let text = std::fs::read_to_string(&self.scene).unwrap_or_default();
+        let scene = match read_scene(&self.scene) {
+            Ok((scene, _)) => scene,
+            Err(mistakes) => {
+                diagnostics::print(&mistakes, &text)?;
+                return Ok(Outcome::Refused);
+            }
+        };
+        output::print(&match self.format {
+            Format::Dot => scene.graph.dot(),
+            Format::Mermaid => scene.graph.mermaid(),
+        })?;
+        Ok(Outcome::Fine)
+    }
+}

@@ -1,0 +1,99 @@
+//! How long a scene of 1,000 nodes and a mesh of a million vertices takes to read and compile, beside reading
+//! the mesh alone; and a usual scene. Medians of CPU time, all in one run.
+//!
+//! ```text
+//! cargo run --release -p nucleus-graph --example reading
+//! ```
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use std::{env, fs};
+
+use nucleus_graph::compile::compile;
+use nucleus_graph::mesh::read_obj;
+use nucleus_graph::scene::read_scene_text;
+
+const SIDE: usize = 1000;
+const NODES: usize = 1000;
+const ROUNDS: usize = 5;
+
+fn main() -> std::io::Result<()> {
+    let folder = env::temp_dir().join("nucleus-reading");
+    fs::create_dir_all(&folder)?;
+    let mesh = folder.join("million.obj");
+    fs::write(&mesh, sheet())?;
+    let file = folder.join("scene.ron");
+    let text = scene();
+    let (mut alone, mut whole) = (Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        alone.push(time(|| drop(read_obj(&mesh).expect("a mesh"))));
+        whole.push(time(|| check(&text, &file)));
+    }
+    let usual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cloth/flag.ron");
+    let usual_text = fs::read_to_string(&usual)?;
+    let usual_time: Vec<Duration> = (0..ROUNDS).map(|_| time(|| check(&usual_text, &usual))).collect();
+    let (alone, whole, usual_time) = (median(alone), median(whole), median(usual_time));
+    println!("mesh of {} vertices alone: {alone:?}", SIDE * SIDE);
+    println!(
+        "scene of {NODES} nodes with it: {whole:?}, {:.2} times as long",
+        whole.as_secs_f64() / alone.as_secs_f64()
+    );
+    println!("the flag of the gallery: {usual_time:?}");
+    fs::remove_dir_all(&folder)
+}
+
+fn check(text: &str, file: &Path) {
+    let (scene, _) = read_scene_text(text, file).unwrap_or_else(|mistakes| panic!("{:?}", mistakes.first()));
+    drop(compile(&scene).unwrap_or_else(|mistakes| panic!("{:?}", mistakes.first())));
+}
+
+fn time(work: impl FnOnce()) -> Duration {
+    let begin = Instant::now();
+    work();
+    begin.elapsed()
+}
+
+fn median(mut times: Vec<Duration>) -> Duration {
+    times.sort_unstable();
+    times[times.len() / 2]
+}
+
+/// A square sheet with a million vertices.
+fn sheet() -> String {
+    let mut text = String::new();
+    for z in 0..SIDE {
+        for x in 0..SIDE {
+            let _ = writeln!(
+                text,
+                "v {:.6} {:.6} {:.6}",
+                x as f64 * 0.01,
+                (x * z % 7) as f64 * 1e-3,
+                z as f64 * 0.01
+            );
+        }
+    }
+    for z in 0..SIDE - 1 {
+        for x in 0..SIDE - 1 {
+            let a = z * SIDE + x + 1;
+            let _ = writeln!(text, "f {a} {} {} {}", a + 1, a + SIDE + 1, a + SIDE);
+        }
+    }
+    text
+}
+
+/// The sheet as cloth, and 330 colliders with their meshes and transforms.
+fn scene() -> String {
+    let mut nodes = String::from(
+        r#""n": nucleus(), "sheet": mesh(file: "million.obj"), "cloth": nCloth(inputMesh: "sheet", preset: "silk"),"#,
+    );
+    for k in 0..(NODES - 3) / 3 {
+        let _ = write!(
+            nodes,
+            r#""t{k}": transform(translate: ({k}, 0, 0), ry: keys([(1, 0), (24, {k}, auto)])),
+               "b{k}": polyCube(parent: "t{k}", width: 0.5, translateY: -3),
+               "r{k}": nRigid(inputMesh: "b{k}", friction: 0.3, thickness: 0.01),"#
+        );
+    }
+    format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}}, checks: [finite])")
+}

@@ -1,0 +1,131 @@
+//! `connections: [("ball.translateY", "cloth1.friction")]`: connections made by hand, from output to input.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use crate::attributes::{Kind, NodeType};
+use crate::graph::{CLOCK, Graph, NodeId, Plug, PlugError};
+use crate::scene::findings::Findings;
+use crate::scene::nearest;
+use crate::scene::syntax::{Node, Value};
+
+use super::value::{found, text};
+
+/// Connections as they are written.
+#[derive(Default)]
+pub(super) struct Wires<'a> {
+    pairs: Vec<Pair<'a>>,
+}
+
+/// An output and an input, as they are written.
+struct Pair<'a> {
+    span: &'a Range<usize>,
+    ends: [(&'a str, &'a Range<usize>); 2],
+}
+
+/// Reads the list; what it names is looked for later.
+pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Wires<'a> {
+    let Some(node) = node else { return Wires::default() };
+    let Value::List(items) = &node.value else {
+        let message = format!("`connections` takes a list, found {}", found(&node.value));
+        findings.error(&node.span, message).help(EXAMPLE);
+        return Wires::default();
+    };
+    Wires { pairs: items.iter().filter_map(|item| read_pair(item, findings)).collect() }
+}
+
+const EXAMPLE: &str = "write `connections: [(\"ball.translateY\", \"cloth1.friction\")]`, output first";
+
+fn read_pair<'a>(item: &'a Node, findings: &mut Findings) -> Option<Pair<'a>> {
+    let items = match &item.value {
+        Value::Tuple { name: None, items } if items.len() == 2 => items,
+        other => {
+            let message = format!("a connection is a pair of plugs, found {}", found(other));
+            findings.error(&item.span, message).help(EXAMPLE);
+            return None;
+        }
+    };
+    let ends = [0, 1].map(|k| Some((text("a connection", &items[k], findings)?, &items[k].span)));
+    Some(Pair { span: &item.span, ends: [ends[0]?, ends[1]?] })
+}
+
+impl Wires<'_> {
+    /// The attributes that connections leave from, and those that they arrive at.
+    pub(super) fn ends(&self, graph: &Graph) -> [BTreeSet<(NodeId, &'static str)>; 2] {
+        [0, 1].map(|end| {
+            let plugs = self.pairs.iter().filter_map(|pair| graph.plug(pair.ends[end].0).ok());
+            plugs.map(|plug| (plug.node, plug.attribute.name)).collect()
+        })
+    }
+
+    /// What the short form has connected without being told to makes room for what is connected by hand.
+    fn give_way(&self, graph: &mut Graph, to: Plug, by_hand: &[Plug]) {
+        if !IMPLICIT.contains(&to.attribute.name) || by_hand.iter().any(|taken| taken.overlaps(&to)) {
+            return;
+        }
+        let old = graph.arriving(to.node).find(|wire| wire.to == to).copied();
+        if let Some(old) = old {
+            graph.disconnect(old.from, old.to);
+        }
+    }
+
+    /// Makes the connections. A node that could not be read is not missed.
+    pub(super) fn connect(
+        &self,
+        graph: &mut Graph,
+        is_broken: &dyn Fn(&str) -> bool,
+        findings: &mut Findings,
+    ) {
+        let mut by_hand: Vec<Plug> = Vec::new();
+        for Pair { span, ends } in &self.pairs {
+            let plugs = ends.map(|(text, span)| match graph.plug(text) {
+                Ok(plug) => Some(plug),
+                Err(PlugError::NoNode { name }) if is_broken(&name) => None,
+                Err(error) => {
+                    refuse(graph, &error, span, findings);
+                    None
+                }
+            });
+            let [Some(from), Some(to)] = plugs else { continue };
+            // What the short form has made already may be said once more.
+            if graph.arriving(to.node).any(|wire| wire.from == from && wire.to == to) {
+                continue;
+            }
+            self.give_way(graph, to, &by_hand);
+            match graph.connect(from, to) {
+                Ok(()) => by_hand.push(to),
+                Err(error) => {
+                    findings.error(span, error.to_string());
+                }
+            }
+        }
+    }
+}
+
+/// Inputs that the short form connects without being told to.
+const IMPLICIT: [&str; 2] = ["currentTime", "startFrame"];
+
+fn refuse(graph: &Graph, error: &PlugError, span: &Range<usize>, findings: &mut Findings) {
+    let said = findings.error(span, error.to_string());
+    match error {
+        PlugError::NoNode { name } => {
+            let names = graph.iter().map(|(_, node)| node.name());
+            said.did_you_mean(nearest(name, names));
+        }
+        PlugError::NoAttribute { node_type, attribute, .. } => {
+            said.did_you_mean(nearest_attribute(node_type, attribute).as_deref());
+        }
+        _ => {
+            said.help(format!("a plug is `node.attribute` or `node.attribute[0]`, like `{CLOCK}.outTime`"));
+        }
+    }
+}
+
+/// The attribute that was probably meant, parts of vectors among them.
+pub(super) fn nearest_attribute(node_type: &'static NodeType, word: &str) -> Option<String> {
+    let rows = node_type.attributes();
+    let parts: Vec<String> =
+        rows.iter().filter_map(|row| row.parts()).flatten().map(|(long, _)| long).collect();
+    let long = rows.iter().filter(|row| !matches!(row.kind, Kind::Together(_))).map(|row| row.name);
+    nearest(word, long.chain(parts.iter().map(String::as_str))).map(str::to_owned)
+}

@@ -1,0 +1,9 @@
+//! What holds for every graph and every scene, whatever is done to them.
+
+mod animation;
+mod independence;
+mod materials;
+mod mutations;
+mod pulling;
+mod scenes;
+mod wiring;

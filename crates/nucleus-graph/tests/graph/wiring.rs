@@ -1,0 +1,343 @@
+//! Any sequence of changes leaves a graph whole.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use nucleus_graph::animation::{Curve, Key, Tangent};
+use nucleus_graph::attributes::{Attribute, Component, Kind, NodeType, Selection, node_types};
+use nucleus_graph::checks::Check;
+use nucleus_graph::compile::compile;
+use nucleus_graph::graph::{CLOCK, Connection, Creation, Graph, NodeId, Plug, Setting};
+use nucleus_graph::scene::{Record, Scene, Source, TimeSpan, read_scene_text, write_scene};
+use proptest::prelude::*;
+use proptest::sample::Index;
+use proptest_state_machine::{ReferenceStateMachine, StateMachineTest, prop_state_machine};
+
+/// Something that is done to a graph. What it is done to is chosen among what there is.
+#[derive(Debug, Clone)]
+enum Change {
+    Add { name: String, node_type: Index },
+    Create { node: Index, other: Index, nucleus: Index },
+    Rename { node: Index, name: String },
+    Remove { node: Index },
+    Parent { node: Index, parent: Index },
+    Connect { plugs: [PlugChoice; 2] },
+    Disconnect { connection: Index },
+    Set { node: Index, row: Index },
+    Key { node: Index, row: Index, values: [f64; 2] },
+    Unset { node: Index, setting: Index },
+}
+
+#[derive(Debug, Clone)]
+struct PlugChoice {
+    node: Index,
+    row: Index,
+    index: Option<u32>,
+    part: Option<usize>,
+}
+
+/// Which names there are and of which type: all that can be told without a graph.
+#[derive(Debug, Clone)]
+struct Names(BTreeMap<String, &'static str>);
+
+fn names() -> impl Strategy<Value = String> {
+    // Few enough to clash.
+    "[a-d][1-3]?"
+}
+
+fn plugs() -> impl Strategy<Value = PlugChoice> {
+    let index = prop::option::weighted(0.4, 0..3u32);
+    (any::<Index>(), any::<Index>(), index, prop::option::weighted(0.2, 0..3usize))
+        .prop_map(|(node, row, index, part)| PlugChoice { node, row, index, part })
+}
+
+fn changes() -> impl Strategy<Value = Change> {
+    let i = any::<Index>;
+    prop_oneof![
+        4 => (names(), i()).prop_map(|(name, node_type)| Change::Add { name, node_type }),
+        4 => (i(), i(), i()).prop_map(|(node, other, nucleus)| Change::Create { node, other, nucleus }),
+        1 => (i(), names()).prop_map(|(node, name)| Change::Rename { node, name }),
+        1 => i().prop_map(|node| Change::Remove { node }),
+        1 => (i(), i()).prop_map(|(node, parent)| Change::Parent { node, parent }),
+        6 => [plugs(), plugs()].prop_map(|plugs| Change::Connect { plugs }),
+        2 => i().prop_map(|connection| Change::Disconnect { connection }),
+        2 => (i(), i()).prop_map(|(node, row)| Change::Set { node, row }),
+        2 => (i(), i(), [-9.0..9.0, -9.0..9.0]).prop_map(|(node, row, values)| Change::Key { node, row, values }),
+        1 => (i(), i()).prop_map(|(node, setting)| Change::Unset { node, setting }),
+    ]
+}
+
+impl ReferenceStateMachine for Names {
+    type State = Self;
+    type Transition = Change;
+
+    fn init_state() -> BoxedStrategy<Self> {
+        Just(Self(BTreeMap::from([(CLOCK.to_owned(), "time")]))).boxed()
+    }
+
+    fn transitions(_: &Self) -> BoxedStrategy<Change> {
+        changes().boxed()
+    }
+
+    fn apply(mut state: Self, change: &Change) -> Self {
+        if let Change::Add { name, node_type } = change {
+            state.0.entry(name.clone()).or_insert(node_type.get(node_types()).name);
+        }
+        state
+    }
+}
+
+/// A graph with a nucleus, a mesh and a cloth to begin with.
+struct Whole(Graph);
+
+fn pick(graph: &Graph, index: &Index) -> NodeId {
+    let all: Vec<NodeId> = graph.iter().map(|(id, _)| id).collect();
+    *index.get(&all)
+}
+
+fn plug(graph: &Graph, choice: &PlugChoice) -> Plug {
+    let node = pick(graph, &choice.node);
+    let rows: Vec<&'static Attribute> = graph.node(node).node_type().attributes();
+    Plug {
+        node,
+        attribute: choice.row.get::<&'static Attribute>(&rows),
+        index: choice.index,
+        part: choice.part,
+    }
+}
+
+impl StateMachineTest for Whole {
+    type SystemUnderTest = Self;
+    type Reference = Names;
+
+    fn init_test(_: &Names) -> Self {
+        Self(Graph::new())
+    }
+
+    fn apply(Self(mut graph): Self, names: &Names, change: Change) -> Self {
+        let before = graph.clone();
+        let refused = match change {
+            Change::Add { name, node_type } => {
+                let added = graph.add(&name, node_type.get::<&'static NodeType>(node_types()));
+                assert!(added.is_ok() || before.find(&name).is_some());
+                assert!(names.0.contains_key(&name));
+                added.is_err()
+            }
+            Change::Create { node, other, nucleus } => {
+                let [node, other, nucleus] = [&node, &other, &nucleus].map(|index| pick(&graph, index));
+                create(&mut graph, node, other, nucleus);
+                false
+            }
+            Change::Rename { node, name } => {
+                let node = pick(&graph, &node);
+                graph.rename(node, &name).is_err()
+            }
+            Change::Remove { node } => {
+                let node = pick(&graph, &node);
+                graph.remove(node);
+                assert!(graph.get(node).is_none() || node == graph.clock());
+                false
+            }
+            Change::Parent { node, parent } => {
+                let [node, parent] = [&node, &parent].map(|index| pick(&graph, index));
+                let transform = |id| graph.node(id).node_type().lineage().any(|t| t.name == "transform");
+                if transform(node) && transform(parent) {
+                    graph.set_parent(node, parent).is_err()
+                } else {
+                    false
+                }
+            }
+            Change::Connect { plugs } => {
+                let [from, to] = plugs.each_ref().map(|choice| plug(&graph, choice));
+                let done = graph.connect(from, to).is_ok();
+                if done {
+                    let mut undone = graph.clone();
+                    assert!(undone.disconnect(from, to));
+                    let wires = |graph: &Graph| pairs(graph).into_iter().collect::<Vec<_>>();
+                    assert_eq!(wires(&undone), wires(&before), "as if never connected");
+                }
+                !done
+            }
+            Change::Disconnect { connection } => {
+                let all: Vec<Connection> = graph.connections().copied().collect();
+                if !all.is_empty() {
+                    let wire = connection.get(&all);
+                    assert!(graph.disconnect(wire.from, wire.to));
+                    assert!(!graph.disconnect(wire.from, wire.to));
+                }
+                false
+            }
+            Change::Set { node, row } => {
+                let node = pick(&graph, &node);
+                let row = *row.get(&graph.node(node).node_type().attributes());
+                match &row.default {
+                    Some(value) if is_settable(row) => {
+                        graph.set(node, row, Setting::from(value.clone())).expect("a default fits");
+                        false
+                    }
+                    _ => false,
+                }
+            }
+            Change::Key { node, row, values } => {
+                let node = pick(&graph, &node);
+                let row = *row.get(&graph.node(node).node_type().attributes());
+                let key = |frame, value| Key { frame, value, tangent: Tangent::Auto };
+                let curve = Curve::new(vec![key(1.0, values[0]), key(9.0, values[1])]).expect("in order");
+                is_settable(row) && graph.set(node, row, Setting::Keyed(curve)).is_err()
+            }
+            Change::Unset { node, setting } => {
+                let node = pick(&graph, &node);
+                let set: Vec<&'static str> = graph.node(node).settings().keys().copied().collect();
+                if !set.is_empty() {
+                    let row = graph
+                        .node(node)
+                        .node_type()
+                        .attribute(setting.get::<&'static str>(&set))
+                        .expect("it is set");
+                    assert!(graph.unset(node, row));
+                }
+                false
+            }
+        };
+        if refused {
+            assert_eq!(graph, before, "what is refused changes nothing");
+        }
+        Self(graph)
+    }
+
+    fn check_invariants(Self(graph): &Self, _: &Names) {
+        names_are_found(graph);
+        inputs_have_one_source(graph);
+        connections_fit(graph);
+        nothing_flows_in_a_circle(graph);
+        reads_back(graph);
+    }
+}
+
+/// Attributes that mean something only together with what a creation command makes, or name a file.
+fn is_settable(row: &Attribute) -> bool {
+    !matches!(row.kind, Kind::Components | Kind::Together(_))
+        && !["preset", "file", "startFrame"].contains(&row.name)
+}
+
+/// Creates what fits the node.
+fn create(graph: &mut Graph, node: NodeId, other: NodeId, nucleus: NodeId) {
+    let is = |id: NodeId, name: &str| {
+        graph.node(id).node_type().lineage().any(|base: &NodeType| base.name == name)
+    };
+    let creation = if is(node, "dynBase") && is(other, "nParticle") {
+        Creation::Effect { target: other }
+    } else if !is(nucleus, "nucleus") {
+        return;
+    } else if is(node, "nParticle") {
+        Creation::Object { mesh: None, nucleus }
+    } else if is(node, "nBase") && is(other, "surfaceShape") {
+        Creation::Object { mesh: Some(other), nucleus }
+    } else if is(node, "dynamicConstraint") && is(other, "nBase") {
+        let object = graph.node(other).name().to_owned();
+        let components = vec![Component { object, selection: Selection::AllPoints }];
+        Creation::Constraint { components, nucleus }
+    } else {
+        return;
+    };
+    if let Creation::Constraint { components, .. } = &creation {
+        let row = graph.node(node).node_type().attribute("components").expect("a constraint has it");
+        let held = nucleus_graph::attributes::Value::Components(components.clone());
+        graph.set(node, row, Setting::Fixed(held)).expect("it fits");
+    }
+    // Half done it leaves connections like any others.
+    let _ = graph.create(node, &creation);
+}
+
+fn pairs(graph: &Graph) -> BTreeSet<[String; 2]> {
+    graph.connections().map(|wire| [graph.describe(wire.from), graph.describe(wire.to)]).collect()
+}
+
+fn names_are_found(graph: &Graph) {
+    let mut seen = BTreeSet::new();
+    for (id, node) in graph.iter() {
+        assert!(seen.insert(node.name().to_owned()), "{} stands twice", node.name());
+        assert_eq!(graph.find(node.name()), Some(id));
+        let ancestors: Vec<_> =
+            std::iter::successors(Some(id), |&id| graph.node(id).parent()).take(200).collect();
+        assert!(ancestors.len() < 200, "parents form a circle");
+        assert!(node.settings().iter().all(|(name, setting)| {
+            node.node_type().attribute(name).is_some_and(|row| setting.fits(row))
+        }));
+    }
+}
+
+fn inputs_have_one_source(graph: &Graph) {
+    let wires: Vec<&Connection> = graph.connections().collect();
+    for (k, wire) in wires.iter().enumerate() {
+        assert!(wires[..k].iter().all(|other| !other.to.overlaps(&wire.to)), "{}", graph.describe(wire.to));
+    }
+    let leaving: usize = graph.iter().map(|(id, _)| graph.leaving(id).count()).sum();
+    assert_eq!(leaving, wires.len());
+}
+
+fn connections_fit(graph: &Graph) {
+    for Connection { from, to } in graph.connections() {
+        assert!(from.attribute.readable && to.attribute.writable);
+        assert!(from.carries().is_some() && from.carries() == to.carries());
+        for plug in [from, to] {
+            assert_eq!(plug.attribute.multi, plug.index.is_some());
+            let text = graph.describe(*plug);
+            assert_eq!(graph.plug(&text).expect("it can be written"), *plug, "{text}");
+        }
+    }
+}
+
+/// What leaves a plug must not come back to it along connections alone. (Followed here from every plug, step
+/// by step, without what the graph itself uses.)
+fn nothing_flows_in_a_circle(graph: &Graph) {
+    let wires: Vec<&Connection> = graph.connections().collect();
+    for start in &wires {
+        let (mut open, mut seen) = (vec![start.to], BTreeSet::new());
+        while let Some(plug) = open.pop() {
+            assert!(!plug.overlaps(&start.from), "{} comes back", graph.describe(start.from));
+            for next in wires.iter().filter(|wire| wire.from.overlaps(&plug)) {
+                if seen.insert(graph.describe(next.to)) {
+                    open.push(next.to);
+                }
+            }
+        }
+    }
+}
+
+/// A scene that holds the graph, written and read again, holds the same graph. Cloth without a mesh cannot be
+/// read, and is named.
+fn reads_back(graph: &Graph) {
+    let scene = Scene {
+        time: TimeSpan { start: 1, end: 3, fps: 24.0 },
+        every: 1.0,
+        record: Record::Frames,
+        graph: graph.clone(),
+        checks: Vec::<Check>::new(),
+        source: Source::new("test.ron"),
+    };
+    let text = write_scene(&scene);
+    match read_scene_text(&text, Path::new("test.ron")) {
+        Ok((read, _)) => {
+            assert_eq!(pairs(&read.graph), pairs(graph), "{text}");
+            assert!(read == scene, "{text}\n{:#?}\n{:#?}", read.graph, graph);
+            assert_eq!(write_scene(&read), text);
+        }
+        Err(mistakes) => {
+            let expected = |message: &str| message.contains("has no `inputMesh`");
+            assert!(mistakes.iter().any(|mistake| expected(&mistake.message)), "{text}\n{mistakes:#?}");
+        }
+    }
+    // Whatever it is, it compiles or is refused with a reason.
+    if let Err(mistakes) = compile(&scene) {
+        assert!(mistakes.iter().all(|mistake| !mistake.message.is_empty()));
+    }
+}
+
+prop_state_machine! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    // EVIDENCE: N3.1-1  any sequence of changes to nodes and connections keeps the graph whole
+    #[test]
+    fn any_sequence_of_changes_keeps_the_graph_whole(sequential 1..40 => Whole);
+}
