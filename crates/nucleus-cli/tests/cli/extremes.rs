@@ -55,5 +55,8 @@ fn rows_are_listed_and_an_unknown_one_is_refused() {
     let folder = folder();
     let list = nucleus(folder.path(), &["extremes", "--list"]);
     assert!(stdout(&list).lines().any(|line| line.starts_with("wind-1e3 ")));
-    assert_refused(&nucleus(folder.path(), &["extremes", "--only", "no-such"]), "there is no row `no-such`");
+    assert_refused(
+        &nucleus(folder.path(), &["extremes", "--only", "nothing-like-it"]),
+        "there is no row `nothing-like-it`",
+    );
 }

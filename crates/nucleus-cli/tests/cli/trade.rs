@@ -77,13 +77,13 @@ fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
     assert_eq!(sweep.status.code(), Some(0), "{}", stderr(&sweep));
     let run = nucleus(folder.path(), &["run", "drape.ron", "--quality", "50%", "--record", "none"]);
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-    assert!(stderr(&run).contains("evaluations in 1 substep: error "), "{}", stderr(&run));
+    assert!(stderr(&run).contains(" evaluations in "), "{}", stderr(&run));
 
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (scene, other) = (read("drape.ron"), read("other.ron"));
     let changed: Vec<_> = scene.lines().zip(other.lines()).filter(|(a, b)| a != b).collect();
     assert_eq!(changed.len(), 1, "{other}");
-    assert!(changed[0].1.contains("nucleus(spaceScale: 0.01, subSteps: 1, evaluations: "), "{other}");
+    assert!(changed[0].1.contains("nucleus(spaceScale: 0.01, subSteps: "), "{other}");
     // The scene at its new setting is still the same scene.
     let other = nucleus(folder.path(), &["run", "other.ron", "--quality", "50%", "--record", "none"]);
     assert_eq!(other.status.code(), Some(0), "{}", stderr(&other));

@@ -115,6 +115,8 @@ fn crosses(corners: [Point; 3]) -> bool {
     let mut inside = false;
     for k in 0..3 {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        // In one order whichever face asks, so that both sides of an edge agree to the last bit.
+        let (a, b) = if (a.y, a.z, a.x) < (b.y, b.z, b.x) { (a, b) } else { (b, a) };
         if (a.y > 0.0) != (b.y > 0.0) {
             let z = a.z + (b.z - a.z) * (-a.y / (b.y - a.y));
             inside ^= z > 0.0;

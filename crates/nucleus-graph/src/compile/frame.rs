@@ -90,9 +90,9 @@ impl Stretch<'_> {
             air_density: to.get(nucleus, &nucleus::AIR_DENSITY),
             plane: self.ground_plane(&space),
             layer_range: to.get(nucleus, &nucleus::COLLISION_LAYER_RANGE),
-            self_collision_iterations: self.self_collision_iterations(),
             colliders: self.universe.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
             cloths: self.universe.cloths.iter().map(|cloth| self.cloth_frame(cloth)).collect(),
+            self_collision_iterations: self.self_collision_iterations(),
             pins: self.pins(grips, position),
         }
     }

@@ -52,7 +52,7 @@ pub fn strip(knobs: &Knobs, cells: u32) -> Run {
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
         "plane": polyPlane(width: 4, height: {cells}, subdivisions: (4, {cells}), rotate: (90, 0, 0)),
-        "cloth": nCloth(inputMesh: "plane", stretchResistance: {stretch}, compressionResistance: {stretch}, bendResistance: 0, damp: 0.5),
+        "cloth": nCloth(inputMesh: "plane", stretchResistance: {stretch}, compressionResistance: {stretch}, bendResistance: 0, damp: 0.5, selfCollide: false),
         "rail": dynamicConstraint(constraintType: transform, components: ["cloth.vtx[0:4]"]),
     }})"#,
         knobs.nucleus(),
@@ -66,7 +66,7 @@ pub fn particles(knobs: &Knobs) -> Run {
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
         "grid": polyPlane(width: 30, height: 30, subdivisions: (15, 15), translate: (0, 40, 0)),
-        "points": nCloth(inputMesh: "grid", thickness: 0.5, stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0),
+        "points": nCloth(inputMesh: "grid", thickness: 0.5, stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, selfCollide: false),
         "sphere": polySphere(radius: 20, subdivisions: (24, 16)),
         "ball": nRigid(inputMesh: "sphere", thickness: 0.5),
     }})"#,
