@@ -83,7 +83,7 @@ fn an_audit_says_that_nothing_passed_through_anything() {
     assert_eq!(output.status.code(), Some(0), "{said}{}", stderr(&output));
     assert!(said.contains("audit of 384 steps: nothing passed through anything\n"), "{said}");
     assert!(said.contains("check noCrossing: passed"), "{said}");
-    let output = nucleus(folder.path(), &["run", "drape.ron"]);
+    let output = nucleus(folder.path(), &["run", "drape.ron", "--force"]);
     assert!(stdout(&output).contains("check noCrossing: passed"), "{}", stdout(&output));
     assert!(!stdout(&output).contains("audit of"), "nobody asked");
 }

@@ -82,8 +82,9 @@ fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (scene, other) = (read("drape.ron"), read("other.ron"));
     let changed: Vec<_> = scene.lines().zip(other.lines()).filter(|(a, b)| a != b).collect();
-    assert_eq!(changed.len(), 1, "{other}");
-    assert!(changed[0].1.contains("nucleus(spaceScale: 0.01, subSteps: "), "{other}");
+    // At most the nucleus is another; nothing is where the setting found is the scene's own.
+    assert!(changed.len() <= 1, "{other}");
+    assert!(changed.iter().all(|(_, line)| line.contains("nucleus(spaceScale: 0.01, subSteps: ")), "{other}");
     // The scene at its new setting is still the same scene.
     let other = nucleus(folder.path(), &["run", "other.ron", "--quality", "50%", "--record", "none"]);
     assert_eq!(other.status.code(), Some(0), "{}", stderr(&other));
