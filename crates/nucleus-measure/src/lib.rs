@@ -5,7 +5,7 @@
 //! | what can be wrong with a run, and in which unit            | [`metrics`]           |
 //! | how time is measured, in all and by stage                  | [`clock`]             |
 //! | on which machine it was measured                          | [`machine`]           |
-//! | what a run is held against, and until when                 | [`reference`]         |
+//! | what a run is held against, and until when                 | [`mod@reference`]         |
 //! | which setting is how wrong, and what it costs              | [`trade`]             |
 //! | how that is shown: a page, a table, JSON                   | [`report`]            |
 //! | whether the advice of the paper holds                      | [`advice`]            |
