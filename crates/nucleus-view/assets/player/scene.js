@@ -129,6 +129,7 @@ export class Scene {
     this.things.filter(({ isShown }) => isShown).forEach((thing) => this.drawThing(thing, eye));
     this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawThing(twin, eye));
     gl.bindVertexArray(null);
+    gl.finish(); // so that pictures never queue up behind the page, however slow the graphics are
   }
 
   fit() {
