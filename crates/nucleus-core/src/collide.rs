@@ -8,8 +8,9 @@ use crate::collision::bounce::{Bounce, Hit};
 use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
 use crate::collision::foresee::{foresee, is_foreseen, is_within};
+use crate::collision::pairs::PairList;
 use crate::collision::plane::Ground;
-use crate::collision::resolve::{Tally, resolve};
+use crate::collision::resolve::{Tally, hold_back, prove, release, resolve};
 use crate::collision::search::Search;
 use crate::columns::Shared;
 use crate::frame::{ColliderFrame, FrameInput, GroundPlane};
@@ -17,6 +18,7 @@ use crate::observe::{Stage, StepObserver};
 use crate::scalar::{Real, Row4, dot};
 use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
+use crate::team::Team;
 
 /// Thickness in metres below which none is kept: contact needs some room to prove that nothing passed.
 const LEAST_THICKNESS: f64 = 1e-5;
@@ -59,6 +61,78 @@ impl<R: Real> Solver<R> {
                 let step = view.of(state, &collider_states[collider]);
                 resolve(list, &step, team, tally);
                 list.trapped.lead_out(&colliders[collider], &step);
+            }
+        }
+    }
+
+    /// How many pairs of a cloth and a collider are not proven to be on their sides at the end of a time step.
+    pub(crate) fn prove_sides(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+    ) -> u64 {
+        let mut open = 0;
+        self.for_lists(frame, schedule, span, tally, |list, step, team, _| open += prove(list, step, team));
+        open
+    }
+
+    /// Takes back what is not proven to where it began the time step, and marks its points as held.
+    pub(crate) fn hold_sides(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+    ) {
+        let mut held =
+            self.mutual.as_mut().map(|mutual| std::mem::take(&mut mutual.held)).unwrap_or_default();
+        let mut hold = |point: u32| held.get_mut(point as usize).into_iter().for_each(|held| *held = true);
+        self.for_lists(frame, schedule, span, tally, |list, step, _, tally| {
+            hold_back(list, step, tally, &mut hold)
+        });
+        if let Some(mutual) = &mut self.mutual {
+            mutual.held = held;
+        }
+    }
+
+    /// Has the pairs of all points that are not proven found anew.
+    pub(crate) fn release_sides(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+    ) {
+        let mut released = Vec::new();
+        let mut tell = |point: u32| released.push(point);
+        self.for_lists(frame, schedule, span, tally, |list, step, _, _| release(list, step, &mut tell));
+        for point in released {
+            self.strayed[point as usize] = true;
+        }
+        self.windows.fill([0.0, 0.0]);
+    }
+
+    /// Does something with all that can touch, of each cloth and collider.
+    fn for_lists(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+        mut work: impl FnMut(&mut PairList<R>, &Step<'_, R>, &Team, &Tally),
+    ) {
+        for cloth in 0..self.cloths.len() {
+            if !self.can_touch(frame, cloth) {
+                continue;
+            }
+            self.watch_pairs(frame, cloth, schedule, span, tally);
+            let Self { state, collider_states, pairs, team, .. } = self;
+            for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
+                let (collider, time) = (list.collider, [span.from, span.to]);
+                let view = StepParts { frame, cloth, collider, h: schedule.h, time, span: list.span };
+                work(list, &view.of(state, &collider_states[collider]), team, tally);
             }
         }
     }
@@ -188,14 +262,12 @@ impl<R: Real> Solver<R> {
             (R::from_f64(left / schedule.h - 1.0), [R::from_f64(margin), most])
         };
         let (soon, late) = (reach(window, STRAY_NEAR), reach(rest, STRAY_FAR));
-        let h = R::from_f64(schedule.h);
         let (near, far, strayed) = (Shared::new(near), Shared::new(far), Shared::new(strayed));
         let any = AtomicBool::new(false);
         let blocks = &cloths[cloth].blocks;
         team.phase(blocks.len(), |block| {
             for row in blocks.range(block) {
-                let (p, v) = (state.predicted[row as usize].0, state.velocity[row as usize].0);
-                let start = std::array::from_fn(|axis| p[axis] - v[axis] * h);
+                let start = state.start[row as usize].xyz();
                 let now = state.displacement[row as usize].xyz();
                 let cover = foresee(start, now, soon.0, soon.1);
                 // SAFETY: blocks do not overlap.
@@ -333,12 +405,11 @@ impl<R: Real> Solver<R> {
         let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
         let displacement = Shared::new(&mut state.displacement);
         let predicted = Shared::new(&mut state.predicted);
-        let velocity = Shared::new(&mut state.velocity);
         for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(_, settings)| settings.collide) {
             let ground = Ground {
                 displacement,
                 predicted,
-                velocity,
+                start: &state.start,
                 height: heights,
                 normal: [normal.x, normal.y, normal.z].map(R::from_f64),
                 thickness: R::from_f64(settings.thickness),
@@ -379,7 +450,7 @@ impl StepParts<'_> {
         Step {
             displacement: Shared::new(&mut state.displacement),
             predicted: Shared::new(&mut state.predicted),
-            velocity: Shared::new(&mut state.velocity),
+            start: &state.start,
             anchors: &state.anchor,
             collider: [&collider.start, &collider.end],
             time: self.time,

@@ -41,6 +41,7 @@ mod report;
 mod resistance;
 mod scalar;
 mod schedule;
+mod settle;
 mod solver;
 mod state;
 mod step;

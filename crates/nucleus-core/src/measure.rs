@@ -3,7 +3,6 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use crate::collide::StepParts;
-use crate::collision::mutual::Mutual;
 use crate::collision::resolve::Tally;
 use crate::constraints::hinge::HingeGroup;
 use crate::constraints::stretch::LinkGroup;
@@ -142,8 +141,7 @@ impl<R: Real> Solver<R> {
     /// The smallest distance between two elements of cloth, over the thickness kept there.
     fn smallest_cloth_gap(&mut self) -> f64 {
         let Self { mutual: Some(mutual), state, .. } = self else { return f64::INFINITY };
-        let Mutual { start, active, .. } = mutual;
-        let closeness = active.closeness(&motion(state, start, 0.0));
+        let closeness = mutual.active.closeness(&motion(state, 0.0));
         closeness.map_or(f64::INFINITY, R::to_f64)
     }
 

@@ -1,5 +1,4 @@
-//! Contact among cloths, as the solver goes through it: foresee, find, push apart, and at the end of every
-//! step prove that nothing passed.
+//! Contact among cloths, as the solver goes through it: foresee, find, push apart.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -27,9 +26,6 @@ const FAR_BALL: [f64; 2] = [0.25, 0.15];
 const LEAST_BALL: f64 = 1e-6;
 /// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
 const FARTHEST: f64 = 1.0;
-/// Times that pushing, and then clipping, are tried before what is not proven is let go.
-const PUSHES: usize = 4;
-const CLIPS: usize = 8;
 
 impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.
@@ -53,13 +49,6 @@ impl<R: Real> Solver<R> {
         mutual.window = [0.0; 2];
     }
 
-    /// Keeps the places that points have before a time step moves them.
-    pub(crate) fn keep_start(&mut self) {
-        if let Some(mutual) = self.mutual.as_mut().filter(|mutual| mutual.is_on()) {
-            mutual.start.copy_from_slice(&self.state.displacement);
-        }
-    }
-
     /// Pushes apart all that is too near, once.
     pub(crate) fn meet(
         &mut self,
@@ -76,71 +65,12 @@ impl<R: Real> Solver<R> {
         self.watch_contacts(frame, span, tally);
         watch.enter(Stage::Collide);
         let Self { mutual: Some(mutual), state, team, .. } = self else { return };
-        let Mutual { start, active, .. } = mutual;
-        let step = Motion {
-            displacement: Shared::new(&mut state.displacement),
-            predicted: Shared::new(&mut state.predicted),
-            start,
-            h: R::from_f64(schedule.h),
-            grain: R::ZERO,
-        };
-        *tally.contacts.get_mut() += active.sweep(&step, team);
-    }
-
-    /// Proves at the end of a time step that nothing passed anything. What is not proven is pushed apart again,
-    /// then held back, and if all that does not help is let go and counted.
-    pub(crate) fn settle(
-        &mut self,
-        frame: &FrameInput,
-        schedule: &Schedule<R>,
-        span: Span,
-        tally: &mut Tally,
-        watch: &mut dyn StepObserver,
-    ) {
-        if !self.mutual.as_ref().is_some_and(Mutual::is_on) {
-            return;
-        }
-        for attempt in 0..=PUSHES + CLIPS {
-            self.watch_contacts(frame, span, tally);
-            if self.prove(schedule) == 0 {
-                return;
-            }
-            let pushes = attempt < PUSHES;
-            match attempt {
-                _ if pushes => self.meet(frame, schedule, span, tally, watch),
-                _ if attempt < PUSHES + CLIPS => self.clip(schedule, tally),
-                _ => return self.let_go(schedule, tally),
-            }
-            // What is held back on its way passes no collider at rest: it did not on the whole way.
-            if pushes || self.collider_states.iter().any(|collider| collider.moves) {
-                self.meet_colliders(frame, schedule, span, tally, watch);
-            }
-        }
-    }
-
-    fn prove(&mut self, schedule: &Schedule<R>) -> u64 {
-        let Self { mutual: Some(mutual), state, team, .. } = self else { return 0 };
-        let Mutual { start, active, .. } = mutual;
-        active.prove(&motion(state, start, schedule.h), team)
-    }
-
-    fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let Self { mutual: Some(mutual), state, .. } = self else { return };
-        let Mutual { start, active, .. } = mutual;
-        active.clip(&motion(state, start, schedule.h), |_| *tally.caught.get_mut() += 1);
-    }
-
-    fn let_go(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let crossed = self.prove(schedule);
-        *tally.crossed.get_mut() += crossed;
-        if let Some(mutual) = &mut self.mutual {
-            mutual.tangle.any |= crossed > 0;
-        }
+        *tally.contacts.get_mut() += mutual.active.sweep(&motion(state, schedule.h), team);
     }
 
     /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
     /// it was foreseen to, nothing needs to be done.
-    fn watch_contacts(&mut self, frame: &FrameInput, span: Span, tally: &mut Tally) {
+    pub(crate) fn watch_contacts(&mut self, frame: &FrameInput, span: Span, tally: &mut Tally) {
         let Some(mutual) = &mut self.mutual else { return };
         if span.to > mutual.window[1] + 1e-9 {
             let end = (span.from + (span.to - span.from) * WINDOW).min(1.0);
@@ -189,8 +119,8 @@ impl<R: Real> Solver<R> {
     /// that stray in it from what was foreseen for the frame, that too. Whether there were any.
     fn foresee(&mut self, frame: &FrameInput, span: Span) -> bool {
         let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return false };
-        let Mutual { start, far, near, window, strayed, left, .. } = mutual;
-        let ahead = Ahead::new(span, *window, mean_motion(start, &state.displacement));
+        let Mutual { far, near, window, strayed, left, .. } = mutual;
+        let ahead = Ahead::new(span, *window, mean_motion(&state.start, &state.displacement));
         let (near, far, strayed) = (near.shared(), far.shared(), Shared::new(strayed));
         let any = AtomicBool::new(false);
         for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
@@ -202,7 +132,7 @@ impl<R: Real> Solver<R> {
             let farthest = R::from_f64(FARTHEST * cloth.edge_length);
             team.phase(cloth.blocks.len(), |block| {
                 for row in cloth.blocks.range(block).filter(|&row| left[row as usize]) {
-                    let before = start[row as usize].xyz();
+                    let before = state.start[row as usize].xyz();
                     let motion = sub(state.displacement[row as usize].xyz(), before);
                     let soon = ahead.in_window(before, motion, balls[0]);
                     // SAFETY: blocks do not overlap.
@@ -271,11 +201,11 @@ impl<R: Real> Ahead<R> {
 }
 
 /// A time step as contacts see it.
-pub(crate) fn motion<'a, R: Real>(state: &'a mut State<R>, start: &'a [Row4<R>], h: f64) -> Motion<'a, R> {
+pub(crate) fn motion<R: Real>(state: &mut State<R>, h: f64) -> Motion<'_, R> {
     Motion {
         displacement: Shared::new(&mut state.displacement),
         predicted: Shared::new(&mut state.predicted),
-        start,
+        start: &state.start,
         h: R::from_f64(h),
         grain: R::ZERO,
     }

@@ -100,10 +100,12 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps),
         };
         let meets = |cloth: &ClothFrame| cloth.self_collision.on;
-        if frame.cloths.len() > 1 || frame.cloths.iter().any(meets) {
-            self.rounds.push(Round::Settle);
-        } else {
+        let is_mutual = frame.cloths.len() > 1 || frame.cloths.iter().any(meets);
+        if !is_mutual {
             self.rounds.retain(|round| *round != Round::MeetEachOther);
+        }
+        if is_mutual || frame.colliders.iter().any(|collider| collider.collide) {
+            self.rounds.push(Round::Settle);
         }
     }
 

@@ -17,6 +17,8 @@ pub struct State<R> {
     pub displacement: Vec<Row4<R>>,
     /// Velocity in m/s.
     pub velocity: Vec<Row4<R>>,
+    /// Displacement at the start of the time step; empty where nothing can be met.
+    pub start: Vec<Row4<R>>,
     /// Displacement before anything held the point. Written by predict, read by velocity.
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
@@ -34,6 +36,7 @@ impl<R: Real> State<R> {
             anchor: vec![[0.0; 3]; rows],
             displacement: vec![Row4::ZERO; rows],
             velocity: vec![Row4::ZERO; rows],
+            start: Vec::new(),
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             inverse_mass: vec![R::ZERO; rows],

@@ -95,7 +95,7 @@ impl<R: Real> Solver<R> {
     ) {
         let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
-        self.keep_start();
+        self.keep_start(frame);
         self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
         for round in &schedule.rounds {
             match round {
@@ -112,6 +112,13 @@ impl<R: Real> Solver<R> {
         self.follow_positions(schedule);
         self.bounce(frame, schedule, span.to);
         watch.step(span.to, self);
+    }
+
+    /// Keeps the places that points have before a time step moves them, where they can meet anything.
+    fn keep_start(&mut self, frame: &FrameInput) {
+        if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
+            self.state.start.clone_from(&self.state.displacement);
+        }
     }
 
     /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.

@@ -26,6 +26,8 @@ const LEAST_ARM: f64 = 0.25;
 /// A contact's plane is good for motion along it up to this share of the thickness: round an edge or a corner
 /// it is then off by less than 1e-5 of the thickness, and on a face not at all.
 const PLANE_REACH: f64 = 1.0 / 256.0;
+/// Share of the thickness below which a gap reckoned in single precision proves nothing.
+const ROUNDING: f64 = 1e-3;
 
 /// One element of a cloth, of `N` points, near one element of a collider, of `M` points.
 /// Point and face: 1 and 3; edge and edge: 2 and 2; face and point: 3 and 1.
@@ -67,8 +69,8 @@ pub struct Step<'a, R> {
     pub displacement: Shared<'a, Row4<R>>,
     /// Where the points would be had nothing held them; less the start of the step, this is velocity.
     pub predicted: Shared<'a, Row4<R>>,
-    /// Velocities at the start of the step.
-    pub velocity: Shared<'a, Row4<R>>,
+    /// Displacements at the start of the step.
+    pub start: &'a [Row4<R>],
     /// Anchors in metres.
     pub anchors: &'a [[f64; 3]],
     /// The collider's points at the start and at the end of the frame.
@@ -146,13 +148,9 @@ impl<R: Real> Step<'_, R> {
         unsafe { self.displacement.get(point) }
     }
 
-    /// Displacement at the start of the step.
-    #[allow(unsafe_code)]
     #[inline(always)]
     fn start(&self, point: u32) -> [R; 3] {
-        // SAFETY: as above.
-        let (p, v) = unsafe { (self.predicted.get(point).0, self.velocity.get(point).0) };
-        [p[0] - v[0] * self.h, p[1] - v[1] * self.h, p[2] - v[2] * self.h]
+        self.start[point as usize].xyz()
     }
 
     /// The collider's points at the start and at the end of the step.
@@ -415,6 +413,31 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
                 self.write(step, point, row, [R::ZERO; 3]);
             }
         }
+    }
+
+    /// Whether it is certain that the two did not pass each other in this step; takes up another plane if that
+    /// proves it. What was not apart when the step began has nothing to lose.
+    #[inline]
+    pub fn prove(&mut self, step: &Step<'_, R>) -> bool {
+        let moved = self.points.map(|point| step.moved(point).xyz());
+        let (_, least) = self.gaps(moved, step.share(step.time[1]));
+        least >= step.thickness * R::from_f64(ROUNDING) || self.prove_otherwise(step)
+    }
+
+    #[cold]
+    fn prove_otherwise(&mut self, step: &Step<'_, R>) -> bool {
+        let (cloth, surface) = (step.cloth(self.points), step.surface(self.collider_points));
+        let ([x0, x1], [q0, q1]) = (cloth, surface);
+        let at_start = closest(x0, q0);
+        let line = |x, q, (b, c)| weigh(x, b) - weigh(q, c);
+        let directions =
+            [line(x0, q0, at_start), across(x1, q1), across(x0, q0), line(x1, q1, closest(x1, q1))];
+        match best_plane(directions, cloth, surface) {
+            Some((gap, normal)) if gap > 0.0 => self.turn_to(normal, at_start, step),
+            Some(_) => return false,
+            None => {}
+        }
+        true
     }
 
     /// Takes the cloth's element along with the surface, as it was at the start of the step.

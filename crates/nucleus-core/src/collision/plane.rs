@@ -15,8 +15,8 @@ pub struct Ground<'a, R> {
     pub displacement: Shared<'a, Row4<R>>,
     /// Predicted displacements.
     pub predicted: Shared<'a, Row4<R>>,
-    /// Velocities at the start of the step.
-    pub velocity: Shared<'a, Row4<R>>,
+    /// Displacements at the start of the step.
+    pub start: &'a [Row4<R>],
     /// Height of each anchor above the plane, in metres.
     pub height: &'a [R],
     /// The plane's normal, of unit length.
@@ -55,8 +55,8 @@ impl<R: Real> Ground<'_, R> {
     #[allow(unsafe_code)]
     fn lift_point(&self, point: u32, row: &mut Row4<R>, gap: R) {
         // SAFETY: as above.
-        let (mut p, v) = unsafe { (self.predicted.get(point), self.velocity.get(point)) };
-        let start: [R; 3] = std::array::from_fn(|axis| p.0[axis] - v.0[axis] * self.h);
+        let mut p = unsafe { self.predicted.get(point) };
+        let start = self.start[point as usize].xyz();
         let gap_at_start = self.height[point as usize] + dot(self.normal, start);
         let push = Push::new(self.thickness - gap, self.thickness - gap_at_start, self.h);
         let motion: [R; 3] = std::array::from_fn(|axis| row.0[axis] - start[axis]);

@@ -8,6 +8,8 @@ use crate::columns::Shared;
 use crate::scalar::Real;
 use crate::team::Team;
 
+/// Pairs per task of proving.
+const PROOFS_PER_TASK: usize = 1024;
 /// How often the pairs of one point are gone through while they still push it about.
 const ROUNDS: usize = 4;
 
@@ -55,6 +57,86 @@ pub fn resolve<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team,
     }
     if pushed > 0 {
         settle_points(list, step, team, tally);
+    }
+}
+
+/// How many active pairs are not proven to be on their sides at the end of the step.
+pub fn prove<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) -> u64 {
+    let PairList { point_face, edge_edge, face_point, active, .. } = list;
+    prove_all(point_face, &active.point_face, step, team)
+        + prove_all(edge_edge, &active.edge_edge, step, team)
+        + prove_all(face_point, &active.face_point, step, team)
+}
+
+fn prove_all<R: Real, const N: usize, const M: usize>(
+    pairs: &mut [Pair<R, N, M>],
+    active: &[u32],
+    step: &Step<'_, R>,
+    team: &Team,
+) -> u64 {
+    let (pairs, open) = (Shared::new(pairs), AtomicU64::new(0));
+    team.phase(active.len().div_ceil(PROOFS_PER_TASK), |task| {
+        let end = active.len().min((task + 1) * PROOFS_PER_TASK);
+        for &index in &active[task * PROOFS_PER_TASK..end] {
+            // SAFETY: a pair is active once, and proofs move no point.
+            #[allow(unsafe_code)]
+            let [pair] = (unsafe { pairs.run(index..index + 1) }) else { continue };
+            open.fetch_add(u64::from(!pair.prove(step)), Ordering::Relaxed);
+        }
+    });
+    open.into_inner()
+}
+
+/// Takes every element of the cloth that is not proven back to where it was at the start of the step, along with
+/// the surface that it would pass.
+pub fn hold_back<R: Real>(
+    list: &mut PairList<R>,
+    step: &Step<'_, R>,
+    tally: &Tally,
+    hold: &mut impl FnMut(u32),
+) {
+    let PairList { point_face, edge_edge, face_point, active, .. } = list;
+    hold_all(point_face, &active.point_face, step, tally, hold);
+    hold_all(edge_edge, &active.edge_edge, step, tally, hold);
+    hold_all(face_point, &active.face_point, step, tally, hold);
+}
+
+/// Tells the points of all active pairs that are not proven.
+pub fn release<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, tell: &mut impl FnMut(u32)) {
+    let PairList { point_face, edge_edge, face_point, active, .. } = list;
+    release_all(point_face, &active.point_face, step, tell);
+    release_all(edge_edge, &active.edge_edge, step, tell);
+    release_all(face_point, &active.face_point, step, tell);
+}
+
+fn release_all<R: Real, const N: usize, const M: usize>(
+    pairs: &mut [Pair<R, N, M>],
+    active: &[u32],
+    step: &Step<'_, R>,
+    tell: &mut impl FnMut(u32),
+) {
+    for &index in active {
+        let pair = &mut pairs[index as usize];
+        if !pair.prove(step) {
+            pair.points.into_iter().for_each(&mut *tell);
+        }
+    }
+}
+
+fn hold_all<R: Real, const N: usize, const M: usize>(
+    pairs: &mut [Pair<R, N, M>],
+    active: &[u32],
+    step: &Step<'_, R>,
+    tally: &Tally,
+    hold: &mut impl FnMut(u32),
+) {
+    for &index in active {
+        let pair = &mut pairs[index as usize];
+        if !pair.prove(step) {
+            pair.ride(step);
+            pair.points.into_iter().for_each(&mut *hold);
+            tally.count(Outcome::Caught);
+        }
     }
 }
 

@@ -230,19 +230,42 @@ impl<R: Real> Active<R> {
         self.edge_edge.prove(step, team) + self.point_face.prove(step, team)
     }
 
-    /// Clips the motion of every contact that is not proven, one after the other; tells their points.
-    pub fn clip(&mut self, step: &Motion<'_, R>, mut clipped: impl FnMut([u32; 4])) {
+    /// Clips the motion of every contact that is not proven, one after the other; how many there were.
+    pub fn clip(&mut self, step: &Motion<'_, R>) -> u64 {
+        self.mend(step, |near| near.clip(step), |near| near.clip(step))
+    }
+
+    /// Lets every contact that is not proven go nowhere, one after the other, or along with a point of it that is
+    /// `held`; how many there were.
+    pub fn stop(&mut self, step: &Motion<'_, R>, held: &mut [bool]) -> u64 {
+        let held = std::cell::RefCell::new(held);
+        self.mend(
+            step,
+            |near| near.stop(step, &mut held.borrow_mut()),
+            |near| near.stop(step, &mut held.borrow_mut()),
+        )
+    }
+
+    /// Does something about every contact that is not proven.
+    fn mend(
+        &mut self,
+        step: &Motion<'_, R>,
+        edges: impl Fn(&mut Near<R, 2, 2>),
+        faces: impl Fn(&mut Near<R, 1, 3>),
+    ) -> u64 {
+        let mut mended = 0;
         for near in &mut self.edge_edge.list {
             if !near.prove(step) {
-                near.clip(step);
-                clipped([near.ours[0], near.ours[1], near.theirs[0], near.theirs[1]]);
+                edges(near);
+                mended += 1;
             }
         }
         for near in &mut self.point_face.list {
             if !near.prove(step) {
-                near.clip(step);
-                clipped([near.ours[0], near.theirs[0], near.theirs[1], near.theirs[2]]);
+                faces(near);
+                mended += 1;
             }
         }
+        mended
     }
 }

@@ -33,7 +33,7 @@ use tangle::Tangle;
 use terms::Terms;
 
 use crate::model::ClothModel;
-use crate::scalar::{Real, Row4};
+use crate::scalar::Real;
 
 /// Everything that contact among cloths keeps; empty where a scene has none.
 pub struct Mutual<R> {
@@ -41,8 +41,6 @@ pub struct Mutual<R> {
     pub bodies: Bodies,
     /// Who meets whom in this frame, by cloth and cloth.
     pub terms: Vec<Option<Terms<R>>>,
-    /// Displacement of each point at the start of the time step.
-    pub start: Vec<Row4<R>>,
     /// Where each point is foreseen to go in the frame, and in the next few time steps.
     pub far: Paths<R>,
     /// The latter.
@@ -57,6 +55,8 @@ pub struct Mutual<R> {
     pub candidates: Candidates,
     /// Those of them that can touch in the window.
     pub active: Active<R>,
+    /// Points that go nowhere in this step, or where something carries them; set where nothing else helps.
+    pub held: Vec<bool>,
     /// Elements that pass through each other.
     pub tangle: Tangle,
 }
@@ -68,7 +68,6 @@ impl<R: Real> Mutual<R> {
         Self {
             bodies: Bodies::new(cloths, anchors),
             terms: Vec::new(),
-            start: vec![Row4::ZERO; rows],
             far: Paths::new(rows),
             near: Paths::new(rows),
             window: [0.0; 2],
@@ -76,6 +75,7 @@ impl<R: Real> Mutual<R> {
             left: vec![true; rows],
             candidates: Candidates::default(),
             active: Active::default(),
+            held: Vec::new(),
             tangle: Tangle::new(rows),
         }
     }

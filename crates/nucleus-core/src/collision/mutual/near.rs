@@ -269,10 +269,14 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let share = -most(-share, -R::from_f64(1.0 - LEAST_SHARE));
         let plane = rear + (front - rear) * share;
         for k in 0..N {
-            self.stop(step, self.ours[k], [dot(normal, before.0[k]) - plane, dot(normal, now.0[k]) - plane]);
+            self.stop_before(
+                step,
+                self.ours[k],
+                [dot(normal, before.0[k]) - plane, dot(normal, now.0[k]) - plane],
+            );
         }
         for k in 0..M {
-            self.stop(
+            self.stop_before(
                 step,
                 self.theirs[k],
                 [plane - dot(normal, before.1[k]), plane - dot(normal, now.1[k])],
@@ -281,7 +285,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     }
 
     /// Takes a point back to before a plane, given its height above it at both ends of the step.
-    fn stop(&self, step: &Motion<'_, R>, point: u32, [before, now]: [R; 2]) {
+    fn stop_before(&self, step: &Motion<'_, R>, point: u32, [before, now]: [R; 2]) {
         let mut row = step.row(point);
         let room = before * R::from_f64(1.0 - ROOM_USED);
         if now >= room || before - now <= R::TINY || row.0[3] <= R::ZERO {
@@ -293,6 +297,23 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
         }
         step.write(point, row, [R::ZERO; 3]);
+    }
+
+    /// Lets all points of the two go nowhere in this step, or all along with one that is `held`: what moves as one
+    /// passes no part of itself.
+    pub fn stop(&mut self, step: &Motion<'_, R>, held: &mut [bool]) {
+        let points = || self.ours.iter().chain(&self.theirs).copied();
+        let carrier = points().find(|&point| held[point as usize]);
+        let motion = carrier.map_or([R::ZERO; 3], |point| sub(step.row(point).xyz(), step.start(point)));
+        for point in points() {
+            let mut row = step.row(point);
+            if row.0[3] > R::ZERO {
+                let [x, y, z] = add(step.start(point), motion);
+                row = Row4([x, y, z, row.0[3]]);
+                step.write(point, row, [R::ZERO; 3]);
+            }
+            held[point as usize] = true;
+        }
     }
 
     /// The distance between the two, over their thickness.

@@ -1,0 +1,102 @@
+//! The last word of a time step: the proof that nothing passed anything.
+//!
+//! What is not proven is pushed apart again; then held back on its way, each on its own side; then it goes nowhere in
+//! this step, except along with what carries it. The places at the start of the step were proven, so going nowhere is
+//! proven too: only between bodies that close on it, and pins that cross, is there no such way out, and what is there
+//! is let go and counted.
+
+use crate::collision::mutual::Mutual;
+use crate::collision::resolve::Tally;
+use crate::frame::FrameInput;
+use crate::meet::motion;
+use crate::observe::{Stage, StepObserver};
+use crate::scalar::Real;
+use crate::schedule::{Schedule, Span};
+use crate::solver::Solver;
+
+/// How often each remedy is tried before the next.
+const PUSHES: usize = 4;
+const CLIPS: usize = 8;
+const STOPS: usize = 32;
+
+impl<R: Real> Solver<R> {
+    /// Proves at the end of a time step that nothing passed anything, and sees to it that it is so.
+    pub(crate) fn settle(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+        watch: &mut dyn StepObserver,
+    ) {
+        let meets = self.mutual.as_ref().is_some_and(Mutual::is_on);
+        for attempt in 0..=PUSHES + CLIPS + STOPS {
+            watch.enter(Stage::FindPairs);
+            if meets {
+                self.watch_contacts(frame, span, tally);
+            }
+            watch.enter(Stage::Collide);
+            let open = [self.prove_cloths(schedule), self.prove_sides(frame, schedule, span, tally)];
+            if open == [0, 0] {
+                return;
+            }
+            if attempt < PUSHES {
+                if open[0] > 0 {
+                    self.meet(frame, schedule, span, tally, watch);
+                }
+                self.meet_colliders(frame, schedule, span, tally, watch);
+            } else if attempt < PUSHES + CLIPS {
+                self.clip(schedule, tally);
+                self.hold_sides(frame, schedule, span, tally);
+            } else if attempt < PUSHES + CLIPS + STOPS {
+                if attempt == PUSHES + CLIPS {
+                    self.hold_none();
+                }
+                self.hold_sides(frame, schedule, span, tally);
+                self.stop(schedule, tally);
+            } else {
+                return self.let_go(frame, schedule, span, open, tally);
+            }
+        }
+    }
+
+    fn prove_cloths(&mut self, schedule: &Schedule<R>) -> u64 {
+        let Self { mutual: Some(mutual), state, team, .. } = self else { return 0 };
+        mutual.active.prove(&motion(state, schedule.h), team)
+    }
+
+    fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
+        let Self { mutual: Some(mutual), state, .. } = self else { return };
+        *tally.caught.get_mut() += mutual.active.clip(&motion(state, schedule.h));
+    }
+
+    /// Lets contacts that are not proven go nowhere, or where one of their points is held already.
+    fn stop(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
+        let Self { mutual: Some(mutual), state, .. } = self else { return };
+        let Mutual { active, held, .. } = mutual;
+        *tally.caught.get_mut() += active.stop(&motion(state, schedule.h), held);
+    }
+
+    /// Begins with no point held but those that are pinned.
+    fn hold_none(&mut self) {
+        let Self { mutual: Some(mutual), state, .. } = self else { return };
+        mutual.held.clear();
+        mutual.held.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
+    }
+
+    /// Lets contacts that nothing helps be where they are. What they are then is looked at anew.
+    fn let_go(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        open: [u64; 2],
+        tally: &mut Tally,
+    ) {
+        *tally.crossed.get_mut() += open[0] + open[1];
+        self.release_sides(frame, schedule, span, tally);
+        if let Some(mutual) = &mut self.mutual {
+            mutual.tangle.any |= open[0] > 0;
+        }
+    }
+}
