@@ -25,7 +25,7 @@ const FAR_BALL: [f64; 2] = [0.25, 0.15];
 /// In metres; nothing is foreseen more sharply.
 const LEAST_BALL: f64 = 1e-6;
 /// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
-const FARTHEST: f64 = 1.0;
+const FARTHEST: f64 = 0.3;
 
 impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.

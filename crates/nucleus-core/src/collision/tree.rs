@@ -57,6 +57,7 @@ impl Aabb {
     }
 
     /// The box with `margin` added on every side.
+    #[inline(always)]
     pub fn inflate(self, margin: f32) -> Self {
         let margin = [margin, margin, margin, 0.0];
         Self {

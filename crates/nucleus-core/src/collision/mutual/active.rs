@@ -122,7 +122,7 @@ impl<R: Real> View<'_, R> {
         if !is_new || self.tangle.lets_pass(candidate.points) {
             return;
         }
-        let [ours, theirs] = candidate.groups.map(|group| self.bodies.groups[group as usize].cloth as usize);
+        let [ours, theirs] = candidate.ends().map(|point| self.bodies.cloth[point as usize] as usize);
         let Some(terms) = &self.terms[ours * self.cloths + theirs] else { return };
         let meeting = Meeting {
             thickness: R::from_f64(f64::from(candidate.thickness)),

@@ -30,6 +30,8 @@ pub struct Bodies {
     ends: Vec<u32>,
     /// The block that each point is in, counted over all cloths.
     pub block: Vec<u32>,
+    /// The cloth that each point is of.
+    pub cloth: Vec<u32>,
     /// How many blocks there are.
     pub blocks: u32,
     /// Where each point is at rest, in metres from the first of its cloth.
@@ -40,9 +42,16 @@ impl Bodies {
     /// The elements of these cloths in their shape at rest, which `anchors` have.
     pub fn new<R: Real>(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
         let rows = anchors.len();
-        let mut all = Self { block: vec![0; rows], rest: vec![[0.0; 3]; rows], ..Self::default() };
+        let mut all = Self {
+            block: vec![0; rows],
+            cloth: vec![0; rows],
+            rest: vec![[0.0; 3]; rows],
+            ..Self::default()
+        };
         for (cloth, model) in (0..).zip(cloths) {
             all.groups.extend(model.skin.groups().map(|group| Body { cloth, group }));
+            let points = model.points();
+            all.cloth[points.start as usize..points.end as usize].fill(cloth);
             for block in 0..model.blocks.len() {
                 let range = model.blocks.range(block);
                 all.block[range.start as usize..range.end as usize].fill(all.blocks);

@@ -1,9 +1,9 @@
 //! Candidates: two elements that can touch while their points keep to what is foreseen for them.
 
 use super::paths::Paths;
-use crate::collision::narrow::{gap_along, shortest};
+use crate::collision::narrow::{Places, gap_along, shortest};
 use crate::collision::tree::Aabb;
-use crate::scalar::Real;
+use crate::scalar::{Real, dot, scale, sub};
 
 /// What the points of a candidate are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,12 +25,17 @@ pub struct Candidate {
     pub kind: Kind,
     /// Their points, first one element's, then the other's; what is left over repeats the first.
     pub points: [u32; 4],
-    /// The groups they were found in.
-    pub groups: [u32; 2],
     /// The distance to keep, in metres.
     pub thickness: f32,
     /// Whether that is less than the cloth's, because the two are neighbours at rest.
     pub limited: bool,
+}
+
+impl Candidate {
+    /// A point of the one element, and one of the other.
+    pub fn ends(&self) -> [u32; 2] {
+        [self.points[0], self.points[if self.kind == Kind::EdgeEdge { 2 } else { 1 }]]
+    }
 }
 
 /// Share of their distance at rest that neighbours keep: a cloth thicker than its faces must still bend.
@@ -44,6 +49,8 @@ pub struct Seen {
     start: Vec<[f32; 4]>,
     /// At the end.
     end: Vec<[f32; 4]>,
+    /// Boxes round the balls at both.
+    balls: Vec<[Aabb; 2]>,
     /// What places are from: the same for all of a run, so that boxes stay good.
     origin: Option<[f64; 3]>,
 }
@@ -54,6 +61,7 @@ impl Seen {
         let origin = *self.origin.get_or_insert_with(|| anchors.first().copied().unwrap_or_default());
         self.start.clear();
         self.end.clear();
+        self.balls.clear();
         for (point, anchor) in (0..).zip(anchors) {
             let path = far.of(point);
             let anchor: [f64; 3] = std::array::from_fn(|axis| anchor[axis] - origin[axis]);
@@ -67,18 +75,19 @@ impl Seen {
             let row = |[x, y, z]: [f32; 3]| [x, y, z, stray];
             self.start.push(row(start));
             self.end.push(row(end));
+            self.balls.push([Aabb::ball(start, stray), Aabb::ball(end, stray)]);
         }
     }
 
     /// The boxes round some points, with a margin, at both ends of what is foreseen.
+    #[inline(always)]
     pub fn bound(&self, points: impl Iterator<Item = u32>, margin: f32) -> [Aabb; 2] {
-        let mut boxes = [Aabb::EMPTY; 2];
-        for point in points.map(|point| point as usize) {
-            let ([a, b, c, stray], [x, y, z, _]) = (self.start[point], self.end[point]);
-            boxes[0] = boxes[0].union(Aabb::ball([a, b, c], stray + margin));
-            boxes[1] = boxes[1].union(Aabb::ball([x, y, z], stray + margin));
+        let [mut start, mut end] = [Aabb::EMPTY; 2];
+        for point in points {
+            let [here, there] = &self.balls[point as usize];
+            (start, end) = (start.union(*here), end.union(*there));
         }
-        boxes
+        [start.inflate(margin), end.inflate(margin)]
     }
 
     /// A candidate, if the two can come nearer than the thickness. `rest` is the shape at rest, for elements
@@ -88,7 +97,6 @@ impl Seen {
         &self,
         kind: Kind,
         points: [u32; 4],
-        groups: [u32; 2],
         thickness: f32,
         rest: Option<&[[f32; 3]]>,
     ) -> Option<Candidate> {
@@ -100,7 +108,7 @@ impl Seen {
             Kind::PointFace => self.kept(([a], [b, c, d]), terms),
             Kind::EdgeEdge => self.kept(([a, b], [c, d]), terms),
         };
-        kept.map(|kept| Candidate { kind, points, groups, thickness: kept, limited: kept < thickness })
+        kept.map(|kept| Candidate { kind, points, thickness: kept, limited: kept < thickness })
     }
 
     /// The distance that two elements are to keep; nothing if they cannot come that near.
@@ -116,8 +124,14 @@ impl Seen {
         };
         let most = |points: &[u32]| points.iter().map(|&p| self.start[p as usize][3]).fold(0.0, f32::max);
         let stray = most(&ours) + most(&theirs);
-        let (normal, _, distance) = shortest(at(&self.start));
-        let least = distance.min(gap_along(normal, &at(&self.end))) - stray;
+        let [start, end] = [at(&self.start), at(&self.end)];
+        let line = between_middles(&start);
+        let far = (thickness + stray) * dot(line, line).sqrt();
+        if gap_along(line, &start) >= far && gap_along(line, &end) >= far {
+            return None;
+        }
+        let (normal, _, distance) = shortest(start);
+        let least = distance.min(gap_along(normal, &end)) - stray;
         if least >= thickness {
             return None;
         }
@@ -128,4 +142,13 @@ impl Seen {
         let kept = thickness.min(at_rest * OF_REST_DISTANCE);
         (least < kept).then_some(kept)
     }
+}
+
+/// The line from the middle of their element to the middle of ours.
+fn between_middles<const N: usize, const M: usize>((ours, theirs): &Places<f32, N, M>) -> [f32; 3] {
+    let middle = |points: &[[f32; 3]]| {
+        let sum = points.iter().fold([0.0; 3], |sum: [f32; 3], p| [0, 1, 2].map(|axis| sum[axis] + p[axis]));
+        scale(sum, 1.0 / points.len() as f32)
+    };
+    sub(middle(ours), middle(theirs))
 }

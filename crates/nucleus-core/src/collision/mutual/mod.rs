@@ -18,6 +18,7 @@
 pub mod active;
 pub mod bodies;
 pub mod candidate;
+mod local;
 pub mod near;
 pub mod paths;
 pub mod search;

@@ -1,13 +1,14 @@
 //! Broad phase among cloths: finds the pairs of elements that can touch while every point keeps to what is
-//! foreseen for it in the frame. Where points stray, only their neighbourhoods are searched again.
+//! foreseen for it in the frame. Where points stray, only the pairs of their elements are looked for again.
 
 use std::sync::Mutex;
 
 use super::Mutual;
 use super::bodies::Bodies;
 use super::candidate::{Candidate, Kind, Seen};
+use super::local::{self, Local, Locals};
 use super::terms::Terms;
-use crate::collision::skin::Group;
+use crate::collision::skin::{Group, Skin};
 use crate::collision::tree::Aabb;
 use crate::frame::Elements;
 use crate::model::ClothModel;
@@ -19,11 +20,9 @@ use crate::team::Team;
 pub struct Candidates {
     /// The candidates.
     pub list: Vec<Candidate>,
-    again: Vec<bool>,
+    again: Vec<u32>,
     tasks: Vec<Mutex<Found>>,
     seen: Seen,
-    /// Each group's box at the start and at the end of what is foreseen.
-    boxes: Vec<[Aabb; 2]>,
 }
 
 impl Clone for Candidates {
@@ -33,38 +32,29 @@ impl Clone for Candidates {
     }
 }
 
-/// What one task finds, with the boxes it makes on the way.
+/// What one task finds, and the groups that it looks at on the way.
 #[derive(Debug, Default)]
 struct Found {
     list: Vec<Candidate>,
-    ours: Boxes,
-    theirs: Boxes,
-}
-
-/// Two boxes per element of a group: at the start and at the end of what is foreseen.
-#[derive(Debug, Default)]
-struct Boxes {
-    triangles: Vec<[Aabb; 2]>,
-    edges: Vec<[Aabb; 2]>,
-    points: Vec<[Aabb; 2]>,
+    ours: Local,
+    theirs: Locals,
 }
 
 /// Groups per task.
-const GROUPS_PER_TASK: usize = 256;
+const GROUPS_PER_TASK: usize = 64;
 
 /// All that a search looks at.
-struct Search<'a, R> {
+pub(super) struct Search<'a, R> {
     bodies: &'a Bodies,
     cloths: &'a [ClothModel<R>],
     terms: &'a [Option<Terms<R>>],
-    again: &'a [bool],
-    seen: &'a Seen,
-    boxes: &'a [[Aabb; 2]],
+    pub(super) strayed: &'a [bool],
+    pub(super) seen: &'a Seen,
     /// Half of the largest distance that is kept.
-    margin: f32,
+    pub(super) margin: f32,
 }
 
-/// Finds the candidates of all groups that have a strayed point, from time `now` of the frame on.
+/// Finds the candidates of all elements that have a strayed point, from time `now` of the frame on.
 pub fn search<R: Real>(
     mutual: &mut Mutual<R>,
     cloths: &[ClothModel<R>],
@@ -73,166 +63,194 @@ pub fn search<R: Real>(
     team: &Team,
 ) {
     let Mutual { bodies, terms, far, strayed, candidates, .. } = mutual;
-    let Candidates { list, again, tasks, seen, boxes } = candidates;
+    let Candidates { list, again, tasks, seen } = candidates;
     seen.look(anchors, far, R::from_f64(now));
     let widest = terms.iter().flatten().map(|terms| terms.thickness).fold(0.0, f64::max) as f32;
     let margin = widest * 0.5 * (1.0 + 1e-5);
     again.clear();
-    boxes.clear();
     for group in 0..bodies.groups.len() {
-        let is_new = bodies.points_of(group).iter().any(|&point| strayed[point as usize]);
-        again.push(is_new);
-        let [start, end] = seen.bound(bodies.points_of(group).iter().copied(), margin);
-        boxes.push([start, end]);
-        if is_new {
+        if bodies.points_of(group).iter().any(|&point| strayed[point as usize]) {
+            let [start, end] = seen.bound(bodies.points_of(group).iter().copied(), margin);
             bodies.around[group] = start.union(end);
+            again.push(group as u32);
         }
     }
     if let Some(tree) = &mut bodies.tree {
         tree.refit(&bodies.around);
     }
-    list.retain(|candidate| candidate.groups.iter().all(|&group| !again[group as usize]));
-    let chunks = bodies.groups.len().div_ceil(GROUPS_PER_TASK);
-    tasks.resize_with(chunks, Mutex::default);
-    let view = Search { bodies, cloths, terms, again, seen, boxes, margin };
+    list.retain(|candidate| candidate.points.iter().all(|&point| !strayed[point as usize]));
+    let chunks = again.len().div_ceil(GROUPS_PER_TASK);
+    tasks.resize_with(tasks.len().max(chunks), Mutex::default);
+    let view = Search { bodies, cloths, terms, strayed, seen, margin };
     team.phase(chunks, |task| {
         // Nobody else has it: a task is done once.
         let Ok(mut found) = tasks[task].lock() else { return };
         found.list.clear();
-        let end = ((task + 1) * GROUPS_PER_TASK).min(view.bodies.groups.len());
-        for group in (task * GROUPS_PER_TASK..end).filter(|&group| view.again[group]) {
-            view.around(group as u32, &mut found);
-        }
+        found.theirs.forget();
+        let end = ((task + 1) * GROUPS_PER_TASK).min(again.len());
+        again[task * GROUPS_PER_TASK..end].iter().for_each(|&group| view.around(group, &mut found));
     });
-    for found in tasks.iter_mut().filter_map(|task| task.get_mut().ok()) {
+    for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
         list.append(&mut found.list);
     }
     strayed.fill(false);
 }
 
 impl<R: Real> Search<'_, R> {
-    /// Everything that meets the elements of a group.
+    /// Everything that meets the new elements of a group.
     fn around(&self, group: u32, found: &mut Found) {
         let Some(tree) = &self.bodies.tree else { return };
-        self.bound_elements(group, &mut found.ours);
-        let ours = &self.boxes[group as usize];
-        tree.query(&self.bodies.around[group as usize], |other| {
-            // Two groups that are both searched meet once.
-            let met_before = other < group && self.again[other as usize];
-            if !met_before && Aabb::may_meet(ours, &self.boxes[other as usize]) {
-                self.meet(group, other, found);
+        let Found { list, ours, theirs } = found;
+        ours.look(self, group);
+        let new = ours.new;
+        let sought = new[0].union(new[1]);
+        tree.query(&sought, |other| {
+            // A leaf of the tree has several.
+            if !self.bodies.around[other as usize].meets(&sought) {
+                return;
+            }
+            let theirs = theirs.of(self, other);
+            if Aabb::may_meet(&new, &theirs.all) {
+                self.meet((group, ours), (other, theirs), list);
             }
         });
     }
 
-    fn meet(&self, group: u32, other: u32, found: &mut Found) {
-        let cloths = [group, other].map(|group| self.bodies.groups[group as usize].cloth as usize);
+    /// All pairs of an element that is new in our group with one of theirs. What is new on both sides is found from
+    /// the group that comes first.
+    fn meet(&self, ours: (u32, &Local), theirs: (u32, &Local), list: &mut Vec<Candidate>) {
+        let cloths = [ours, theirs].map(|(group, _)| self.bodies.groups[group as usize].cloth as usize);
         let Some(terms) = &self.terms[cloths[0] * self.cloths.len() + cloths[1]] else { return };
-        self.bound_elements(other, &mut found.theirs);
-        let Found { list, ours, theirs } = found;
-        let here = Side { search: self, index: group, boxes: ours, reach: terms.elements[0] };
-        let there = Side { search: self, index: other, boxes: theirs, reach: terms.elements[1] };
-        here.points_against(&there, terms, list);
-        if group != other {
-            there.points_against(&here, terms, list);
+        let rest = (cloths[0] == cloths[1]).then_some(&self.bodies.rest[..]);
+        let mut pairs = Pairs { seen: self.seen, thickness: terms.thickness as f32, rest, list };
+        let side = |(group, local), reach| {
+            let (skin, elements) = self.elements(group);
+            Side { local, reach, skin, elements }
+        };
+        let (here, there) = (side(ours, terms.elements[0]), side(theirs, terms.elements[1]));
+        if ours.0 == theirs.0 {
+            pairs.points_against(&here, &here, |ours, theirs| ours || theirs);
+            if terms.edges {
+                pairs.edges_within(&here);
+            }
+            return;
         }
+        let is_first = ours.0 < theirs.0;
+        let counts = |ours: bool, theirs: bool| ours && (is_first || !theirs);
+        pairs.points_against(&here, &there, counts);
+        pairs.points_against(&there, &here, |theirs, ours| counts(ours, theirs));
         if terms.edges {
-            here.edges_against(&there, terms, list);
+            pairs.edges_against(&here, &there, counts);
         }
     }
 
-    fn bound_elements(&self, group: u32, boxes: &mut Boxes) {
-        let (skin, group) = self.elements(group);
-        boxes.triangles.clear();
-        boxes.edges.clear();
-        boxes.points.clear();
-        let bound = |points: &[u32]| self.seen.bound(points.iter().copied(), self.margin);
-        boxes.triangles.extend(skin.triangles[group.triangles.clone()].iter().map(|t| bound(t)));
-        boxes.edges.extend(skin.edges[group.edges.clone()].iter().map(|edge| bound(edge)));
-        boxes.points.extend(skin.points[group.points.clone()].iter().map(|&point| bound(&[point])));
-    }
-
-    fn elements(&self, group: u32) -> (&crate::collision::skin::Skin, &Group) {
+    /// A group's elements, and the skin that they are of.
+    pub(super) fn elements(&self, group: u32) -> (&Skin, &Group) {
         let body = &self.bodies.groups[group as usize];
         (&self.cloths[body.cloth as usize].skin, &body.group)
     }
 }
 
 /// One group of two that meet.
-struct Side<'a, R> {
-    search: &'a Search<'a, R>,
-    index: u32,
-    boxes: &'a Boxes,
+struct Side<'a> {
+    local: &'a Local,
     /// Which of its elements meet the points of the other.
     reach: Elements,
+    skin: &'a Skin,
+    elements: &'a Group,
 }
 
-impl<R: Real> Side<'_, R> {
-    /// Every point of this side against the elements of the other.
-    fn points_against(&self, other: &Self, terms: &Terms<R>, found: &mut Vec<Candidate>) {
-        let ((skin, group), (theirs, their_group)) =
-            (self.search.elements(self.index), self.search.elements(other.index));
-        let rest = self.search.rest(self.index, other.index);
-        let mut keep = |kind: Kind, points: [u32; 4]| {
-            let groups = [self.index, other.index];
-            found.extend(self.search.seen.candidate(kind, points, groups, terms.thickness as f32, rest));
-        };
-        for (&p, reach) in skin.points[group.points.clone()].iter().zip(&self.boxes.points) {
-            let meets = |boxes: &[Aabb; 2]| Aabb::may_meet(reach, boxes);
-            // What has no face is a point, whatever its cloth's elements are.
-            if other.reach == Elements::Points || their_group.triangles.is_empty() {
-                let points = theirs.points[their_group.points.clone()].iter().zip(&other.boxes.points);
-                for (&q, _) in points.filter(|&(&q, boxes)| self.is_first(other, p, q) && meets(boxes)) {
-                    keep(Kind::PointPoint, [p, q, p, p]);
+impl<'a> Side<'a> {
+    /// Which of its elements the points of another meet. What has no face is points, whatever its cloth's are.
+    fn reach(&self) -> Elements {
+        if self.elements.triangles.is_empty() { Elements::Points } else { self.reach }
+    }
+
+    fn points(&self) -> impl Iterator<Item = (u32, Boxed<'a>)> {
+        self.skin.points[self.elements.points.clone()].iter().copied().zip(boxed(&self.local.points))
+    }
+
+    fn edges(&self) -> impl Iterator<Item = ([u32; 2], Boxed<'a>)> {
+        self.skin.edges[self.elements.edges.clone()].iter().copied().zip(boxed(&self.local.edges))
+    }
+
+    fn triangles(&self) -> impl Iterator<Item = ([u32; 3], Boxed<'a>)> {
+        self.skin.triangles[self.elements.triangles.clone()].iter().copied().zip(boxed(&self.local.triangles))
+    }
+}
+
+/// The boxes round an element, and whether it is new.
+type Boxed<'a> = (&'a [Aabb; 2], bool);
+
+fn boxed(kind: &local::Kind) -> impl Iterator<Item = Boxed<'_>> {
+    kind.boxes.iter().zip(kind.is_new.iter().copied())
+}
+
+/// Where pairs of two cloths are put.
+struct Pairs<'a> {
+    seen: &'a Seen,
+    thickness: f32,
+    /// The shape at rest, where both are one cloth: neighbours keep less than the thickness.
+    rest: Option<&'a [[f32; 3]]>,
+    list: &'a mut Vec<Candidate>,
+}
+
+impl Pairs<'_> {
+    fn keep(&mut self, kind: Kind, points: [u32; 4]) {
+        self.list.extend(self.seen.candidate(kind, points, self.thickness, self.rest));
+    }
+
+    /// Every point of one side against the elements of the other, as far as they count, given which are new.
+    fn points_against(&mut self, ours: &Side<'_>, theirs: &Side<'_>, counts: impl Fn(bool, bool) -> bool) {
+        for (p, (here, p_is_new)) in ours.points() {
+            let meets = |(there, is_new): Boxed<'_>| counts(p_is_new, is_new) && Aabb::may_meet(here, there);
+            match theirs.reach() {
+                // Each pair counts once, and where one side has edges or faces the other's points meet those.
+                Elements::Points if ours.reach() == Elements::Points => {
+                    for (q, _) in theirs.points().filter(|&(q, there)| p < q && meets(there)) {
+                        self.keep(Kind::PointPoint, [p, q, p, p]);
+                    }
                 }
-            } else if other.reach == Elements::Edges {
-                let edges = theirs.edges[their_group.edges.clone()].iter().zip(&other.boxes.edges);
-                for (&[a, b], _) in edges.filter(|(edge, boxes)| !edge.contains(&p) && meets(boxes)) {
-                    keep(Kind::PointEdge, [p, a, b, p]);
+                Elements::Points => {}
+                Elements::Edges => {
+                    for ([a, b], _) in
+                        theirs.edges().filter(|(edge, there)| !edge.contains(&p) && meets(*there))
+                    {
+                        self.keep(Kind::PointEdge, [p, a, b, p]);
+                    }
                 }
-            } else {
-                let faces =
-                    theirs.triangles[their_group.triangles.clone()].iter().zip(&other.boxes.triangles);
-                for (&[a, b, c], _) in faces.filter(|(face, boxes)| !face.contains(&p) && meets(boxes)) {
-                    keep(Kind::PointFace, [p, a, b, c]);
+                Elements::Faces => {
+                    for ([a, b, c], _) in
+                        theirs.triangles().filter(|(face, there)| !face.contains(&p) && meets(*there))
+                    {
+                        self.keep(Kind::PointFace, [p, a, b, c]);
+                    }
                 }
             }
         }
     }
 
-    /// Whether two points meet as points, and in this direction: each pair counts once, and where one side has
-    /// faces or edges the other's points meet those.
-    fn is_first(&self, other: &Self, p: u32, q: u32) -> bool {
-        let only_points = (self.reach == Elements::Points
-            || self.search.elements(self.index).1.triangles.is_empty())
-            && (other.reach == Elements::Points || self.search.elements(other.index).1.triangles.is_empty());
-        only_points && p < q
-    }
-
-    /// Every edge of this side against every edge of the other.
-    fn edges_against(&self, other: &Self, terms: &Terms<R>, found: &mut Vec<Candidate>) {
-        let ((skin, group), (theirs, their_group)) =
-            (self.search.elements(self.index), self.search.elements(other.index));
-        let rest = self.search.rest(self.index, other.index);
-        for (&[a, b], reach) in skin.edges[group.edges.clone()].iter().zip(&self.boxes.edges) {
-            for (&[c, d], boxes) in theirs.edges[their_group.edges.clone()].iter().zip(&other.boxes.edges) {
-                let counted = self.index == other.index && [a, b] >= [c, d];
+    /// Every edge of one side against every edge of the other.
+    fn edges_against(&mut self, ours: &Side<'_>, theirs: &Side<'_>, counts: impl Fn(bool, bool) -> bool) {
+        for ([a, b], (here, is_new)) in ours.edges() {
+            for ([c, d], (there, other_is_new)) in theirs.edges() {
                 let joined = a == c || a == d || b == c || b == d;
-                if !counted && !joined && Aabb::may_meet(reach, boxes) {
-                    let groups = [self.index, other.index];
-                    let points = [a, b, c, d];
-                    let thickness = terms.thickness as f32;
-                    found.extend(self.search.seen.candidate(Kind::EdgeEdge, points, groups, thickness, rest));
+                if counts(is_new, other_is_new) && !joined && Aabb::may_meet(here, there) {
+                    self.keep(Kind::EdgeEdge, [a, b, c, d]);
                 }
             }
         }
     }
-}
 
-impl<R: Real> Search<'_, R> {
-    /// The shape at rest, where two groups are of one cloth: neighbours keep less than the thickness.
-    fn rest(&self, group: u32, other: u32) -> Option<&[[f32; 3]]> {
-        let [a, b] = [group, other].map(|group| self.bodies.groups[group as usize].cloth);
-        (a == b).then_some(&self.bodies.rest)
+    /// Every edge of a group against those that come after it.
+    fn edges_within(&mut self, group: &Side<'_>) {
+        for (at, ([a, b], (here, is_new))) in group.edges().enumerate() {
+            for ([c, d], (there, other_is_new)) in group.edges().skip(at + 1) {
+                let joined = a == c || a == d || b == c || b == d;
+                if (is_new || other_is_new) && !joined && Aabb::may_meet(here, there) {
+                    self.keep(Kind::EdgeEdge, [a, b, c, d]);
+                }
+            }
+        }
     }
 }
