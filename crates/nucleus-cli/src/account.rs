@@ -20,6 +20,10 @@ pub struct FrameFigures {
     pub broad_phases: u32,
     pub caught: u64,
     pub crossed: u64,
+    /// Points inside colliders, which are being led out.
+    pub trapped: u64,
+    /// Edges of cloth through faces of cloth, which are being worked apart.
+    pub tangled: u64,
     pub kinetic_energy: f64,
     pub finite: bool,
     /// How much of what the frame brought could not be used.
@@ -33,7 +37,7 @@ impl FrameFigures {
     /// The figures of a frame from its report.
     pub fn new(frame: i32, report: &StepReport) -> Self {
         let StepReport { max_strain, strain_99, min_gap, contacts, pairs, broad_phases, .. } = *report;
-        let StepReport { caught, crossed, kinetic_energy, finite, refused, .. } = *report;
+        let StepReport { caught, crossed, trapped, tangled, kinetic_energy, finite, refused, .. } = *report;
         let min_gap = min_gap.is_finite().then_some(min_gap);
         Self {
             frame,
@@ -45,6 +49,8 @@ impl FrameFigures {
             broad_phases,
             caught,
             crossed,
+            trapped,
+            tangled,
             kinetic_energy,
             finite,
             refused: refused.count,
@@ -68,6 +74,10 @@ pub struct Account {
     pub smallest_gap: Option<(f64, i32)>,
     /// Points that ended on the far side of a collider, over all frames.
     pub crossed: u64,
+    /// Points inside colliders: the most in a frame, and how many at the end.
+    pub trapped: [u64; 2],
+    /// The same for edges of cloth through faces of cloth.
+    pub tangled: [u64; 2],
     /// The first frame in which something was not a finite number.
     pub not_finite: Option<i32>,
     /// How much of what frames brought could not be used, over all frames.
@@ -92,6 +102,8 @@ impl Account {
             self.smallest_gap = Some((gap, frame));
         }
         self.crossed += figures.crossed;
+        self.trapped = [self.trapped[0].max(figures.trapped), figures.trapped];
+        self.tangled = [self.tangled[0].max(figures.tangled), figures.tangled];
         self.refused += figures.refused;
         self.first_refused = self.first_refused.or(figures.first_refused.map(|what| (what, frame)));
         if !figures.finite {

@@ -60,6 +60,15 @@ impl Summary<'_> {
             let points = figures::count(account.crossed as usize, "point");
             writeln!(text, "{points} ended on the far side of a collider")?;
         }
+        let [trapped, tangled] = [account.trapped, account.tangled];
+        if trapped[0] > 0 {
+            let points = figures::count(trapped[0] as usize, "point");
+            writeln!(text, "{points} inside a collider at the most, {} at the end", trapped[1])?;
+        }
+        if tangled[0] > 0 {
+            let edges = figures::count(tangled[0] as usize, "edge");
+            writeln!(text, "{edges} of cloth through cloth at the most, {} at the end", tangled[1])?;
+        }
         if let Some((what, frame)) = account.first_refused {
             let (what, count) =
                 (refused(what, self.objects), figures::count(account.refused as usize, "value"));
@@ -123,6 +132,8 @@ impl Summary<'_> {
             "worst_strain": at(account.worst_strain),
             "smallest_gap": at(account.smallest_gap),
             "crossed": account.crossed,
+            "trapped": { "most": account.trapped[0], "end": account.trapped[1] },
+            "tangled": { "most": account.tangled[0], "end": account.tangled[1] },
             "refused": account.refused,
             "first_refused": account.first_refused.map(|(what, _)| refused(what, self.objects)),
             "checks": checks,

@@ -36,6 +36,7 @@ impl<R: Real> Solver<R> {
             caught: tally.caught.load(Relaxed),
             crossed: tally.crossed.load(Relaxed),
             trapped: self.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
+            tangled: self.mutual.as_ref().map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
             unproven: tally.unproven.load(Relaxed),
             kinetic_energy,
             finite,

@@ -4,9 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::collision::mutual::Mutual;
 use crate::collision::mutual::active::{WINDOW, pick};
+use crate::collision::mutual::crossings::find_crossings;
 use crate::collision::mutual::near::Motion;
 use crate::collision::mutual::paths::Path;
 use crate::collision::mutual::search::search;
+use crate::collision::mutual::tangle::SPEED;
 use crate::collision::mutual::terms::Terms;
 use crate::collision::resolve::Tally;
 use crate::columns::Shared;
@@ -65,6 +67,12 @@ impl<R: Real> Solver<R> {
         self.watch_contacts(frame, span, tally);
         watch.enter(Stage::Collide);
         let Self { mutual: Some(mutual), state, team, .. } = self else { return };
+        if mutual.tangle.is_there() {
+            let most = mutual.bodies.edge_length * SPEED * schedule.h;
+            let anchors = std::mem::take(&mut state.anchor);
+            mutual.tangle.work_apart(&anchors, &motion(state, schedule.h), most);
+            state.anchor = anchors;
+        }
         *tally.contacts.get_mut() += mutual.active.sweep(&motion(state, schedule.h), team);
     }
 
@@ -72,7 +80,8 @@ impl<R: Real> Solver<R> {
     /// it was foreseen to, nothing needs to be done.
     pub(crate) fn watch_contacts(&mut self, frame: &FrameInput, span: Span, tally: &mut Tally) {
         let Some(mutual) = &mut self.mutual else { return };
-        if span.to > mutual.window[1] + 1e-9 {
+        let is_new = span.to > mutual.window[1] + 1e-9;
+        if is_new {
             let end = (span.from + (span.to - span.from) * WINDOW).min(1.0);
             mutual.window = [span.from, end.max(span.to)];
             mutual.left.fill(true);
@@ -86,6 +95,9 @@ impl<R: Real> Solver<R> {
             *tally.broad_phases.get_mut() += 1;
         }
         let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
+        if is_new && (mutual.tangle.is_suspected || mutual.tangle.is_there()) {
+            find_crossings(mutual, cloths, &state.anchor, &state.displacement);
+        }
         pick(mutual, cloths.len(), &state.anchor, team);
     }
 

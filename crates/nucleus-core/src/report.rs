@@ -31,6 +31,8 @@ pub struct StepReport {
     pub crossed: u64,
     /// Points that are inside a closed collider, and are being led out.
     pub trapped: u64,
+    /// Edges of cloth that go through faces of cloth at the end of the frame, and are being worked apart.
+    pub tangled: u64,
     /// Small neighbourhoods of cloth that motion or stretch had spread so wide that only their points were
     /// kept out of colliders, not their edges and faces; over all runs of the broad phase.
     pub unproven: u64,
@@ -56,6 +58,7 @@ impl Default for StepReport {
             caught: 0,
             crossed: 0,
             trapped: 0,
+            tangled: 0,
             unproven: 0,
             kinetic_energy: 0.0,
             finite: true,

@@ -96,7 +96,7 @@ impl<R: Real> Solver<R> {
         *tally.crossed.get_mut() += open[0] + open[1];
         self.release_sides(frame, schedule, span, tally);
         if let Some(mutual) = &mut self.mutual {
-            mutual.tangle.any |= open[0] > 0;
+            mutual.tangle.is_suspected |= open[0] > 0;
         }
     }
 }

@@ -261,6 +261,7 @@ fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
         crossed: a.crossed + b.crossed,
         unproven: a.unproven + b.unproven,
         trapped: if in_a_row { b.trapped } else { a.trapped + b.trapped },
+        tangled: if in_a_row { b.tangled } else { a.tangled + b.tangled },
         kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         finite: a.finite && b.finite,
         refused: if a.refused.count > 0 { a.refused } else { b.refused },

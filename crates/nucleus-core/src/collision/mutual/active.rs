@@ -119,10 +119,14 @@ impl<R> Picked<R> {
 impl<R: Real> View<'_, R> {
     fn pick(&self, candidate: &Candidate, picked: &mut Picked<R>) {
         let is_new = candidate.points.iter().any(|&point| self.left[point as usize]);
-        if !is_new || self.tangle.lets_pass(candidate.points) {
+        if !is_new {
             return;
         }
-        let [ours, theirs] = candidate.ends().map(|point| self.bodies.cloth[point as usize] as usize);
+        let cloths = candidate.ends().map(|point| self.bodies.cloth[point as usize]);
+        if self.tangle.lets_pass(candidate, cloths) {
+            return;
+        }
+        let [ours, theirs] = cloths.map(|cloth| cloth as usize);
         let Some(terms) = &self.terms[ours * self.cloths + theirs] else { return };
         let meeting = Meeting {
             thickness: R::from_f64(f64::from(candidate.thickness)),

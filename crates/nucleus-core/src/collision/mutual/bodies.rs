@@ -32,6 +32,8 @@ pub struct Bodies {
     pub block: Vec<u32>,
     /// The cloth that each point is of.
     pub cloth: Vec<u32>,
+    /// Mean length of the cloths' edges at rest in metres; of the smallest such.
+    pub edge_length: f64,
     /// How many blocks there are.
     pub blocks: u32,
     /// Where each point is at rest, in metres from the first of its cloth.
@@ -58,6 +60,8 @@ impl Bodies {
                 all.blocks += 1;
             }
         }
+        let lengths = cloths.iter().map(|cloth| cloth.edge_length).filter(|&length| length > 0.0);
+        all.edge_length = lengths.fold(f64::INFINITY, f64::min);
         all.take_shape(cloths, anchors);
         all
     }

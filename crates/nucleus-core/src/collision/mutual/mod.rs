@@ -9,7 +9,7 @@
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
-//! | meshes that pass through each other, and how they are worked apart | [`tangle`] |
+//! | meshes that pass through each other: found, and worked apart | [`crossings`], [`tangle`] |
 //!
 //! The proof is that of [`contact`](super::contact): both elements of a pair move along straight lines within
 //! a step, so the gap along one fixed direction is a concave function of time; if it is positive at both
@@ -18,9 +18,11 @@
 pub mod active;
 pub mod bodies;
 pub mod candidate;
+pub mod crossings;
 mod local;
 pub mod near;
 pub mod paths;
+mod pieces;
 pub mod search;
 pub mod tangle;
 pub mod tasks;

@@ -34,7 +34,7 @@ pub struct Motion<'a, R> {
 impl<R: Real> Motion<'_, R> {
     #[allow(unsafe_code)]
     #[inline(always)]
-    fn row(&self, point: u32) -> Row4<R> {
+    pub(super) fn row(&self, point: u32) -> Row4<R> {
         // SAFETY: tasks of a phase share no block, and a contact's points are in its task's blocks.
         unsafe { self.displacement.get(point) }
     }
@@ -47,7 +47,7 @@ impl<R: Real> Motion<'_, R> {
     /// Moves a point; `led` is the part of it that is not to become velocity.
     #[allow(unsafe_code)]
     #[inline(always)]
-    fn write(&self, point: u32, row: Row4<R>, led: [R; 3]) {
+    pub(super) fn write(&self, point: u32, row: Row4<R>, led: [R; 3]) {
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
