@@ -43,9 +43,12 @@ impl<R: Real> State<R> {
         };
         for (cloth, model) in cloths.iter().zip(models) {
             let masses = point_masses(cloth);
-            for (point, position) in cloth.surface.positions.iter().enumerate() {
+            for (point, position) in cloth.positions().iter().enumerate() {
                 let row = model.place(point) as usize;
                 state.anchor[row] = (*position).into();
+                if let Some(velocity) = cloth.start.velocities.get(point) {
+                    state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
+                }
                 // The point of a sliver weighs next to nothing: still a number in `f32`, and never pinned by rounding.
                 state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
             }

@@ -12,6 +12,7 @@ use crate::scene::{Findings, Scene};
 
 use super::geometry::Geometry;
 use super::lists::lists;
+use super::maps::{Maps, Scales};
 use super::program::{Object, ObjectKind, Universe};
 use super::shape::Shape;
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
@@ -29,6 +30,8 @@ pub(super) struct ClothSource {
     pub(super) default_thickness: f64,
     /// Whether its edges limit that.
     pub(super) is_dense: bool,
+    /// What maps that are the same everywhere make of its attributes.
+    pub(super) scales: Scales,
 }
 
 /// Where the frames of a collider come from.
@@ -47,7 +50,7 @@ pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     broken: &'a BTreeSet<NodeId>,
     pub(super) findings: &'a mut Findings,
-    geometry: &'a mut Geometry,
+    pub(super) geometry: &'a mut Geometry,
     /// The graph at the start.
     pub(super) start: Moment<'a>,
     pub(super) whole: Universe,
@@ -146,7 +149,10 @@ impl<'a> Compiler<'a> {
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let surface = self.whole.units.surface(surface);
         self.warn_of_stiffness(id);
-        let point_mass = self.start.get(id, &n_base::POINT_MASS);
+        let maps = self.maps(id, mesh, surface.positions.len());
+        let start = self.start_of(id, mesh, surface.positions.len());
+        let (Maps { scales, factors }, start) = (maps?, start?);
+        let point_mass = self.start.get(id, &n_base::POINT_MASS) * scales.mass;
         let mass = match self.start.get(self.whole.nucleus, &nucleus::RESISTANCE_MODEL) {
             CLASSIC => Mass::PerPoint(point_mass),
             _ => Mass::PerArea(point_mass),
@@ -154,19 +160,21 @@ impl<'a> Compiler<'a> {
         self.warn_of_free_points(self.scene.graph.node(id).name(), mesh, &surface);
         let points = surface.positions.len();
         let faces = surface.faces.clone();
+        let lists = lists(&self.scene.graph, id, self.whole.nucleus, &scales);
+        let cloth = Cloth { surface, mass, lists, factors, start };
         let kilograms = match mass {
+            _ if !cloth.factors.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,
-            Mass::PerArea(mass) => mass * area(&surface),
+            Mass::PerArea(mass) => mass * area(&cloth.surface),
         };
-        let lists = lists(&self.scene.graph, id, self.whole.nucleus);
-        match self.whole.model.cloth(Cloth { surface, mass, lists }) {
+        match self.whole.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.whole.first_cloth + cloth.0));
                 self.mass_and_object(id, kind, points, faces, kilograms);
             }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense });
+        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense, scales });
         Some(())
     }
 
