@@ -16,6 +16,39 @@ const FALLING: &[RampPoint] = &[
     RampPoint { position: 1.0, value: 0.0, interpolation: Choice(1) },
 ];
 
+/// What objects made of a mesh have no use for: most of what the classic particles had.
+#[rustfmt::skip] // a name per line would be a page of its own
+pub(super) const NO_USE_TO_MESHES: &[&str] = &[
+    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
+    "worldVelocityInObjectSpace", "lastWorldVelocity", "acceleration0", "emitterId0", "useStartupCache",
+    "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition", "cachedWorldPosition",
+    "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass0", "massCache",
+    "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId", "nextId0", "birthTime",
+    "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId",
+    "dieOnEmissionVolumeExit", "isFull", "newParticles", "collisionEvents", "death", "lifespanMode",
+    "lifespanRandom", "finalLifespanPP", "generalSeed", "randState", "expressionsAfterDynamics",
+    "executeCreationExpression", "executeRuntimeBeforeDynamicsExpression",
+    "executeRuntimeAfterDynamicsExpression", "input", "output", "time", "frame", "internalRuntimeExpression",
+    "internalRuntimeBeforeDynamicsExpression", "internalRuntimeAfterDynamicsExpression",
+    "internalCreationExpression", "currentParticle", "diedLastTime", "netEmittedLastTime", "startEmittedIndex",
+    "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail",
+    "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass", "fieldDataDeltaTime",
+    "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime", "currentTime",
+    "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime", "cachedTime",
+    "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
+    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace",
+    "goalSmoothness", "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth",
+    "collisions", "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction",
+    "collisionOffset", "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed",
+    "eventRandState", "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit",
+    "eventDie", "eventRandom", "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents",
+    "eventNameCount", "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections",
+    "inheritColor", "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone",
+    "timeLastComputed", "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType",
+    "disableCloudAxis", "normalizeVelocity", "samplerPerParticleData", "ownerPPFieldData", "deformedPosition",
+    "useCustomCache",
+];
+
 node_table! {
     /// What every object of a nucleus has: mass, thickness, collisions, fields.
     N_BASE = "nBase", inherits Some(&PARTICLE), hides [];

@@ -1,41 +1,13 @@
 //! Cloth.
 
 use super::key::{choice, float, floats, int, plug, texture, toggle};
-use super::n_base::MAP_TYPES;
-use super::n_base::N_BASE;
+use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::table::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {
     /// A mesh that behaves as cloth.
-    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [
-    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
-    "worldVelocityInObjectSpace", "lastWorldVelocity", "acceleration0", "emitterId0", "useStartupCache",
-    "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition", "cachedWorldPosition",
-    "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass0", "massCache",
-    "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId", "nextId0", "birthTime",
-    "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId", "dieOnEmissionVolumeExit",
-    "isFull", "newParticles", "collisionEvents", "death", "lifespanMode", "lifespanRandom", "finalLifespanPP",
-    "generalSeed", "randState", "expressionsAfterDynamics", "executeCreationExpression",
-    "executeRuntimeBeforeDynamicsExpression", "executeRuntimeAfterDynamicsExpression", "input", "output", "time",
-    "frame", "internalRuntimeExpression", "internalRuntimeBeforeDynamicsExpression",
-    "internalRuntimeAfterDynamicsExpression", "internalCreationExpression", "currentParticle", "diedLastTime",
-    "netEmittedLastTime", "startEmittedIndex", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld",
-    "maxCount", "levelOfDetail", "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass",
-    "fieldDataDeltaTime", "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime",
-    "currentTime", "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime",
-    "cachedTime", "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
-    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace", "goalSmoothness",
-    "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth", "collisions",
-    "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction", "collisionOffset",
-    "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed", "eventRandState",
-    "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit", "eventDie", "eventRandom",
-    "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents", "eventNameCount",
-    "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections", "inheritColor",
-    "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone", "timeLastComputed",
-    "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType", "disableCloudAxis", "normalizeVelocity",
-    "samplerPerParticleData", "ownerPPFieldData", "deformedPosition", "useCustomCache",
-];
+    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
