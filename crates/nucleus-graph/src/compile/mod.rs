@@ -5,6 +5,7 @@
 //! | what comes out                                       | [`Program`]      |
 //! | how cloth and colliders get their shape and mass     | `objects.rs`     |
 //! | which lists a cloth needs                            | `lists.rs`       |
+//! | in which order objects are solved                    | `shaped.rs`      |
 //! | what a frame brings                                  | `frame.rs`       |
 //! | how meshes change their shape                        | `shape.rs`       |
 //! | attributes that differ from point to point           | `maps.rs`, `column.rs` |
@@ -28,6 +29,7 @@ mod pins;
 mod program;
 mod self_collision;
 mod shape;
+mod shaped;
 mod start;
 mod thickness;
 mod time;

@@ -15,6 +15,7 @@ use super::lists::lists;
 use super::maps::{Maps, Scales};
 use super::program::{Object, ObjectKind, Universe};
 use super::shape::Shape;
+use super::shaped::Shaped;
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::time;
 use super::units::Units;
@@ -91,11 +92,11 @@ impl<'a> Compiler<'a> {
     /// All objects and constraints; those that are broken, or made from something broken, are left out. What
     /// comes out is only whole if no errors were found.
     pub(super) fn compile(mut self) -> Compiled {
-        for cloth in self.members(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
-            self.cloth(cloth);
+        for shaped in self.shaped(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
+            self.cloth(shaped);
         }
-        for collider in self.members(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
-            self.collider(collider);
+        for shaped in self.shaped(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
+            self.collider(shaped);
         }
         self.whole.pins = self.pins();
         if !self.objects.is_empty() {
@@ -106,7 +107,7 @@ impl<'a> Compiler<'a> {
 
     /// What is connected to an input of the nucleus, in the order of its elements. Only objects of a type can
     /// be solved there.
-    fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
+    pub(super) fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
         let graph = &self.scene.graph;
         let mut members = Vec::new();
         for (index, plug) in graph.elements(self.whole.nucleus, input) {
@@ -142,9 +143,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn cloth(&mut self, id: NodeId) -> Option<()> {
+    fn cloth(&mut self, Shaped { id, mesh, surface }: Shaped) -> Option<()> {
         self.check_wired(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
-        let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let surface = self.whole.units.surface(surface);
@@ -198,9 +198,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn collider(&mut self, id: NodeId) -> Option<()> {
+    fn collider(&mut self, Shaped { id, mesh, surface }: Shaped) -> Option<()> {
         self.check_wired(id, &[particle::CURRENT_TIME.row.name]);
-        let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let graph = &self.scene.graph;
         let shape = if graph.moves(mesh) || !self.geometry.is_fixed(self.scene, mesh, self.findings) {
@@ -224,7 +223,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// The mesh that an object is made from, where it stands at the start; lengths in scene units.
-    fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
+    pub(super) fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
         let graph = &self.scene.graph;
         let Some(mesh) = self.mesh_of(object) else {
             let name = graph.node(object).name();
