@@ -16,6 +16,9 @@ pub struct Texture {
     pixels: Vec<f32>,
 }
 
+/// A head of a few bytes can promise more pixels than any memory holds.
+const MOST_PIXELS: u64 = 1 << 26;
+
 /// Why a file is not a texture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -36,6 +39,16 @@ pub enum TextureError {
         /// What is wrong.
         source: png::DecodingError,
     },
+    /// It has too many pixels.
+    #[error("`{}` has {columns} x {rows} pixels; {MOST_PIXELS} are the most", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its width.
+        columns: u32,
+        /// Its height.
+        rows: u32,
+    },
 }
 
 impl Texture {
@@ -50,6 +63,10 @@ impl Texture {
         let mut decoder = png::Decoder::new(BufReader::new(file));
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(broken)?;
+        let (columns, rows) = reader.info().size();
+        if u64::from(columns) * u64::from(rows) > MOST_PIXELS {
+            return Err(TextureError::TooLarge { path: path.to_owned(), columns, rows });
+        }
         let bytes = reader.output_buffer_size().ok_or(png::DecodingError::LimitsExceeded);
         let mut data = vec![0; bytes.map_err(broken)?];
         let info = reader.next_frame(&mut data).map_err(broken)?;

@@ -342,6 +342,15 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
         let found = told(&text, &file);
         assert!(found.contains(&(message.clone(), place)), "{fields}: {found:?}");
     }
+    let mut promise = Vec::new();
+    let mut writer = png::Encoder::new(&mut promise, 1_000_000, 2_000_000).write_header().expect("a header");
+    writer.write_chunk(png::chunk::IDAT, &[0x78, 0x9c]).expect("a chunk");
+    drop(writer);
+    put("huge.png", &promise);
+    let text = hanging(&texture("huge.png"));
+    let found = told(&text, &file);
+    let message = format!("`{}` has 1000000 x 2000000 pixels; 67108864 are the most", at("huge.png"));
+    assert_eq!(found, [(message, "texture(\"huge.png\")")]);
     let text = hanging(&texture("half.png"));
     let found = told(&text, &file);
     assert!(found[0].0.starts_with(&format!("`{}` is not a sound PNG: ", at("half.png"))), "{found:?}");

@@ -39,7 +39,7 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-const STRANGE: [&str; 24] = [
+const STRANGE: [&str; 28] = [
     "3",
     "true",
     "\"x\"",
@@ -64,6 +64,10 @@ const STRANGE: [&str; 24] = [
     "18446744073709551616",
     "preset: \"silk\"",
     "connections: [(\"a.tx\", \"a.ty\")],",
+    "massMapType: perVertex",
+    "massPerVertex: expression(\"1 + x * u\")",
+    "bendMap: texture(\"a.png\")",
+    "startPositions: [(0, 1, 2)]",
 ];
 
 /// Removes, doubles, misspells, retypes, replaces, swaps or cuts off.
