@@ -27,6 +27,8 @@ pub struct PointFactors {
     pub tangential_drag: Vec<f64>,
     /// On `lift`.
     pub lift: Vec<f64>,
+    /// On `friction`; where an element touches, the mean by how near each of its points is.
+    pub friction: Vec<f64>,
 }
 
 /// Smaller shares than this are none: so soft a link is not there.
@@ -34,7 +36,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 impl PointFactors {
     /// Every column, with the least and the most it may hold.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 9] {
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 10] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
         [
@@ -47,6 +49,7 @@ impl PointFactors {
             ("drag", &self.drag, ANY),
             ("tangential drag", &self.tangential_drag, ANY),
             ("lift", &self.lift, ANY),
+            ("friction", &self.friction, ANY),
         ]
     }
 

@@ -164,9 +164,9 @@ node_table! {
         /// Factor on bounce at each point.
         BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
         /// Texture that varies friction.
-        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0);
+        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("factors");
         /// Factor on friction at each point.
-        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("factors");
         /// Texture that varies stickiness.
         STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0);
         /// Factor on stickiness at each point.
@@ -180,7 +180,7 @@ node_table! {
         /// Whether bounce is varied by nothing, by point, or by a texture.
         BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
         /// Whether friction is varied by nothing, by point, or by a texture.
-        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether stickiness is varied by nothing, by point, or by a texture.
         STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
         /// Whether collide strength is varied by nothing, by point, or by a texture.

@@ -1,8 +1,8 @@
 //! Colliders. Rows of its base are repeated where creation in Maya sets another value.
 
 use super::Choice;
-use super::key::{choice, toggle};
-use super::n_base::{N_BASE, NO_USE_TO_MESHES};
+use super::key::{choice, floats, texture, toggle};
+use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::table::node_table;
 
 /// What an object that nothing moves has no use for.
@@ -26,5 +26,13 @@ node_table! {
     "Quality Settings" {
         /// Remembers on which side points started and brings them back there.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true);
+    }
+    "Collision Properties Maps" {
+        /// Texture that varies friction.
+        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0);
+        /// Factor on friction at each point.
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
+        /// Whether friction is varied by nothing, by point, or by a texture.
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
     }
 }

@@ -149,7 +149,7 @@ impl Stretch<'_> {
             local_wind: Vector3::from(to.get(node, &n_base::LOCAL_WIND)),
             collide: to.get(node, &n_base::COLLIDE),
             thickness: self.thickness(node, cloth.default_thickness),
-            friction: number(&n_base::FRICTION),
+            friction: number(&n_base::FRICTION) * scales.friction,
             bounce: number(&n_base::BOUNCE),
             elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),

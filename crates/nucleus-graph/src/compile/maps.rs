@@ -43,6 +43,7 @@ maps! {
     DRAG: n_cloth::DRAG_PER_VERTEX, DRAG_MAP, DRAG_MAP_TYPE;
     TANGENTIAL_DRAG: n_cloth::TANGENTIAL_DRAG_PER_VERTEX, TANGENTIAL_DRAG_MAP, TANGENTIAL_DRAG_MAP_TYPE;
     LIFT: n_cloth::LIFT_PER_VERTEX, LIFT_MAP, LIFT_MAP_TYPE;
+    FRICTION: n_base::FRICTION_PER_VERTEX, FRICTION_MAP, FRICTION_MAP_TYPE;
 }
 
 /// Factors on the attributes of a cloth that are the same for all of its points.
@@ -57,6 +58,7 @@ pub(super) struct Scales {
     pub(super) drag: f64,
     pub(super) tangential_drag: f64,
     pub(super) lift: f64,
+    pub(super) friction: f64,
 }
 
 /// What the maps of a cloth come to.
@@ -109,6 +111,7 @@ impl Compiler<'_> {
         let [mass, damp] = [&MASS, &DAMP].map(|map| Varied::of(read(map)));
         let [rest_length, drag] = [&REST_LENGTH, &DRAG].map(|map| Varied::of(read(map)));
         let [tangential_drag, lift] = [&TANGENTIAL_DRAG, &LIFT].map(|map| Varied::of(read(map)));
+        let friction = Varied::of(read(&FRICTION));
         let [stretch, compression, bend] = [stretch, compression, read(&BEND)].map(Varied::of_shares);
         self.check_mass(cloth, &mass);
         if self.findings.errors() > before {
@@ -124,6 +127,7 @@ impl Compiler<'_> {
             drag: drag.scale,
             tangential_drag: tangential_drag.scale,
             lift: lift.scale,
+            friction: friction.scale,
         };
         let factors = PointFactors {
             mass: mass.factors,
@@ -135,6 +139,7 @@ impl Compiler<'_> {
             drag: drag.factors,
             tangential_drag: tangential_drag.factors,
             lift: lift.factors,
+            friction: friction.factors,
         };
         Some(Maps { scales, factors })
     }

@@ -47,7 +47,7 @@ fn model(text: &str) -> String {
 }
 
 /// An attribute, the name of its map, and its default.
-const MAPS: [(&str, &str, f64); 9] = [
+const MAPS: [(&str, &str, f64); 10] = [
     ("pointMass", "mass", 1.0),
     ("damp", "damp", 0.1),
     ("stretchResistance", "stretch", 20.0),
@@ -57,6 +57,7 @@ const MAPS: [(&str, &str, f64); 9] = [
     ("drag", "drag", 0.05),
     ("tangentialDrag", "tangentialDrag", 0.5),
     ("lift", "lift", 0.05),
+    ("friction", "friction", 0.1),
 ];
 
 /// A cloth whose attribute is `value`. The map of stretch holds for compression too, so there is none.
@@ -109,7 +110,8 @@ proptest! {
 
 #[test]
 fn a_map_is_felt() {
-    for (attribute, map, default) in MAPS {
+    // Friction needs something to rub against; the core's tests slide cloth down slopes.
+    for (attribute, map, default) in MAPS.into_iter().filter(|(_, map, _)| *map != "friction") {
         let default = if map == "damp" { 3.0 } else { default };
         let varied = program(&mapped(map, attribute, default, r#"expression("0.25 + u")"#));
         let even = program(&plain(attribute, default));

@@ -193,7 +193,11 @@ fn the_reader_is_fuzzed() {
         let text = tokens.concat();
         tried += 1;
         if known.insert(reasons(&survive(&text, Path::new("fuzz.ron")))) && text.len() < 4096 {
-            fs::write(corpus().join(format!("{tried:08x}.ron")), &text).expect("it can be kept");
+            // Named by what is in it: no run replaces what another has found.
+            let name = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+            fs::write(corpus().join(format!("{name:016x}.ron")), &text).expect("it can be kept");
             kept += 1;
             pool.push(text);
         }
