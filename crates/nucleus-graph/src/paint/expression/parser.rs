@@ -10,8 +10,11 @@ use crate::scene::nearest;
 /// Brackets within brackets, at most: deeper ones are a mistake, and would need a deep stack to be read.
 const DEEPEST: usize = 64;
 
+/// A sign between two values, and what it does.
+type Operator = (&'static str, fn(f64, f64) -> f64);
+
 /// What stands between two values: by what binds least. All but the last group to the left.
-const BINARY: [&[(&str, fn(f64, f64) -> f64)]; 5] = [
+const BINARY: [&[Operator]; 5] = [
     &[("||", |a, b| truth(a != 0.0 || b != 0.0))],
     &[("&&", |a, b| truth(a != 0.0 && b != 0.0))],
     &[
