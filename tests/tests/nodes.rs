@@ -49,7 +49,7 @@ fn by_hand(frames: u32) -> u64 {
     let lists =
         ClothLists { shear: false, air: false, damp: false, self_collision: false, ..ClothLists::ALL };
     let mut builder = ModelBuilder::new();
-    let cloth = Cloth { surface: sheet, mass: Mass::PerArea(0.5), lists };
+    let cloth = Cloth::new(sheet, Mass::PerArea(0.5), lists);
     builder.cloth(cloth).expect("it is a sound mesh");
     let sphere = poly_sphere(0.5, (20, 20)).expect("it has a size");
     builder.collider(Collider { surface: sphere }).expect("it is a sound mesh");

@@ -29,7 +29,7 @@
 //! # let positions = rest.iter().map(|&p: &[f32; 3]| nalgebra::Vector3::from(p.map(f64::from))).collect();
 //! # let surface = Surface { positions, faces: faces.clone() };
 //! # let mut builder = ModelBuilder::new();
-//! # let cloth = builder.cloth(Cloth { surface, mass: Mass::PerPoint(1.0), lists: ClothLists::NONE })?;
+//! # let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE))?;
 //! # let object = ObjectInfo { name: "sheet".to_owned(), kind: ObjectKind::Cloth, faces, rest };
 //! # let mut recorder = Recorder::create("hang.mcap", &RunInfo::default(), vec![(Source::Cloth(cloth), object)])?;
 //! # recorder.record_start(&Solver::<f32>::new(builder, 1))?;

@@ -19,6 +19,7 @@ mod commands;
 mod diagnostics;
 mod figures;
 mod frame_range;
+mod initial_state;
 mod interrupt;
 mod outcome;
 mod output;

@@ -47,7 +47,7 @@ impl FromStr for Record {
 }
 
 /// How a cache is to be written.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Manner {
     /// What is recorded.
     pub record: Record,
@@ -57,6 +57,8 @@ pub struct Manner {
     pub force: bool,
     /// Whether it is to be as small as can be, at the cost of time.
     pub compact: bool,
+    /// What the run starts from, if that is a frame of another cache.
+    pub from: Option<String>,
 }
 
 /// Begins the cache of a run at its start frame; none if nothing is to be recorded.
@@ -83,7 +85,7 @@ pub fn begin(
         ground: plane
             .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
         packing: if manner.compact { Packing::Small } else { Packing::Fast },
-        extra: provenance(),
+        extra: provenance(manner.from),
         ..RunInfo::default()
     };
     let objects = objects(simulation);
@@ -98,9 +100,12 @@ pub fn begin(
 
 /// What else is worth knowing of a run. Nothing that may change from one run of a scene to the next, such as
 /// the date or the number of threads: the same run gives the same bytes.
-fn provenance() -> BTreeMap<String, String> {
+fn provenance(from: Option<String>) -> BTreeMap<String, String> {
     let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
-    BTreeMap::from([("machine".to_owned(), machine), ("scalar".to_owned(), "f32".to_owned())])
+    let mut facts =
+        BTreeMap::from([("machine".to_owned(), machine), ("scalar".to_owned(), "f32".to_owned())]);
+    facts.extend(from.map(|from| ("from".to_owned(), from)));
+    facts
 }
 
 /// First and last frame of a program.

@@ -26,26 +26,62 @@ pub struct Air<R> {
     lift: R,
 }
 
-impl<R: Real> Air<R> {
-    /// The air that a cloth of `weight` (its `pointMass`) feels in steps of `h` seconds; nothing in a vacuum.
+/// The air that a cloth feels, before it is told where on the cloth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Breeze {
+    wind: Vector3<f64>,
+    /// Drag and lift over the mass, per second.
+    drag: f64,
+    lift: f64,
+    tangential_drag: f64,
+    h: f64,
+}
+
+/// Factors on what a point feels of the air, over the factor on its mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AirFactors {
+    /// On drag.
+    pub drag: f64,
+    /// On the share of drag along the surface.
+    pub tangential_drag: f64,
+    /// On lift.
+    pub lift: f64,
+}
+
+impl AirFactors {
+    /// Everything as the cloth's own attributes say.
+    pub const NONE: Self = Self { drag: 1.0, tangential_drag: 1.0, lift: 1.0 };
+}
+
+impl Breeze {
+    /// What a cloth of `weight` (its `pointMass`) feels in steps of `h` seconds; nothing in a vacuum.
     pub fn new(frame: &FrameInput, cloth: &ClothFrame, weight: f64, h: f64) -> Option<Self> {
         let rate = |attribute: f64| attribute * frame.air_density / (COUNT_PERIOD * weight);
-        if rate(cloth.drag) <= 0.0 && rate(cloth.lift) <= 0.0 {
+        let (drag, lift) = (rate(cloth.drag), rate(cloth.lift));
+        if drag <= 0.0 && lift <= 0.0 {
             return None;
         }
         let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
-        let left = |rate: f64| {
-            let half = 1.0 + rate * h / 2.0;
-            R::from_f64(1.0 / (half * half))
-        };
-        Some(Self {
-            wind: [wind.x, wind.y, wind.z].map(R::from_f64),
-            along_normal: left(rate(cloth.drag)),
-            along_surface: left(rate(cloth.drag) * cloth.tangential_drag),
-            lift: R::from_f64((rate(cloth.lift) * h).min(1.0)),
-        })
+        Some(Self { wind, drag, lift, tangential_drag: cloth.tangential_drag, h })
     }
 
+    /// What a point feels.
+    pub fn at<R: Real>(&self, factors: &AirFactors) -> Air<R> {
+        let left = |rate: f64| {
+            let half = 1.0 + rate * self.h / 2.0;
+            R::from_f64(1.0 / (half * half))
+        };
+        let drag = self.drag * factors.drag;
+        Air {
+            wind: [self.wind.x, self.wind.y, self.wind.z].map(R::from_f64),
+            along_normal: left(drag),
+            along_surface: left(drag * (self.tangential_drag * factors.tangential_drag)),
+            lift: R::from_f64((self.lift * factors.lift * self.h).min(1.0)),
+        }
+    }
+}
+
+impl<R: Real> Air<R> {
     /// A velocity after the step.
     #[inline(always)]
     pub fn slow(&self, velocity: [R; 4], normal: [R; 3]) -> [R; 4] {

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use crate::factors::PointFactors;
 use crate::ids::{ClothId, ColliderId};
 use crate::model::point_masses;
 use crate::refuse::{FARTHEST, is_usable};
@@ -59,7 +60,7 @@ impl ClothLists {
     };
 }
 
-/// A mesh that becomes cloth. Its shape is both where it starts and how it is at rest.
+/// A mesh that becomes cloth. Its shape is how it is at rest, and where it starts unless `start` says otherwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cloth {
     /// The mesh at the start, in metres. Faces may be empty: then the points are free.
@@ -68,9 +69,32 @@ pub struct Cloth {
     pub mass: Mass,
     /// The lists it can ever need.
     pub lists: ClothLists,
+    /// Where its attributes differ from point to point.
+    pub factors: PointFactors,
+    /// How it starts, where that is not at rest as the mesh is.
+    pub start: Start,
+}
+
+/// How a cloth starts, point by point in the mesh's order. What it is at rest is still the mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Start {
+    /// In metres; empty for where the mesh has its points.
+    pub positions: Vec<Vector3<f64>>,
+    /// In m/s; empty for none.
+    pub velocities: Vec<Vector3<f64>>,
 }
 
 impl Cloth {
+    /// A cloth that is the same everywhere and starts at rest as its mesh is.
+    pub fn new(surface: Surface, mass: Mass, lists: ClothLists) -> Self {
+        Self { surface, mass, lists, factors: PointFactors::default(), start: Start::default() }
+    }
+
+    /// Where its points start, in metres.
+    pub fn positions(&self) -> &[Vector3<f64>] {
+        if self.start.positions.is_empty() { &self.surface.positions } else { &self.start.positions }
+    }
+
     /// The mass of each point in kilograms, in the mesh's order: what the solver goes by.
     pub fn point_masses(&self) -> Vec<f64> {
         point_masses(self)
@@ -122,6 +146,48 @@ pub enum BuildError {
     /// The mesh has no points at all.
     #[error("the mesh has no points")]
     NoPoints,
+    /// A column of the start is not as long as the mesh has points.
+    #[error("there are {given} {what} to start from, but {points} points")]
+    StartCount {
+        /// `positions` or `velocities`.
+        what: &'static str,
+        /// How many were given.
+        given: usize,
+        /// How many points the mesh has.
+        points: usize,
+    },
+    /// A position or velocity to start from cannot be reckoned with.
+    #[error("point {point} cannot start so: its {what} is not finite, or more than {FARTHEST:e}")]
+    BadStart {
+        /// `position` or `velocity`.
+        what: &'static str,
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A column of factors is not as long as the mesh has points.
+    #[error("there are {factors} factors on {column}, but {points} points")]
+    FactorCount {
+        /// What it is a factor on.
+        column: &'static str,
+        /// How many there are.
+        factors: usize,
+        /// How many points the mesh has.
+        points: usize,
+    },
+    /// A factor is not a number, or out of range.
+    #[error("the factor on {column} of point {point} must be between {least} and {most}, not {factor}")]
+    BadFactor {
+        /// What it is a factor on.
+        column: &'static str,
+        /// The point, in the mesh's order.
+        point: usize,
+        /// What was given.
+        factor: f64,
+        /// The least it may be.
+        least: f64,
+        /// The most it may be.
+        most: f64,
+    },
     /// The mass is not a positive number.
     #[error("the mass must be above zero and finite, not {mass}")]
     BadMass {
@@ -154,6 +220,8 @@ impl ModelBuilder {
         if !(mass > 0.0 && mass.is_finite()) {
             return Err(BuildError::BadMass { mass });
         }
+        cloth.factors.check(cloth.surface.positions.len())?;
+        check_start(&cloth.start, cloth.surface.positions.len())?;
         self.cloths.push(cloth);
         Ok(ClothId(self.cloths.len() as u32 - 1))
     }
@@ -165,7 +233,7 @@ impl ModelBuilder {
 
     /// Where the points of a cloth start, in metres.
     pub fn positions(&self, cloth: ClothId) -> &[Vector3<f64>] {
-        &self.cloths[cloth.index()].surface.positions
+        self.cloths[cloth.index()].positions()
     }
 
     /// Adds a collider.
@@ -177,6 +245,21 @@ impl ModelBuilder {
         self.colliders.push(collider);
         Ok(ColliderId(self.colliders.len() as u32 - 1))
     }
+}
+
+/// Refuses a start that is not one of every point.
+fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
+    for (column, [one, what]) in
+        [(&start.positions, ["position", "positions"]), (&start.velocities, ["velocity", "velocities"])]
+    {
+        if !column.is_empty() && column.len() != points {
+            return Err(BuildError::StartCount { what, given: column.len(), points });
+        }
+        if let Some(point) = column.iter().position(|given| !is_usable(given)) {
+            return Err(BuildError::BadStart { what: one, point });
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what no pass could work with.

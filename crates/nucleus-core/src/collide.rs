@@ -414,6 +414,7 @@ impl<R: Real> Solver<R> {
                 normal: [normal.x, normal.y, normal.z].map(R::from_f64),
                 thickness: R::from_f64(settings.thickness),
                 friction: R::from_f64(settings.friction + ground.friction),
+                extra_friction: &state.extra_friction,
                 h: R::from_f64(schedule.h),
             };
             team.phase(cloth.blocks.len(), |block| {
@@ -458,6 +459,7 @@ impl StepParts<'_> {
             h: R::from_f64(self.h),
             thickness: R::from_f64(thickness(self.frame, self.cloth, self.collider)),
             friction: R::from_f64(cloth.friction + theirs.friction),
+            extra_friction: &state.extra_friction,
         }
     }
 }

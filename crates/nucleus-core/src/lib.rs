@@ -9,6 +9,7 @@
 //! | what an artist's resistance means | `resistance.rs` |
 //! | how often each effect is swept, and when | `schedule.rs` |
 //! | where stretch, shear, bend and damping are computed | `constraints/` |
+//! | attributes that differ from point to point | `factors.rs`, `constraints/shares.rs` |
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
 //! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
@@ -25,6 +26,7 @@ mod collide;
 mod collision;
 mod columns;
 mod constraints;
+mod factors;
 mod frame;
 mod frame_start;
 mod ids;
@@ -49,7 +51,8 @@ mod surface;
 mod team;
 mod velocity;
 
-pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder};
+pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder, Start};
+pub use factors::PointFactors;
 pub use frame::{
     COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,
     SelfCollision, Stiffness,

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::collide::StepParts;
 use crate::collision::resolve::Tally;
 use crate::constraints::hinge::HingeGroup;
+use crate::constraints::shares::ShareGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::meet::motion;
@@ -78,24 +79,37 @@ impl<R: Real> Solver<R> {
         let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
             let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);
             let scale = settings.rest_length_scale;
-            self.links_hold(cloth.stretch.groups(), scale, [stretch, compression])
-                + self.links_hold(cloth.shear.groups(), scale, [shear; 2])
-                + self.hinges_hold(cloth.bend.groups(), bend)
-                + self.hinges_hold(cloth.fold.groups(), bend)
+            let shares = &cloth.shares;
+            self.links_hold(cloth.stretch.groups(), shares.stretch.groups(), scale, [stretch, compression])
+                + self.links_hold(cloth.shear.groups(), &[], scale, [shear; 2])
+                + self.hinges_hold(cloth.bend.groups(), shares.bend.groups(), bend)
+                + self.hinges_hold(cloth.fold.groups(), shares.fold.groups(), bend)
         };
         self.cloths.iter().zip(&frame.cloths).map(of_cloth).sum()
     }
 
     /// What links hold, by the stiffness of the cloth in N/m above and below their rest length.
-    fn links_hold(&self, groups: &[LinkGroup<R>], rest_scale: f64, [above, below]: [f64; 2]) -> f64 {
-        let hold = |(group, lane): (&LinkGroup<R>, usize)| {
+    fn links_hold(
+        &self,
+        groups: &[LinkGroup<R>],
+        shares: &[ShareGroup<R>],
+        rest_scale: f64,
+        [above, below]: [f64; 2],
+    ) -> f64 {
+        let hold = |(k, lane): (usize, usize)| {
+            let group = &groups[k];
             let rest = group.rest_length[lane].to_f64() * rest_scale;
             let stretch = self.length(group, lane) - rest;
-            let of_cloth = if stretch > 0.0 { above } else { below };
+            let own = |share: fn(&ShareGroup<R>) -> &[R; 4]| share_of(shares.get(k).map(share), lane);
+            let of_cloth = if stretch > 0.0 {
+                above * own(|share| &share.above)
+            } else {
+                below * own(|share| &share.below)
+            };
             let stiffness = of_cloth / group.slenderness[lane].to_f64();
             stiffness * stretch * stretch / 2.0
         };
-        groups.iter().flat_map(|group| (0..4).map(move |lane| (group, lane))).map(hold).sum()
+        (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(hold).sum()
     }
 
     /// The length of a link in metres.
@@ -105,12 +119,19 @@ impl<R: Real> Solver<R> {
         dot(d, d).sqrt().to_f64()
     }
 
-    fn hinges_hold<const N: usize>(&self, groups: &[HingeGroup<R, N>], stiffness: f64) -> f64 {
-        let hold = |(group, lane): (&HingeGroup<R, N>, usize)| {
+    fn hinges_hold<const N: usize>(
+        &self,
+        groups: &[HingeGroup<R, N>],
+        shares: &[ShareGroup<R>],
+        stiffness: f64,
+    ) -> f64 {
+        let hold = |(k, lane): (usize, usize)| {
+            let group = &groups[k];
+            let stiffness = stiffness * share_of(shares.get(k).map(|share| &share.above), lane);
             let bent = self.bending(group, lane) - group.rest[lane].to_f64();
             stiffness * bent * bent / 2.0
         };
-        groups.iter().flat_map(|group| (0..4).map(move |lane| (group, lane))).map(hold).sum()
+        (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(hold).sum()
     }
 
     /// The length of a hinge's bending vector.
@@ -177,4 +198,9 @@ impl<R: Real> Solver<R> {
         }
         least
     }
+}
+
+/// A row's share of the stiffness of its cloth.
+fn share_of<R: Real>(shares: Option<&[R; 4]>, lane: usize) -> f64 {
+    shares.map_or(1.0, |shares| shares[lane].to_f64())
 }

@@ -218,6 +218,7 @@ pub(crate) fn motion<R: Real>(state: &mut State<R>, h: f64) -> Motion<'_, R> {
         displacement: Shared::new(&mut state.displacement),
         predicted: Shared::new(&mut state.predicted),
         start: &state.start,
+        extra_friction: &state.extra_friction,
         h: R::from_f64(h),
         grain: R::ZERO,
     }

@@ -1,7 +1,7 @@
 //! The program that a scene compiles to: its passes, how long their lists are, and how often they run.
 
-use crate::air::Air;
-use crate::constraints::damp::DampStrength;
+use crate::air::Breeze;
+use crate::constraints::damp::Damping;
 use crate::frame::{ClothFrame, FrameInput};
 use crate::model::ClothModel;
 use crate::scalar::Real;
@@ -35,7 +35,7 @@ impl<R: Real> Solver<R> {
         let mut passes = vec![PassCost { name: "predict", rows: points, sweeps: f64::from(steps) }];
         let breathes = |(cloth, settings)| {
             let cloth: &ClothModel<R> = cloth;
-            !cloth.triangles.is_empty() && Air::<R>::new(frame, settings, cloth.weight, schedule.h).is_some()
+            !cloth.triangles.is_empty() && Breeze::new(frame, settings, cloth.weight, schedule.h).is_some()
         };
         let airy = self.cloths.iter().zip(&frame.cloths).filter(|&pair| breathes(pair));
         let in_air: usize = airy.map(|(cloth, _)| cloth.points().len()).sum();
@@ -44,7 +44,8 @@ impl<R: Real> Solver<R> {
             passes.push(self.sweeps_of(name, &schedule));
         }
         let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
-            cloth.damps && DampStrength::<R>::new(settings.stretch_damp, settings.damp, schedule.h).is_some()
+            let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
+            cloth.damps && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
         };
         let damped = self.cloths.iter().zip(&frame.cloths).filter(damped);
         let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
@@ -66,6 +67,8 @@ impl<R: Real> Solver<R> {
         });
         let grounded = if frame.plane.is_some() { points } else { 0 };
         passes.push(PassCost { name: "ground", rows: grounded, sweeps: count });
+        let factors: usize = self.cloths.iter().map(ClothModel::factors).sum();
+        passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
         passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
         passes
     }

@@ -3,19 +3,21 @@
 
 use std::ops::Range;
 
-use crate::air::Air;
+use crate::air::{Air, AirFactors, Breeze};
 use crate::columns::Shared;
 use crate::scalar::{Lanes, Real, Row4};
 
 /// What drives the points of one cloth in one time step.
 #[derive(Debug, Clone, Copy)]
-pub struct Drive<R> {
+pub struct Drive<'a, R> {
     /// Change of velocity by gravity in m/s.
     pub gravity: [R; 3],
     /// Force on every point times the length of the step, in N·s.
     pub impulse: [R; 3],
     /// The air, where it is felt.
-    pub air: Option<Air<R>>,
+    pub breeze: Option<Breeze>,
+    /// Factors on it, for each point of the run; none where it is felt the same everywhere.
+    pub factors: &'a [AirFactors],
     /// Length of the step in seconds.
     pub h: R,
 }
@@ -38,7 +40,7 @@ pub struct Columns<'a, R> {
 /// # Safety
 /// No other task of the phase touches these points.
 #[allow(unsafe_code)]
-pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>, drive: &Drive<R>) {
+pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>, drive: &Drive<'_, R>) {
     // SAFETY: the caller's promise.
     let (displacement, velocity, predicted) = unsafe {
         (
@@ -50,16 +52,19 @@ pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>,
     let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
     let (gravity, impulse, zero) = (four(drive.gravity), four(drive.impulse), R::Lanes::splat(R::ZERO));
     let h = four([drive.h; 3]);
+    let everywhere = drive.breeze.map(|breeze| breeze.at(&AirFactors::NONE));
     for (k, ((d, v), p)) in displacement.iter_mut().zip(velocity).zip(predicted).enumerate() {
         let place = d.lanes();
         let inverse_mass = place.splat_last();
         let kick = inverse_mass.choose_by_sign(gravity + impulse * inverse_mass, zero);
         let mut fast = v.lanes() + kick;
-        if let Some(air) = &drive.air
+        if let Some(air) = &everywhere
             && d.0[3] > R::ZERO
         {
+            let own: Option<Air<R>> =
+                drive.factors.get(k).zip(drive.breeze).map(|(factors, air)| air.at(factors));
             let normal = columns.normal[points.start as usize + k];
-            fast = Row4(air.slow(fast.to_array(), normal.xyz())).lanes();
+            fast = Row4(own.as_ref().unwrap_or(air).slow(fast.to_array(), normal.xyz())).lanes();
         }
         let moved = Row4((place + fast * h).to_array());
         *v = Row4(fast.to_array());

@@ -2,9 +2,10 @@
 
 use crate::columns::Shared;
 use crate::constraints::hinge::HingeGroup;
+use crate::constraints::shares::{ShareGroup, Whole};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
 use crate::constraints::{bend, stretch};
-use crate::model::{Blocks, ClothModel, RowList};
+use crate::model::{Blocks, ClothModel, Part, RowList};
 use crate::scalar::{Real, Row4};
 use crate::schedule::{Direction, Effect, Sweep};
 use crate::solver::Solver;
@@ -46,13 +47,13 @@ struct Broom<'a, R: Real> {
 
 impl<R: Real> Broom<'_, R> {
     fn inner(&self, block: usize, effect: &Effect<R>) {
-        let cloth = self.cloth;
+        let (cloth, part) = (self.cloth, Part::Inner(block));
         match effect {
-            Effect::Stretch(strength) => self.links(cloth.stretch.inner(block), strength),
-            Effect::Shear(strength) => self.links(cloth.shear.inner(block), strength),
+            Effect::Stretch(strength) => self.links(&cloth.stretch, &cloth.shares.stretch, part, strength),
+            Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), part, strength),
             Effect::Bend(strength) => {
-                self.hinges(cloth.bend.inner(block), strength);
-                self.hinges(cloth.fold.inner(block), strength);
+                self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
+                self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
             }
         }
     }
@@ -60,53 +61,81 @@ impl<R: Real> Broom<'_, R> {
     fn cross(&self, team: &Team, effect: &Effect<R>) {
         let (cloth, backward) = (self.cloth, self.backward);
         match effect {
-            Effect::Stretch(strength) => {
-                over_cross(team, &cloth.stretch, backward, |rows| self.links(rows, strength));
-            }
-            Effect::Shear(strength) => {
-                over_cross(team, &cloth.shear, backward, |rows| self.links(rows, strength));
-            }
+            Effect::Stretch(strength) => over_cross(team, &cloth.stretch, backward, |part| {
+                self.links(&cloth.stretch, &cloth.shares.stretch, part, strength);
+            }),
+            Effect::Shear(strength) => over_cross(team, &cloth.shear, backward, |part| {
+                self.links(&cloth.shear, &RowList::default(), part, strength);
+            }),
             Effect::Bend(strength) => {
-                over_cross(team, &cloth.bend, backward, |rows| self.hinges(rows, strength));
-                over_cross(team, &cloth.fold, backward, |rows| self.hinges(rows, strength));
+                over_cross(team, &cloth.bend, backward, |part| {
+                    self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
+                });
+                over_cross(team, &cloth.fold, backward, |part| {
+                    self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
+                });
+            }
+        }
+    }
+
+    /// Where there are shares they lie as the rows do.
+    #[allow(unsafe_code)]
+    fn links(
+        &self,
+        rows: &RowList<LinkGroup<R>>,
+        shares: &RowList<ShareGroup<R>>,
+        part: Part,
+        strength: &LinkStrength<R>,
+    ) {
+        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        // SAFETY: see above.
+        unsafe {
+            match (self.backward, shares.len() > 0) {
+                (false, false) => stretch::relax(self.points, rows.map(whole), strength),
+                (true, false) => stretch::relax(self.points, rows.rev().map(whole), strength),
+                (false, true) => stretch::relax(self.points, rows.zip(shares), strength),
+                (true, true) => stretch::relax(self.points, rows.zip(shares).rev(), strength),
             }
         }
     }
 
     #[allow(unsafe_code)]
-    fn links(&self, rows: &[LinkGroup<R>], strength: &LinkStrength<R>) {
+    fn hinges<const N: usize>(
+        &self,
+        rows: &RowList<HingeGroup<R, N>>,
+        shares: &RowList<ShareGroup<R>>,
+        part: Part,
+        strength: &bend::BendStrength<R>,
+    ) {
+        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
         // SAFETY: see above.
         unsafe {
-            match self.backward {
-                true => stretch::relax(self.points, rows.iter().rev(), strength),
-                false => stretch::relax(self.points, rows.iter(), strength),
-            }
-        }
-    }
-
-    #[allow(unsafe_code)]
-    fn hinges<const N: usize>(&self, rows: &[HingeGroup<R, N>], strength: &bend::BendStrength<R>) {
-        // SAFETY: see above.
-        unsafe {
-            match self.backward {
-                true => bend::relax(self.points, rows.iter().rev(), strength),
-                false => bend::relax(self.points, rows.iter(), strength),
+            match (self.backward, shares.len() > 0) {
+                (false, false) => bend::relax(self.points, rows.map(whole), strength),
+                (true, false) => bend::relax(self.points, rows.rev().map(whole), strength),
+                (false, true) => bend::relax(self.points, rows.zip(shares), strength),
+                (true, true) => bend::relax(self.points, rows.zip(shares).rev(), strength),
             }
         }
     }
 }
 
-/// Does `work` on all rows of a list once: inner rows, then cross rows.
-pub fn over_list<G: Sync>(team: &Team, blocks: &Blocks, list: &RowList<G>, work: impl Fn(&[G]) + Sync) {
-    team.phase(blocks.len(), |block| work(list.inner(block)));
+/// A group that gets all of a sweep's strength.
+fn whole<G>(group: &G) -> (&G, Whole) {
+    (group, Whole)
+}
+
+/// Does `work` on all parts of a list once: inner rows, then cross rows.
+pub fn over_list<G: Sync>(team: &Team, blocks: &Blocks, list: &RowList<G>, work: impl Fn(Part) + Sync) {
+    team.phase(blocks.len(), |block| work(Part::Inner(block)));
     over_cross(team, list, false, work);
 }
 
 /// Does `work` on the cross rows of a list, colour by colour.
-fn over_cross<G: Sync>(team: &Team, list: &RowList<G>, backward: bool, work: impl Fn(&[G]) + Sync) {
+fn over_cross<G: Sync>(team: &Team, list: &RowList<G>, backward: bool, work: impl Fn(Part) + Sync) {
     let count = list.cross_colours();
     for k in 0..count {
         let colour = if backward { count - 1 - k } else { k };
-        team.phase(list.cross_tasks(colour), |task| work(list.cross(colour, task)));
+        team.phase(list.cross_tasks(colour), |task| work(Part::Cross(colour, task)));
     }
 }

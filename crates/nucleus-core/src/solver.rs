@@ -55,6 +55,8 @@ impl<R: Real> Solver<R> {
             models.push(ClothModel::new(cloth, first, collides || meets));
         }
         let state = State::new(&cloths, &models);
+        // What goes on from a state may lie on something; whether it does is only known after a frame.
+        let touches = cloths.iter().any(|cloth| !cloth.start.positions.is_empty());
         let mutual = meets.then(|| Mutual::new(&models, &state.anchor));
         drop(cloths);
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
@@ -70,7 +72,7 @@ impl<R: Real> Solver<R> {
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
             mutual,
-            touches: false,
+            touches,
             cloths: models,
             colliders,
             state,

@@ -23,6 +23,8 @@ pub struct State<R> {
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
     pub normal: Vec<Row4<R>>,
+    /// Friction beyond that of the cloth; empty where none has a map of it. Written when a frame begins.
+    pub extra_friction: Vec<R>,
     /// Inverse mass in 1/kg of the point when it is free.
     pub inverse_mass: Vec<R>,
 }
@@ -40,12 +42,23 @@ impl<R: Real> State<R> {
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             inverse_mass: vec![R::ZERO; rows],
+            extra_friction: vec![
+                R::ZERO;
+                if cloths.iter().any(|cloth| !cloth.factors.friction.is_empty()) {
+                    rows
+                } else {
+                    0
+                }
+            ],
         };
         for (cloth, model) in cloths.iter().zip(models) {
             let masses = point_masses(cloth);
-            for (point, position) in cloth.surface.positions.iter().enumerate() {
+            for (point, position) in cloth.positions().iter().enumerate() {
                 let row = model.place(point) as usize;
                 state.anchor[row] = (*position).into();
+                if let Some(velocity) = cloth.start.velocities.get(point) {
+                    state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
+                }
                 // The point of a sliver weighs next to nothing: still a number in `f32`, and never pinned by rounding.
                 state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
             }

@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-use crate::air::{self, Air};
+use crate::air::{self, Breeze};
 use crate::collision::resolve::Tally;
 use crate::columns::Shared;
-use crate::constraints::damp::{self, DampStrength};
+use crate::constraints::damp::{self, Damping};
 use crate::frame::FrameInput;
 use crate::observe::{Moment, Stage, StepObserver};
 use crate::predict::{self, Columns, Drive, gravity_kick};
@@ -162,17 +162,22 @@ impl<R: Real> Solver<R> {
         };
         for ((cloth, settings), &fastest) in cloths.iter().zip(&frame.cloths).zip(fastest) {
             let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, fastest);
-            let air = Air::new(frame, settings, cloth.weight, schedule.h);
+            let breeze = Breeze::new(frame, settings, cloth.weight, schedule.h);
             let drive = Drive {
                 gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
                 impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
-                air: air.filter(|_| !cloth.triangles.is_empty()),
+                breeze: breeze.filter(|_| !cloth.triangles.is_empty()),
+                factors: &[],
                 h: R::from_f64(schedule.h),
             };
-            // SAFETY: blocks do not overlap.
-            #[allow(unsafe_code)]
-            team.phase(cloth.blocks.len(), |block| unsafe {
-                predict::move_points(&columns, cloth.blocks.range(block), &drive);
+            team.phase(cloth.blocks.len(), |block| {
+                let points = cloth.blocks.range(block);
+                let drive = Drive { factors: cloth.air_factors(&points), ..drive };
+                // SAFETY: blocks do not overlap.
+                #[allow(unsafe_code)]
+                unsafe {
+                    predict::move_points(&columns, points, &drive);
+                }
             });
         }
     }
@@ -197,13 +202,17 @@ impl<R: Real> Solver<R> {
         let substep = schedule.h * f64::from(schedule.steps);
         let velocity = Shared::new(&mut state.velocity);
         for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
-            let Some(strength) = DampStrength::new(settings.stretch_damp, settings.damp, substep) else {
+            let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
+            if !damping.is_felt() {
                 continue;
-            };
-            // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
-            #[allow(unsafe_code)]
-            relax::over_list(team, &cloth.blocks, &cloth.stretch, |groups| unsafe {
-                damp::relax(velocity, &state.displacement, groups, &strength);
+            }
+            relax::over_list(team, &cloth.blocks, &cloth.stretch, |part| {
+                let (links, factors) = (cloth.stretch.part(part), cloth.shares.damp.part(part));
+                // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
+                #[allow(unsafe_code)]
+                unsafe {
+                    damp::relax(velocity, &state.displacement, links, factors, &damping);
+                }
             });
         }
     }

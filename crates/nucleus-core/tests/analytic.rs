@@ -14,7 +14,7 @@ const CLOTH: ClothId = ClothId(0);
 fn point(at: Vec3) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
     let surface = Surface { positions: vec![at], faces: Default::default() };
-    builder.cloth(Cloth { surface, mass: Mass::PerPoint(1.0), lists: ClothLists::NONE }).expect("a point");
+    builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE)).expect("a point");
     builder
 }
 

@@ -55,7 +55,7 @@ fn passes(lists: ClothLists, frame: &FrameInput) -> Vec<(&'static str, usize)> {
     let mut builder = ModelBuilder::new();
     let side = CELLS as u32 + 1;
     let surface = grid(side, side, Vec3::x(), Vec3::z());
-    builder.cloth(Cloth { surface, mass: Mass::PerArea(0.2), lists }).expect("a good mesh");
+    builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
     if !frame.colliders.is_empty() {
         builder.collider(Collider { surface: scenes::sphere(0.3, -Vec3::y()) }).expect("a good mesh");
     }

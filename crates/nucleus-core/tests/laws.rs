@@ -165,7 +165,7 @@ fn a_cloth_far_away_changes_not_one_bit() {
         if far {
             let mut surface = grid(9, 9, Vec3::x(), Vec3::z());
             surface.positions.iter_mut().for_each(|p| *p += Vec3::new(500.0, 0.0, 0.0));
-            builder.cloth(Cloth { surface, mass: Mass::PerArea(3.0), lists: LINKS }).expect("a good mesh");
+            builder.cloth(Cloth::new(surface, Mass::PerArea(3.0), LINKS)).expect("a good mesh");
             input.cloths.push(still());
         }
         let mut solver = Solver::<f32>::new(builder, 1);
@@ -241,7 +241,7 @@ proptest! {
         let mut builder = nucleus_core::ModelBuilder::new();
         let surface = grid(9, 9, Vec3::x(), Vec3::z());
         let held = pins(&surface, [0]);
-        builder.cloth(Cloth { surface, mass: Mass::PerPoint(mass), lists: ClothLists::ALL }).expect("a good mesh");
+        builder.cloth(Cloth::new(surface, Mass::PerPoint(mass), ClothLists::ALL)).expect("a good mesh");
         builder.collider(nucleus_core::Collider { surface: scenes::sphere(0.3, Vec3::new(0.5, -0.4, 0.5)) }).expect("a good mesh");
         let resistance = if classic { ResistanceModel::Classic } else { physical(evaluations) };
         let cloth = ClothFrame { stretch_resistance: stretch, bend_resistance: bend, shear_resistance: shear,

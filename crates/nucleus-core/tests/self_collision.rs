@@ -67,9 +67,7 @@ fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
             p.z += 0.01 * (9.0 * p.y).sin() + 0.003 * (7.0 * p.x).sin();
         });
         let mut builder = ModelBuilder::new();
-        builder
-            .cloth(Cloth { surface: sheet.clone(), mass: Mass::PerArea(0.2), lists: LISTS })
-            .expect("a mesh");
+        builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(0.2), LISTS)).expect("a mesh");
         let cloth = ClothFrame {
             bend_resistance: 0.1,
             stretch_damp: 0.1,

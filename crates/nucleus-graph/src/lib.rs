@@ -15,6 +15,7 @@
 //! | whether anything passes through anything         | [`audit::Audit`]           |
 //! | how values change with time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
+//! | values that differ from point to point           | [`paint`]                  |
 //!
 //! **Invariant:** nodes carry data to the solver and never act themselves (§1.1). The same scene gives the
 //! same program, in whatever order its nodes stand.
@@ -26,6 +27,7 @@ pub mod checks;
 pub mod compile;
 pub mod graph;
 pub mod mesh;
+pub mod paint;
 pub mod scene;
 mod simulation;
 

@@ -42,7 +42,7 @@ fn measure(lists: ClothLists, input: &FrameInput, repeat: u32) -> Result<(f64, V
     for _ in 0..repeat.max(3) {
         let mut builder = ModelBuilder::new();
         let surface = mesh::sheet(SIZE, Cells::Quads, Vector3::zeros(), Vector3::x(), Vector3::z());
-        builder.cloth(nucleus_core::Cloth { surface, mass: Mass::PerArea(DENSITY), lists })?;
+        builder.cloth(nucleus_core::Cloth::new(surface, Mass::PerArea(DENSITY), lists))?;
         let mut solver = Solver::<f32>::new(builder, 1);
         passes = solver.passes(input);
         solver.step(input, &mut ());

@@ -97,7 +97,7 @@ impl Workload {
             damp: self == Self::Drape,
             ..ClothLists::NONE
         };
-        builder.cloth(Cloth { surface: sheet.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+        builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(DENSITY), lists))?;
         let mut frame = frame(setting);
         let held: Vec<u32> = match self {
             Self::Swing => vec![0, n - 1],

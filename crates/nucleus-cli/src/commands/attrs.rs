@@ -96,6 +96,7 @@ fn kind(row: &Attribute) -> String {
         Kind::Bool => "bool".to_owned(),
         Kind::Int => "int".to_owned(),
         Kind::Float => "float".to_owned(),
+        Kind::Texture => "texture".to_owned(),
         Kind::Vector(_) => "vector".to_owned(),
         Kind::Choice(_) => row.words().into_iter().map(|(_, word)| word).collect::<Vec<_>>().join(" | "),
         Kind::Text => "text".to_owned(),
@@ -116,7 +117,7 @@ fn default(row: &Attribute, value: &Value) -> Option<String> {
     match value {
         Value::Bool(on) => Some(on.to_string()),
         Value::Int(x) => Some(x.to_string()),
-        Value::Float(x) => Some(figures::number(*x)),
+        Value::Float(x) if row.kind == Kind::Float => Some(figures::number(*x)),
         Value::Vector(v) => Some(format!("({})", v.map(figures::number).join(", "))),
         Value::Choice(choice) => {
             row.words().into_iter().find(|(index, _)| index == choice).map(|(_, word)| word)

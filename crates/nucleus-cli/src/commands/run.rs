@@ -14,6 +14,7 @@ use serde_json::json;
 
 use crate::account::{Account, FrameFigures};
 use crate::frame_range::FrameRange;
+use crate::initial_state::InitialState;
 use crate::outcome::Outcome;
 use crate::progress::Progress;
 use crate::recording::{self, Manner, Record};
@@ -32,6 +33,9 @@ pub struct Run {
     /// Frames to run: so many (`48`, the start frame among them) or from one to another (`10..58`).
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
+    /// Start all cloth as a frame of a cache has it, `drape.mcap@80`; without a frame, as its last one.
+    #[arg(long, value_name = "CACHE@FRAME")]
+    from: Option<InitialState>,
     /// Cores to use; all if none are given. The result is the same, bit for bit.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -68,6 +72,7 @@ impl Run {
         Self {
             scene,
             frames: None,
+            from: None,
             threads: None,
             record: None,
             velocities: false,
@@ -96,6 +101,10 @@ impl Run {
         let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
             return Ok(Outcome::Refused);
         };
+        let (scene, program) = match &self.from {
+            None => (scene, program),
+            Some(from) => from.applied(scene, &program)?,
+        };
         let program = match self.quality {
             None => program,
             Some(wanted) => self.program_of(&scene, wanted)?,
@@ -110,7 +119,13 @@ impl Run {
         }
         let mut judge = Judge::new(program.checks(), program.mass());
         let record = Record::of(self.record, &program);
-        let manner = Manner { record, velocities: self.velocities, force: self.force, compact: self.compact };
+        let manner = Manner {
+            record,
+            velocities: self.velocities,
+            force: self.force,
+            compact: self.compact,
+            from: self.from.as_ref().map(ToString::to_string),
+        };
         let out = self.out()?;
         let mut recorder = recording::begin(&simulation, manner, &out, (&self.scene, &text))?;
         let mut progress = Progress::new(end.abs_diff(start));

@@ -4,6 +4,7 @@ mod attrs;
 mod caches;
 mod check;
 mod extremes;
+mod from;
 mod info;
 mod interrupted;
 mod play;

@@ -47,7 +47,7 @@ pub fn cache(folder: &Path) -> PathBuf {
     let rest = positions.iter().map(|p| [p.x, p.y, p.z].map(|x| 100.0 * x as f32)).collect();
     let mut builder = ModelBuilder::new();
     let surface = Surface { positions, faces: faces.clone() };
-    let cloth = builder.cloth(Cloth { surface, mass: Mass::PerPoint(1.0), lists: ClothLists::NONE }).unwrap();
+    let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE)).unwrap();
     let mut solver: Solver = Solver::new(builder, 1);
 
     let object = ObjectInfo { name: "sheet".to_owned(), kind: ObjectKind::Cloth, faces, rest };

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::bounce::Bounce;
 use super::foresee::{Cover, spread};
-use super::friction::{Push, rub};
+use super::friction::{Push, extra, rub};
 use super::narrow;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
@@ -85,6 +85,8 @@ pub struct Step<'a, R> {
     pub thickness: R,
     /// Sum of the two frictions.
     pub friction: R,
+    /// What points have of it beyond their cloth; empty where nothing has.
+    pub extra_friction: &'a [R],
 }
 
 impl<R: Real> Step<'_, R> {
@@ -457,7 +459,8 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
 
     /// The correction along the surface, against the motion over it within the step.
     fn friction(&self, step: &Step<'_, R>, rows: [Row4<R>; N], along: [R; 3], pressed: R) -> [R; 3] {
-        let slip_limit = step.friction * pressed;
+        let own = extra(step.extra_friction, self.points, self.weights);
+        let slip_limit = (step.friction + own) * pressed;
         if slip_limit <= R::ZERO {
             return [R::ZERO; 3];
         }

@@ -53,3 +53,12 @@ fn clamp<R: Real>(x: R, most: R) -> R {
         x
     }
 }
+
+/// What the points of an element have of friction beyond their cloth, by how near each of them is.
+#[inline(always)]
+pub fn extra<R: Real, const N: usize>(column: &[R], points: [u32; N], weights: [R; N]) -> R {
+    if column.is_empty() {
+        return R::ZERO;
+    }
+    (0..N).map(|k| weights[k] * column[points[k] as usize]).sum()
+}

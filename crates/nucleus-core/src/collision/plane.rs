@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 
-use super::friction::{Push, rub};
+use super::friction::{Push, extra, rub};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
 use std::ops::Range;
@@ -25,6 +25,8 @@ pub struct Ground<'a, R> {
     pub thickness: R,
     /// Sum of the two frictions.
     pub friction: R,
+    /// What points have of it beyond their cloth; empty where nothing has.
+    pub extra_friction: &'a [R],
     /// Length of the step in seconds.
     pub h: R,
 }
@@ -60,7 +62,8 @@ impl<R: Real> Ground<'_, R> {
         let gap_at_start = self.height[point as usize] + dot(self.normal, start);
         let push = Push::new(self.thickness - gap, self.thickness - gap_at_start, self.h);
         let motion: [R; 3] = std::array::from_fn(|axis| row.0[axis] - start[axis]);
-        let rub = rub(motion, self.normal, self.friction * push.pressed);
+        let friction = self.friction + extra(self.extra_friction, [point], [R::ONE]);
+        let rub = rub(motion, self.normal, friction * push.pressed);
         for axis in 0..3 {
             row.0[axis] += self.normal[axis] * push.length() + rub[axis];
             p.0[axis] += self.normal[axis] * push.led;

@@ -8,6 +8,7 @@ use crate::columns::Shared;
 use crate::scalar::{Lanes, Real, Row4};
 
 use super::hinge::HingeGroup;
+use super::shares::Portion;
 
 /// How strongly a sweep acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,20 +19,20 @@ pub struct BendStrength<R> {
     pub compliance: R,
 }
 
-/// Sweeps the hinges of `groups` once.
+/// Sweeps the hinges of `groups` once, each group with its portion of the strength.
 ///
 /// # Safety
 /// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, const N: usize>(
+pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
     points: Shared<'_, Row4<R>>,
-    groups: impl Iterator<Item = &'a HingeGroup<R, N>>,
+    groups: impl Iterator<Item = (&'a HingeGroup<R, N>, P)>,
     strength: &BendStrength<R>,
 ) {
     let (share, compliance) = (R::Lanes::splat(strength.share), R::Lanes::splat(strength.compliance));
     let (zero, one, tiny) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::TINY));
-    for group in groups {
+    for (group, portion) in groups {
         // SAFETY: the caller's promise.
         let x = group.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
         let weights = group.weights.map(R::Lanes::from_array);
@@ -45,6 +46,7 @@ pub unsafe fn relax<'a, R: Real, const N: usize>(
         }
         let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
         let bent = one - R::Lanes::from_array(group.rest) / (length + tiny);
+        let (share, compliance) = portion.of(bent, share, compliance);
         let lambda = share * bent / (mobility + compliance + tiny);
         let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
         for k in 0..N {

@@ -7,7 +7,38 @@ use crate::columns::Shared;
 use crate::frame::COUNT_PERIOD;
 use crate::scalar::{Real, Row4, dot};
 
+use super::shares::ShareGroup;
 use super::stretch::LinkGroup;
+
+/// What damps a cloth in a substep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// `stretchDamp`.
+    pub stretch_damp: f64,
+    /// `damp`.
+    pub damp: f64,
+    /// Length of the substep in seconds.
+    pub substep: f64,
+}
+
+impl Damping {
+    /// Whether there is any.
+    pub fn is_felt(&self) -> bool {
+        self.stretch_damp > 0.0 || self.damp > 0.0
+    }
+
+    /// What it comes to in a link with a factor on `damp`.
+    pub fn strength<R: Real>(&self, factor: f64) -> DampStrength<R> {
+        // Implicit, so that it slows but never turns back, however large.
+        let share = |attribute: f64| {
+            let rate = attribute.max(0.0) * self.substep / COUNT_PERIOD;
+            R::from_f64(rate / (1.0 + rate))
+        };
+        let all = share(self.damp * factor);
+        // What acts in all directions has acted along the link too.
+        DampStrength { along: share(self.stretch_damp) * (R::ONE - all), all }
+    }
+}
 
 /// Shares of the relative velocity of two linked points that one sweep takes away.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,22 +47,7 @@ pub struct DampStrength<R> {
     all: R,
 }
 
-impl<R: Real> DampStrength<R> {
-    /// For a substep of `substep` seconds; nothing where neither is above nought.
-    pub fn new(stretch_damp: f64, damp: f64, substep: f64) -> Option<Self> {
-        // Implicit, so that it slows but never turns back, however large.
-        let share = |attribute: f64| {
-            let rate = attribute.max(0.0) * substep / COUNT_PERIOD;
-            R::from_f64(rate / (1.0 + rate))
-        };
-        let all = share(damp);
-        // What acts in all directions has acted along the link too.
-        let along = share(stretch_damp) * (R::ONE - all);
-        (stretch_damp > 0.0 || damp > 0.0).then_some(Self { along, all })
-    }
-}
-
-/// Sweeps the links of `groups` once.
+/// Sweeps the links of `groups` once; `factors` on `damp` are as many, or none.
 ///
 /// # Safety
 /// No other task of the phase touches the points of `groups`.
@@ -40,11 +56,15 @@ pub unsafe fn relax<R: Real>(
     velocity: Shared<'_, Row4<R>>,
     points: &[Row4<R>],
     groups: &[LinkGroup<R>],
-    strength: &DampStrength<R>,
+    factors: &[ShareGroup<R>],
+    damping: &Damping,
 ) {
-    for group in groups {
+    let everywhere: DampStrength<R> = damping.strength(1.0);
+    for (k, group) in groups.iter().enumerate() {
         for lane in 0..4 {
             let [a, b] = group.ends.map(|ends| ends[lane]);
+            let own = |factors: &ShareGroup<R>| damping.strength(factors.above[lane].to_f64());
+            let strength = factors.get(k).map_or(everywhere, own);
             let (x_a, x_b) = (points[a as usize].0, points[b as usize].0);
             let total = x_a[3] + x_b[3];
             if total <= R::ZERO {

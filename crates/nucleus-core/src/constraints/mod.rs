@@ -4,5 +4,6 @@
 pub mod bend;
 pub mod damp;
 pub mod hinge;
+pub mod shares;
 pub mod shear;
 pub mod stretch;

@@ -4,7 +4,8 @@
 //! of `shearResistance`; what makes them shear is which points they join.
 
 use super::stretch::LinkRow;
-use crate::model::shear_links;
+use crate::factors::mean;
+use crate::model::{Link, shear_links};
 use crate::scalar::Real;
 use crate::surface::Surface;
 
@@ -12,9 +13,12 @@ use crate::surface::Surface;
 ///
 /// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a
 /// resistance means the same stiffness here as along the edges.
-pub fn rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
-    let mut rows: Vec<LinkRow<R>> =
-        shear_links(surface).iter().map(|link| LinkRow::new(link, &place)).collect();
+///
+/// `rest` are factors on their lengths at rest, point by point.
+pub fn rows<R: Real>(surface: &Surface, rest: &[f64], place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+    let row =
+        |link: &Link| LinkRow::new(link, mean(rest, link.ends.map(|end| end as usize).into_iter()), &place);
+    let mut rows: Vec<LinkRow<R>> = shear_links(surface).iter().map(row).collect();
     rows.sort_unstable_by_key(|row| row.ends);
     rows
 }

@@ -8,6 +8,8 @@ use crate::columns::Shared;
 use crate::model::{Link, Row};
 use crate::scalar::{Lanes, Real, Row4};
 
+use super::shares::Portion;
+
 /// Four links side by side. 28 bytes a link in `f32`.
 #[derive(Debug, Clone, Copy)]
 pub struct LinkGroup<R> {
@@ -33,11 +35,11 @@ pub struct LinkRow<R> {
 }
 
 impl<R: Real> LinkRow<R> {
-    /// The link between the solver's places of its ends.
-    pub fn new(link: &Link, place: impl Fn(u32) -> u32) -> Self {
+    /// The link between the solver's places of its ends; `rest` is a factor on its length at rest.
+    pub fn new(link: &Link, rest: f64, place: impl Fn(u32) -> u32) -> Self {
         Self {
             ends: link.ends.map(place),
-            rest_length: R::from_f64(link.rest_length),
+            rest_length: R::from_f64(link.rest_length * rest),
             slenderness: R::from_f64(link.slenderness),
         }
     }
@@ -108,22 +110,22 @@ impl<R: Real> LinkGroup<R> {
     }
 }
 
-/// Sweeps the links of `groups` once.
+/// Sweeps the links of `groups` once, each group with its portion of the strength.
 ///
 /// # Safety
 /// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real>(
+pub unsafe fn relax<'a, R: Real, P: Portion<R>>(
     points: Shared<'_, Row4<R>>,
-    groups: impl Iterator<Item = &'a LinkGroup<R>>,
+    groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
     strength: &LinkStrength<R>,
 ) {
     let both = |sides: Sides<R>| (R::Lanes::splat(sides.above), R::Lanes::splat(sides.below));
     let (share_above, share_below) = both(strength.share);
     let (compliance_above, compliance_below) = both(strength.compliance);
     let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::TINY));
-    for group in groups {
+    for (group, portion) in groups {
         // SAFETY: the caller's promise.
         let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
         let [ax, ay, az, w_a] = R::Lanes::transpose(a);
@@ -134,6 +136,7 @@ pub unsafe fn relax<'a, R: Real>(
         let c = length - R::Lanes::from_array(group.rest_length) * rest_scale;
         let share = c.choose_by_sign(share_above, share_below);
         let compliance = c.choose_by_sign(compliance_above, compliance_below);
+        let (share, compliance) = portion.of(c, share, compliance);
         let softness = compliance * R::Lanes::from_array(group.slenderness);
         // Two pinned ends, or no length and so no direction: the numerator or the difference is nought too.
         let lambda = share * c / ((w_a + w_b + softness) * length + tiny);

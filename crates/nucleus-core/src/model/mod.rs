@@ -3,6 +3,7 @@
 mod order;
 mod outside;
 mod rows;
+mod shares;
 mod topology;
 
 use std::ops::Range;
@@ -11,16 +12,19 @@ use nalgebra::Vector3;
 
 pub use order::Order;
 pub use outside::Outside;
-pub use rows::{Blocks, Row, RowList};
+pub use rows::{Blocks, Part, Row, RowList};
+pub use shares::{Factors, Shares};
 pub use topology::{
     Link, Seam, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area, triangle_edges,
 };
 
+use crate::air::AirFactors;
 use crate::builder::{Cloth, Collider, Mass};
 use crate::collision::skin::Skin;
 use crate::constraints::hinge::{self, HingeGroup};
 use crate::constraints::shear;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
+use crate::factors::mean;
 use crate::scalar::Real;
 use crate::surface::Surface;
 
@@ -52,6 +56,12 @@ pub struct ClothModel<R> {
     pub edge_length: f64,
     /// Whether velocities are ever damped.
     pub damps: bool,
+    /// What its rows get of the strength of a sweep; empty where all get all of it.
+    pub shares: Shares<R>,
+    /// Factors on what its points feel of the air; empty where they are none.
+    pub air: Vec<AirFactors>,
+    /// Factors on the friction of its points; empty where they are none.
+    pub friction: Vec<f64>,
 }
 
 impl<R: Real> ClothModel<R> {
@@ -74,21 +84,37 @@ impl<R: Real> ClothModel<R> {
             weight,
             edge_length: 0.0,
             damps: cloth.lists.damp,
+            shares: Shares::default(),
+            air: Vec::new(),
+            friction: Vec::new(),
         };
         let places = model.order.places().to_vec();
         let place = |point: u32| first + places[point as usize];
+        let point = |place: u32| model.order.user((place - first) as usize);
+        let factors = Factors { factors: &cloth.factors, point: &point };
+        let mut shares = Shares::default();
         if cloth.lists.stretch {
-            model.stretch =
-                RowList::new(&stretch_rows(surface, cloth.lists.cross_links, place), &model.blocks);
+            let rows = stretch_rows(surface, cloth, place);
+            shares.stretch = factors.of_links(&rows, &model.blocks);
+            shares.damp = factors.of_damping(&rows, &model.blocks);
+            model.stretch = RowList::new(&rows, &model.blocks);
         }
         if cloth.lists.shear {
-            model.shear = RowList::new(&shear::rows(surface, place), &model.blocks);
+            let rest = &cloth.factors.rest_length;
+            model.shear = RowList::new(&shear::rows(surface, rest, place), &model.blocks);
         }
         if cloth.lists.bend {
             let rows = hinge::rows(surface, place);
+            shares.bend = factors.of_hinges(&rows.of_four, &model.blocks);
+            shares.fold = factors.of_hinges(&rows.of_six, &model.blocks);
             model.bend = RowList::new(&rows.of_four, &model.blocks);
             model.fold = RowList::new(&rows.of_six, &model.blocks);
         }
+        if cloth.lists.air {
+            model.air = factors.of_air(model.points());
+        }
+        model.friction = factors.of_friction(model.points());
+        model.shares = shares;
         if cloth.lists.air {
             model.triangles = triangles_by_block(surface, place, &model.blocks);
         }
@@ -103,6 +129,17 @@ impl<R: Real> ClothModel<R> {
     /// Its points in the columns.
     pub fn points(&self) -> Range<u32> {
         self.blocks.range(0).start..self.blocks.range(self.blocks.len() - 1).end
+    }
+
+    /// The factors on what some of its points feel of the air; none where they are none.
+    pub fn air_factors(&self, points: &Range<u32>) -> &[AirFactors] {
+        let at = |point: u32| (point - self.points().start) as usize;
+        if self.air.is_empty() { &[] } else { &self.air[at(points.start)..at(points.end)] }
+    }
+
+    /// How many rows and points have factors of their own.
+    pub fn factors(&self) -> usize {
+        self.shares.len() + self.air.len() + self.friction.len()
     }
 
     /// The place in the columns of one of the user's points.
@@ -134,6 +171,12 @@ impl ColliderModel {
 
 /// The mass of each point in kilograms, in the user's order.
 pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
+    let mut masses = even_masses(cloth);
+    masses.iter_mut().zip(&cloth.factors.mass).for_each(|(mass, factor)| *mass *= factor);
+    masses
+}
+
+fn even_masses(cloth: &Cloth) -> Vec<f64> {
     match cloth.mass {
         Mass::PerPoint(mass) => vec![mass; cloth.surface.positions.len()],
         Mass::PerArea(density) => {
@@ -147,13 +190,10 @@ pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
     }
 }
 
-fn stretch_rows<R: Real>(
-    surface: &Surface,
-    with_cross_links: bool,
-    place: impl Fn(u32) -> u32,
-) -> Vec<LinkRow<R>> {
-    let links = stretch_links(surface, with_cross_links);
-    let mut rows: Vec<LinkRow<R>> = links.iter().map(|link| LinkRow::new(link, &place)).collect();
+fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+    let links = stretch_links(surface, cloth.lists.cross_links);
+    let rest = |link: &Link| mean(&cloth.factors.rest_length, link.ends.map(|end| end as usize).into_iter());
+    let mut rows: Vec<LinkRow<R>> = links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect();
     rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
     rows
 }

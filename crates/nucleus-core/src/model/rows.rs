@@ -80,6 +80,15 @@ pub struct RowList<G> {
     rows: usize,
 }
 
+/// Rows that are swept by one task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The inner rows of a block.
+    Inner(usize),
+    /// The cross rows of a colour, and which task of it.
+    Cross(usize, usize),
+}
+
 impl<G> Default for RowList<G> {
     fn default() -> Self {
         Self { groups: Vec::new(), inner: Vec::new(), cross: Vec::new(), rows: 0 }
@@ -150,6 +159,15 @@ impl<G> RowList<G> {
     /// How many tasks the cross rows of a colour are.
     pub fn cross_tasks(&self, colour: usize) -> usize {
         self.cross[colour].len().div_ceil(CHUNK as usize)
+    }
+
+    /// The rows of a task. Nothing for a list without rows.
+    pub fn part(&self, part: Part) -> &[G] {
+        match part {
+            Part::Inner(block) => self.inner(block),
+            Part::Cross(..) if self.rows == 0 => &[],
+            Part::Cross(colour, task) => self.cross(colour, task),
+        }
     }
 
     /// The cross rows of one task.

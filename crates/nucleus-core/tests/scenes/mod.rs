@@ -96,7 +96,7 @@ pub fn physical(evaluations: f64) -> ResistanceModel {
 /// One cloth of 0.2 kg/m².
 pub fn one_cloth(surface: Surface, lists: ClothLists) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
-    builder.cloth(Cloth { surface, mass: Mass::PerArea(0.2), lists }).expect("a good mesh");
+    builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
     builder
 }
 

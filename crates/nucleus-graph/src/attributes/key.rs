@@ -56,6 +56,11 @@ pub(super) const fn float(name: &'static str, short: &'static str, default: f64)
     Key::new(name, short, Kind::Float, Some(Value::Float(default)))
 }
 
+/// A number, or a texture to take it from.
+pub(super) const fn texture(name: &'static str, short: &'static str, default: f64) -> Key<f64> {
+    Key::new(name, short, Kind::Texture, Some(Value::Float(default))).fixed()
+}
+
 /// A vector; its parts have short names of their own.
 pub(super) const fn vector(
     name: &'static str,

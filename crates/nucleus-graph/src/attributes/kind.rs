@@ -1,6 +1,6 @@
 //! What an attribute can hold, and how a scene may write it.
 
-use super::value::{Choice, Value};
+use super::value::{Choice, Painting, Value};
 
 /// What flows through a plug; only plugs of the same data can be connected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -78,6 +78,8 @@ pub enum Kind {
     Int,
     /// A number.
     Float,
+    /// A number, or a texture to take it from.
+    Texture,
     /// Three numbers; each also has a name of its own: the short names of x, y and z.
     Vector([&'static str; 3]),
     /// One of some words: Maya's index and Maya's name of each.
@@ -111,12 +113,13 @@ impl Kind {
             Self::Bool => "true or false",
             Self::Int => "a whole number",
             Self::Float => "a number",
+            Self::Texture => "texture(\"...\") or a number",
             Self::Vector(_) => "three numbers",
             Self::Choice(_) => "one of its words",
             Self::Text => "text in quotes",
             Self::Ints => "a list of whole numbers",
-            Self::Floats => "a list of numbers",
-            Self::Vectors => "a list of vectors",
+            Self::Floats => "a list of numbers, file(\"...\") or expression(\"...\")",
+            Self::Vectors => "a list of vectors or file(\"...\")",
             Self::Ramp => "a list of (position, value)",
             Self::ColorRamp => "a list of (position, (red, green, blue))",
             Self::Components => "a list of components",
@@ -134,7 +137,7 @@ impl Kind {
     /// What flows through a plug of this kind; nothing if it cannot be connected.
     pub fn carries(self) -> Option<Data> {
         match self {
-            Self::Bool | Self::Int | Self::Float | Self::Choice(_) => Some(Data::Number),
+            Self::Bool | Self::Int | Self::Float | Self::Texture | Self::Choice(_) => Some(Data::Number),
             Self::Vector(_) => Some(Data::Vector),
             Self::Ints | Self::Floats => Some(Data::Numbers),
             Self::Vectors => Some(Data::Vectors),
@@ -153,7 +156,10 @@ impl Kind {
             (Self::Choice(words), Value::Choice(Choice(index))) => words.iter().any(|(i, _)| i == index),
             (Self::Bool, Value::Bool(_))
             | (Self::Int, Value::Int(_))
-            | (Self::Float, Value::Float(_))
+            | (Self::Float | Self::Texture, Value::Float(_))
+            | (Self::Texture, Value::Painting(Painting::Texture(_)))
+            | (Self::Floats, Value::Painting(Painting::File(_) | Painting::Expression(_)))
+            | (Self::Vectors, Value::Painting(Painting::File(_)))
             | (Self::Vector(_), Value::Vector(_))
             | (Self::Text, Value::Text(_))
             | (Self::Ints, Value::Ints(_))

@@ -51,7 +51,7 @@ pub use key::{FromValue, Key, Plugged};
 pub use kind::{Data, Kind};
 pub use node_type::{NodeType, node_type, node_types};
 pub use row::{Attribute, Effect, Range};
-pub use value::{Choice, ColorPoint, Component, RampPoint, Selection, Value};
+pub use value::{Choice, ColorPoint, Component, Painting, RampPoint, Selection, Value};
 
 #[cfg(test)]
 mod tests;

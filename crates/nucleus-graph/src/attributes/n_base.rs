@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, float, floats, int, node, plug, ramp, text, toggle, vector, vectors};
+use super::key::{choice, float, floats, int, node, plug, ramp, text, texture, toggle, vector, vectors};
 use super::particle::PARTICLE;
 use super::table::node_table;
 use super::{Choice, Data, Plugged, RampPoint};
@@ -14,6 +14,39 @@ pub(super) const MAP_TYPES: &[(i32, &str)] = &[(0, "None"), (1, "Per-vertex"), (
 const FALLING: &[RampPoint] = &[
     RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) },
     RampPoint { position: 1.0, value: 0.0, interpolation: Choice(1) },
+];
+
+/// What objects made of a mesh have no use for: most of what the classic particles had.
+#[rustfmt::skip] // a name per line would be a page of its own
+pub(super) const NO_USE_TO_MESHES: &[&str] = &[
+    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
+    "worldVelocityInObjectSpace", "lastWorldVelocity", "acceleration0", "emitterId0", "useStartupCache",
+    "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition", "cachedWorldPosition",
+    "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass0", "massCache",
+    "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId", "nextId0", "birthTime",
+    "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId",
+    "dieOnEmissionVolumeExit", "isFull", "newParticles", "collisionEvents", "death", "lifespanMode",
+    "lifespanRandom", "finalLifespanPP", "generalSeed", "randState", "expressionsAfterDynamics",
+    "executeCreationExpression", "executeRuntimeBeforeDynamicsExpression",
+    "executeRuntimeAfterDynamicsExpression", "input", "output", "time", "frame", "internalRuntimeExpression",
+    "internalRuntimeBeforeDynamicsExpression", "internalRuntimeAfterDynamicsExpression",
+    "internalCreationExpression", "currentParticle", "diedLastTime", "netEmittedLastTime", "startEmittedIndex",
+    "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail",
+    "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass", "fieldDataDeltaTime",
+    "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime", "currentTime",
+    "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime", "cachedTime",
+    "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
+    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace",
+    "goalSmoothness", "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth",
+    "collisions", "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction",
+    "collisionOffset", "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed",
+    "eventRandState", "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit",
+    "eventDie", "eventRandom", "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents",
+    "eventNameCount", "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections",
+    "inheritColor", "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone",
+    "timeLastComputed", "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType",
+    "disableCloudAxis", "normalizeVelocity", "samplerPerParticleData", "ownerPPFieldData", "deformedPosition",
+    "useCustomCache",
 ];
 
 node_table! {
@@ -104,10 +137,10 @@ node_table! {
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false);
     }
     "Initial State" {
-        /// Initial positions, in place of those of the input mesh.
-        START_POSITIONS: Vec<[f64; 3]> = vectors("startPositions", "spns");
-        /// Initial velocities.
-        START_VELOCITIES: Vec<[f64; 3]> = vectors("startVelocities", "sves");
+        /// Initial positions in world space, in place of those of the input mesh; how the cloth is at rest is still the mesh's to say.
+        START_POSITIONS: Vec<[f64; 3]> = vectors("startPositions", "spns").unit("scene units").solved("compile");
+        /// Initial velocities in world space.
+        START_VELOCITIES: Vec<[f64; 3]> = vectors("startVelocities", "sves").unit("scene units/s").solved("compile");
     }
     "Caching" {
         /// Positions that come from a cache.
@@ -123,23 +156,23 @@ node_table! {
     }
     "Collision Properties Maps" {
         /// Texture that varies thickness.
-        THICKNESS_MAP: f64 = float("thicknessMap", "thmp", 0.1);
+        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1);
         /// Factor on thickness at each point.
         THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv");
         /// Texture that varies bounce.
-        BOUNCE_MAP: f64 = float("bounceMap", "bomp", 0.0);
+        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0);
         /// Factor on bounce at each point.
         BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
         /// Texture that varies friction.
-        FRICTION_MAP: f64 = float("frictionMap", "frmp", 0.0);
+        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("factors");
         /// Factor on friction at each point.
-        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("factors");
         /// Texture that varies stickiness.
-        STICKINESS_MAP: f64 = float("stickinessMap", "skmp", 0.0);
+        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0);
         /// Factor on stickiness at each point.
         STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv");
         /// Texture that varies collide strength.
-        COLLIDE_STRENGTH_MAP: f64 = float("collideStrengthMap", "csmp", 0.0);
+        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0);
         /// Factor on collide strength at each point.
         COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv");
         /// Whether thickness is varied by nothing, by point, or by a texture.
@@ -147,7 +180,7 @@ node_table! {
         /// Whether bounce is varied by nothing, by point, or by a texture.
         BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
         /// Whether friction is varied by nothing, by point, or by a texture.
-        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether stickiness is varied by nothing, by point, or by a texture.
         STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
         /// Whether collide strength is varied by nothing, by point, or by a texture.
@@ -155,21 +188,21 @@ node_table! {
     }
     "Dynamic Properties Maps" {
         /// Texture that varies damp.
-        DAMP_MAP: f64 = float("dampMap", "admp", 0.0);
+        DAMP_MAP: f64 = texture("dampMap", "admp", 0.0).solved("factors");
         /// Factor on damp at each point.
-        DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv");
+        DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv").solved("factors");
         /// Texture that varies mass.
-        MASS_MAP: f64 = float("massMap", "mamp", 1.0);
+        MASS_MAP: f64 = texture("massMap", "mamp", 1.0).solved("factors");
         /// Factor on mass at each point.
-        MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv");
+        MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv").solved("factors");
         /// Whether damp is varied by nothing, by point, or by a texture.
-        DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES);
+        DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether mass is varied by nothing, by point, or by a texture.
-        MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES);
+        MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES).solved("factors").fixed();
     }
     "Force Field Maps" {
         /// Texture that varies field magnitude.
-        FIELD_MAGNITUDE_MAP: f64 = float("fieldMagnitudeMap", "fmmp", 0.0);
+        FIELD_MAGNITUDE_MAP: f64 = texture("fieldMagnitudeMap", "fmmp", 0.0);
         /// Factor on field magnitude at each point.
         FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv");
         /// Whether field magnitude is varied by nothing, by point, or by a texture.

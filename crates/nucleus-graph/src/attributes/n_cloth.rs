@@ -1,41 +1,13 @@
 //! Cloth.
 
-use super::key::{choice, float, floats, int, plug, toggle};
-use super::n_base::MAP_TYPES;
-use super::n_base::N_BASE;
+use super::key::{choice, float, floats, int, plug, texture, toggle};
+use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::table::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {
     /// A mesh that behaves as cloth.
-    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [
-    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
-    "worldVelocityInObjectSpace", "lastWorldVelocity", "acceleration0", "emitterId0", "useStartupCache",
-    "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition", "cachedWorldPosition",
-    "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass0", "massCache",
-    "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId", "nextId0", "birthTime",
-    "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId", "dieOnEmissionVolumeExit",
-    "isFull", "newParticles", "collisionEvents", "death", "lifespanMode", "lifespanRandom", "finalLifespanPP",
-    "generalSeed", "randState", "expressionsAfterDynamics", "executeCreationExpression",
-    "executeRuntimeBeforeDynamicsExpression", "executeRuntimeAfterDynamicsExpression", "input", "output", "time",
-    "frame", "internalRuntimeExpression", "internalRuntimeBeforeDynamicsExpression",
-    "internalRuntimeAfterDynamicsExpression", "internalCreationExpression", "currentParticle", "diedLastTime",
-    "netEmittedLastTime", "startEmittedIndex", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld",
-    "maxCount", "levelOfDetail", "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass",
-    "fieldDataDeltaTime", "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime",
-    "currentTime", "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime",
-    "cachedTime", "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
-    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace", "goalSmoothness",
-    "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth", "collisions",
-    "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction", "collisionOffset",
-    "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed", "eventRandState",
-    "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit", "eventDie", "eventRandom",
-    "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents", "eventNameCount",
-    "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections", "inheritColor",
-    "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone", "timeLastComputed",
-    "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType", "disableCloudAxis", "normalizeVelocity",
-    "samplerPerParticleData", "ownerPPFieldData", "deformedPosition", "useCustomCache",
-];
+    N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
@@ -148,65 +120,65 @@ node_table! {
     }
     "Dynamic Properties Maps" {
         /// Texture that varies stretch.
-        STRETCH_MAP: f64 = float("stretchMap", "stmp", 1.0);
+        STRETCH_MAP: f64 = texture("stretchMap", "stmp", 1.0).solved("factors");
         /// Factor on stretch at each point.
-        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv");
+        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv").solved("factors");
         /// Texture that varies compression.
-        COMPRESSION_MAP: f64 = float("compressionMap", "cmmp", 1.0);
+        COMPRESSION_MAP: f64 = texture("compressionMap", "cmmp", 1.0).solved("factors");
         /// Factor on compression at each point.
-        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv");
+        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv").solved("factors");
         /// Texture that varies bend.
-        BEND_MAP: f64 = float("bendMap", "bemp", 0.0);
+        BEND_MAP: f64 = texture("bendMap", "bemp", 0.0).solved("factors");
         /// Factor on bend at each point.
-        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv");
+        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("factors");
         /// Texture that varies bend angle dropoff.
-        BEND_ANGLE_DROPOFF_MAP: f64 = float("bendAngleDropoffMap", "badm", 0.0);
+        BEND_ANGLE_DROPOFF_MAP: f64 = texture("bendAngleDropoffMap", "badm", 0.0);
         /// Factor on bend angle dropoff at each point.
         BEND_ANGLE_DROPOFF_PER_VERTEX: Vec<f64> = floats("bendAngleDropoffPerVertex", "badv");
         /// Texture that varies restitution angle.
-        RESTITUTION_ANGLE_MAP: f64 = float("restitutionAngleMap", "ranm", 0.0);
+        RESTITUTION_ANGLE_MAP: f64 = texture("restitutionAngleMap", "ranm", 0.0);
         /// Factor on restitution angle at each point.
         RESTITUTION_ANGLE_PER_VERTEX: Vec<f64> = floats("restitutionAnglePerVertex", "rapv");
         /// Texture that varies rigidity.
-        RIGIDITY_MAP: f64 = float("rigidityMap", "rimp", 0.0);
+        RIGIDITY_MAP: f64 = texture("rigidityMap", "rimp", 0.0);
         /// Factor on rigidity at each point.
         RIGIDITY_PER_VERTEX: Vec<f64> = floats("rigidityPerVertex", "rpv");
         /// Texture that varies deform.
-        DEFORM_MAP: f64 = float("deformMap", "demp", 0.0);
+        DEFORM_MAP: f64 = texture("deformMap", "demp", 0.0);
         /// Factor on deform at each point.
         DEFORM_PER_VERTEX: Vec<f64> = floats("deformPerVertex", "dfpv");
         /// Texture that varies input attract.
-        INPUT_ATTRACT_MAP: f64 = float("inputAttractMap", "iamp", 0.0);
+        INPUT_ATTRACT_MAP: f64 = texture("inputAttractMap", "iamp", 0.0);
         /// Factor on input attract at each point.
         INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv");
         /// Texture that varies rest length scale.
-        REST_LENGTH_SCALE_MAP: f64 = float("restLengthScaleMap", "rlmp", 1.0);
+        REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("factors");
         /// Factor on rest length scale at each point.
-        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv");
+        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv").solved("factors");
         /// Texture that varies lift.
-        LIFT_MAP: f64 = float("liftMap", "lfmp", 1.0);
+        LIFT_MAP: f64 = texture("liftMap", "lfmp", 1.0).solved("factors");
         /// Factor on lift at each point.
-        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv");
+        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv").solved("factors");
         /// Texture that varies drag.
-        DRAG_MAP: f64 = float("dragMap", "drmp", 1.0);
+        DRAG_MAP: f64 = texture("dragMap", "drmp", 1.0).solved("factors");
         /// Factor on drag at each point.
-        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv");
+        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv").solved("factors");
         /// Texture that varies tangential drag.
-        TANGENTIAL_DRAG_MAP: f64 = float("tangentialDragMap", "tdmp", 1.0);
+        TANGENTIAL_DRAG_MAP: f64 = texture("tangentialDragMap", "tdmp", 1.0).solved("factors");
         /// Factor on tangential drag at each point.
-        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv");
+        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("factors");
         /// Texture that varies wrinkle.
-        WRINKLE_MAP: f64 = float("wrinkleMap", "wkmp", 0.0);
+        WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0);
         /// Factor on wrinkle at each point.
         WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv");
         /// How high the wrinkles of the wrinkle map stand.
         WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0);
         /// Whether stretch is varied by nothing, by point, or by a texture.
-        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES);
+        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether compression is varied by nothing, by point, or by a texture.
-        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES);
+        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether bend is varied by nothing, by point, or by a texture.
-        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES);
+        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether bend angle dropoff is varied by nothing, by point, or by a texture.
         BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES);
         /// Whether restitution angle is varied by nothing, by point, or by a texture.
@@ -218,13 +190,13 @@ node_table! {
         /// Whether input attract is varied by nothing, by point, or by a texture.
         INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES);
         /// Whether rest length scale is varied by nothing, by point, or by a texture.
-        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES);
+        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether lift is varied by nothing, by point, or by a texture.
-        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES);
+        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether drag is varied by nothing, by point, or by a texture.
-        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES);
+        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether tangential drag is varied by nothing, by point, or by a texture.
-        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES);
+        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether wrinkle is varied by nothing, by point, or by a texture.
         WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES);
     }

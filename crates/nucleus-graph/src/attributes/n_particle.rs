@@ -34,21 +34,26 @@ const COLOUR_INPUTS: &[(i32, &str)] = &[
 /// 1 everywhere.
 const FULL: &[RampPoint] = &[RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) }];
 
-node_table! {
-    /// Points without links: they collide, and are drawn to and pushed by each other. Not solved yet.
-    N_PARTICLE = "nParticle", inherits Some(&N_BASE), hides [
+/// What points without a mesh have no use for.
+#[rustfmt::skip] // a name per line would be a page of its own
+const NO_USE_TO_PARTICLES: &[&str] = &[
     "useStartupCache", "startupCachePath", "startupCacheFrame", "inputGeometry", "inputGeometryPoints",
     "inputGeometrySpace", "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix",
     "targetGeometrySpace", "cacheData", "cacheWidth", "traceDepth", "collisionData", "collisionGeometry",
     "collisionResilience", "collisionFriction", "collisionOffset", "collisionConnections", "deformedPosition",
-    "inputMesh", "positions", "startPositions", "startVelocities", "thickness", "thicknessMap", "thicknessPerVertex",
-    "bounceMap", "bouncePerVertex", "frictionMap", "frictionPerVertex", "dampMap", "dampPerVertex", "stickinessMap",
-    "stickinessPerVertex", "collideStrengthMap", "collideStrengthPerVertex", "selfCollisionFlag", "massMap",
-    "massPerVertex", "restLengthScale", "airPushVorticity", "pushOut", "pushOutRadius", "crossoverPush",
-    "trappedCheck", "forceField", "fieldMagnitude", "fieldMagnitudeMap", "fieldMagnitudePerVertex", "fieldDistance",
-    "fieldScale", "thicknessMapType", "bounceMapType", "frictionMapType", "stickinessMapType",
-    "collideStrengthMapType", "dampMapType", "massMapType", "fieldMagnitudeMapType", "localSpaceOutput",
+    "inputMesh", "positions", "startPositions", "startVelocities", "thickness", "thicknessMap",
+    "thicknessPerVertex", "bounceMap", "bouncePerVertex", "frictionMap", "frictionPerVertex", "dampMap",
+    "dampPerVertex", "stickinessMap", "stickinessPerVertex", "collideStrengthMap", "collideStrengthPerVertex",
+    "selfCollisionFlag", "massMap", "massPerVertex", "restLengthScale", "airPushVorticity", "pushOut",
+    "pushOutRadius", "crossoverPush", "trappedCheck", "forceField", "fieldMagnitude", "fieldMagnitudeMap",
+    "fieldMagnitudePerVertex", "fieldDistance", "fieldScale", "thicknessMapType", "bounceMapType",
+    "frictionMapType", "stickinessMapType", "collideStrengthMapType", "dampMapType", "massMapType",
+    "fieldMagnitudeMapType", "localSpaceOutput",
 ];
+
+node_table! {
+    /// Points without links: they collide, and are drawn to and pushed by each other. Not solved yet.
+    N_PARTICLE = "nParticle", inherits Some(&N_BASE), hides [NO_USE_TO_PARTICLES];
     "Hidden" {
         /// Left over from early versions of Maya.
         NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).unused().hidden();

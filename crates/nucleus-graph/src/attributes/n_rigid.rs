@@ -1,43 +1,22 @@
 //! Colliders. Rows of its base are repeated where creation in Maya sets another value.
 
 use super::Choice;
-use super::key::{choice, toggle};
-use super::n_base::N_BASE;
+use super::key::{choice, floats, texture, toggle};
+use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::table::node_table;
+
+/// What an object that nothing moves has no use for.
+#[rustfmt::skip] // a name per line would be a page of its own
+const NO_USE_TO_COLLIDERS: &[&str] = &[
+    "acceleration", "position0", "velocity0", "mass", "startVelocities", "damp", "dampMap", "dampPerVertex",
+    "selfCollisionFlag", "maxSelfCollisionIterations", "maxIterations", "pointMass", "massMap", "massPerVertex",
+    "restLengthScale", "localForce", "localWind", "selfCollide", "selfAttract", "dampMapType", "massMapType",
+    "nextState",
+];
 
 node_table! {
     /// A mesh that cloth collides with. It is moved by its transform and by nothing else.
-    N_RIGID = "nRigid", inherits Some(&N_BASE), hides [
-    "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "acceleration", "rampAcceleration",
-    "lastWorldPosition", "worldVelocityInObjectSpace", "lastWorldVelocity", "position0", "velocity0", "acceleration0",
-    "emitterId0", "useStartupCache", "startupCachePath", "startupCacheFrame", "cachedPosition", "lastCachedPosition",
-    "cachedWorldPosition", "cachedWorldCentroid", "cachedVelocity", "cachedWorldVelocity", "computingCount", "mass",
-    "mass0", "massCache", "particleId", "particleId0", "idCache", "idMapping", "sortedId", "idIndex", "nextId",
-    "nextId0", "birthTime", "birthTime0", "birthTimeCache", "age", "age0", "ageCache", "emission", "emitterId",
-    "dieOnEmissionVolumeExit", "isFull", "newParticles", "collisionEvents", "death", "lifespanMode", "lifespanRandom",
-    "finalLifespanPP", "generalSeed", "randState", "expressionsAfterDynamics", "executeCreationExpression",
-    "executeRuntimeBeforeDynamicsExpression", "executeRuntimeAfterDynamicsExpression", "input", "output", "time",
-    "frame", "internalRuntimeExpression", "internalRuntimeBeforeDynamicsExpression",
-    "internalRuntimeAfterDynamicsExpression", "internalCreationExpression", "currentParticle", "diedLastTime",
-    "netEmittedLastTime", "startEmittedIndex", "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld",
-    "maxCount", "levelOfDetail", "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass",
-    "fieldDataDeltaTime", "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime",
-    "currentTime", "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime",
-    "cachedTime", "sceneTimeStepSize", "startFrame", "inputGeometry", "inputGeometryPoints", "inputGeometrySpace",
-    "enforceCountFromHistory", "targetGeometry", "targetGeometryWorldMatrix", "targetGeometrySpace", "goalSmoothness",
-    "goalGeometry", "goalWeight", "goalActive", "goalUvSetName", "cacheData", "cacheWidth", "collisions",
-    "traceDepth", "collisionData", "collisionGeometry", "collisionResilience", "collisionFriction", "collisionOffset",
-    "collisionRecords", "totalEventCount", "eventTest", "lastTotalEventCount", "eventSeed", "eventRandState",
-    "eventTarget", "eventName", "eventValid", "eventCount", "eventEmit", "eventSplit", "eventDie", "eventRandom",
-    "eventSpread", "eventProc", "instanceData", "debugDraw", "numberOfEvents", "eventNameCount",
-    "collisionConnections", "connectionsToMe", "auxiliariesOwned", "emitterConnections", "inheritColor",
-    "shapeNameMsg", "doDynamics", "doEmission", "forceEmission", "doAge", "agesLastDone", "timeLastComputed",
-    "parentMatrixDirty", "newFileFormat", "depthSort", "particleRenderType", "disableCloudAxis", "normalizeVelocity",
-    "samplerPerParticleData", "ownerPPFieldData", "deformedPosition", "useCustomCache", "startVelocities", "damp",
-    "dampMap", "dampPerVertex", "selfCollisionFlag", "maxSelfCollisionIterations", "maxIterations", "pointMass",
-    "massMap", "massPerVertex", "restLengthScale", "localForce", "localWind", "selfCollide", "selfAttract",
-    "dampMapType", "massMapType", "nextState",
-];
+    N_RIGID = "nRigid", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, NO_USE_TO_COLLIDERS];
     "Collisions" {
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off")]);
@@ -47,5 +26,13 @@ node_table! {
     "Quality Settings" {
         /// Remembers on which side points started and brings them back there.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true);
+    }
+    "Collision Properties Maps" {
+        /// Texture that varies friction.
+        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0);
+        /// Factor on friction at each point.
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
+        /// Whether friction is varied by nothing, by point, or by a texture.
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
     }
 }

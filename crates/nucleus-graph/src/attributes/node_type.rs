@@ -16,7 +16,7 @@ pub struct NodeType {
     /// Its own rows, in the order of the table.
     pub rows: &'static [&'static Attribute],
     /// Inherited attributes that it does not show. They can still be read and written.
-    pub hides: &'static [&'static str],
+    pub hides: &'static [&'static [&'static str]],
     pub(super) doc: &'static str,
     pub(super) index: OnceLock<HashMap<&'static str, &'static Attribute>>,
 }
@@ -126,6 +126,7 @@ impl NodeType {
 
     /// Whether this type keeps an attribute from view.
     pub fn keeps_from_view(&'static self, row: &Attribute) -> bool {
-        row.hidden || self.lineage().any(|ancestor| ancestor.hides.contains(&row.name))
+        row.hidden
+            || self.lineage().any(|ancestor| ancestor.hides.iter().any(|names| names.contains(&row.name)))
     }
 }

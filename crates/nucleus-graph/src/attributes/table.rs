@@ -5,7 +5,7 @@
 /// ```text
 /// node_table! {
 ///     /// A mesh that behaves as cloth.
-///     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides ["lifespanMode"];
+///     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, &["mass"]];
 ///     "Dynamic Properties" {
 ///         /// How strongly faces keep the angle between them.
 ///         BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).soft(0.0, 200.0).solved("bend");
@@ -15,7 +15,7 @@
 macro_rules! node_table {
     (
         $(#[doc = $type_doc:literal])+
-        $type:ident = $name:literal, inherits $parent:expr, hides [$($hides:literal),* $(,)?];
+        $type:ident = $name:literal, inherits $parent:expr, hides [$($hides:expr),* $(,)?];
         $($group:literal {
             $($(#[doc = $doc:literal])+ $key:ident: $value:ty = $row:expr;)*
         })*

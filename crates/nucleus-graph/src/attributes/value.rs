@@ -30,6 +30,30 @@ pub enum Value {
     ColorRamp(Cow<'static, [ColorPoint]>),
     /// Parts of objects.
     Components(Vec<Component>),
+    /// Something per point that is made elsewhere.
+    Painting(Painting),
+}
+
+/// Where what is given per point comes from, when it is no list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Painting {
+    /// A file of numbers: `file("weights.txt")`.
+    File(String),
+    /// An expression of each point: `expression("x > 0 ? 2 : 1")`.
+    Expression(String),
+    /// A picture: `texture("weights.png")`.
+    Texture(String),
+}
+
+impl Painting {
+    /// The word that a scene writes for it, and what stands in its brackets.
+    pub fn parts(&self) -> (&'static str, &str) {
+        match self {
+            Self::File(file) => ("file", file),
+            Self::Expression(text) => ("expression", text),
+            Self::Texture(file) => ("texture", file),
+        }
+    }
 }
 
 /// One of the words of an enum attribute, by Maya's index.

@@ -122,34 +122,34 @@ impl Stretch<'_> {
     }
 
     fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {
-        let (node, to) = (cloth.node, &self.to);
+        let (node, to, scales) = (cloth.node, &self.to, &cloth.scales);
         let number = |key: &Key<f64>| to.get(node, key);
         // Below nought there is none: the resistance counts.
-        let stiffness = |key: &Key<f64>| Some(number(key)).filter(|stiffness| *stiffness >= 0.0);
+        let stiffness = |key: &Key<f64>, scale: f64| Some(number(key) * scale).filter(|_| number(key) >= 0.0);
         ClothFrame {
-            stretch_resistance: number(&n_cloth::STRETCH_RESISTANCE),
-            compression_resistance: number(&n_cloth::COMPRESSION_RESISTANCE),
+            stretch_resistance: number(&n_cloth::STRETCH_RESISTANCE) * scales.stretch,
+            compression_resistance: number(&n_cloth::COMPRESSION_RESISTANCE) * scales.compression,
             shear_resistance: number(&n_cloth::SHEAR_RESISTANCE),
-            bend_resistance: number(&n_cloth::BEND_RESISTANCE),
+            bend_resistance: number(&n_cloth::BEND_RESISTANCE) * scales.bend,
             stiffness: Stiffness {
-                stretch: stiffness(&n_cloth::STRETCH_STIFFNESS),
-                compression: stiffness(&n_cloth::COMPRESSION_STIFFNESS),
-                shear: stiffness(&n_cloth::SHEAR_STIFFNESS),
-                bend: stiffness(&n_cloth::BEND_STIFFNESS),
+                stretch: stiffness(&n_cloth::STRETCH_STIFFNESS, scales.stretch),
+                compression: stiffness(&n_cloth::COMPRESSION_STIFFNESS, scales.compression),
+                shear: stiffness(&n_cloth::SHEAR_STIFFNESS, 1.0),
+                bend: stiffness(&n_cloth::BEND_STIFFNESS, scales.bend),
             },
-            rest_length_scale: number(&n_base::REST_LENGTH_SCALE),
+            rest_length_scale: number(&n_base::REST_LENGTH_SCALE) * scales.rest_length,
             stretch_damp: number(&n_cloth::STRETCH_DAMP),
-            damp: number(&n_base::DAMP),
-            drag: number(&n_cloth::DRAG),
-            tangential_drag: number(&n_cloth::TANGENTIAL_DRAG),
-            lift: number(&n_cloth::LIFT),
+            damp: number(&n_base::DAMP) * scales.damp,
+            drag: number(&n_cloth::DRAG) * scales.drag,
+            tangential_drag: number(&n_cloth::TANGENTIAL_DRAG) * scales.tangential_drag,
+            lift: number(&n_cloth::LIFT) * scales.lift,
             feels_gravity: !to.get(node, &n_cloth::IGNORE_SOLVER_GRAVITY),
             feels_wind: !to.get(node, &n_cloth::IGNORE_SOLVER_WIND),
             local_force: Vector3::from(to.get(node, &n_base::LOCAL_FORCE)),
             local_wind: Vector3::from(to.get(node, &n_base::LOCAL_WIND)),
             collide: to.get(node, &n_base::COLLIDE),
             thickness: self.thickness(node, cloth.default_thickness),
-            friction: number(&n_base::FRICTION),
+            friction: number(&n_base::FRICTION) * scales.friction,
             bounce: number(&n_base::BOUNCE),
             elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),

@@ -7,8 +7,8 @@ use nucleus_core::Surface;
 use crate::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
 use crate::graph::{Node, NodeId};
 use crate::mesh::{
-    PrimitiveError, drop_degenerate_faces, poly_cube as cube, poly_cylinder as cylinder, poly_plane as plane,
-    poly_sphere as sphere, read_obj,
+    ObjError, PrimitiveError, drop_degenerate_faces, poly_cube as cube, poly_cylinder as cylinder,
+    poly_plane as plane, poly_plane_uvs, poly_sphere as sphere, read_obj, read_obj_uvs,
 };
 use crate::scene::{Findings, Scene};
 
@@ -60,6 +60,23 @@ impl Geometry {
         }
         let target = self.shape(scene, target, findings)?;
         Some(own.blended(node, target))
+    }
+
+    /// The texture coordinates of the points of a node; nothing if it is made without. Read anew each time.
+    pub(super) fn uvs(&self, scene: &Scene, node: NodeId) -> Result<Option<Vec<Option<[f64; 2]>>>, ObjError> {
+        let own = scene.graph.node(node);
+        if own.node_type() == &poly_plane::POLY_PLANE {
+            use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
+            let [sx, sy] = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| count(own.get(key)));
+            return Ok(Some(poly_plane_uvs((sx, sy)).into_iter().map(Some).collect()));
+        }
+        if own.node_type() != &mesh::MESH {
+            return Ok(None);
+        }
+        let file = own.get(&mesh::FILE);
+        let file = Numbered::new(&file).map_or(file.clone(), |numbered| numbered.file(scene.time.start));
+        let uvs = read_obj_uvs(scene.source.path(&file))?;
+        Ok(Some(uvs).filter(|uvs| uvs.iter().any(Option::is_some)))
     }
 
     /// Whether the points of a node stand where they are, seen from the node.

@@ -5,8 +5,11 @@
 //! | what comes out                                       | [`Program`]      |
 //! | how cloth and colliders get their shape and mass     | `objects.rs`     |
 //! | which lists a cloth needs                            | `lists.rs`       |
+//! | in which order objects are solved                    | `shaped.rs`      |
 //! | what a frame brings                                  | `frame.rs`       |
 //! | how meshes change their shape                        | `shape.rs`       |
+//! | attributes that differ from point to point           | `maps.rs`, `column.rs` |
+//! | how a cloth starts that does not start as its mesh   | `start.rs`       |
 //! | what holds points, and where it takes hold of them   | `pins.rs`        |
 //! | what an audit is to find kept apart                  | `apart.rs`       |
 //! | where scene units become metres                      | `units.rs`       |
@@ -16,14 +19,18 @@
 //! here: a program can only run.
 
 mod apart;
+mod column;
 mod frame;
 mod geometry;
 mod lists;
+mod maps;
 mod objects;
 mod pins;
 mod program;
 mod self_collision;
 mod shape;
+mod shaped;
+mod start;
 mod thickness;
 mod time;
 mod units;

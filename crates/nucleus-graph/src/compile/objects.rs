@@ -12,8 +12,10 @@ use crate::scene::{Findings, Scene};
 
 use super::geometry::Geometry;
 use super::lists::lists;
+use super::maps::{Maps, Scales};
 use super::program::{Object, ObjectKind, Universe};
 use super::shape::Shape;
+use super::shaped::Shaped;
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::time;
 use super::units::Units;
@@ -29,6 +31,8 @@ pub(super) struct ClothSource {
     pub(super) default_thickness: f64,
     /// Whether its edges limit that.
     pub(super) is_dense: bool,
+    /// What maps that are the same everywhere make of its attributes.
+    pub(super) scales: Scales,
 }
 
 /// Where the frames of a collider come from.
@@ -47,7 +51,7 @@ pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     broken: &'a BTreeSet<NodeId>,
     pub(super) findings: &'a mut Findings,
-    geometry: &'a mut Geometry,
+    pub(super) geometry: &'a mut Geometry,
     /// The graph at the start.
     pub(super) start: Moment<'a>,
     pub(super) whole: Universe,
@@ -88,11 +92,11 @@ impl<'a> Compiler<'a> {
     /// All objects and constraints; those that are broken, or made from something broken, are left out. What
     /// comes out is only whole if no errors were found.
     pub(super) fn compile(mut self) -> Compiled {
-        for cloth in self.members(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
-            self.cloth(cloth);
+        for shaped in self.shaped(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
+            self.cloth(shaped);
         }
-        for collider in self.members(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
-            self.collider(collider);
+        for shaped in self.shaped(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
+            self.collider(shaped);
         }
         self.whole.pins = self.pins();
         if !self.objects.is_empty() {
@@ -103,7 +107,7 @@ impl<'a> Compiler<'a> {
 
     /// What is connected to an input of the nucleus, in the order of its elements. Only objects of a type can
     /// be solved there.
-    fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
+    pub(super) fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
         let graph = &self.scene.graph;
         let mut members = Vec::new();
         for (index, plug) in graph.elements(self.whole.nucleus, input) {
@@ -139,14 +143,16 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn cloth(&mut self, id: NodeId) -> Option<()> {
+    fn cloth(&mut self, Shaped { id, mesh, surface }: Shaped) -> Option<()> {
         self.check_wired(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
-        let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let surface = self.whole.units.surface(surface);
         self.warn_of_stiffness(id);
-        let point_mass = self.start.get(id, &n_base::POINT_MASS);
+        let maps = self.maps(id, mesh, surface.positions.len());
+        let start = self.start_of(id, mesh, surface.positions.len());
+        let (Maps { scales, factors }, start) = (maps?, start?);
+        let point_mass = self.start.get(id, &n_base::POINT_MASS) * scales.mass;
         let mass = match self.start.get(self.whole.nucleus, &nucleus::RESISTANCE_MODEL) {
             CLASSIC => Mass::PerPoint(point_mass),
             _ => Mass::PerArea(point_mass),
@@ -154,19 +160,21 @@ impl<'a> Compiler<'a> {
         self.warn_of_free_points(self.scene.graph.node(id).name(), mesh, &surface);
         let points = surface.positions.len();
         let faces = surface.faces.clone();
+        let lists = lists(&self.scene.graph, id, self.whole.nucleus, &scales);
+        let cloth = Cloth { surface, mass, lists, factors, start };
         let kilograms = match mass {
+            _ if !cloth.factors.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,
-            Mass::PerArea(mass) => mass * area(&surface),
+            Mass::PerArea(mass) => mass * area(&cloth.surface),
         };
-        let lists = lists(&self.scene.graph, id, self.whole.nucleus);
-        match self.whole.model.cloth(Cloth { surface, mass, lists }) {
+        match self.whole.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.whole.first_cloth + cloth.0));
                 self.mass_and_object(id, kind, points, faces, kilograms);
             }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense });
+        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense, scales });
         Some(())
     }
 
@@ -190,9 +198,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn collider(&mut self, id: NodeId) -> Option<()> {
+    fn collider(&mut self, Shaped { id, mesh, surface }: Shaped) -> Option<()> {
         self.check_wired(id, &[particle::CURRENT_TIME.row.name]);
-        let (mesh, surface) = self.world_surface(id)?;
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let graph = &self.scene.graph;
         let shape = if graph.moves(mesh) || !self.geometry.is_fixed(self.scene, mesh, self.findings) {
@@ -216,7 +223,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// The mesh that an object is made from, where it stands at the start; lengths in scene units.
-    fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
+    pub(super) fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
         let graph = &self.scene.graph;
         let Some(mesh) = self.mesh_of(object) else {
             let name = graph.node(object).name();

@@ -39,7 +39,12 @@ impl Graph {
 
     /// Whether anything is set on an attribute, here or by a preset, or connected to it.
     pub fn is_given<T>(&self, node: NodeId, key: &Key<T>) -> bool {
-        self.node(node).setting(key).is_some() || self.sources(node, key.row.name).next().is_some()
+        self.is_given_by_name(node, key.row.name)
+    }
+
+    /// The same by long name.
+    pub(crate) fn is_given_by_name(&self, node: NodeId, name: &str) -> bool {
+        self.node(node).set_or_preset(name).is_some() || self.sources(node, name).next().is_some()
     }
 
     /// Whether a number can ever be other than zero.
@@ -119,10 +124,21 @@ impl<'g> Moment<'g> {
         }
     }
 
+    /// What an attribute holds, whatever it is: its source's, else its own; nothing for what is only connected.
+    pub fn held<T>(&self, node: NodeId, key: &Key<T>) -> Option<Value> {
+        self.note(node);
+        let own = self.graph.node(node);
+        let row = own.node_type().attribute(key.row.name)?;
+        match self.graph.sources(node, row.name).next() {
+            Some(_) => self.fed(own, node, row),
+            None => own.value_at(row, self.frame),
+        }
+    }
+
     /// The value of an attribute that something is connected to.
     fn fed(&self, own: &Node, node: NodeId, row: &'static Attribute) -> Option<Value> {
         match row.kind {
-            Kind::Bool | Kind::Int | Kind::Float | Kind::Choice(_) => {
+            Kind::Bool | Kind::Int | Kind::Float | Kind::Texture | Kind::Choice(_) => {
                 Some(as_kind(self.number(node, row, None), row))
             }
             Kind::Vector(_) => Some(Value::Vector([0, 1, 2].map(|part| self.number(node, row, Some(part))))),

@@ -37,7 +37,7 @@ impl Setting {
             curve.keys().iter().all(|key| attribute.range.contains(key.value) && whole(key.value))
         };
         match (self, attribute.kind) {
-            (Self::Fixed(Value::Float(x)), Kind::Float) => attribute.range.contains(*x),
+            (Self::Fixed(Value::Float(x)), Kind::Float | Kind::Texture) => attribute.range.contains(*x),
             (Self::Fixed(Value::Int(x)), Kind::Int) => attribute.range.contains(*x as f64),
             (Self::Fixed(Value::Vector(_)), _) => false,
             (Self::Fixed(value), kind) => kind.admits(value),

@@ -3,6 +3,7 @@
 //! | You want to know...                              | Read                        |
 //! |--------------------------------------------------|-----------------------------|
 //! | what of an OBJ file is read, and what is refused | [`read_obj`]                |
+//! | texture coordinates, which only textures ask for | [`read_obj_uvs`], [`poly_plane_uvs`] |
 //! | what becomes of triangles without area           | [`drop_degenerate_faces`]   |
 //! | in which order Maya counts the points of a plane, cube, sphere, cylinder | [`poly_plane`], [`poly_cube`], [`poly_sphere`], [`poly_cylinder`] |
 //!
@@ -20,7 +21,7 @@ mod tests;
 
 pub use cube::poly_cube;
 pub use degenerate::drop_degenerate_faces;
-pub use obj::{ObjError, ObjFault, read_obj};
-pub use plane::poly_plane;
+pub use obj::{ObjError, ObjFault, read_obj, read_obj_uvs};
+pub use plane::{poly_plane, poly_plane_uvs};
 pub use primitive::PrimitiveError;
 pub use round::{poly_cylinder, poly_sphere};

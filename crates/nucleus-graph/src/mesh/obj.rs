@@ -13,11 +13,13 @@ use nucleus_core::Surface;
 
 pub use error::{ObjError, ObjFault};
 use lines::Lines;
+pub use uvs::read_obj_uvs;
 
 mod error;
 mod lines;
 #[cfg(test)]
 mod tests;
+mod uvs;
 
 /// Reads a mesh. Its points are all vertices of the file, used or not, in their order there; its faces are
 /// as written, degenerate ones too (see [`drop_degenerate_faces`](super::drop_degenerate_faces)). Lengths

@@ -28,3 +28,9 @@ pub fn poly_plane(width: f64, height: f64, (sx, sy): (u32, u32)) -> Result<Surfa
     }
     Ok(Surface { positions: (0..=sy).flat_map(row).collect(), faces })
 }
+
+/// The texture coordinates of its points, as Maya makes them: u along +x, v along -z, both from 0 to 1.
+pub fn poly_plane_uvs((sx, sy): (u32, u32)) -> Vec<[f64; 2]> {
+    let share = |k: u32, of: u32| f64::from(k) / f64::from(of.max(1));
+    (0..=sy).flat_map(|j| (0..=sx).map(move |i| [share(i, sx), share(j, sy)])).collect()
+}

@@ -142,6 +142,10 @@ fn held(value: &Value, row: &Attribute) -> String {
         Value::Vectors(vectors) => list(vectors.iter().map(|vector| triple(*vector))),
         Value::Ramp(points) => list(points.iter().map(ramp_point)),
         Value::ColorRamp(points) => list(points.iter().map(color_point)),
+        Value::Painting(painting) => {
+            let (word, text) = painting.parts();
+            format!("{word}({})", quoted(text))
+        }
         Value::Components(parts) => list(parts.iter().map(|part| quoted(&part.to_string()))),
     }
 }

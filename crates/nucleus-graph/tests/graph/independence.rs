@@ -184,6 +184,38 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5))]
+
+    #[test]
+    fn names_of_cloths_that_collide_do_not_change_a_bit(
+        names in Just(["a", "b", "c", "d", "e", "f"].to_vec()).prop_shuffle()
+    ) {
+        let text = |names: &[&str]| {
+            // Two sheets fall on a third, which lies on a ball and in a bowl; and one is twice in the same place.
+            let cloth = |k: usize, nodes: &str| format!(r#""m{0}": {nodes}, "{0}": nCloth(inputMesh: "m{0}""#, names[k]);
+            let sheet = |y: f64| format!("polyPlane(width: 1, height: 1, subdivisions: (5, 5), translate: (0, {y}, 0), rotate: (0, {}, 0))", 90.0 * y);
+            let nodes = [
+                cloth(0, &sheet(0.31)) + ")",
+                cloth(1, &sheet(0.34)) + ")",
+                cloth(2, &sheet(0.37)) + ", friction: 0.4)",
+                cloth(3, &sheet(0.37)) + ", friction: 0.2, thickness: 0.01, collisionLayer: 9)",
+            ];
+            let rigid = |k: usize, mesh: &str| format!(r#""m{0}": {mesh}, "{0}": nRigid(inputMesh: "m{0}")"#, names[k]);
+            let rigids = [
+                rigid(4, "polySphere(radius: 0.3)"),
+                rigid(5, "polyCube(width: 0.3, height: 0.3, depth: 0.3, translate: (0.3, 0.12, 0))"),
+            ];
+            of_nodes(&format!(r#""n": nucleus(evaluations: 12), {}, {}"#, nodes.join(", "), rigids.join(", ")), "")
+        };
+        let plain = ["a", "b", "c", "d", "e", "f"];
+        let (given, known) = (program(&text(&names)), program(&text(&plain)));
+        for k in 0..4 {
+            prop_assert_eq!(after(&given, 6, names[k]), after(&known, 6, plain[k]), "{}", plain[k]);
+        }
+    }
+}
+
 #[test]
 fn the_gallery_is_written_in_short_and_reads_back_to_the_same() {
     for (path, text) in gallery() {

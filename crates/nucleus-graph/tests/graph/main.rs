@@ -2,6 +2,7 @@
 
 mod animation;
 mod independence;
+mod maps;
 mod materials;
 mod mutations;
 mod pulling;

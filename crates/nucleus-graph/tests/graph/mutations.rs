@@ -39,7 +39,7 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-const STRANGE: [&str; 24] = [
+const STRANGE: [&str; 28] = [
     "3",
     "true",
     "\"x\"",
@@ -64,6 +64,10 @@ const STRANGE: [&str; 24] = [
     "18446744073709551616",
     "preset: \"silk\"",
     "connections: [(\"a.tx\", \"a.ty\")],",
+    "massMapType: perVertex",
+    "massPerVertex: expression(\"1 + x * u\")",
+    "bendMap: texture(\"a.png\")",
+    "startPositions: [(0, 1, 2)]",
 ];
 
 /// Removes, doubles, misspells, retypes, replaces, swaps or cuts off.
@@ -189,7 +193,11 @@ fn the_reader_is_fuzzed() {
         let text = tokens.concat();
         tried += 1;
         if known.insert(reasons(&survive(&text, Path::new("fuzz.ron")))) && text.len() < 4096 {
-            fs::write(corpus().join(format!("{tried:08x}.ron")), &text).expect("it can be kept");
+            // Named by what is in it: no run replaces what another has found.
+            let name = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+            fs::write(corpus().join(format!("{name:016x}.ron")), &text).expect("it can be kept");
             kept += 1;
             pool.push(text);
         }

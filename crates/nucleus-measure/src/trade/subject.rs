@@ -274,18 +274,19 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
     };
     let cloths = program.objects().iter().filter(is_cloth).zip(program.model().cloths());
     let facts = |(object, cloth): (&nucleus_graph::compile::Object, &nucleus_core::Cloth)| {
-        let density = match cloth.mass {
-            Mass::PerArea(density) => cloth.point_masses().iter().sum::<f64>() / density,
-            Mass::PerPoint(_) => {
-                let even = nucleus_core::Cloth { mass: Mass::PerArea(1.0), ..cloth.clone() };
-                even.point_masses().iter().sum()
-            }
+        let even = |mass: Mass| -> f64 {
+            let even = nucleus_core::Cloth::new(cloth.surface.clone(), mass, cloth.lists);
+            even.point_masses().iter().sum()
+        };
+        let area = match cloth.mass {
+            Mass::PerArea(density) => even(cloth.mass) / density,
+            Mass::PerPoint(_) => even(Mass::PerArea(1.0)),
         };
         Some(ClothFacts {
             node: scene.graph.find(&object.name)?,
             edges: Edges::of(&cloth.surface),
             points: object.points,
-            area: density,
+            area,
         })
     };
     cloths.filter_map(facts).collect()

@@ -146,7 +146,7 @@ fn ribbon_slip(radius: f64, long: f64) -> Result<f64, BuildError> {
     }
     let mut builder = ModelBuilder::new();
     let lists = ClothLists { bend: true, ..LINKS };
-    builder.cloth(Cloth { surface: ribbon.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+    builder.cloth(Cloth::new(ribbon.clone(), Mass::PerArea(DENSITY), lists))?;
     builder.collider(Collider { surface: cylinder() })?;
     let mut rig = Rig::of(builder, ribbon, 240.0);
     rig.cloth().stiffness = membrane(500.0);

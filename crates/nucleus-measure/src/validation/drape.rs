@@ -43,7 +43,7 @@ fn cusick() -> Result<Vec<Finding>, BuildError> {
 fn coefficient(cells: u32, bend: f64, density: f64) -> Result<f64, BuildError> {
     let (surface, rim) = disc(cells);
     let mut builder = ModelBuilder::new();
-    builder.cloth(Cloth { surface: surface.clone(), mass: Mass::PerArea(density), lists: STRIP })?;
+    builder.cloth(Cloth::new(surface.clone(), Mass::PerArea(density), STRIP))?;
     let held: Vec<usize> =
         (0..surface.positions.len()).filter(|&point| surface.positions[point].norm() < 0.0901).collect();
     let mut rig = Rig::of(builder, surface, 12.0 * f64::from(cells));

@@ -27,7 +27,7 @@ impl Rig {
     /// A cloth of [`DENSITY`] alone in empty space, in Physical steps: `evaluations` in 1/24 s.
     pub fn new(surface: Surface, lists: ClothLists, evaluations: f64) -> Result<Self, BuildError> {
         let mut builder = ModelBuilder::new();
-        builder.cloth(Cloth { surface: surface.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+        builder.cloth(Cloth::new(surface.clone(), Mass::PerArea(DENSITY), lists))?;
         Ok(Self::of(builder, surface, evaluations))
     }
 

@@ -3,7 +3,7 @@
 //! It carries a direction along which the two were apart at the start of the time step. As long as they are
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
-use crate::collision::friction::{Push, rub};
+use crate::collision::friction::{Push, extra, rub};
 use crate::collision::narrow::{Places, across, gap_along, shortest, weigh};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
@@ -25,6 +25,8 @@ pub struct Motion<'a, R> {
     pub predicted: Shared<'a, Row4<R>>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
+    /// What points have of friction beyond their cloth; empty where nothing has.
+    pub extra_friction: &'a [R],
     /// Length of the step in seconds.
     pub h: R,
     /// What a place may be off by, by rounding, in metres.
@@ -210,7 +212,8 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         along: [R; 3],
         pressed: R,
     ) -> [R; 3] {
-        let limit = self.meeting.friction * pressed;
+        let own = extra(step.extra_friction, self.ours, b) + extra(step.extra_friction, self.theirs, c);
+        let limit = (self.meeting.friction + own) * pressed;
         if limit <= R::ZERO {
             return [R::ZERO; 3];
         }

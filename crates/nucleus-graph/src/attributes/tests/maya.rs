@@ -118,7 +118,9 @@ fn every_attribute_holds_what_mayas_holds() {
             "int" if multi && row.kind == Kind::Ints => true,
             "bool" => row.kind == Kind::Bool,
             "int" | "short" => row.kind == Kind::Int,
-            "double" | "float" | "time" | "distance" | "angle" => row.kind == Kind::Float,
+            "double" | "float" | "time" | "distance" | "angle" => {
+                matches!(row.kind, Kind::Float | Kind::Texture)
+            }
             "enum" => matches!(row.kind, Kind::Choice(_)),
             "double3" | "float3" | "int3" => matches!(row.kind, Kind::Vector(_)),
             "string" => row.kind == Kind::Text,

@@ -67,6 +67,17 @@ pub enum ObjFault {
         /// What is written.
         text: String,
     },
+    /// Texture coordinates are given without a number.
+    #[error("texture coordinates take one to three numbers; here are none")]
+    NoTextureNumbers,
+    /// A corner names texture coordinates that are not there.
+    #[error("there are no texture coordinates {texture}; there are {textures}")]
+    NoSuchTexture {
+        /// The number as written.
+        texture: usize,
+        /// How many there are.
+        textures: usize,
+    },
     /// Vertices are counted from 1, or backwards from -1.
     #[error("there is no vertex 0; the first is 1, the latest is -1")]
     VertexZero,

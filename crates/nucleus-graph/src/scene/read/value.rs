@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Choice, ColorPoint, Kind, RampPoint, Value as Held};
+use crate::attributes::{Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, Value as Held};
 use crate::graph::{Channel, Setting};
+use crate::paint::Expression;
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value};
@@ -28,6 +29,9 @@ pub(super) fn read(
     if let Kind::Vector(_) = row.kind {
         let parts = triple(label, row, node, findings)?;
         return Some(Setting::Parts(parts.map(Channel::Fixed)));
+    }
+    if let Some(painting) = painting(label, row, node, findings) {
+        return painting.map(|painting| Setting::Fixed(Held::Painting(painting)));
     }
     let value = match row.kind {
         Kind::Text => Held::Text(text(label, node, findings)?.to_owned()),
@@ -58,6 +62,43 @@ pub(super) fn read(
     Some(Setting::Fixed(value))
 }
 
+/// What makes the values of points, if that is what stands there: `file("...")`, `expression("...")` or
+/// `texture("...")`. Inside is nothing if it is wrong.
+fn painting(
+    label: &str,
+    row: &'static Attribute,
+    node: &Node,
+    findings: &mut Findings,
+) -> Option<Option<Painting>> {
+    let Value::Tuple { name: Some(word), items } = &node.value else { return None };
+    let make: fn(String) -> Painting = match (word.text.as_str(), row.kind) {
+        ("file", Kind::Floats | Kind::Vectors) => Painting::File,
+        ("expression", Kind::Floats) => Painting::Expression,
+        ("texture", Kind::Texture) => Painting::Texture,
+        _ => return None,
+    };
+    let [item] = items.as_slice() else {
+        findings.error(&node.span, format!("`{}` takes one text, found {} values", word.text, items.len()));
+        return Some(None);
+    };
+    let Some(text) = text(label, item, findings) else { return Some(None) };
+    if word.text == "expression"
+        && let Err(error) = Expression::parse(text)
+    {
+        let place = within_text(text, item, error.span);
+        let said = findings.error(&place, format!("{label}: {}", error.message));
+        said.help = error.help;
+        return Some(None);
+    }
+    Some(Some(make(text.to_owned())))
+}
+
+/// A place within a text in quotes; all of it where the text is not written as it stands.
+fn within_text(text: &str, node: &Node, at: Range<usize>) -> Range<usize> {
+    let is_plain = node.span.len() == text.len() + 2;
+    if is_plain { node.span.start + 1 + at.start..node.span.start + 1 + at.end } else { node.span.clone() }
+}
+
 /// One part of a vector, keyed or not.
 pub(super) fn read_part(
     label: &str,
@@ -84,7 +125,10 @@ pub(super) fn single(
             let number = whole_number(label, node, findings)?;
             within(label, row, number, &node.span, findings).map(|number| Held::Int(number as i64))
         }
-        (Kind::Float, _) => number_within(label, row, node, findings).map(Held::Float),
+        (Kind::Texture, value) if !matches!(value, Value::Number(_)) => {
+            expected(label, row.kind.expects(), node, findings)
+        }
+        (Kind::Float | Kind::Texture, _) => number_within(label, row, node, findings).map(Held::Float),
         (Kind::Choice(_), _) => choice(label, row, node, findings).map(Held::Choice),
         _ => expected(label, row.kind.expects(), node, findings),
     }

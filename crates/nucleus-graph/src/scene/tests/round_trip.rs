@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::Simulation;
 use crate::animation::{Curve, Infinity, Key, Tangent};
-use crate::attributes::{Attribute, ColorPoint, Kind, RampPoint, Range, Value};
+use crate::attributes::{Attribute, ColorPoint, Kind, Painting, RampPoint, Range, Value};
 use crate::compile::{Program, compile};
 
 /// Any finite number of a range.
@@ -27,11 +27,25 @@ fn values(row: &'static Attribute) -> BoxedStrategy<Value> {
             (-1000..1000).prop_map(move |x| Value::Int(row.range.clamp(f64::from(x)) as i64)).boxed()
         }
         Kind::Float => number().prop_map(Value::Float).boxed(),
+        Kind::Texture => prop_oneof![
+            number().prop_map(Value::Float),
+            any::<String>().prop_map(|file| Value::Painting(Painting::Texture(file))),
+        ]
+        .boxed(),
         Kind::Vector(_) => [number(), number(), number()].prop_map(Value::Vector).boxed(),
         Kind::Choice(words) => (0..words.len()).prop_map(|k| Value::Choice(Choice(words[k].0))).boxed(),
         Kind::Text => any::<String>().prop_map(Value::Text).boxed(),
-        Kind::Floats => list(0..4).prop_map(Value::Floats).boxed(),
-        Kind::Vectors => list(3..4).prop_map(|v| Value::Vectors(vec![[v[0], v[1], v[2]]; 2])).boxed(),
+        Kind::Floats => prop_oneof![
+            list(0..4).prop_map(Value::Floats),
+            any::<String>().prop_map(|file| Value::Painting(Painting::File(file))),
+            "[1-9]( [-+*/] [xyzuvin]){0,3}".prop_map(|text| Value::Painting(Painting::Expression(text))),
+        ]
+        .boxed(),
+        Kind::Vectors => prop_oneof![
+            list(3..4).prop_map(|v| Value::Vectors(vec![[v[0], v[1], v[2]]; 2])),
+            any::<String>().prop_map(|file| Value::Painting(Painting::File(file))),
+        ]
+        .boxed(),
         Kind::Ramp => (number(), number(), 0..4)
             .prop_map(|(position, value, k)| RampPoint { position, value, interpolation: Choice(k) })
             .prop_map(|point| Value::Ramp(Cow::Owned(vec![point; 2])))

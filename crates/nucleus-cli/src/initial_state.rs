@@ -1,0 +1,153 @@
+//! `--from drape.mcap@80`: cloth that starts as a cache has it at a frame. The graph knows no caches: it is given
+//! `startPositions` and `startVelocities`, as a scene could give them.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use nucleus_cache::{ObjectKind, Playback};
+use nucleus_graph::attributes::{Attribute, Value, n_base};
+use nucleus_graph::compile::{self, Object, Program, compile};
+use nucleus_graph::graph::Setting;
+use nucleus_graph::scene::{Diagnostic, Scene};
+
+use crate::cache_file;
+
+/// A frame of a cache.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InitialState {
+    cache: PathBuf,
+    /// The last one if none is given.
+    frame: Option<i32>,
+}
+
+impl FromStr for InitialState {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.rsplit_once('@') {
+            None => Ok(Self { cache: text.into(), frame: None }),
+            Some((cache, frame)) => match frame.parse() {
+                Ok(frame) if !cache.is_empty() => Ok(Self { cache: cache.into(), frame: Some(frame) }),
+                _ => Err("write the cache and a frame of it: `drape.mcap@80`".to_owned()),
+            },
+        }
+    }
+}
+
+/// The file's name and the frame: what a cache says of where its run began.
+impl fmt::Display for InitialState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", Path::new(self.cache.file_name().unwrap_or_default()).display())?;
+        self.frame.map_or(Ok(()), |frame| write!(f, "@{frame}"))
+    }
+}
+
+impl InitialState {
+    /// The scene with all of its cloth started so, and its program.
+    pub fn applied(&self, mut scene: Scene, program: &Program) -> Result<(Scene, Program)> {
+        let is_cloth = |object: &&Object| matches!(object.kind, compile::ObjectKind::Cloth(_));
+        let cloths: Vec<&Object> = program.objects().iter().filter(is_cloth).collect();
+        ensure!(!cloths.is_empty(), "there is no cloth in the scene that could start from a cache");
+        let mut cache = cache_file::open(&self.cache)?;
+        let moment = cache_file::moment(&cache, self.frame)
+            .with_context(|| format!("cannot start from `{}`", self.cache.display()))?;
+        let scale = program.units_per_metre() / cache.run().units_per_metre;
+        let mut has_velocities = true;
+        for cloth in cloths {
+            let object = self.matching(&cache, cloth)?;
+            let positions = cache.positions(object, moment)?;
+            let velocities = match cache.velocities(object, moment)? {
+                Some(velocities) => velocities,
+                None => {
+                    has_velocities = false;
+                    guessed(&mut cache, object, moment)?
+                }
+            };
+            start(&mut scene, cloth, &n_base::START_POSITIONS.row, &positions, scale)?;
+            start(&mut scene, cloth, &n_base::START_VELOCITIES.row, &velocities, scale)?;
+        }
+        if !has_velocities {
+            eprintln!(
+                "warning: `{}` has no velocities, so they are taken from the moment before; record them with \
+                 `nucleus run --velocities`",
+                self.cache.display()
+            );
+        }
+        let first = |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next();
+        let program = compile(&scene)
+            .map_err(|found| anyhow!("the scene cannot start so: {}", first(found).unwrap_or_default()))?;
+        Ok((scene, program))
+    }
+
+    /// The object of the cache that a cloth goes on from: of the same name and the same mesh.
+    fn matching(&self, cache: &Playback, cloth: &Object) -> Result<usize> {
+        let (name, cache_name) = (&cloth.name, self.cache.display());
+        let is_solved = |kind: ObjectKind| kind != ObjectKind::Collider;
+        let objects = cache.objects();
+        let Some(found) = objects.iter().position(|object| object.name == *name && is_solved(object.kind))
+        else {
+            let solved = objects.iter().filter(|object| is_solved(object.kind));
+            let names: Vec<String> = solved.map(|object| format!("`{}`", object.name)).collect();
+            bail!(
+                "`{cache_name}` is of another scene: it has no cloth `{name}`; its cloth is {}, recorded from `{}`",
+                if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+                cache.run().scene_path
+            );
+        };
+        let (points, recorded) = (cloth.points, objects[found].rest.len());
+        ensure!(
+            points == recorded,
+            "`{name}` has {points} points, but {recorded} in `{cache_name}`: its mesh has changed"
+        );
+        ensure!(
+            cloth.faces == objects[found].faces,
+            "`{name}` has other faces than in `{cache_name}`: its mesh has changed"
+        );
+        Ok(found)
+    }
+}
+
+/// Velocities from where the points were at the moment before; none where there was none.
+fn guessed(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f32; 3]>> {
+    let now = cache.positions(object, moment)?;
+    let Some(before) = moment.checked_sub(1) else { return Ok(vec![[0.0; 3]; now.len()]) };
+    let passed = cache.moments()[moment].time - cache.moments()[before].time;
+    let earlier = cache.positions(object, before)?;
+    let speed = |(now, before): (&f32, &f32)| ((f64::from(*now) - f64::from(*before)) / passed) as f32;
+    let each = now
+        .iter()
+        .zip(&earlier)
+        .map(|(now, before)| [0, 1, 2].map(|axis| speed((&now[axis], &before[axis]))));
+    Ok(each.collect())
+}
+
+/// Sets a column of a cloth, in the units of the scene.
+fn start(
+    scene: &mut Scene,
+    cloth: &Object,
+    row: &'static Attribute,
+    column: &[[f32; 3]],
+    scale: f64,
+) -> Result<()> {
+    let node = scene.graph.find(&cloth.name).with_context(|| format!("there is no `{}`", cloth.name))?;
+    let column = column.iter().map(|vector| vector.map(|x| f64::from(x) * scale)).collect();
+    scene.graph.set(node, row, Setting::Fixed(Value::Vectors(column)))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_stands_behind_the_cache() {
+        let read = |text: &str| text.parse::<InitialState>();
+        let of = |cache: &str, frame| Ok(InitialState { cache: cache.into(), frame });
+        assert_eq!(read("a.mcap@80"), of("a.mcap", Some(80)));
+        assert_eq!(read("a@b.mcap@-3"), of("a@b.mcap", Some(-3)));
+        assert_eq!(read("a.mcap"), of("a.mcap", None));
+        assert!(read("a.mcap@").is_err() && read("a.mcap@1.5").is_err() && read("@5").is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! `nucleus run --from`.
+
+use std::fs;
+use std::path::Path;
+
+use nucleus_cache::Playback;
+
+use crate::sample::{assert_refused, folder, nucleus, scene, stderr};
+
+fn run(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    nucleus(folder, &[&["run", "drape.ron", "--threads", "1"], arguments].concat())
+}
+
+/// Where the cloth is at the end of a frame, and how fast.
+fn state(folder: &Path, cache: &str, frame: i32) -> (Vec<[f32; 3]>, Option<Vec<[f32; 3]>>) {
+    let mut cache = Playback::open(folder.join(cache)).unwrap();
+    let moment = cache.end_of(frame).unwrap();
+    (cache.positions(0, moment).unwrap(), cache.velocities(0, moment).unwrap())
+}
+
+fn farthest(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
+    let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
+    a.iter().zip(b).map(apart).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_run_from_a_frame_of_a_cache_goes_on_from_there() {
+    let folder = folder();
+    scene(folder.path(), 9, "");
+    assert_eq!(run(folder.path(), &["--velocities", "-o", "whole.mcap"]).status.code(), Some(0));
+    let at = |frame| state(folder.path(), "whole.mcap", frame);
+    for start in ["2", "5"] {
+        let (from, frames) = (format!("whole.mcap@{start}"), format!("{start}..9"));
+        let output = run(
+            folder.path(),
+            &["--velocities", "--from", &from, "--frames", &frames, "--force", "-o", "rest.mcap"],
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("velocities"), "{}", stderr(&output));
+        let start = start.parse().unwrap();
+        let again = |frame| state(folder.path(), "rest.mcap", frame);
+        assert_eq!(again(start), at(start));
+        if start == 2 {
+            // It still falls freely: 25 cm are rounded to 2e-6 cm in a cache, and what it falls is a thousand times that.
+            assert!(farthest(&again(3).0, &at(3).0) < 1e-5);
+            assert!(farthest(&at(3).0, &at(2).0) > 1e-2);
+        } else {
+            // It lies on the ball: contacts are found anew, and it comes to lie a little otherwise.
+            let apart = farthest(&again(9).0, &at(9).0);
+            assert!(apart < 0.1 * farthest(&at(9).0, &at(5).0), "{apart}");
+        }
+    }
+    let told = Playback::open(folder.path().join("rest.mcap")).unwrap().run().extra["from"].clone();
+    assert_eq!(told, "whole.mcap@5");
+}
+
+#[test]
+fn without_recorded_velocities_they_are_taken_from_the_moment_before_and_that_is_told() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    run(folder.path(), &["-o", "whole.mcap"]);
+    let output =
+        run(folder.path(), &["--velocities", "--from", "whole.mcap", "--frames", "2", "-o", "rest.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("`whole.mcap` has no velocities"), "{}", stderr(&output));
+    let ((before, _), (last, _)) =
+        (state(folder.path(), "whole.mcap", 4), state(folder.path(), "whole.mcap", 5));
+    let (start, fast) = state(folder.path(), "rest.mcap", 1);
+    assert_eq!(start, last);
+    let expected =
+        last.iter().zip(&before).map(|(now, before)| [0, 1, 2].map(|k| (now[k] - before[k]) * 24.0));
+    assert!(farthest(&fast.unwrap(), &expected.collect::<Vec<_>>()) < 1e-2);
+}
+
+#[test]
+fn another_scale_of_space_is_the_same_place_in_metres() {
+    let folder = folder();
+    scene(folder.path(), 4, "");
+    run(folder.path(), &["-o", "whole.mcap"]);
+    let text = fs::read_to_string(folder.path().join("drape.ron")).unwrap();
+    fs::write(folder.path().join("drape.ron"), text.replace("spaceScale: 0.01", "spaceScale: 0.02")).unwrap();
+    let output = run(folder.path(), &["--from", "whole.mcap@4", "--frames", "1", "-o", "rest.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let ((now, _), (then, _)) = (state(folder.path(), "rest.mcap", 1), state(folder.path(), "whole.mcap", 4));
+    let halved: Vec<[f32; 3]> = then.iter().map(|p| p.map(|x| x / 2.0)).collect();
+    assert!(farthest(&now, &halved) < 1e-5);
+}
+
+#[test]
+fn a_cache_that_does_not_fit_is_refused_with_the_reason() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    run(folder.path(), &["-o", "whole.mcap"]);
+    let text = fs::read_to_string(folder.path().join("drape.ron")).unwrap();
+    let changed = |from: &str, to: &str| {
+        fs::write(folder.path().join("drape.ron"), text.replace(from, to)).unwrap();
+        run(folder.path(), &["--from", "whole.mcap@5"])
+    };
+    assert_refused(
+        &changed("cloth1", "curtain"),
+        "`whole.mcap` is of another scene: it has no cloth `curtain`; its cloth is `cloth1`, recorded from `drape.ron`",
+    );
+    assert_refused(
+        &changed("(6, 6)", "(6, 7)"),
+        "`cloth1` has 56 points, but 49 in `whole.mcap`: its mesh has changed",
+    );
+    assert_refused(
+        &changed(
+            "cloth1\": nCloth(inputMesh: \"sheet\", thickness: 1)",
+            "cloth1\": nRigid(inputMesh: \"sheet\")",
+        ),
+        "there is no cloth in the scene that could start from a cache",
+    );
+    fs::write(folder.path().join("drape.ron"), &text).unwrap();
+    assert_refused(
+        &run(folder.path(), &["--from", "whole.mcap@80"]),
+        "there is no frame 80; the cache has 1 to 5",
+    );
+    assert_refused(&run(folder.path(), &["--from", "none.mcap@3"]), "none.mcap");
+    assert_refused(&run(folder.path(), &["--from", "whole.mcap@x"]), "write the cache and a frame of it");
+    assert!(!folder.path().join("drape.mcap").exists(), "nothing is recorded");
+}
+
+#[test]
+fn a_mesh_with_as_many_points_and_other_faces_is_another_mesh() {
+    let folder = folder();
+    let obj = |name: &str, faces: &str| {
+        let points = "v 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\n";
+        fs::write(folder.path().join(name), format!("{points}{faces}")).unwrap();
+    };
+    obj("m.obj", "f 1 2 3 4\n");
+    let text = r#"Scene(time: (start: 1, end: 3, fps: 24), nodes: {
+        "n": nucleus(), "m": mesh(file: "m.obj"), "c": nCloth(inputMesh: "m")})"#;
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    run(folder.path(), &["-o", "whole.mcap"]);
+    obj("m.obj", "f 1 2 3\nf 1 3 4\n");
+    assert_refused(
+        &run(folder.path(), &["--from", "whole.mcap@2"]),
+        "`c` has other faces than in `whole.mcap`",
+    );
+}
+
+#[test]
+fn a_cache_that_is_cut_off_serves_as_far_as_it_is_whole() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    run(folder.path(), &["-o", "whole.mcap"]);
+    let bytes = fs::read(folder.path().join("whole.mcap")).unwrap();
+    let last_frame = bytes.len() / 2;
+    fs::write(folder.path().join("cut.mcap"), &bytes[..last_frame]).unwrap();
+    let output = run(folder.path(), &["--from", "cut.mcap@12"]);
+    assert_refused(&output, "there is no frame 12; the cache has 1 to ");
+    assert_eq!(run(folder.path(), &["--from", "cut.mcap@2", "-o", "rest.mcap"]).status.code(), Some(0));
+    fs::write(folder.path().join("stub.mcap"), &bytes[..40]).unwrap();
+    assert_refused(&run(folder.path(), &["--from", "stub.mcap@2"]), "cannot open `stub.mcap`");
+}

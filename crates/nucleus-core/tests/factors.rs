@@ -1,0 +1,339 @@
+//! Attributes that differ from point to point.
+
+mod scenes;
+
+use nucleus_core::{
+    BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
+    Mass, ModelBuilder, Pin, PointFactors, PointId, ResistanceModel, Solver, Start, StateView, Surface,
+};
+use scenes::{LINKS, Vec3, frame, grid, physical, pins, still};
+
+const CLOTH: ClothId = ClothId(0);
+const SIDE: u32 = 9;
+const PATCH: usize = 81;
+const AIRY: ClothLists = ClothLists { self_collision: false, ..ClothLists::ALL };
+
+/// Two sheets of 1 m that have nothing to do with each other, as one mesh.
+fn two_sheets() -> Surface {
+    let mut sheets = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
+    let other = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
+    sheets.positions.extend(other.positions.iter().map(|p| p + Vec3::new(3.0, 0.0, 0.0)));
+    other.faces.iter().for_each(|face| {
+        let face: Vec<u32> = face.iter().map(|point| point + PATCH as u32).collect();
+        sheets.faces.push(&face);
+    });
+    sheets
+}
+
+/// A factor on the points of the first sheet; the second is as it is.
+fn on_the_first(factor: f64) -> Vec<f64> {
+    (0..2 * PATCH).map(|point| if point < PATCH { factor } else { 1.0 }).collect()
+}
+
+/// Where the points of two sheets are after some frames, each held at two corners.
+fn swung(factors: PointFactors, settings: &ClothFrame, mass: f64, resistance: ResistanceModel) -> Vec<Vec3> {
+    let surface = two_sheets();
+    let held = [0, SIDE as usize - 1].into_iter().flat_map(|k| [k, k + PATCH]);
+    let input = FrameInput {
+        cloths: vec![*settings],
+        pins: pins(&surface, held),
+        wind: Vec3::new(0.5, 1.0, 2.0),
+        ..frame(3, resistance)
+    };
+    let mut builder = ModelBuilder::new();
+    let cloth = Cloth { factors, ..Cloth::new(surface, Mass::PerArea(mass), AIRY) };
+    builder.cloth(cloth).expect("a good mesh");
+    let mut solver = Solver::<f64>::new(builder, 1);
+    (0..12).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    (0..2 * PATCH).map(|point| solver.point(CLOTH, point)).collect()
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// A column, and what of the cloth the same factor everywhere amounts to.
+type Column = (&'static str, fn(Vec<f64>) -> PointFactors, fn(&mut ClothFrame, &mut f64, f64));
+
+const COLUMNS: [Column; 9] = [
+    ("mass", |mass| PointFactors { mass, ..PointFactors::default() }, |_, mass, f| *mass *= f),
+    (
+        "stretch",
+        |stretch| PointFactors { stretch, ..PointFactors::default() },
+        |cloth, _, f| cloth.stretch_resistance *= f,
+    ),
+    (
+        "compression",
+        |compression| PointFactors { compression, ..PointFactors::default() },
+        |cloth, _, f| cloth.compression_resistance *= f,
+    ),
+    (
+        "bend",
+        |bend| PointFactors { bend, ..PointFactors::default() },
+        |cloth, _, f| cloth.bend_resistance *= f,
+    ),
+    (
+        "rest length",
+        |rest_length| PointFactors { rest_length, ..PointFactors::default() },
+        |cloth, _, f| cloth.rest_length_scale *= f,
+    ),
+    ("damp", |damp| PointFactors { damp, ..PointFactors::default() }, |cloth, _, f| cloth.damp *= f),
+    ("drag", |drag| PointFactors { drag, ..PointFactors::default() }, |cloth, _, f| cloth.drag *= f),
+    (
+        "tangential drag",
+        |tangential_drag| PointFactors { tangential_drag, ..PointFactors::default() },
+        |cloth, _, f| cloth.tangential_drag *= f,
+    ),
+    ("lift", |lift| PointFactors { lift, ..PointFactors::default() }, |cloth, _, f| cloth.lift *= f),
+];
+
+/// Resistances of which a substep gets less than one evaluation in Classic: half of one is half as strong.
+fn lively() -> ClothFrame {
+    ClothFrame {
+        stretch_resistance: 2.5,
+        compression_resistance: 2.0,
+        shear_resistance: 1.0,
+        bend_resistance: 1.0,
+        stretch_damp: 0.1,
+        damp: 0.2,
+        drag: 0.1,
+        tangential_drag: 0.3,
+        lift: 0.1,
+        ..still()
+    }
+}
+
+#[test]
+fn each_point_is_as_if_all_of_the_cloth_had_its_factor() {
+    for resistance in [ResistanceModel::Classic, physical(24.0)] {
+        let plain = swung(PointFactors::default(), &lively(), 0.2, resistance);
+        for (name, column, scale) in COLUMNS {
+            let varied = swung(column(on_the_first(0.5)), &lively(), 0.2, resistance);
+            let (mut settings, mut mass) = (lively(), 0.2);
+            scale(&mut settings, &mut mass, 0.5);
+            let scaled = swung(PointFactors::default(), &settings, mass, resistance);
+            let first = farthest(&varied[..PATCH], &scaled[..PATCH]);
+            let second = farthest(&varied[PATCH..], &plain[PATCH..]);
+            // Gravity is rounded to a grain that goes by the fastest point of the cloth.
+            assert!(first < 1e-9 && second < 1e-9, "{name}, {resistance:?}: {first:e}, {second:e}");
+            let told_apart = farthest(&scaled[..PATCH], &plain[..PATCH]);
+            assert!(told_apart > 1e-6, "{name}, {resistance:?} does nothing here: {told_apart:e}");
+        }
+    }
+}
+
+#[test]
+fn a_column_of_ones_changes_no_bit() {
+    for resistance in [ResistanceModel::Classic, physical(24.0)] {
+        let plain = swung(PointFactors::default(), &lively(), 0.2, resistance);
+        for (name, column, _) in COLUMNS {
+            assert_eq!(swung(column(on_the_first(1.0)), &lively(), 0.2, resistance), plain, "{name}");
+        }
+    }
+}
+
+/// How long the links of a hanging strip are, from the top down, when it has come to rest.
+fn hanging(factors: PointFactors) -> Vec<f64> {
+    let rows = 11;
+    let strip = grid(2, rows, Vec3::x() * 0.1, -Vec3::y());
+    let cloth = ClothFrame { stretch_damp: 5.0, ..still() };
+    let input = FrameInput { cloths: vec![cloth], pins: pins(&strip, [0, 1]), ..frame(24, physical(960.0)) };
+    let mut builder = ModelBuilder::new();
+    let lists = ClothLists { damp: true, ..LINKS };
+    builder.cloth(Cloth { factors, ..Cloth::new(strip, Mass::PerArea(20.0), lists) }).expect("a good mesh");
+    let mut solver = Solver::<f64>::new(builder, 1);
+    (0..240).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    // Corners of a quad do not all weigh the same: the mean of both sides hangs by the weight of the row.
+    let height =
+        |row: u32| [0, 1].map(|k| solver.point(CLOTH, 2 * row as usize + k).y).iter().sum::<f64>() / 2.0;
+    (1..rows).map(|row| height(row - 1) - height(row)).collect()
+}
+
+/// The strip is 0.1 m wide and has K = 20 · 500 N/m. A point weighs what is round it, so the lowest row weighs half.
+fn strains(mass: impl Fn(usize) -> f64, share: impl Fn(usize) -> f64) -> Vec<f64> {
+    let weight = |row: usize| 9.81 * 20.0 * 0.1 * 0.1 * mass(row) * if row == 10 { 0.5 } else { 1.0 };
+    let strain = |link: usize| (link + 1..=10).map(weight).sum::<f64>() / (10_000.0 * 0.1 * share(link));
+    (0..10).map(strain).collect()
+}
+
+fn of_rows(factor: impl Fn(usize) -> f64) -> Vec<f64> {
+    (0..22).map(|point| factor(point / 2)).collect()
+}
+
+#[test]
+fn a_strip_that_is_heavy_below_stretches_by_the_weight_that_hangs_on_each_link() {
+    let heavy = |row: usize| if row > 5 { 3.0 } else { 1.0 };
+    let lengths = hanging(PointFactors { mass: of_rows(heavy), ..PointFactors::default() });
+    for (link, (length, strain)) in lengths.iter().zip(strains(heavy, |_| 1.0)).enumerate() {
+        assert!((length / 0.1 - 1.0 - strain).abs() < 0.01 * strain, "link {link}: {length}, {strain}");
+    }
+}
+
+#[test]
+fn a_strip_that_is_soft_below_stretches_more_there() {
+    let soft = |row: usize| if row > 5 { 0.25 } else { 1.0 };
+    // A link takes the mean of its two ends.
+    let of_link = |link: usize| (soft(link) + soft(link + 1)) / 2.0;
+    let lengths = hanging(PointFactors { stretch: of_rows(soft), ..PointFactors::default() });
+    for (link, (length, strain)) in lengths.iter().zip(strains(|_| 1.0, of_link)).enumerate() {
+        assert!((length / 0.1 - 1.0 - strain).abs() < 0.01 * strain, "link {link}: {length}, {strain}");
+    }
+}
+
+#[test]
+fn a_link_without_a_share_is_not_there() {
+    let surface = grid(2, 3, Vec3::x(), -Vec3::y());
+    for resistance in [ResistanceModel::Classic, physical(24.0)] {
+        // The upper links have a half, the lower ones nothing.
+        let column: Vec<f64> = (0..6).map(|point| if point < 2 { 1.0 } else { 0.0 }).collect();
+        let factors =
+            PointFactors { stretch: column.clone(), compression: column, ..PointFactors::default() };
+        let mut builder = ModelBuilder::new();
+        let cloth = Cloth { factors, ..Cloth::new(surface.clone(), Mass::PerArea(1.0), LINKS) };
+        builder.cloth(cloth).expect("a good mesh");
+        let input = FrameInput { pins: pins(&surface, [0, 1]), ..frame(3, resistance) };
+        let mut solver = Solver::<f64>::new(builder, 1);
+        (0..24).for_each(|_| {
+            solver.step(&input, &mut ());
+        });
+        // Velocity first, in 72 steps at least: up to one in 72 more than 9.81/2 m.
+        let fall = -1.0 - solver.point(CLOTH, 4).y;
+        assert!((fall / 4.905 - 1.0).abs() < 0.015, "{resistance:?}: {fall}");
+        assert!((solver.point(CLOTH, 2).y + 0.5).abs() < 0.1, "{resistance:?}");
+    }
+}
+
+fn refused(cloth: impl Fn(Cloth) -> Cloth) -> BuildError {
+    let plain = Cloth::new(grid(2, 2, Vec3::x(), Vec3::z()), Mass::PerPoint(1.0), LINKS);
+    ModelBuilder::new().cloth(cloth(plain)).expect_err("it is refused")
+}
+
+#[test]
+fn factors_that_do_not_fit_are_refused_by_name() {
+    let none = PointFactors::default;
+    let said =
+        |factors: PointFactors| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
+    let few = said(PointFactors { drag: vec![1.0; 3], ..none() });
+    assert_eq!(few, "there are 3 factors on drag, but 4 points");
+    let weightless = said(PointFactors { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
+    assert_eq!(weightless, "the factor on mass of point 2 must be between 0.000001 and 1000000, not 0");
+    let no_number = said(PointFactors { bend: vec![1.0, f64::NAN, 0.0, 1.0], ..none() });
+    assert_eq!(no_number, "the factor on bend of point 1 must be between 0 and 1, not NaN");
+}
+
+#[test]
+fn a_cloth_goes_on_from_where_it_is_told_to_start() {
+    let surface = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
+    let cloth = ClothFrame { bend_resistance: 0.5, ..still() };
+    let input = FrameInput { cloths: vec![cloth], pins: pins(&surface, [0, 8]), ..frame(3, physical(48.0)) };
+    let of = |start: Start| {
+        let mut builder = ModelBuilder::new();
+        let cloth = Cloth { start, ..Cloth::new(surface.clone(), Mass::PerArea(0.2), AIRY) };
+        builder.cloth(cloth).expect("a good mesh");
+        Solver::<f64>::new(builder, 1)
+    };
+    let points = |solver: &Solver<f64>| (0..PATCH).map(|k| solver.point(CLOTH, k)).collect::<Vec<_>>();
+    let run = |solver: &mut Solver<f64>| {
+        (0..6).for_each(|_| {
+            solver.step(&input, &mut ());
+        });
+    };
+    let mut whole = of(Start::default());
+    run(&mut whole);
+    let mut fast = Vec::new();
+    whole.velocities(CLOTH, 1.0, &mut fast);
+    let velocities = fast.iter().map(|v| Vec3::new(v[0].into(), v[1].into(), v[2].into())).collect();
+    let mut again = of(Start { positions: points(&whole), velocities });
+    assert_eq!(points(&again), points(&whole));
+    run(&mut whole);
+    run(&mut again);
+    // Velocities are shown as `f32`: 1e-7 of some m/s, for a quarter of a second.
+    let apart = farthest(&points(&again), &points(&whole));
+    assert!(apart < 1e-5, "{apart:e}");
+    let fallen = points(&whole).iter().map(|p| p.y).fold(0.0, f64::min);
+    assert!(fallen < -0.2, "{fallen}");
+}
+
+#[test]
+fn a_start_that_does_not_fit_is_refused() {
+    let few = Start { positions: vec![Vec3::zeros(); 3], ..Start::default() };
+    let few = refused(|cloth| Cloth { start: few.clone(), ..cloth });
+    assert_eq!(few, BuildError::StartCount { what: "positions", given: 3, points: 4 });
+    let mut velocities = vec![Vec3::zeros(); 4];
+    velocities[2].y = f64::INFINITY;
+    let endless = Start { velocities, ..Start::default() };
+    let endless = refused(|cloth| Cloth { start: endless.clone(), ..cloth });
+    assert_eq!(endless, BuildError::BadStart { what: "velocity", point: 2 });
+}
+
+/// What a sheet lies on.
+#[derive(Debug, Clone, Copy)]
+enum Floor {
+    Plane,
+    Collider,
+    /// Cloth of which every point is held.
+    Cloth,
+}
+
+/// How far a sheet slides in half a second down a slope of 30 degrees. It has a friction of 0.4, the slope one of 0.1.
+fn slid(floor: Floor, factor: f64) -> f64 {
+    let lying = |mut surface: Surface, height: f64, middle: f64| {
+        surface.positions.iter_mut().for_each(|p| *p += Vec3::new(-middle, height, -middle));
+        surface
+    };
+    let mut builder = ModelBuilder::new();
+    let sheet = lying(grid(5, 5, Vec3::x() * 0.2, Vec3::z() * 0.2), 0.0101, 0.1);
+    let factors = PointFactors { friction: vec![factor; 25], ..PointFactors::default() };
+    let mass = Mass::PerArea(0.2);
+    builder.cloth(Cloth { factors, ..Cloth::new(sheet, mass, LINKS) }).expect("a good mesh");
+    let cloth = ClothFrame { thickness: 0.005, friction: 0.4, ..still() };
+    let slope = Vec3::new(9.81 * 0.5, -9.81 * 0.75f64.sqrt(), 0.0);
+    let mut input = FrameInput { gravity: slope, cloths: vec![cloth], ..frame(3, physical(48.0)) };
+    let wide = lying(grid(9, 9, Vec3::x() * 8.0, Vec3::z() * 8.0), 0.0, 4.0);
+    match floor {
+        Floor::Plane => {
+            let origin = Vec3::y() * 0.005;
+            input.plane = Some(GroundPlane { origin, normal: Vec3::y(), bounce: 0.0, friction: 0.1 });
+        }
+        Floor::Collider => {
+            builder.collider(Collider { surface: wide }).expect("a good mesh");
+            let collider =
+                ColliderFrame { collide: true, thickness: 0.005, friction: 0.1, ..Default::default() };
+            input.colliders.push(collider);
+        }
+        Floor::Cloth => {
+            let pin = |(point, place): (usize, &Vec3)| Pin {
+                cloth: ClothId(1),
+                point: PointId(point as u32),
+                start: *place,
+                end: *place,
+            };
+            input.pins = wide.positions.iter().enumerate().map(pin).collect();
+            builder.cloth(Cloth::new(wide, mass, LINKS)).expect("a good mesh");
+            input.cloths.push(ClothFrame { friction: 0.1, ..cloth });
+        }
+    }
+    let mut solver = Solver::<f64>::new(builder, 1);
+    (0..12).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    solver.point(CLOTH, 12).x
+}
+
+#[test]
+fn a_sheet_slides_down_a_slope_by_its_own_friction_and_that_of_the_slope() {
+    for floor in [Floor::Plane, Floor::Collider, Floor::Cloth] {
+        for factor in [0.0, 0.5, 1.0, 2.0] {
+            let friction = 0.4 * factor + 0.1;
+            let down = (0.5 - friction * 0.75f64.sqrt()).max(0.0);
+            let expected = 9.81 * down * 0.125;
+            let found = slid(floor, factor);
+            // Of what it slides without friction, 0.61 m. It falls a tenth of a millimetre first.
+            assert!((found - expected).abs() < 0.03 * 0.61, "{floor:?}, {factor}: {found} for {expected}");
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! How a cloth starts: as its mesh, at rest, unless `startPositions` or `startVelocities` say otherwise. They are in
+//! world space, in scene units. What it is at rest is the mesh's to say: cloth that starts stretched pulls back.
+
+use nalgebra::Vector3;
+use nucleus_core::{FARTHEST, Start};
+
+use crate::attributes::{Key, Painting, Value, n_base};
+use crate::graph::NodeId;
+use crate::paint::read_vectors;
+
+use super::objects::Compiler;
+
+impl Compiler<'_> {
+    /// Its start; nothing if something about it is wrong, which has been said then.
+    pub(super) fn start_of(&mut self, cloth: NodeId, mesh: NodeId, points: usize) -> Option<Start> {
+        let [positions, velocities] = [&n_base::START_POSITIONS, &n_base::START_VELOCITIES]
+            .map(|key| self.start_column(cloth, mesh, points, key));
+        Some(Start { positions: positions?, velocities: velocities? })
+    }
+
+    fn start_column(
+        &mut self,
+        cloth: NodeId,
+        mesh: NodeId,
+        points: usize,
+        key: &Key<Vec<[f64; 3]>>,
+    ) -> Option<Vec<Vector3<f64>>> {
+        let vectors = match self.start.held(cloth, key) {
+            Some(Value::Vectors(vectors)) => Ok(vectors),
+            Some(Value::Painting(Painting::File(file))) => {
+                read_vectors(&self.scene.source.path(&file)).map_err(|error| error.to_string())
+            }
+            _ => Ok(Vec::new()),
+        };
+        let [name, mesh] = [cloth, mesh].map(|node| self.scene.graph.node(node).name());
+        let label = format!("`{}` of `{name}`", key.row.name);
+        let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {
+            vectors.into_iter().map(|vector| self.whole.units.point(vector.into())).collect()
+        };
+        let is_far = |metres: &Vector3<f64>| metres.amax() > FARTHEST;
+        let found = vectors.map(metres).and_then(|column| match column.iter().position(is_far) {
+            _ if !column.is_empty() && column.len() != points => {
+                Err(format!("{label} has {} vectors, but `{mesh}` has {points} points", column.len()))
+            }
+            Some(point) => Err(format!("{label} is more than {FARTHEST:e} m at point {point}")),
+            None => Ok(column),
+        });
+        found
+            .map_err(|message| {
+                let place = self.scene.source.place(&format!("{name}.{}", key.row.name));
+                self.findings.error(&place, message);
+            })
+            .ok()
+    }
+}

@@ -1,0 +1,208 @@
+//! From words and signs to steps on a stack, by what binds more strongly.
+
+use std::ops::Range;
+
+use super::functions::{FUNCTIONS, NAMES};
+use super::lexer::{Token, tokens};
+use super::{ExpressionError, Op};
+use crate::scene::nearest;
+
+/// Brackets within brackets, at most: deeper ones are a mistake, and would need a deep stack to be read.
+const DEEPEST: usize = 64;
+
+/// A sign between two values, and what it does.
+type Operator = (&'static str, fn(f64, f64) -> f64);
+
+/// What stands between two values: by what binds least. All but the last group to the left.
+const BINARY: [&[Operator]; 5] = [
+    &[("||", |a, b| truth(a != 0.0 || b != 0.0))],
+    &[("&&", |a, b| truth(a != 0.0 && b != 0.0))],
+    &[
+        ("<", |a, b| truth(a < b)),
+        ("<=", |a, b| truth(a <= b)),
+        (">", |a, b| truth(a > b)),
+        (">=", |a, b| truth(a >= b)),
+        ("==", |a, b| truth(a == b)),
+        ("!=", |a, b| truth(a != b)),
+    ],
+    &[("+", |a, b| a + b), ("-", |a, b| a - b)],
+    &[("*", |a, b| a * b), ("/", |a, b| a / b), ("%", |a, b| a % b)],
+];
+
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// Understands a text.
+pub(super) fn parse(text: &str) -> Result<Vec<Op>, ExpressionError> {
+    let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0, ops: Vec::new() };
+    parser.choice()?;
+    match parser.token() {
+        Token::End => Ok(parser.ops),
+        _ => Err(parser.unexpected("nothing more")),
+    }
+}
+
+struct Parser<'a> {
+    tokens: Vec<(Token<'a>, Range<usize>)>,
+    at: usize,
+    depth: usize,
+    ops: Vec<Op>,
+}
+
+impl<'a> Parser<'a> {
+    fn token(&self) -> Token<'a> {
+        self.tokens[self.at].0
+    }
+
+    fn span(&self) -> Range<usize> {
+        self.tokens[self.at].1.clone()
+    }
+
+    /// Goes on, if this sign is next.
+    fn eat(&mut self, sign: &str) -> bool {
+        let is_next = matches!(self.token(), Token::Sign(next) if next == sign);
+        self.at += usize::from(is_next);
+        is_next
+    }
+
+    fn expect(&mut self, sign: &str) -> Result<(), ExpressionError> {
+        if self.eat(sign) { Ok(()) } else { Err(self.unexpected(&format!("`{sign}`"))) }
+    }
+
+    fn unexpected(&self, wanted: &str) -> ExpressionError {
+        let found = match self.token() {
+            Token::Number(number) => format!("found {number}"),
+            Token::Name(name) => format!("found `{name}`"),
+            Token::Sign(sign) => format!("found `{sign}`"),
+            Token::End => "the expression ends".to_owned(),
+        };
+        ExpressionError::new(format!("expected {wanted}, but {found}"), self.span())
+    }
+
+    /// `a ? b : c`; both ways are worked out, and one is taken.
+    fn choice(&mut self) -> Result<(), ExpressionError> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(ExpressionError::new("this is nested too deeply", self.span()));
+        }
+        self.binary(0)?;
+        if self.eat("?") {
+            self.choice()?;
+            self.expect(":")?;
+            self.choice()?;
+            self.ops.push(Op::Three(|condition, yes, no| if condition != 0.0 { yes } else { no }));
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn binary(&mut self, level: usize) -> Result<(), ExpressionError> {
+        let Some(operators) = BINARY.get(level) else { return self.unary() };
+        self.binary(level + 1)?;
+        while let Some((_, f)) = operators.iter().find(|(sign, _)| self.eat(sign)) {
+            self.binary(level + 1)?;
+            self.ops.push(Op::Two(*f));
+        }
+        Ok(())
+    }
+
+    /// A run of signs in front of a value, from the inside out.
+    fn unary(&mut self) -> Result<(), ExpressionError> {
+        let mut signs: Vec<fn(f64) -> f64> = Vec::new();
+        loop {
+            if self.eat("-") {
+                signs.push(|a| -a);
+            } else if self.eat("!") {
+                signs.push(|a| truth(a == 0.0));
+            } else if !self.eat("+") {
+                break;
+            }
+        }
+        self.power()?;
+        self.ops.extend(signs.into_iter().rev().map(Op::One));
+        Ok(())
+    }
+
+    /// `a ^ b`: binds more strongly than a sign in front of `a`, less than one in front of `b`.
+    fn power(&mut self) -> Result<(), ExpressionError> {
+        self.value()?;
+        if self.eat("^") {
+            self.depth += 1;
+            if self.depth > DEEPEST {
+                return Err(ExpressionError::new("this is nested too deeply", self.span()));
+            }
+            self.unary()?;
+            self.depth -= 1;
+            self.ops.push(Op::Two(f64::powf));
+        }
+        Ok(())
+    }
+
+    fn value(&mut self) -> Result<(), ExpressionError> {
+        match self.token() {
+            Token::Number(number) => {
+                self.at += 1;
+                self.ops.push(Op::Number(number));
+                Ok(())
+            }
+            Token::Name(name) => {
+                let span = self.span();
+                self.at += 1;
+                if self.eat("(") { self.call(name, span) } else { self.name(name, span) }
+            }
+            Token::Sign("(") => {
+                self.at += 1;
+                self.choice()?;
+                self.expect(")")
+            }
+            _ => Err(self.unexpected("a value")),
+        }
+    }
+
+    fn name(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
+        if let Some((_, op)) = NAMES.iter().find(|(known, _)| *known == name) {
+            self.ops.push(*op);
+            return Ok(());
+        }
+        let mut error = ExpressionError::new(format!("there is no `{name}` in an expression"), span);
+        let is_function = FUNCTIONS.iter().any(|(known, _)| *known == name);
+        let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
+        error.help = Some(match is_function {
+            true => format!("`{name}` is a function: write `{name}(...)`"),
+            false => format!("a point has {}", names.join(", ")),
+        });
+        Err(error)
+    }
+
+    /// A function; its opening bracket is behind.
+    fn call(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
+        let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+            let mut error = ExpressionError::new(format!("there is no function `{name}`"), span);
+            let all: Vec<&str> = FUNCTIONS.iter().map(|(name, _)| *name).collect();
+            error.help = Some(match nearest(name, all.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("there are {}", all.join(", ")),
+            });
+            return Err(error);
+        };
+        let mut found = 0;
+        if !self.eat(")") {
+            loop {
+                self.choice()?;
+                found += 1;
+                if !self.eat(",") {
+                    break;
+                }
+            }
+            self.expect(")")?;
+        }
+        let wanted = function.arguments();
+        if found != wanted {
+            let message = format!("`{name}` takes {wanted} arguments, found {found}");
+            return Err(ExpressionError::new(message, span));
+        }
+        self.ops.push(function.op());
+        Ok(())
+    }
+}

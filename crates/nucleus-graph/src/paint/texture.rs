@@ -1,0 +1,154 @@
+//! PNG pictures as factors: 0 where they are black, 1 where they are white.
+//!
+//! Colours count by their brightness (0.3 red, 0.59 green, 0.11 blue, as in Maya), as they are stored: no gamma is
+//! undone. Transparency does not count. Between the middles of pixels values go straight (bilinear). As in Maya
+//! (0, 0) is the lower left corner, and the picture repeats beyond 0 to 1.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// A picture in grey.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    size: [usize; 2],
+    /// Row by row from the top, 0 to 1.
+    pixels: Vec<f32>,
+}
+
+/// A head of a few bytes can promise more pixels than any memory holds.
+const MOST_PIXELS: u64 = 1 << 26;
+
+/// Why a file is not a texture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// It cannot be read.
+    #[error("cannot read `{}`: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// It is no PNG, or a broken one.
+    #[error("`{}` is not a sound PNG: {source}", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: png::DecodingError,
+    },
+    /// It has too many pixels.
+    #[error("`{}` has {columns} x {rows} pixels; {MOST_PIXELS} are the most", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its width.
+        columns: u32,
+        /// Its height.
+        rows: u32,
+    },
+}
+
+impl Texture {
+    /// Reads a PNG.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is not a sound PNG.
+    pub fn read(path: &Path) -> Result<Self, TextureError> {
+        let file =
+            File::open(path).map_err(|source| TextureError::Unreadable { path: path.to_owned(), source })?;
+        let broken = |source| TextureError::Broken { path: path.to_owned(), source };
+        let mut decoder = png::Decoder::new(BufReader::new(file));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().map_err(broken)?;
+        let (columns, rows) = reader.info().size();
+        if u64::from(columns) * u64::from(rows) > MOST_PIXELS {
+            return Err(TextureError::TooLarge { path: path.to_owned(), columns, rows });
+        }
+        let bytes = reader.output_buffer_size().ok_or(png::DecodingError::LimitsExceeded);
+        let mut data = vec![0; bytes.map_err(broken)?];
+        let info = reader.next_frame(&mut data).map_err(broken)?;
+        // What comes after the picture tells whether the file is whole.
+        reader.finish().map_err(broken)?;
+        let samples = info.color_type.samples();
+        let pixels = match info.bit_depth {
+            png::BitDepth::Sixteen => {
+                let value = |pair: &[u8; 2]| f32::from(u16::from_be_bytes(*pair)) / 65535.0;
+                let values: Vec<f32> = data.as_chunks::<2>().0.iter().map(value).collect();
+                values.chunks_exact(samples).map(brightness).collect()
+            }
+            _ => {
+                let values: Vec<f32> = data.iter().map(|byte| f32::from(*byte) / 255.0).collect();
+                values.chunks_exact(samples).map(brightness).collect()
+            }
+        };
+        Ok(Self { size: [info.width as usize, info.height as usize], pixels })
+    }
+
+    /// A picture of so many columns, its pixels row by row from the top.
+    #[cfg(test)]
+    pub(crate) fn of(columns: usize, pixels: Vec<f32>) -> Self {
+        Self { size: [columns, pixels.len() / columns], pixels }
+    }
+
+    /// The value at a place.
+    pub fn at(&self, [u, v]: [f64; 2]) -> f64 {
+        let [columns, rows] = self.size;
+        let place = |along: f64, count: usize| {
+            let at = along * count as f64 - 0.5;
+            let first = at.floor();
+            let wrap = |k: f64| (k.rem_euclid(count as f64) as usize).min(count - 1);
+            (wrap(first), wrap(first + 1.0), at - first)
+        };
+        let (left, right, across) = place(u, columns);
+        let (upper, lower, down) = place(1.0 - v, rows);
+        let pixel = |column: usize, row: usize| f64::from(self.pixels[row * columns + column]);
+        let row = |row: usize| pixel(left, row) * (1.0 - across) + pixel(right, row) * across;
+        row(upper) * (1.0 - down) + row(lower) * down
+    }
+}
+
+/// Of grey, grey and alpha, red green blue, or those and alpha.
+fn brightness(pixel: &[f32]) -> f32 {
+    match pixel {
+        [red, green, blue, ..] => 0.3 * red + 0.59 * green + 0.11 * blue,
+        [grey, ..] => *grey,
+        [] => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_a_pixel_has_its_value_and_between_them_it_goes_straight() {
+        let texture = Texture::of(2, vec![0.0, 1.0, 0.25, 0.5]);
+        // The upper row is at v = 3/4.
+        assert_eq!(texture.at([0.25, 0.75]), 0.0);
+        assert_eq!(texture.at([0.75, 0.75]), 1.0);
+        assert_eq!(texture.at([0.25, 0.25]), 0.25);
+        assert_eq!(texture.at([0.5, 0.75]), 0.5);
+        assert_eq!(texture.at([0.25, 0.5]), 0.125);
+    }
+
+    #[test]
+    fn a_texture_repeats() {
+        let texture = Texture::of(2, vec![0.0, 1.0, 0.25, 0.5]);
+        for whole in [-3.0, 1.0, 7.0] {
+            assert_eq!(texture.at([0.25 + whole, 0.75 - whole]), texture.at([0.25, 0.75]));
+        }
+        // At the edge it goes on with the other side.
+        assert_eq!(texture.at([0.0, 0.75]), 0.5);
+    }
+
+    #[test]
+    fn no_place_is_outside() {
+        let texture = Texture::of(1, vec![0.5]);
+        for place in [1e300, -1e300, 0.0, 1.0, -1e-300] {
+            assert_eq!(texture.at([place, place]), 0.5);
+        }
+    }
+}
