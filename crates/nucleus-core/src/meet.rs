@@ -220,7 +220,6 @@ pub(crate) fn motion<R: Real>(state: &mut State<R>, h: f64) -> Motion<'_, R> {
         start: &state.start,
         extra_friction: &state.extra_friction,
         h: R::from_f64(h),
-        grain: R::ZERO,
     }
 }
 

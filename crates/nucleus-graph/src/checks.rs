@@ -70,7 +70,7 @@ struct Seen<'a> {
 /// The check that only an audit can answer.
 const NO_CROSSING: &str = "noCrossing";
 
-static FORMS: [Form; 7] = [
+static FORMS: [Form; 8] = [
     Form {
         name: "noPenetration",
         doc: "No point ends a substep on the far side of a collider.",
@@ -118,6 +118,14 @@ static FORMS: [Form; 7] = [
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, _| Some(if seen.report.finite { 0.0 } else { 1.0 }),
+    },
+    Form {
+        name: "untangledBy",
+        doc: "From this frame on no edge of cloth goes through a face of cloth.",
+        parameters: &["frame"],
+        bound: Bound::AtMost,
+        limit: |_| 0.0,
+        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.tangled as f64),
     },
     Form {
         name: "restsBy",

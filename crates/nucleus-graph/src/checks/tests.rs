@@ -49,6 +49,14 @@ fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
 }
 
 #[test]
+fn what_is_still_tangled_by_its_frame_fails() {
+    let tangled = |tangled| StepReport { tangled, ..StepReport::default() };
+    assert!(judge("untangledBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
+    let outcome = judge("untangledBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
+    assert_eq!((outcome.passed, outcome.worst), (false, Some((1.0, 3))));
+}
+
+#[test]
 fn a_check_that_never_came_up_has_not_passed() {
     let outcome = judge("restsBy", &[100.0, 1.0], &[StepReport::default()]);
     assert_eq!((outcome.passed, outcome.worst), (false, None));

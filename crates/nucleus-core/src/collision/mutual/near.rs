@@ -13,6 +13,9 @@ use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
 const TOUCH: f64 = 1e-6;
 /// Share of the way to a plane that a point is let go: the rest is the gap that the next step starts with.
 const ROOM_USED: f64 = 0.9;
+/// Share of the grain by which two have to be apart at the start of a step: what was proven at the end of one has to be
+/// apart at the start of the next, though the grain grows with the way that points have come.
+const AT_START: f64 = 0.25;
 /// Least and most share of a gap that one side may use up when both come nearer.
 const LEAST_SHARE: f64 = 0.05;
 
@@ -29,8 +32,6 @@ pub struct Motion<'a, R> {
     pub extra_friction: &'a [R],
     /// Length of the step in seconds.
     pub h: R,
-    /// What a place may be off by, by rounding, in metres.
-    pub grain: R,
 }
 
 impl<R: Real> Motion<'_, R> {
@@ -152,7 +153,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         }
         let before = self.before(step);
         let (normal, (b, c), distance) = shortest(now);
-        if distance > R::ZERO && gap_along(normal, &before) > step.grain {
+        if distance > R::ZERO && gap_along(normal, &before) > grain(&now) * R::from_f64(AT_START) {
             // Apart along this line at both ends of the step: it is theirs from now on.
             self.normal = normal;
             if distance >= held {
@@ -227,7 +228,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     #[inline]
     pub fn prove(&mut self, step: &Motion<'_, R>) -> bool {
         let now = self.now(step);
-        if self.gap(&now) > step.grain {
+        if self.gap(&now) > grain(&now) {
             return true;
         }
         self.prove_otherwise(step, now)
@@ -237,14 +238,15 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     fn prove_otherwise(&mut self, step: &Motion<'_, R>, now: Places<R, N, M>) -> bool {
         let before = self.before(step);
         let (first, _, distance) = shortest(before);
-        if distance <= step.grain {
+        let grain = grain(&now);
+        let at_start = grain * R::from_f64(AT_START);
+        if distance <= at_start {
             return true;
         }
         let candidates = [shortest(now).0, across(now.0, now.1), across(before.0, before.1), first];
         let units = candidates.into_iter().filter_map(|line| unit(line, R::TINY));
         let both = units.flat_map(|n| [n, n.map(|x| -x)]);
-        let mut proofs =
-            both.filter(|&n| gap_along(n, &before) > step.grain && gap_along(n, &now) > step.grain);
+        let mut proofs = both.filter(|&n| gap_along(n, &before) > at_start && gap_along(n, &now) > grain);
         match proofs.next() {
             Some(normal) => self.normal = normal,
             None => return false,
@@ -271,30 +273,26 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let share = most(R::from_f64(LEAST_SHARE), share);
         let share = -most(-share, -R::from_f64(1.0 - LEAST_SHARE));
         let plane = rear + (front - rear) * share;
+        let grain = grain(&now);
         for k in 0..N {
-            self.stop_before(
-                step,
-                self.ours[k],
-                [dot(normal, before.0[k]) - plane, dot(normal, now.0[k]) - plane],
-            );
+            let heights = [dot(normal, before.0[k]) - plane, dot(normal, now.0[k]) - plane];
+            self.stop_before(step, self.ours[k], heights, grain);
         }
         for k in 0..M {
-            self.stop_before(
-                step,
-                self.theirs[k],
-                [plane - dot(normal, before.1[k]), plane - dot(normal, now.1[k])],
-            );
+            let heights = [plane - dot(normal, before.1[k]), plane - dot(normal, now.1[k])];
+            self.stop_before(step, self.theirs[k], heights, grain);
         }
     }
 
-    /// Takes a point back to before a plane, given its height above it at both ends of the step.
-    fn stop_before(&self, step: &Motion<'_, R>, point: u32, [before, now]: [R; 2]) {
+    /// Takes a point back to before a plane, given its height above it at both ends of the step; no nearer than what
+    /// can be told from touching.
+    fn stop_before(&self, step: &Motion<'_, R>, point: u32, [before, now]: [R; 2], grain: R) {
         let mut row = step.row(point);
-        let room = before * R::from_f64(1.0 - ROOM_USED);
+        let room = larger(before * R::from_f64(1.0 - ROOM_USED), grain);
         if now >= room || before - now <= R::TINY || row.0[3] <= R::ZERO {
             return;
         }
-        let share = (before - room) / (before - now);
+        let share = larger((before - room) / (before - now), R::ZERO);
         let start = step.start(point);
         for axis in 0..3 {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
@@ -323,4 +321,17 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     pub fn closeness(&self, step: &Motion<'_, R>) -> R {
         shortest(self.now(step)).2 / self.meeting.thickness
     }
+}
+
+/// What a gap may be off by, by rounding, in metres: places are reckoned from anchors, so it goes by how far the points
+/// are from there, and by how large the elements are.
+#[inline(always)]
+fn grain<R: Real, const N: usize, const M: usize>(at: &Places<R, N, M>) -> R {
+    let size = |[x, y, z]: [R; 3]| larger(x, -x) + larger(y, -y) + larger(z, -z);
+    (size(at.0[0]) + size(at.1[0])) * (R::EPSILON * R::from_f64(4.0))
+}
+
+#[inline(always)]
+fn larger<R: Real>(x: R, y: R) -> R {
+    if y > x { y } else { x }
 }
