@@ -3,8 +3,8 @@
 use nucleus_core::{BuildError, Stiffness};
 
 use super::elastica::{self, Curve};
-use super::rig::{DENSITY, Rig, STRIP, Vec3, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{DENSITY, STRIP, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {

@@ -4,8 +4,8 @@ use nucleus_core::{
     BuildError, Cloth, ClothLists, Collider, ColliderFrame, Faces, GroundPlane, Mass, ModelBuilder, Surface,
 };
 
-use super::rig::{DENSITY, GRAVITY, Rig, Vec3, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{DENSITY, GRAVITY, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {

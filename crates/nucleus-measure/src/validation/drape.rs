@@ -3,8 +3,8 @@
 
 use nucleus_core::{BuildError, Cloth, Faces, Mass, ModelBuilder, Stiffness, Surface};
 
-use super::rig::{Rig, STRIP, Vec3, membrane};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{STRIP, Vec3, membrane};
 
 pub const CASES: &[Case] = &[Case {
     name: "cusick-drape",

@@ -2,8 +2,8 @@
 
 use nucleus_core::{BuildError, ClothLists, Faces, Surface};
 
-use super::rig::{DENSITY, GRAVITY, Rig, STRIP, Vec3, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {

@@ -8,7 +8,6 @@
 //! | falls, swings and what is conserved | `motion.rs` |
 //! | friction, bounce and ropes round a cylinder | `contact.rs` |
 //! | how a disc of cloth drapes | `drape.rs` |
-//! | what the cases are built from | `rig.rs` |
 
 mod bending;
 mod contact;
@@ -17,11 +16,13 @@ mod elastica;
 mod membrane;
 mod motion;
 mod page;
-mod rig;
 
 use nucleus_core::BuildError;
 
 pub use page::page;
+
+/// What is left of an error in double precision is the method's.
+type Rig = crate::rig::Rig<f64>;
 
 /// A body of physics that the solver is held against.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,8 @@
 
 use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
 
-use super::rig::{CLOTH, DENSITY, GRAVITY, Rig, STRIP, Vec3, areas, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, areas, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {
