@@ -22,7 +22,8 @@ const SMALL: [&str; 8] = ["trade", "drape.ron", "--evaluations", "6,12", "--subs
 #[cfg(unix)]
 fn kept_text(folder: &Path) -> String {
     let Ok(all) = fs::read_dir(folder.join("kept").join("trade")) else { return String::new() };
-    all.map(|entry| fs::read_to_string(entry.unwrap().path().join("runs.jsonl")).unwrap_or_default()).collect()
+    all.map(|entry| fs::read_to_string(entry.unwrap().path().join("runs.jsonl")).unwrap_or_default())
+        .collect()
 }
 
 /// Lines of a list that is kept, in whichever folder.
@@ -82,7 +83,18 @@ fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
     scene(folder.path(), 400, "");
     let evaluations: Vec<String> = (1..=30).map(|k| (8 * k).to_string()).collect();
     let evaluations = evaluations.join(",");
-    let sweep = ["trade", "drape.ron", "--jobs", "1", "--substeps", "1", "--frames", "1:300", "--evaluations", &evaluations];
+    let sweep = [
+        "trade",
+        "drape.ron",
+        "--jobs",
+        "1",
+        "--substeps",
+        "1",
+        "--frames",
+        "1:300",
+        "--evaluations",
+        &evaluations,
+    ];
     let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
     command.env("NUCLEUS_CACHE", folder.path().join("kept")).args(sweep).current_dir(folder.path());
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -171,5 +183,8 @@ fn what_cannot_be_compared_is_said_with_exit_code_1() {
         "c": nCloth(inputMesh: "p"),
         "r": dynamicConstraint(constraintType: transform, components: ["c.vtx[0:8]"])})"#;
     fs::write(folder.path().join("loose.ron"), loose).unwrap();
-    refused(&["trade", "loose.ron", "--evaluations", "1"], "the reference does not converge: with 2 and with 4");
+    refused(
+        &["trade", "loose.ron", "--evaluations", "1"],
+        "the reference does not converge: with 2 and with 4",
+    );
 }

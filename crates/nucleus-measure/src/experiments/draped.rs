@@ -49,7 +49,8 @@ fn run() -> Result<Vec<Table>, BuildError> {
                 let run = [format!("{size}²"), spending.words(), evaluations.to_string()];
                 let ours = [strain.most, strain.max].map(|share| figure(100.0 * share));
                 let theirs = [0, 1].map(|k| or_dash(prototype.map(|both| both[k])));
-                let cells = [ours[0].clone(), theirs[0].clone(), ours[1].clone(), theirs[1].clone(), figure(ms)];
+                let cells =
+                    [ours[0].clone(), theirs[0].clone(), ours[1].clone(), theirs[1].clone(), figure(ms)];
                 rows.push(run.into_iter().chain(cells).collect());
             }
         }
@@ -71,8 +72,7 @@ fn run() -> Result<Vec<Table>, BuildError> {
 fn drape(size: u32, spending: Spending, evaluations: u32) -> Result<(Strain, f64), BuildError> {
     let height = RADIUS + 1.5 * THICKNESS;
     let cloth = sheet([size, size], Vec3::new(-0.5, height, -0.5), Vec3::x(), Vec3::z());
-    let lists =
-        ClothLists { stretch: true, cross_links: false, shear: true, air: true, ..ClothLists::NONE };
+    let lists = ClothLists { stretch: true, cross_links: false, shear: true, air: true, ..ClothLists::NONE };
     let mut builder = ModelBuilder::new();
     builder.cloth(Cloth { surface: cloth.clone(), mass: Mass::PerArea(DENSITY), lists })?;
     let ball = poly_sphere(RADIUS, (48, 32)).unwrap_or_else(|error| panic!("a ball of ours: {error}"));

@@ -55,7 +55,8 @@ fn sags() -> Result<Table, BuildError> {
             }
         }
     }
-    let head = vec!["points", "evaluations are", "in 1/24 s", "exact, mm", "sag, mm", "prototype, mm", "ms a frame"];
+    let head =
+        vec!["points", "evaluations are", "in 1/24 s", "exact, mm", "sag, mm", "prototype, mm", "ms a frame"];
     Ok(Table { title: "Sag", head, rows })
 }
 

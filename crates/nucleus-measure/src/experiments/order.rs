@@ -49,7 +49,8 @@ impl Numbering {
                 let mut state = 1u64;
                 for k in (1..places.len()).rev() {
                     // Knuth's MMIX generator; its upper half is as good as dice.
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    state =
+                        state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                     places.swap(k, (state >> 33) as usize % (k + 1));
                 }
                 places
@@ -62,7 +63,8 @@ fn run() -> Result<Vec<Table>, BuildError> {
     let mut rows = Vec::new();
     for (size, cross_links) in [(SIZES[0], false), (SIZES[0], true), (SIZES[1], false)] {
         for (steps, by_number) in STEPS.into_iter().zip(by_number(size)) {
-            let mut row = vec![format!("{size}²{}", if cross_links { ", cross links" } else { "" }), steps.to_string()];
+            let mut row =
+                vec![format!("{size}²{}", if cross_links { ", cross links" } else { "" }), steps.to_string()];
             for numbering in Numbering::ALL {
                 row.push(figure(made(size, cross_links, Spending::SmallSteps, steps, numbering)?));
             }

@@ -42,7 +42,8 @@ mod tests {
 
     #[test]
     fn every_experiment_has_its_place_with_its_tables_and_where_it_differs() {
-        let table = Table { title: "Figures", head: vec!["a", "b"], rows: vec![vec!["1".into(), "2".into()]] };
+        let table =
+            Table { title: "Figures", head: vec!["a", "b"], rows: vec![vec!["1".into(), "2".into()]] };
         let results: Vec<_> = experiments().into_iter().map(|one| (one, vec![table.clone()])).collect();
         let page = page(&results, "a machine");
         for (experiment, _) in &results {
