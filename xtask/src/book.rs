@@ -83,8 +83,8 @@ fn trades(root: &Path) -> anyhow::Result<()> {
     let mut found = Vec::new();
     for scene in SCENES {
         let path = format!("scenes/{scene}.ron");
-        let scene: [&OsStr; 4] = ["trade".as_ref(), path.as_ref(), "--out".as_ref(), folder.as_ref()];
-        let arguments: Vec<&OsStr> = scene.into_iter().chain(SWEEP.iter().map(OsStr::new)).collect();
+        let trade: [&OsStr; 4] = ["trade".as_ref(), path.as_ref(), "--out".as_ref(), folder.as_ref()];
+        let arguments: Vec<&OsStr> = trade.into_iter().chain(SWEEP.iter().map(OsStr::new)).collect();
         let status = nucleus(root, &arguments)?;
         ensure!(status.success(), "`nucleus trade {path}`: {status}");
         let name = scene.rsplit('/').next().unwrap_or(scene);

@@ -78,6 +78,7 @@ impl Spending {
     fn words(self) -> String {
         match self {
             Self::SmallSteps => "small steps, one sweep each (Physical)".to_owned(),
+            Self::Passes(1) => "passes over 1 substep (Classic)".to_owned(),
             Self::Passes(substeps) => format!("passes over {substeps} substeps (Classic)"),
         }
     }

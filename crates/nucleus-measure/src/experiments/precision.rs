@@ -12,9 +12,10 @@ pub const PRECISION: Experiment = Experiment {
     about: "A point falls freely for a second, from so many metres above the origin, with so many substeps in 1/24 s: how far it \
         falls in single precision, over the same sum in exact numbers, less one. Then whole sheets, the same run in single and \
         in double precision: how far apart their points are, RMS over all points and all frames, over the size.",
-    differs: "The prototype kept positions in single precision and took velocities from their differences; beside that stands \
-        its other form, displacements from an anchor, which is the solver's. The prototype's figures for that form are the \
-        most that it found at any height.",
+    differs: "The prototype kept positions in single precision and took velocities from their differences; beside that \
+        stands its other form, displacements from an anchor, which is the solver's. The prototype's figures for \
+        that form are the most that it found at any height. A sheet that swings is chaotic: what is apart by \
+        rounding at first is apart by a fold in the end, and no precision but only time mends that.",
     run,
 };
 
