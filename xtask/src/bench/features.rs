@@ -70,7 +70,7 @@ One feature after the other is added to the same sheet of 65² points that falls
 **Rows** are what is swept, **passes** what is done in every step; both are those that `nucleus info` shows.
 **More ms** is what the feature adds to a frame.
 **Off** is the same with the feature's list built and its attribute at 0, against the sheet without that list: it has no rows \
-and no passes more, and its time differs by noise alone.
+and no passes more; by what its time differs is to be noise.
 `cargo xtask book --only features` makes this page anew.
 ";
 

@@ -122,6 +122,17 @@ mod tests {
     }
 
     #[test]
+    fn falls_slopes_and_bounces_are_as_exact_as_the_page_allows() {
+        for case in
+            cases().filter(|case| ["terminal-velocity", "incline", "restitution"].contains(&case.name))
+        {
+            for finding in case.run().expect("sheets of ours") {
+                assert!(finding.holds(), "{}: {finding:?}", case.name);
+            }
+        }
+    }
+
+    #[test]
     fn no_two_cases_have_one_name() {
         let mut names: Vec<_> = cases().map(|case| case.name).collect();
         names.sort_unstable();
