@@ -80,8 +80,8 @@ fn a_sweep_goes_on_where_it_was() {
 #[test]
 fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
     let folder = folder();
-    scene(folder.path(), 400, "");
-    let evaluations: Vec<String> = (1..=30).map(|k| (8 * k).to_string()).collect();
+    scene(folder.path(), 48, "");
+    let evaluations: Vec<String> = (1..=30).map(|k| (3 * k).to_string()).collect();
     let evaluations = evaluations.join(",");
     let sweep = [
         "trade",
@@ -91,7 +91,7 @@ fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
         "--substeps",
         "1",
         "--frames",
-        "1:300",
+        "1:48",
         "--evaluations",
         &evaluations,
     ];
