@@ -91,7 +91,7 @@ fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
         "--substeps",
         "1",
         "--frames",
-        "1:48",
+        "48",
         "--evaluations",
         &evaluations,
     ];

@@ -76,7 +76,7 @@ fn drape(size: u32, spending: Spending, evaluations: u32) -> Result<(Strain, f64
     let cloth = sheet([size, size], Vec3::new(-0.5, height, -0.5), Vec3::x(), Vec3::z());
     let lists = ClothLists { stretch: true, cross_links: false, shear: true, air: true, ..ClothLists::NONE };
     let mut builder = ModelBuilder::new();
-    builder.cloth(Cloth { surface: cloth.clone(), mass: Mass::PerArea(DENSITY), lists })?;
+    builder.cloth(Cloth::new(cloth.clone(), Mass::PerArea(DENSITY), lists))?;
     let ball = poly_sphere(RADIUS, (48, 32)).unwrap_or_else(|error| panic!("a ball of ours: {error}"));
     builder.collider(Collider { surface: ball })?;
     let edges = Edges::of(&cloth);
