@@ -22,9 +22,8 @@ mod accuracy;
 mod contact;
 mod contest;
 mod csv;
-mod features;
+pub mod features;
 mod growth;
-
 mod mesh;
 mod page;
 mod peers;

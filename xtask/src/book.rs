@@ -5,15 +5,22 @@
 //! | which pages there are                            | [`Page`]                     |
 //! | how a scene's trade is measured                  | [`nucleus_measure::trade`]   |
 //! | whether the paper's advice holds                 | [`nucleus_measure::advice`]  |
+//! | what holds where scenes leave the ordinary       | [`nucleus_measure::extremes`] |
+//! | how far the solver is from exact physics         | [`nucleus_measure::validation`] |
+//! | what a prototype promised                        | [`nucleus_measure::experiments`] |
+//! | what a feature costs                             | [`features`]                 |
 
+use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, ExitStatus};
 use std::time::Instant;
 use std::{env, fs};
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use nucleus_measure::{advice, machine, report, store, trade};
+use nucleus_measure::{advice, experiments, machine, report, store, trade};
+
+use crate::bench::features;
 
 /// What to make.
 #[derive(Debug, Clone, clap::Args)]
@@ -30,11 +37,27 @@ enum Page {
     Trade,
     /// `docs/advice.md`: the paper's advice, tried
     Advice,
+    /// `docs/extremes.md`: what holds where scenes leave the ordinary
+    Extremes,
+    /// `docs/validation.md`: the solver against exact physics
+    Validation,
+    /// `docs/experiments.md`: what a prototype promised, and what the solver does
+    Experiments,
+    /// `docs/features.md`: what each feature costs, on and off
+    Features,
 }
+
+/// Runs of each sheet of the page on features; the median counts.
+const FEATURE_RUNS: u32 = 9;
 
 /// The scenes whose trade is in the book.
 const SCENES: [&str; 4] =
     ["cloth/tablecloth", "cloth/flag", "cloth/drape_on_sphere", "collision/fast_sphere"];
+
+/// What is swept of each: its first second, in which every one of them meets what it meets, at so many settings as a book can
+/// wait for. `nucleus trade SCENE` by itself sweeps two seconds at five times as many.
+const SWEEP: [&str; 8] =
+    ["--frames", "24", "--evaluations", "24,96,384", "--substeps", "1,4", "--iterations", "4"];
 
 /// Makes what is asked for.
 pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
@@ -44,6 +67,10 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
         match page {
             Page::Trade => trades(root)?,
             Page::Advice => advices(root)?,
+            Page::Extremes => by_command(root, "extremes", "extremes.md")?,
+            Page::Validation => by_command(root, "validate", "validation.md")?,
+            Page::Experiments => experiments(root)?,
+            Page::Features => features(root)?,
         }
         eprintln!("{page:?}: {:.0} s", start.elapsed().as_secs_f64());
     }
@@ -53,20 +80,51 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
 /// By the command, as anyone would; runs that are kept from before are not done again.
 fn trades(root: &Path) -> anyhow::Result<()> {
     let folder = root.join("docs").join("trade");
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut found = Vec::new();
     for scene in SCENES {
-        let mut command = Command::new(&cargo);
-        command.args(["run", "--quiet", "--release", "--package", "nucleus-cli", "--", "trade"]);
-        command.arg(format!("scenes/{scene}.ron")).arg("--out").arg(&folder).current_dir(root);
-        let status = command.status().context("cargo cannot be started")?;
-        ensure!(status.success(), "`nucleus trade scenes/{scene}.ron`: {status}");
+        let path = format!("scenes/{scene}.ron");
+        let trade: [&OsStr; 4] = ["trade".as_ref(), path.as_ref(), "--out".as_ref(), folder.as_ref()];
+        let arguments: Vec<&OsStr> = trade.into_iter().chain(SWEEP.iter().map(OsStr::new)).collect();
+        let status = nucleus(root, &arguments)?;
+        ensure!(status.success(), "`nucleus trade {path}`: {status}");
         let name = scene.rsplit('/').next().unwrap_or(scene);
         let json = fs::read(folder.join(format!("{name}.trade.json")))?;
         found.push((name.to_owned(), serde_json::from_slice::<trade::Trade>(&json)?));
     }
     let index = report::index(&found, &machine::describe().join("\n"));
     Ok(store::write_whole(&folder.join("README.md"), index.as_bytes())?)
+}
+
+/// The command, built as it is to be used.
+fn nucleus(root: &Path, arguments: &[&OsStr]) -> anyhow::Result<ExitStatus> {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--quiet", "--release", "--package", "nucleus-cli", "--"]).args(arguments);
+    command.current_dir(root).status().context("cargo cannot be started")
+}
+
+/// A page that a command writes. What fails is in the page with its figure, so that trouble is no reason to stop.
+fn by_command(root: &Path, command: &str, page: &str) -> anyhow::Result<()> {
+    let page = root.join("docs").join(page);
+    let status = nucleus(root, &[command.as_ref(), "--write".as_ref(), page.as_ref()])?;
+    ensure!(matches!(status.code(), Some(0 | 1)), "`nucleus {command}`: {status}");
+    Ok(())
+}
+
+fn experiments(root: &Path) -> anyhow::Result<()> {
+    let mut results = Vec::new();
+    for experiment in experiments::experiments() {
+        eprintln!("{}", experiment.name);
+        results.push((experiment, experiment.run()?));
+    }
+    let page = experiments::page(&results, &machine::describe().join("\n"));
+    Ok(store::write_whole(&root.join("docs").join("experiments.md"), page.as_bytes())?)
+}
+
+fn features(root: &Path) -> anyhow::Result<()> {
+    let table = features::table(FEATURE_RUNS)?;
+    let page = format!("{}\n{}\n\n{table}", features::HEAD, machine::describe().join("\n"));
+    Ok(store::write_whole(&root.join("docs").join("features.md"), page.as_bytes())?)
 }
 
 fn advices(root: &Path) -> anyhow::Result<()> {
@@ -81,4 +139,25 @@ fn advices(root: &Path) -> anyhow::Result<()> {
     }
     let page = advice::page(&results, &machine::describe().join("\n"));
     Ok(store::write_whole(&root.join("docs").join("advice.md"), page.as_bytes())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_index_of_the_book_leads_to_every_page_and_names_every_verb() {
+        let root = crate::root();
+        let index = fs::read_to_string(root.join("docs/README.md")).unwrap();
+        for page in Page::value_variants() {
+            let verb = page.to_possible_value().unwrap();
+            assert!(index.contains(&format!("| `{}` |", verb.get_name())), "{page:?}");
+        }
+        for entry in fs::read_dir(root.join("docs")).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            if name.ends_with(".md") && name != "README.md" {
+                assert!(index.contains(&format!("[`{name}`]({name})")), "{name}");
+            }
+        }
+    }
 }

@@ -44,7 +44,7 @@ enum Chore {
     Bench(bench::Options),
     /// Exports caches in every format and has other tools read them; installs those first.
     Interop(interop::Options),
-    /// Makes anew the pages of docs/ whose figures are measured; takes a quarter of an hour.
+    /// Makes anew the pages of docs/ whose figures are measured; takes an hour or more.
     Book(book::Options),
 }
 

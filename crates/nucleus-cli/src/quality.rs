@@ -50,7 +50,7 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
     })?;
     let point = match for_error(&trade, wanted) {
         Choice::Found(point) => point,
-        Choice::Nearest(point) => bail!(
+        Choice::Nearest(point) | Choice::Untold(point) => bail!(
             "no setting of `{name}` reaches {}; the nearest is {} with {}",
             report::percent(wanted),
             report::percent(point.error.unwrap_or_default()),

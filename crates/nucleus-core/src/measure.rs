@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use crate::collide::StepParts;
 use crate::collision::resolve::Tally;
-use crate::constraints::hinge::HingeGroup;
+use crate::constraints::hinge::{HingeGroup, held};
 use crate::constraints::shares::ShareGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::frame::{ClothFrame, FrameInput, ResistanceModel};
@@ -128,8 +128,8 @@ impl<R: Real> Solver<R> {
         let hold = |(k, lane): (usize, usize)| {
             let group = &groups[k];
             let stiffness = stiffness * share_of(shares.get(k).map(|share| &share.above), lane);
-            let bent = self.bending(group, lane) - group.rest[lane].to_f64();
-            stiffness * bent * bent / 2.0
+            let [rest, fold] = [group.rest, group.fold].map(|column| column[lane].to_f64());
+            stiffness * held(self.bending(group, lane), rest, fold)
         };
         (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(hold).sum()
     }

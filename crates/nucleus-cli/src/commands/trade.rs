@@ -172,7 +172,7 @@ impl Trade {
             output::print_json(&serde_json::to_value(trade)?)?;
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
-            let said = format!("{}\n{}", report::text(trade), self.recommendation(&choice));
+            let said = format!("{}\n{}", report::text(trade), self.recommendation(&choice, trade.floor));
             output::print(&format!("{said}written to {}\n", names.join(", ")))?;
         }
         if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
@@ -181,13 +181,13 @@ impl Trade {
         let asked = self.error.is_some() || self.time.is_some();
         Ok(match choice {
             Choice::Found(_) => Outcome::Fine,
-            Choice::Nearest(_) if !asked => Outcome::Fine,
+            Choice::Nearest(_) | Choice::Untold(_) if !asked => Outcome::Fine,
             _ => Outcome::Trouble,
         })
     }
 
     /// What to take, in words.
-    fn recommendation(&self, choice: &Choice) -> String {
+    fn recommendation(&self, choice: &Choice, floor: Option<f64>) -> String {
         let costs = |point: &Point| {
             let error = report::percent(point.error.unwrap_or_default());
             format!("{}, {} ms a frame, error {error}", point.setting, report::figure(point.ms))
@@ -199,6 +199,12 @@ impl Trade {
         match choice {
             Choice::Found(point) => format!("recommended for {wanted}: {}\n", costs(point)),
             Choice::Nearest(point) => format!("no setting reaches {wanted}; the nearest: {}\n", costs(point)),
+            Choice::Untold(point) => format!(
+                "{wanted} cannot be told from none, since the references themselves differ by {}; the most exact as far as can \
+                 be told: {}\n",
+                report::percent(floor.unwrap_or_default()),
+                costs(point)
+            ),
             Choice::None => "no setting is sound: nothing can be recommended\n".to_owned(),
         }
     }

@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use crate::sample::{folder, scene, stderr, stdout};
 
@@ -15,6 +17,14 @@ fn nucleus(folder: &Path, arguments: &[&str]) -> Output {
 
 /// A sweep that takes a moment.
 const SMALL: [&str; 8] = ["trade", "drape.ron", "--evaluations", "6,12", "--substeps", "1", "--frames", "8"];
+
+/// The runs that are kept so far, a line each.
+#[cfg(unix)]
+fn kept_text(folder: &Path) -> String {
+    let Ok(all) = fs::read_dir(folder.join("kept").join("trade")) else { return String::new() };
+    all.map(|entry| fs::read_to_string(entry.unwrap().path().join("runs.jsonl")).unwrap_or_default())
+        .collect()
+}
 
 /// Lines of a list that is kept, in whichever folder.
 fn kept_lines(folder: &Path, name: &str) -> usize {
@@ -65,6 +75,51 @@ fn a_sweep_goes_on_where_it_was() {
     assert_eq!((again.status.code(), kept_lines(folder.path(), "runs.jsonl")), (Some(0), 3));
 }
 
+/// A sweep that is stopped when its first run has been kept, and done again.
+#[cfg(unix)]
+#[test]
+fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
+    let folder = folder();
+    scene(folder.path(), 48, "");
+    let evaluations: Vec<String> = (1..=30).map(|k| (3 * k).to_string()).collect();
+    let evaluations = evaluations.join(",");
+    let sweep = [
+        "trade",
+        "drape.ron",
+        "--jobs",
+        "1",
+        "--substeps",
+        "1",
+        "--frames",
+        "48",
+        "--evaluations",
+        &evaluations,
+    ];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
+    command.env("NUCLEUS_CACHE", folder.path().join("kept")).args(sweep).current_dir(folder.path());
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begin = Instant::now();
+    while kept_text(folder.path()).lines().count() == 0 {
+        assert!(begin.elapsed() < Duration::from_secs(120), "no run of the sweep ends");
+        sleep(Duration::from_millis(2));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let stopped = child.wait_with_output().unwrap();
+    assert_eq!(stopped.status.code(), Some(130), "{}", stderr(&stopped));
+    assert!(stderr(&stopped).contains("what was finished is kept"), "{}", stderr(&stopped));
+    assert!(!folder.path().join("drape.trade.html").exists(), "half a sweep is no report");
+
+    let kept = kept_text(folder.path());
+    // 30 that were asked for; the scene's own has 96 evaluations too, but 2 substeps.
+    assert!(kept.lines().count() < 31, "it was stopped before it ended");
+    let again = nucleus(folder.path(), &sweep);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    let all = kept_text(folder.path());
+    assert!(all.starts_with(&kept), "what was kept is as it was");
+    assert_eq!(all.lines().count(), 31);
+}
+
 #[test]
 fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
     let folder = folder();
@@ -94,10 +149,14 @@ fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
 fn what_no_setting_reaches_ends_with_the_nearest_and_exit_code_1() {
     let folder = folder();
     scene(folder.path(), 24, "");
-    for wish in [["--time", "0.00001ms"], ["--error", "0.0000001%"]] {
+    let wishes = [
+        (["--time", "0.00001ms"], "no setting reaches a time of 0.00001 ms; the nearest: "),
+        (["--error", "0.0000001%"], "an error of 0.0000001 % cannot be told from none"),
+    ];
+    for (wish, words) in wishes {
         let output = nucleus(folder.path(), &[&SMALL[..], &wish].concat());
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        assert!(stdout(&output).contains("; the nearest: "), "{}", stdout(&output));
+        assert!(stdout(&output).contains(words), "{}", stdout(&output));
     }
 }
 
@@ -118,4 +177,14 @@ fn what_cannot_be_compared_is_said_with_exit_code_1() {
         "n": nucleus(gravity: 0), "p": polyPlane(), "c": nCloth(inputMesh: "p")})"#;
     fs::write(folder.path().join("still.ron"), still).unwrap();
     refused(&["trade", "still.ron", "--evaluations", "6"], "no cloth moves");
+    // A hundred times its weight on a sheet that is given one sweep a frame: two and four are as far from an end.
+    let loose = r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {
+        "n": nucleus(gravity: 980, evaluations: 1, subSteps: 1), "p": polyPlane(subdivisions: (8, 8), rotate: (90, 0, 0)),
+        "c": nCloth(inputMesh: "p"),
+        "r": dynamicConstraint(constraintType: transform, components: ["c.vtx[0:8]"])})"#;
+    fs::write(folder.path().join("loose.ron"), loose).unwrap();
+    refused(
+        &["trade", "loose.ron", "--evaluations", "1"],
+        "the reference does not converge: with 2 and with 4",
+    );
 }

@@ -2,12 +2,13 @@
 //!
 //! C(x) = |c| - |c_rest|, where c is the bending vector of a [`hinge`](super::hinge): it is nought where the cloth is
 //! flat, at right angles to it, and as long as it is bent. Being linear in the positions it needs no angle, has no
-//! singular shape, and cannot turn or shift the cloth. What is bent at rest keeps the length of its vector.
+//! singular shape, and cannot turn or shift the cloth. What is bent at rest keeps the length of its vector. Far from flat
+//! a hinge is stiffer along c, so that its moment grows with the angle.
 
 use crate::columns::Shared;
 use crate::scalar::{Lanes, Real, Row4};
 
-use super::hinge::HingeGroup;
+use super::hinge::{HingeGroup, LEAST_COSINE};
 use super::shares::Portion;
 
 /// How strongly a sweep acts.
@@ -32,6 +33,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
 ) {
     let (share, compliance) = (R::Lanes::splat(strength.share), R::Lanes::splat(strength.compliance));
     let (zero, one, tiny) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::TINY));
+    let least = R::Lanes::splat(R::from_f64(LEAST_COSINE * LEAST_COSINE));
     for (group, portion) in groups {
         // SAFETY: the caller's promise.
         let x = group.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
@@ -44,10 +46,14 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
             c = [c[0] + weight * px, c[1] + weight * py, c[2] + weight * pz];
             mobility = mobility + w * weight * weight;
         }
-        let length = (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]).sqrt();
+        let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        let length = square.sqrt();
+        // cos²(θ/2), within bounds.
+        let cosine = one - square * R::Lanes::from_array(group.fold);
+        let cosine = (cosine - least).choose_by_sign(cosine, least);
         let bent = one - R::Lanes::from_array(group.rest) / (length + tiny);
         let (share, compliance) = portion.of(bent, share, compliance);
-        let lambda = share * bent / (mobility + compliance + tiny);
+        let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
         let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
         for k in 0..N {
             let weight = weights[k];

@@ -35,12 +35,19 @@ pub struct Course {
     pub steps: f64,
     /// Rows evaluated in all frames.
     pub evaluations: f64,
+    /// The frame after which it was given up, if it was.
+    pub given_up: Option<i64>,
 }
 
 impl Course {
     /// Runs a program on one thread. `tamper` changes what frames bring; `stored` is what the start holds in joules,
-    /// besides what falls and is stretched.
-    pub fn of<R: Real>(program: &Program, tamper: Option<Tamper>, stored: f64) -> Self {
+    /// besides what falls and is stretched. After each frame `go_on` says whether there is to be another.
+    pub fn of<R: Real>(
+        program: &Program,
+        tamper: Option<Tamper>,
+        stored: f64,
+        go_on: &dyn Fn(&Self) -> bool,
+    ) -> Self {
         let mut simulation = Simulation::<R>::new(program, 1);
         let points = cloths(program);
         let mut book = EnergyBook::new(simulation.solver(), &points, stored);
@@ -67,6 +74,10 @@ impl Course {
             course.evaluations += evaluations;
             let energy = book.end(simulation.solver());
             course.frames.push(Seen { frame, report: seen.report, energy });
+            if !go_on(&course) {
+                course.given_up = Some(frame);
+                break;
+            }
         }
         course.end = places(&simulation, &points);
         course

@@ -13,7 +13,7 @@ Bounds are set before a row is run, from the scene itself or from what one needs
 
 - **Energy** is the energy of motion, at its worst, over what weight, forces and changes of attributes had brought in by then, as if wind, colliders and held points had each struck the cloth elastically; above 1.01 the solver has made energy.
 - **Speed** (root mean square) and **strain** (99 % of all links are below it) are what is left when the cause has ended and some time has passed; the frames are in the scenes.
-- **Cost** is processor time over that of the same scene without the extreme, per frame, or per time step or evaluated row where the extreme is the number of those; at most 3.
+- **Cost** is processor time over that of the same scene without the extreme, per frame, or per time step or evaluated row where the extreme is the number of those; at most 3. A run that has taken 20 s and is above that is given up; what would have to hold in its end is then not judged.
 - **Reported** is what was said when the scene was read, and what the solver counted.
 
 ";

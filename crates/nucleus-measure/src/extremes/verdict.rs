@@ -19,6 +19,9 @@ pub const MOST_COST: f64 = 3.0;
 /// Energy is told to this share: the bound is exact, the sum over a frame's steps is not quite.
 const ENERGY: f64 = 1.01;
 
+/// Seconds of the processor after which a run that is too dear already is given up.
+const PATIENCE: f64 = 20.0;
+
 /// How often a run that is a little too dear is run again.
 const RERUNS: usize = 3;
 
@@ -110,14 +113,14 @@ impl Outcome {
         self.figures.iter().all(Figure::holds)
     }
 
+    /// Whether everything holds but what it costs, which is a matter of the machine too.
+    pub fn holds_at_any_cost(&self) -> bool {
+        self.figures.iter().filter(|figure| figure.kind != Kind::Cost).all(Figure::holds)
+    }
+
     /// The figure of a column, if the row has it.
     pub fn figure(&self, kind: Kind) -> Option<&Figure> {
         self.figures.iter().find(|figure| figure.kind == kind)
-    }
-
-    /// Whether the row says what came of it: it holds, or is known not to.
-    pub fn is_as_known(&self) -> bool {
-        self.holds() == self.extreme.fails.is_none()
     }
 
     /// The figures that do not hold.
@@ -211,8 +214,11 @@ impl Outcome {
             self.figures.push(Figure::at_most(Kind::Runs, "does not run", 1.0, 0.0));
             return Ok(());
         };
-        let mut course = Course::of::<f32>(program, case.tamper, stored);
         let nominal = nominals.of(&nominal())?;
+        let go_on =
+            |course: &Course| course.seconds < PATIENCE || cost.of(course) / cost.of(&nominal) <= MOST_COST;
+        let run = || Course::of::<f32>(program, case.tamper, stored, &go_on);
+        let mut course = run();
         // A busy machine makes a run dear, though never cheap: what is a little too dear is run again.
         let too_dear = |course: &Course| cost.of(course) / cost.of(&nominal) > MOST_COST;
         let by_far = cost.of(&course) / cost.of(&nominal) > 2.0 * MOST_COST;
@@ -220,14 +226,20 @@ impl Outcome {
             if by_far || !too_dear(&course) {
                 break;
             }
-            course.seconds = course.seconds.min(Course::of::<f32>(program, case.tamper, stored).seconds);
+            course.seconds = course.seconds.min(run().seconds);
         }
         self.basics(&course);
-        self.recovers(&course, recovery);
-        self.demands(&course, &nominal, demands);
+        // What has to hold in the end says nothing of a run that has not got there.
+        if course.given_up.is_none() {
+            self.recovers(&course, recovery);
+            self.demands(&course, &nominal, demands);
+        }
         self.costs(&course, &nominal, cost);
         self.warns(warns);
         self.counts(&course);
+        if let Some(frame) = course.given_up {
+            self.reported.push(format!("given up after frame {frame}: too dear"));
+        }
         Ok(())
     }
 
@@ -337,8 +349,9 @@ impl Nominals {
         let course = slot.get_or_init(|| match &compiled.program {
             None => Course::default(),
             Some(program) => {
-                let mut course = Course::of::<f32>(program, None, 0.0);
-                course.seconds = course.seconds.min(Course::of::<f32>(program, None, 0.0).seconds);
+                let run = || Course::of::<f32>(program, None, 0.0, &|_| true);
+                let mut course = run();
+                course.seconds = course.seconds.min(run().seconds);
                 course
             }
         });

@@ -8,7 +8,7 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
     let mut text = format!(
         "# Speed against accuracy\n\nWhat settings cost and how wrong they are, scene by scene.\n`nucleus trade SCENE` makes such \
          a report for any scene; `cargo xtask book` makes these anew.\nTimes are milliseconds of processor time to a frame, on one \
-         core.\n\n{machine}\n\n| Scene | Error | To 10 % | To 1 % | To 0.1 % | Slope | Its own setting |\n|---|---|---|---|---|---|---|\n"
+         core.\n\n{machine}\n\n| Scene | Frames | Settings | Error | To 10 % | To 1 % | To 0.1 % | Slope | Its own setting |\n|---|---|---|---|---|---|---|---|---|\n"
     );
     for (name, trade) in trades {
         let time = |error: f64| match trade.cheapest(error) {
@@ -22,8 +22,9 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
         });
         let [to_10, to_1, to_01] = [0.1, 0.01, 0.001].map(time);
         let measure = measure(trade);
+        let ([from, to], settings) = (trade.frames, trade.points.len());
         text += &format!(
-            "| [{name}]({name}.trade.html) | {measure} | {to_10} | {to_1} | {to_01} | {slope} | {own} |\n"
+            "| [{name}]({name}.trade.html) | {from} to {to} | {settings} | {measure} | {to_10} | {to_1} | {to_01} | {slope} | {own} |\n"
         );
     }
     text += "\nThe reports are pages with pictures; download one and open it in a browser. Beside each lie a table (`.csv`) and all \

@@ -129,10 +129,7 @@ impl Trade {
         points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         mark_frontier(&mut points);
         let span = subject.program().time();
-        let floor = references.map(|both| match measure {
-            Measure::Position { .. } => both.horizon.floor,
-            _ => measure.error(&both.coarse.run, Some(&both.fine.run)),
-        });
+        let floor = references.map(Self::floor);
         Self {
             name: subject.name(),
             frames: [span.start, span.end],
@@ -143,6 +140,14 @@ impl Trade {
             own: subject.own(),
             points,
             is_closed: subject.is_closed,
+        }
+    }
+
+    /// How far two references differ by the measure that they allow.
+    pub fn floor(both: &References) -> f64 {
+        match Measure::choose(Some(&both.horizon)) {
+            Measure::Position { .. } => both.horizon.floor,
+            measure => measure.error(&both.coarse.run, Some(&both.fine.run)),
         }
     }
 
@@ -158,7 +163,7 @@ impl Trade {
 
     /// Whether an error can be told from none: the references have to differ by less than half of it.
     pub fn can_tell(&self, error: f64) -> bool {
-        self.floor.is_none_or(|floor| 2.0 * floor <= error)
+        self.floor.is_none_or(|floor| told(floor, error))
     }
 
     /// By which power of the time the error falls along the frontier: -1 is half the error for twice the time.
@@ -181,6 +186,11 @@ impl Trade {
     pub fn own_point(&self) -> Option<&Point> {
         self.points.iter().find(|point| point.setting == self.own)
     }
+}
+
+/// Whether an error can be told from none by references that differ by so much.
+pub(super) fn told(floor: f64, error: f64) -> bool {
+    2.0 * floor <= error
 }
 
 /// Marks the sound points that none before them is more exact than; they come the cheapest first.

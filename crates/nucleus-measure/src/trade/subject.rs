@@ -23,6 +23,9 @@ const FEWEST_FRAMES: i64 = 3;
 static PLANE_RESISTANCES: [&Key<f64>; 3] =
     [&n_cloth::STRETCH_RESISTANCE, &n_cloth::COMPRESSION_RESISTANCE, &n_cloth::SHEAR_RESISTANCE];
 
+/// References are of no use if not even an error of this size can be told.
+pub(super) const MOST_APART: f64 = 0.1;
+
 /// Why a scene cannot be compared, or a comparison not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -47,6 +50,18 @@ pub enum TradeError {
     ReferenceLost {
         /// The frame.
         frame: i64,
+    },
+    /// The two references have not come together.
+    #[error(
+        "the reference does not converge: with {} and with {} evaluations its strain differs by {:.1} %, so that an error of \
+         {:.0} % could not be told from none; more `--evaluations` make finer references",
+        evaluations[0], evaluations[1], 100.0 * apart, 100.0 * MOST_APART
+    )]
+    ReferenceDoesNotConverge {
+        /// Evaluations of the two.
+        evaluations: [f64; 2],
+        /// How much they differ in the strain that 99 % of the edges stay below, RMS over frames.
+        apart: f64,
     },
     /// Nothing moves.
     #[error("there is nothing to compare: in frames {start} to {end} no cloth moves")]

@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use nucleus_graph::compile::Program;
 
-use super::found::Trade;
+use super::found::{Trade, told};
 use super::plan::{self, Wishes};
 use super::run::{Kept, Run, follow, key};
 use super::setting::Setting;
-use super::subject::{Subject, TradeError};
+use super::subject::{MOST_APART, Subject, TradeError};
 use crate::reference::{self, References, Solved};
 use crate::store::Store;
 use crate::trajectory::Trajectory;
@@ -168,7 +168,18 @@ fn refuse(subject: &Subject, references: &References) -> Result<(), TradeError> 
         path.frame(frame, &mut now);
         crate::metrics::distance::distance(&now, &first, subject.size).max > 1e-7
     });
-    if moves { Ok(()) } else { Err(TradeError::NothingMoves { start: span.start, end: span.end }) }
+    if !moves {
+        return Err(TradeError::NothingMoves { start: span.start, end: span.end });
+    }
+    let apart = Trade::floor(references);
+    match told(apart, MOST_APART) {
+        true => Ok(()),
+        false => {
+            let evaluations =
+                [&references.coarse, &references.fine].map(|solved| solved.run.setting.evaluations);
+            Err(TradeError::ReferenceDoesNotConverge { evaluations, apart })
+        }
+    }
 }
 
 fn task(subject: &Subject, setting: &Setting, bits: u32) -> Result<Task, TradeError> {

@@ -4,25 +4,31 @@ use nucleus_core::{
     BuildError, Cloth, ClothLists, Collider, ColliderFrame, Faces, GroundPlane, Mass, ModelBuilder, Surface,
 };
 
-use super::rig::{DENSITY, GRAVITY, Rig, Vec3, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{DENSITY, GRAVITY, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "incline",
         about: "A sheet of 10 cm lies on a plane that falls off by 1 in 2, so that it is held by a friction of 0.5 and \
             more. Where it slides, the way after a second is (g / 2)(sin θ - μ cos θ).",
+        fails: None,
         run: incline,
     },
     Case {
         name: "restitution",
         about: "A sheet is dropped from 1 m on a plane that gives back the share e of its speed: it rises to e².",
+        fails: None,
         run: restitution,
     },
     Case {
         name: "capstan",
         about: "A ribbon lies over half a cylinder; one end hangs down, the other farther. It slips when the pull of \
             the one is more than exp(μ π) times that of the other, the weight on the cylinder included.",
+        fails: Some(
+            "More evaluations hold less, so that what the smaller number holds is no merit. Friction of a sheet on a plane \
+            is exact; where some of it is lost on a cylinder of faces is not known.",
+        ),
         run: capstan,
     },
 ];
@@ -121,16 +127,19 @@ fn long_side(radius: f64) -> f64 {
 fn capstan() -> Result<Vec<Finding>, BuildError> {
     let radius = RADIUS + THICKNESS;
     let exact = long_side(radius);
-    let (mut low, mut high) = (SHORT, 2.0 * exact);
-    for _ in 0..7 {
-        let middle = (low + high) / 2.0;
-        if ribbon_slip(radius, middle)? > MOST_CREEP { high = middle } else { low = middle }
-    }
-    let quantity = "longest end that is held, m";
-    Ok(vec![Finding::new(quantity, exact, (low + high) / 2.0, Allowed::Share(0.02))])
+    let held = |evaluations: f64| -> Result<Finding, BuildError> {
+        let (mut low, mut high) = (SHORT, 2.0 * exact);
+        for _ in 0..10 {
+            let middle = (low + high) / 2.0;
+            if ribbon_slip(radius, middle, evaluations)? > MOST_CREEP { high = middle } else { low = middle }
+        }
+        let quantity = format!("longest end that is held at {evaluations} evaluations, m");
+        Ok(Finding::new(quantity, exact, (low + high) / 2.0, Allowed::Share(0.02)))
+    };
+    [240.0, 480.0].into_iter().map(held).collect()
 }
 
-fn ribbon_slip(radius: f64, long: f64) -> Result<f64, BuildError> {
+fn ribbon_slip(radius: f64, long: f64, evaluations: f64) -> Result<f64, BuildError> {
     let length = SHORT + std::f64::consts::PI * radius + long;
     let columns = 121u32;
     // Laid out straight, then wound: so it is longer than its links by the difference of arc and chord, 1e-5.
@@ -145,17 +154,23 @@ fn ribbon_slip(radius: f64, long: f64) -> Result<f64, BuildError> {
         }
     }
     let mut builder = ModelBuilder::new();
-    let lists = ClothLists { bend: true, ..LINKS };
+    let lists = ClothLists { damp: true, ..LINKS };
     builder.cloth(Cloth::new(ribbon.clone(), Mass::PerArea(DENSITY), lists))?;
     builder.collider(Collider { surface: cylinder() })?;
-    let mut rig = Rig::of(builder, ribbon, 240.0);
+    let mut rig = Rig::of(builder, ribbon, evaluations);
     rig.cloth().stiffness = membrane(500.0);
     rig.cloth().thickness = THICKNESS / 2.0;
     rig.cloth().friction = ROPE_FRICTION;
     let thickness = THICKNESS / 2.0;
     rig.frame.colliders =
         vec![ColliderFrame { collide: true, thickness, friction: 0.0, ..ColliderFrame::default() }];
-    // What the ribbon does to become taut is not slip.
+    // Let go at once, the ends would bounce at up to twice their weight: it comes in a second, and the ribbon damps what it
+    // does along itself.
+    rig.cloth().stretch_damp = 1.0;
+    for frame in 1..=24 {
+        rig.frame.gravity = -Vec3::y() * GRAVITY * f64::from(frame) / 24.0;
+        rig.step();
+    }
     rig.run(6);
     let end = columns as usize - 1;
     let start = rig.point(end).y;

@@ -2,30 +2,38 @@
 
 use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
 
-use super::rig::{CLOTH, DENSITY, GRAVITY, Rig, STRIP, Vec3, areas, membrane, sheet};
-use super::{Allowed, Case, Finding};
+use super::{Allowed, Case, Finding, Rig};
+use crate::rig::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, areas, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "pendulum",
         about: "A rod of 1 m swings about a hinge. Its period over that of small swings is 1 / agm(1, cos(α / 2)).",
+        fails: None,
         run: pendulum,
     },
     Case {
         name: "terminal-velocity",
         about: "A sheet falls flat through air whose drag is linear: v = g τ (1 - exp(-t / τ)), in m/s.",
+        fails: None,
         run: terminal_velocity,
     },
     Case {
         name: "momentum",
         about: "A sheet in empty space is pushed and turned, and then left alone for a second: the change of its \
-            momentum and of its angular momentum, over what they were.",
+            momentum and of its angular momentum, over what they were. A link pulls along where it is at the end of a step, not \
+            where it was at its start; so a step takes spin away, in proportion to its length.",
+        fails: Some(
+            "Spin is lost in proportion to the length of a step: eight times the evaluations lose an eighth. 1e-4 takes \
+            some 2,000 evaluations.",
+        ),
         run: momentum,
     },
     Case {
         name: "energy",
         about: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: the most energy of motion and height \
             that it ever has over what it had at first, in J.",
+        fails: None,
         run: energy,
     },
 ];
@@ -105,7 +113,7 @@ fn momenta(rig: &Rig) -> (Vec3, Vec3) {
 
 fn momentum() -> Result<Vec<Finding>, BuildError> {
     let mut findings = Vec::new();
-    for evaluations in [96.0, 768.0] {
+    for evaluations in [96.0, 768.0, 3072.0] {
         let (push, turn) = drift(evaluations)?;
         let name = |what| format!("change of {what} in a second, {evaluations} evaluations");
         findings.push(Finding::new(name("momentum"), 1e-6, push, Allowed::AtMost));

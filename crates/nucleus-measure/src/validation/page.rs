@@ -17,11 +17,7 @@ pub fn page(results: &[(Case, Vec<Finding>)]) -> Result<String, std::fmt::Error>
          Everything is in double precision and SI units, so that what is left is the error of the method.\n\n",
     );
     writeln!(page, "{right} of {} figures are within what is allowed.", all.len())?;
-    let wrong: Vec<String> = results
-        .iter()
-        .flat_map(|(case, findings)| findings.iter().filter(|f| !f.holds()).map(move |f| (case, f)))
-        .map(|(case, finding)| format!("- {}: {}, {}", case.name, finding.quantity, finding.verdict()))
-        .collect();
+    let wrong: Vec<String> = results.iter().filter_map(|(case, findings)| failures(case, findings)).collect();
     if !wrong.is_empty() {
         writeln!(page, "These are not:\n\n{}", wrong.join("\n"))?;
     }
@@ -33,6 +29,14 @@ pub fn page(results: &[(Case, Vec<Finding>)]) -> Result<String, std::fmt::Error>
         }
     }
     Ok(page)
+}
+
+/// What is wrong with a case, each figure with a line, and why.
+fn failures(case: &Case, findings: &[Finding]) -> Option<String> {
+    let line = |finding: &Finding| format!("- {}: {}, {}", case.name, finding.quantity, finding.verdict());
+    let lines: Vec<String> = findings.iter().filter(|finding| !finding.holds()).map(line).collect();
+    let reason = case.fails.unwrap_or("Not known to fail: something has changed.");
+    (!lines.is_empty()).then(|| format!("{}\n  {reason}", lines.join("\n")))
 }
 
 impl Finding {
@@ -97,14 +101,15 @@ mod tests {
 
     #[test]
     fn a_page_names_what_fails_with_its_figure() {
-        let case = super::super::cases().next().expect("there are cases");
+        let case =
+            Case { fails: Some("A reason."), ..super::super::cases().next().expect("there are cases") };
         let findings = vec![
             Finding::new("right", 2.0, 2.01, Allowed::Share(0.01)),
             Finding::new("wrong", 2.0, 2.5, Allowed::Margin(0.1)),
         ];
         let page = page(&[(case, findings)]).expect("memory takes text");
         assert!(page.contains("1 of 2 figures"), "{page}");
-        assert!(page.contains("wrong, 2.5 for 2: off by +0.50, allowed 0.1"), "{page}");
+        assert!(page.contains("wrong, 2.5 for 2: off by +0.50, allowed 0.1\n  A reason.\n"), "{page}");
         assert!(page.contains("| right | 2 | 2.01 | +0.50 % | 1 % | ok |"), "{page}");
     }
 }

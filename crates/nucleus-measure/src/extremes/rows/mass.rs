@@ -1,7 +1,7 @@
 //! Mass: how light, how heavy, and both side by side.
 
 use super::super::meshes;
-use super::{Cost, Extreme, RUNS, Recovery, Runs, at_most, banner, from_file};
+use super::{Cost, Extreme, RUNS, Recovery, Runs, at_most, banner, hung};
 
 pub static ROWS: [Extreme; 5] = [
     Extreme {
@@ -12,12 +12,12 @@ pub static ROWS: [Extreme; 5] = [
             stretched by what its material gives; sizes of faces within a factor of ten keep the error small.",
         trial: Runs {
             case: || {
-                from_file("graded.obj", "vtx[0:1]", "", "").scene(96).mesh("graded.obj", meshes::graded(40, 1e6))
+                hung("graded.obj", "vtx[0:1]", meshes::graded(40, 1e6))
             },
             nominal: || {
-                from_file("even.obj", "vtx[0:1]", "", "").scene(96).mesh("even.obj", meshes::graded(40, 1.0))
+                hung("even.obj", "vtx[0:1]", meshes::graded(40, 1.0))
             },
-            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.5 }),
+            recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.05 }),
             ..RUNS
         }
         .trial(),
@@ -33,10 +33,10 @@ pub static ROWS: [Extreme; 5] = [
         expect: "The strip hangs and stays whole.",
         trial: Runs {
             case: || {
-                from_file("graded.obj", "vtx[0:1]", "", "").scene(96).mesh("graded.obj", meshes::graded(40, 1e2))
+                hung("graded.obj", "vtx[0:1]", meshes::graded(40, 1e2))
             },
             nominal: || {
-                from_file("even.obj", "vtx[0:1]", "", "").scene(96).mesh("even.obj", meshes::graded(40, 1.0))
+                hung("even.obj", "vtx[0:1]", meshes::graded(40, 1.0))
             },
             recovery: Some(Recovery { from: 72, speed: 0.2, strain: 0.05 }),
             ..RUNS
@@ -82,7 +82,7 @@ pub static ROWS: [Extreme; 5] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step: 5 times the cost of the ordinary banner."),
     },
     Extreme {
         name: "mass-1e6",

@@ -1,7 +1,7 @@
 //! Meshes that no modeller would keep.
 
 use super::super::meshes;
-use super::{Cost, Extreme, Nodes, RUNS, Recovery, Runs, Trial, at_least, at_most, from_file, nucleus};
+use super::{Cost, Extreme, Nodes, RUNS, Recovery, Runs, Trial, at_least, at_most, from_file, hung, nucleus};
 
 /// A cloth from a file that falls freely.
 fn free(file: &str, cloth: &str) -> Nodes {
@@ -13,7 +13,7 @@ fn free(file: &str, cloth: &str) -> Nodes {
 
 /// The ordinary banner from a file.
 fn ordinary() -> super::Case {
-    from_file("grid.obj", "vtx[0:16]", "", "").scene(96).mesh("grid.obj", meshes::grid(16))
+    hung("grid.obj", "vtx[0:16]", meshes::grid(16))
 }
 
 const HANGS: Option<Recovery> = Some(Recovery { from: 84, speed: 0.2, strain: 0.02 });
@@ -25,11 +25,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "faces that name a point twice or lie on a line",
         expect: "They are left out, and a warning says how many.",
         trial: Runs {
-            case: || {
-                from_file("flat.obj", "vtx[0:16]", "", "")
-                    .scene(96)
-                    .mesh("flat.obj", meshes::grid_and_flat_faces(16))
-            },
+            case: || hung("flat.obj", "vtx[0:16]", meshes::grid_and_flat_faces(16)),
             nominal: ordinary,
             recovery: HANGS,
             demands: &[at_most("farthest from the sheet without them (m)", 1e-9, |course, nominal| {
@@ -47,11 +43,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "a row of faces a millionth as high as they are wide",
         expect: "The sheet hangs like an ordinary one.",
         trial: Runs {
-            case: || {
-                from_file("slivers.obj", "vtx[0:16]", "", "")
-                    .scene(96)
-                    .mesh("slivers.obj", meshes::slivers(16))
-            },
+            case: || hung("slivers.obj", "vtx[0:16]", meshes::slivers(16)),
             nominal: ordinary,
             recovery: HANGS,
             ..RUNS
@@ -65,11 +57,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "a row of faces with two corners at the same place, joined by an edge of no length",
         expect: "The edge has no direction and holds nothing at first; the sheet hangs whole all the same.",
         trial: Runs {
-            case: || {
-                from_file("double.obj", "vtx[0:16]", "", "")
-                    .scene(96)
-                    .mesh("double.obj", meshes::edges_of_no_length(16))
-            },
+            case: || hung("double.obj", "vtx[0:16]", meshes::edges_of_no_length(16)),
             nominal: ordinary,
             recovery: HANGS,
             ..RUNS
@@ -83,11 +71,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "every point twice: two sheets in one mesh, not joined, at the same place",
         expect: "Two sheets that hang together. A mesh that should be one is to be merged first.",
         trial: Runs {
-            case: || {
-                from_file("two.obj", "vtx[0:16]\", \"banner.vtx[289:305]", "", "")
-                    .scene(96)
-                    .mesh("two.obj", meshes::doubled(16))
-            },
+            case: || hung("two.obj", "vtx[0:16]\", \"banner.vtx[289:305]", meshes::doubled(16)),
             nominal: ordinary,
             cost: Cost::Evaluation,
             recovery: HANGS,
@@ -102,11 +86,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "two points that belong to no face",
         expect: "They fall as free points, each with the mass of an average one, and a warning names the first.",
         trial: Runs {
-            case: || {
-                from_file("stray.obj", "vtx[0:16]", "", "")
-                    .scene(96)
-                    .mesh("stray.obj", meshes::grid_and_stray_points(16))
-            },
+            case: || hung("stray.obj", "vtx[0:16]", meshes::grid_and_stray_points(16)),
             nominal: ordinary,
             demands: &[
                 at_most("99 % strain at any time", 0.02, |course, _| {
@@ -127,11 +107,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "every face twice, the second time turned over",
         expect: "A sheet twice as heavy and twice as stiff, which hangs like one.",
         trial: Runs {
-            case: || {
-                from_file("twice.obj", "vtx[0:16]", "", "")
-                    .scene(96)
-                    .mesh("twice.obj", meshes::faces_twice(16))
-            },
+            case: || hung("twice.obj", "vtx[0:16]", meshes::faces_twice(16)),
             nominal: ordinary,
             cost: Cost::Evaluation,
             recovery: HANGS,
@@ -163,9 +139,7 @@ pub static ROWS: [Extreme; 17] = [
         what: "a thousand triangles round one point, hung by a part of the rim",
         expect: "It hangs. All links of the middle are swept one after the other, so a fan is slower than a grid.",
         trial: Runs {
-            case: || {
-                from_file("fan.obj", "vtx[100:400]", "", "").scene(96).mesh("fan.obj", meshes::fan(1000))
-            },
+            case: || hung("fan.obj", "vtx[100:400]", meshes::fan(1000)),
             nominal: || {
                 from_file("grid32.obj", "vtx[0:32]", "", "").scene(24).mesh("grid32.obj", meshes::grid(32))
             },

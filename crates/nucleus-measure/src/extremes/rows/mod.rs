@@ -47,6 +47,9 @@ const RUNS: Runs = Runs {
     warns: &[],
 };
 
+/// A row on a sheet that lies on a ball: nothing crosses, and it costs no more than three such sheets.
+const DRAPED: Runs = Runs { nominal: || drape("", "", "").scene(96), demands: &[NOTHING_CROSSES], ..RUNS };
+
 /// What [`Trial::Runs`] is made from, so that a row need only say what is its own.
 struct Runs {
     case: fn() -> Case,
@@ -124,6 +127,11 @@ fn from_file(file: &str, held: &str, solver: &str, cloth: &str) -> Nodes {
         \"banner\": nCloth(inputMesh: \"sheet\", pointMass: 0.2, damp: 1, tangentialDrag: 0.5, {cloth}),
         \"rail\": dynamicConstraint(constraintType: transform, components: [\"banner.{held}\"]),"
     ))
+}
+
+/// Such a cloth for four seconds, with nothing else set.
+fn hung(file: &'static str, held: &str, mesh: String) -> Case {
+    from_file(file, held, "", "").scene(96).mesh(file, mesh)
 }
 
 /// A sheet of a metre that falls from 10 cm on the ground.

@@ -1,6 +1,6 @@
 //! Scale and place: a millimetre, a hundred kilometres, and far from the origin.
 
-use super::{Case, Cost, Extreme, NOTHING_CROSSES, RUNS, Recovery, Runs, at_most, banner, drape};
+use super::{Case, Cost, DRAPED, Extreme, NOTHING_CROSSES, RUNS, Recovery, Runs, at_most, banner, drape};
 
 /// The banner put elsewhere, in scene units.
 fn moved(case: Case, by: &str) -> Case {
@@ -44,7 +44,9 @@ pub static ROWS: [Extreme; 9] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The run takes minutes: in each of 3,000 steps a frame the cloth is held apart from itself.",
+        ),
     },
     Extreme {
         name: "size-1e5",
@@ -66,15 +68,16 @@ pub static ROWS: [Extreme; 9] = [
         name: "space-scale-1e-6",
         group: "Scale",
         what: "`spaceScale` at its least, 0.000001: a banner of a micrometre",
-        expect: "It comes to rest at once, at any `evaluations` stretched to several times its length: no budget is enough \
-            to hold together what swings in microseconds.",
+        expect: "It is too light to stretch, and should rest at once.",
         trial: Runs {
             case: || banner("spaceScale: 0.000001", "").scene(96),
-            recovery: Some(Recovery { from: 48, speed: 0.01, strain: f64::INFINITY }),
+            recovery: Some(Recovery { from: 48, speed: 0.01, strain: 0.02 }),
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "As `size-1e-3`: no budget of `evaluations` is enough to hold together what swings in microseconds.",
+        ),
     },
     Extreme {
         name: "space-scale-1e6",
@@ -97,10 +100,8 @@ pub static ROWS: [Extreme; 9] = [
         expect: "It falls on the ball in a hundredth of a second and lies there: too light to bend over it.",
         trial: Runs {
             case: || drape("spaceScale: 0.001", "", "").scene(72),
-            nominal: || drape("", "", "").scene(96),
             recovery: Some(Recovery { from: 60, speed: 0.01, strain: 0.05 }),
-            demands: &[NOTHING_CROSSES],
-            ..RUNS
+            ..DRAPED
         }
         .trial(),
         fails: Some(
@@ -147,10 +148,8 @@ pub static ROWS: [Extreme; 9] = [
                     .scene(96)
                     .replace("translate: (0, 0.65, 0)", "translate: (10000, 0.65, 10000)")
             },
-            nominal: || drape("", "", "").scene(96),
             recovery: Some(Recovery { from: 90, speed: 0.3, strain: 0.05 }),
-            demands: &[NOTHING_CROSSES],
-            ..RUNS
+            ..DRAPED
         }
         .trial(),
         fails: None,

@@ -1,6 +1,6 @@
 //! Thickness: none, and more than there is room for.
 
-use super::{Extreme, NOTHING_CROSSES, RUNS, Recovery, Runs, at_least, drape, floor};
+use super::{DRAPED, Extreme, RUNS, Recovery, Runs, at_least, drape, floor};
 
 pub static ROWS: [Extreme; 5] = [
     Extreme {
@@ -10,10 +10,8 @@ pub static ROWS: [Extreme; 5] = [
         expect: "The sheet lies on the ball; a hundredth of a millimetre is kept to tell the sides apart.",
         trial: Runs {
             case: || drape("", "thickness: 0", "").scene(96).replace("nRigid(", "nRigid(thickness: 0, "),
-            nominal: || drape("", "", "").scene(96),
             recovery: Some(Recovery { from: 90, speed: 0.3, strain: 0.05 }),
-            demands: &[NOTHING_CROSSES],
-            ..RUNS
+            ..DRAPED
         }
         .trial(),
         fails: None,
@@ -27,10 +25,8 @@ pub static ROWS: [Extreme; 5] = [
             case: || {
                 drape("", "thickness: 0.1", "").scene(48).replace("nRigid(", "nRigid(thickness: 0.002, ")
             },
-            nominal: || drape("", "", "").scene(96),
             recovery: Some(Recovery { from: 42, speed: 0.3, strain: 0.05 }),
-            demands: &[NOTHING_CROSSES],
-            ..RUNS
+            ..DRAPED
         }
         .trial(),
         fails: Some(
@@ -45,12 +41,10 @@ pub static ROWS: [Extreme; 5] = [
         expect: "The sheet is led out of the ball's reach at 1 m/s, without a leap, and rests on it.",
         trial: Runs {
             case: || drape("", "thickness: 2", "").scene(144).replace("nRigid(", "nRigid(thickness: 0.002, "),
-            nominal: || drape("", "", "").scene(96),
             // Lifted by 2 m.
             stored: 0.2 * 9.8 * 2.2,
             recovery: Some(Recovery { from: 130, speed: 0.5, strain: 0.1 }),
-            demands: &[NOTHING_CROSSES],
-            ..RUNS
+            ..DRAPED
         }
         .trial(),
         fails: Some("The sheet gains speed while it is led out, and slides off."),

@@ -1,10 +1,10 @@
-//! What the cases are built from: strips and sheets, frames without anything that is not asked for, and runs until
-//! nothing moves. Everything in double precision and in SI units.
+//! What cases of validation and experiments are built from: sheets, frames without anything that is not asked for, and
+//! runs until nothing moves. Everything in SI units.
 
 use nalgebra::Vector3;
 use nucleus_core::{
     BuildError, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Faces, FrameInput, Mass, ModelBuilder,
-    Pin, PointId, ResistanceModel, Solver, StateView, StepReport, Stiffness, Surface,
+    Pin, PointId, Real, ResistanceModel, Solver, StateView, StepReport, Stiffness, Surface,
 };
 
 pub type Vec3 = Vector3<f64>;
@@ -17,13 +17,13 @@ pub const GRAVITY: f64 = 9.81;
 pub const CLOTH: ClothId = ClothId(0);
 
 /// A cloth, its solver, and what each frame brings.
-pub struct Rig {
+pub struct Rig<R: Real> {
     pub surface: Surface,
-    pub solver: Solver<f64>,
+    pub solver: Solver<R>,
     pub frame: FrameInput,
 }
 
-impl Rig {
+impl<R: Real> Rig<R> {
     /// A cloth of [`DENSITY`] alone in empty space, in Physical steps: `evaluations` in 1/24 s.
     pub fn new(surface: Surface, lists: ClothLists, evaluations: f64) -> Result<Self, BuildError> {
         let mut builder = ModelBuilder::new();

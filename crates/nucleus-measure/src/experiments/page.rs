@@ -1,0 +1,55 @@
+//! The experiments as a page.
+
+use std::fmt::Write;
+
+use super::{Experiment, Table};
+
+const HEAD: &str = "# Four experiments
+
+The solver's design rests on four experiments that were made on a prototype, before there was a solver.
+Here they are made on the solver itself, and what the prototype found stands beside what is found now.
+`cargo xtask book --only experiments` makes this page anew.
+Milliseconds are processor time of one core, of the solver as it is; the prototype's are not comparable and are left out.
+";
+
+/// The page in Markdown. `machine` is what the times were taken on.
+pub fn page(results: &[(Experiment, Vec<Table>)], machine: &str) -> String {
+    let mut text = format!("{HEAD}\n{machine}\n");
+    for (experiment, tables) in results {
+        let Experiment { name, about, differs, .. } = experiment;
+        put(&mut text, format_args!("\n## {name}\n\n{about}\n\n**Where the two differ.** {differs}"));
+        tables.iter().for_each(|found| table(&mut text, found));
+    }
+    text
+}
+
+fn table(text: &mut String, Table { title, head, rows }: &Table) {
+    put(text, format_args!("\n### {title}\n\n| {} |\n|{}", head.join(" | "), "---:|".repeat(head.len())));
+    for row in rows {
+        put(text, format_args!("| {} |", row.join(" | ")));
+    }
+}
+
+fn put(text: &mut String, line: std::fmt::Arguments) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::experiments;
+    use super::*;
+
+    #[test]
+    fn every_experiment_has_its_place_with_its_tables_and_where_it_differs() {
+        let table =
+            Table { title: "Figures", head: vec!["a", "b"], rows: vec![vec!["1".into(), "2".into()]] };
+        let results: Vec<_> = experiments().into_iter().map(|one| (one, vec![table.clone()])).collect();
+        let page = page(&results, "a machine");
+        for (experiment, _) in &results {
+            assert!(page.contains(&format!("## {}\n\n{}", experiment.name, experiment.about)), "{page}");
+            assert!(page.contains(experiment.differs), "{page}");
+        }
+        assert_eq!(page.matches("| a | b |\n|---:|---:|\n| 1 | 2 |\n").count(), 4);
+    }
+}
