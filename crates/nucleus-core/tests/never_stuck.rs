@@ -100,7 +100,7 @@ fn crossed(flipped: bool) -> Vec<StepReport> {
     let mut builder = nucleus_core::ModelBuilder::new();
     for surface in [level, slant] {
         let mass = nucleus_core::Mass::PerArea(0.2);
-        builder.cloth(nucleus_core::Cloth { surface, mass, lists: LINKS }).expect("a good mesh");
+        builder.cloth(nucleus_core::Cloth::new(surface, mass, LINKS)).expect("a good mesh");
     }
     let mut solver = Solver::<f32>::new(builder, 1);
     let cloth = ClothFrame { thickness: 0.004, damp: 1.0, bend_resistance: 0.1, ..still() };
