@@ -36,9 +36,11 @@ fn thickness(frame: &FrameInput, cloth: usize, collider: usize) -> f64 {
 }
 
 impl<R: Real> Solver<R> {
-    /// One pass over all contacts: the ground plane, then colliders.
+    /// One pass over all contacts: the ground plane, then colliders; `squeeze` is the share of every thickness that is
+    /// kept.
     pub(crate) fn meet_colliders(
         &mut self,
+        squeeze: f64,
         frame: &FrameInput,
         schedule: &Schedule<R>,
         span: Span,
@@ -46,7 +48,7 @@ impl<R: Real> Solver<R> {
         watch: &mut dyn StepObserver,
     ) {
         watch.enter(Stage::FindPairs);
-        self.lift_from_ground(frame, schedule, tally);
+        self.lift_from_ground(squeeze, frame, schedule, tally);
         let time = [span.from, span.to];
         for cloth in 0..self.cloths.len() {
             if !self.can_touch(frame, cloth) {
@@ -58,7 +60,8 @@ impl<R: Real> Solver<R> {
             for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
                 let collider = list.collider;
                 let view = StepParts { frame, cloth, collider, h: schedule.h, time, span: list.span };
-                let step = view.of(state, &collider_states[collider]);
+                let mut step = view.of(state, &collider_states[collider]);
+                step.thickness = step.thickness * R::from_f64(squeeze);
                 resolve(list, &step, team, tally);
                 list.trapped.lead_out(&colliders[collider], &step);
             }
@@ -399,7 +402,7 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    fn lift_from_ground(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
+    fn lift_from_ground(&mut self, squeeze: f64, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
         let Some(ground) = &frame.plane else { return };
         let Self { cloths, state, heights, team, .. } = self;
         let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
@@ -412,7 +415,7 @@ impl<R: Real> Solver<R> {
                 start: &state.start,
                 height: heights,
                 normal: [normal.x, normal.y, normal.z].map(R::from_f64),
-                thickness: R::from_f64(settings.thickness),
+                thickness: R::from_f64(settings.thickness * squeeze),
                 friction: R::from_f64(settings.friction + ground.friction),
                 extra_friction: &state.extra_friction,
                 h: R::from_f64(schedule.h),

@@ -51,9 +51,10 @@ impl<R: Real> Solver<R> {
         mutual.window = [0.0; 2];
     }
 
-    /// Pushes apart all that is too near, once.
+    /// Pushes apart all that is too near, once; `squeeze` is the share of every thickness that is kept.
     pub(crate) fn meet(
         &mut self,
+        squeeze: f64,
         frame: &FrameInput,
         schedule: &Schedule<R>,
         span: Span,
@@ -73,7 +74,8 @@ impl<R: Real> Solver<R> {
             mutual.tangle.work_apart(&anchors, &motion(state, schedule.h), most);
             state.anchor = anchors;
         }
-        *tally.contacts.get_mut() += mutual.active.sweep(&motion(state, schedule.h), team);
+        let step = Motion { squeeze: R::from_f64(squeeze), ..motion(state, schedule.h) };
+        *tally.contacts.get_mut() += mutual.active.sweep(&step, team);
     }
 
     /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
@@ -98,7 +100,7 @@ impl<R: Real> Solver<R> {
         if is_new && (mutual.tangle.is_suspected || mutual.tangle.is_there()) {
             find_crossings(mutual, cloths, &state.anchor, &state.displacement);
         }
-        pick(mutual, cloths.len(), &state.anchor, team);
+        pick(mutual, cloths.len(), &state.anchor, &state.start, team);
     }
 
     /// Marks the points that are not where they were foreseen to be at the end of the step. Whether there
@@ -220,6 +222,7 @@ pub(crate) fn motion<R: Real>(state: &mut State<R>, h: f64) -> Motion<'_, R> {
         start: &state.start,
         extra_friction: &state.extra_friction,
         h: R::from_f64(h),
+        squeeze: R::ONE,
     }
 }
 

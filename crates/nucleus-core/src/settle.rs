@@ -1,7 +1,7 @@
 //! The last word of a time step: the proof that nothing passed anything.
 //!
-//! What is not proven is pushed apart again; then held back on its way, each on its own side; then it goes nowhere in
-//! this step, except along with what carries it. The places at the start of the step were proven, so going nowhere is
+//! What is not proven is pushed apart again; then by less and less of its thickness, for between two bodies there may be
+//! no room for all of it; then held back on its way, each on its own side; then it goes nowhere in this step, except along with what carries it. The places at the start of the step were proven, so going nowhere is
 //! proven too: only between bodies that close on it, and pins that cross, is there no such way out, and what is there
 //! is let go and counted.
 
@@ -16,8 +16,12 @@ use crate::solver::Solver;
 
 /// How often each remedy is tried before the next.
 const PUSHES: usize = 4;
+const SQUEEZES: usize = 6;
 const CLIPS: usize = 8;
 const STOPS: usize = 32;
+
+/// Attempts after which pushing is over.
+const SQUEEZED: usize = PUSHES + SQUEEZES;
 
 impl<R: Real> Solver<R> {
     /// Proves at the end of a time step that nothing passed anything, and sees to it that it is so.
@@ -30,7 +34,7 @@ impl<R: Real> Solver<R> {
         watch: &mut dyn StepObserver,
     ) {
         let meets = self.mutual.as_ref().is_some_and(Mutual::is_on);
-        for attempt in 0..=PUSHES + CLIPS + STOPS {
+        for attempt in 0..=SQUEEZED + CLIPS + STOPS {
             watch.enter(Stage::FindPairs);
             if meets {
                 self.watch_contacts(frame, span, tally);
@@ -40,16 +44,17 @@ impl<R: Real> Solver<R> {
             if open == [0, 0] {
                 return;
             }
-            if attempt < PUSHES {
+            if attempt < SQUEEZED {
+                let squeeze = 0.5f64.powi((attempt + 1).saturating_sub(PUSHES) as i32);
                 if open[0] > 0 {
-                    self.meet(frame, schedule, span, tally, watch);
+                    self.meet(squeeze, frame, schedule, span, tally, watch);
                 }
-                self.meet_colliders(frame, schedule, span, tally, watch);
-            } else if attempt < PUSHES + CLIPS {
+                self.meet_colliders(squeeze, frame, schedule, span, tally, watch);
+            } else if attempt < SQUEEZED + CLIPS {
                 self.clip(schedule, tally);
                 self.hold_sides(frame, schedule, span, tally);
-            } else if attempt < PUSHES + CLIPS + STOPS {
-                if attempt == PUSHES + CLIPS {
+            } else if attempt < SQUEEZED + CLIPS + STOPS {
+                if attempt == SQUEEZED + CLIPS {
                     self.hold_none();
                 }
                 self.hold_sides(frame, schedule, span, tally);

@@ -103,8 +103,8 @@ impl<R: Real> Solver<R> {
                     watch.enter(Stage::Relax);
                     relax::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
                 }
-                Round::MeetEachOther => self.meet(frame, schedule, span, tally, watch),
-                Round::Collide => self.meet_colliders(frame, schedule, span, tally, watch),
+                Round::MeetEachOther => self.meet(1.0, frame, schedule, span, tally, watch),
+                Round::Collide => self.meet_colliders(1.0, frame, schedule, span, tally, watch),
                 Round::Settle => self.settle(frame, schedule, span, tally, watch), // the last word
             }
         }

@@ -381,7 +381,9 @@ mod tests {
             let run = timed_and_audited(workload, 9, setting, 3).unwrap();
             let account = run.audit.expect("it was audited");
             assert!(run.ms() > 0.0 && run.stretch.is_finite());
-            assert_eq!(account.motions, if workload == Workload::Shot { 9 } else { 0 });
+            // On the way every time step is followed, and a ball that flies fast splits them.
+            let steps = if workload == Workload::Shot { 9 } else { 0 };
+            assert!(account.motions >= steps && (steps > 0 || account.motions == 0), "{account:?}");
         }
     }
 

@@ -26,8 +26,6 @@ const LEAST_ARM: f64 = 0.25;
 /// A contact's plane is good for motion along it up to this share of the thickness: round an edge or a corner
 /// it is then off by less than 1e-5 of the thickness, and on a face not at all.
 const PLANE_REACH: f64 = 1.0 / 256.0;
-/// Share of the thickness below which a gap reckoned in single precision proves nothing.
-const ROUNDING: f64 = 1e-3;
 
 /// One element of a cloth, of `N` points, near one element of a collider, of `M` points.
 /// Point and face: 1 and 3; edge and edge: 2 and 2; face and point: 3 and 1.
@@ -422,8 +420,13 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     #[inline]
     pub fn prove(&mut self, step: &Step<'_, R>) -> bool {
         let moved = self.points.map(|point| step.moved(point).xyz());
-        let (_, least) = self.gaps(moved, step.share(step.time[1]));
-        least >= step.thickness * R::from_f64(ROUNDING) || self.prove_otherwise(step)
+        let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
+        // What lies within rounding of the plane is looked at in double precision.
+        let grain = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
+        let (_, at_end) = self.gaps(moved, step.share(step.time[1]));
+        // The plane may be of the end of a pass in this step, and good for nothing at its start.
+        let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0]));
+        (at_end > grain && at_start > grain) || self.prove_otherwise(step)
     }
 
     #[cold]

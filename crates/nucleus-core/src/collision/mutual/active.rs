@@ -11,7 +11,7 @@ use super::tasks::Tasks;
 use super::terms::Terms;
 use super::{Mutual, bodies::Bodies};
 use crate::columns::Shared;
-use crate::scalar::{Real, add};
+use crate::scalar::{Real, Row4, add};
 use crate::team::Team;
 
 /// Time steps for which contacts are picked.
@@ -71,15 +71,23 @@ struct View<'a, R> {
     terms: &'a [Option<Terms<R>>],
     cloths: usize,
     near: &'a Paths<R>,
+    /// Displacements at the start of the time step.
+    start: &'a [Row4<R>],
     anchors: &'a [[f64; 3]],
     tangle: &'a Tangle,
     left: &'a [bool],
 }
 
 /// Picks the contacts of the window that `near` foresees, for points of which something new is foreseen.
-pub fn pick<R: Real>(mutual: &mut Mutual<R>, cloths: usize, anchors: &[[f64; 3]], team: &Team) {
+pub fn pick<R: Real>(
+    mutual: &mut Mutual<R>,
+    cloths: usize,
+    anchors: &[[f64; 3]],
+    start: &[Row4<R>],
+    team: &Team,
+) {
     let Mutual { bodies, terms, near, candidates, active, tangle, left, .. } = mutual;
-    let view = View { bodies, terms, cloths, near, anchors, tangle, left };
+    let view = View { bodies, terms, cloths, near, start, anchors, tangle, left };
     let chunks = candidates.list.len().div_ceil(PER_TASK);
     active.picked.resize_with(active.picked.len().max(chunks), Mutex::default);
     let (picked, list) = (&active.picked, &candidates.list);
@@ -150,7 +158,8 @@ impl<R: Real> View<'_, R> {
     ) -> Option<Near<R, N, M>> {
         let from = |point: u32| self.near.from[point as usize];
         let to = |point: u32| add(from(point).xyz(), self.near.travel[point as usize].xyz());
-        Near::find(points, meeting, self.anchors, from, to)
+        let start = |point: u32| self.start[point as usize].xyz();
+        Near::find(points, meeting, self.anchors, start, from, to)
     }
 }
 

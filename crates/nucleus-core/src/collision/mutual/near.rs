@@ -32,6 +32,8 @@ pub struct Motion<'a, R> {
     pub extra_friction: &'a [R],
     /// Length of the step in seconds.
     pub h: R,
+    /// The share of every thickness that is kept: less than one where there is no room for all of it.
+    pub squeeze: R,
 }
 
 impl<R: Real> Motion<'_, R> {
@@ -89,13 +91,15 @@ pub struct Near<R, const N: usize, const M: usize> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
-    /// A contact along the shortest line between the two at the start of a window; nothing if they cannot
-    /// touch in it. `from` and `to` are displacements at its start and end, with the radius they hold in.
+    /// A contact along the shortest line between the two at the start of a time step; nothing if they cannot
+    /// touch in the window that it is in. `from` and `to` are displacements that are foreseen at the start and the end of
+    /// that, with the radius they hold in; `start` is where the points truly are when the step begins.
     #[inline]
     pub fn find(
         (ours, theirs): ([u32; N], [u32; M]),
         meeting: Meeting<R>,
         anchors: &[[f64; 3]],
+        start: impl Fn(u32) -> [R; 3],
         from: impl Fn(u32) -> Row4<R>,
         to: impl Fn(u32) -> [R; 3],
     ) -> Option<Self> {
@@ -107,7 +111,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let places = (ours.map(place), theirs.map(place));
         let mut near = Self { ours, theirs, places, normal: [R::ZERO; 3], meeting };
         let (before, after) = (near.at(|point| from(point).xyz()), near.at(to));
-        near.normal = shortest(before).0;
+        near.normal = shortest(near.at(start)).0;
         let ball = |points: &[u32]| {
             points
                 .iter()
@@ -136,6 +140,12 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         self.at(|point| step.start(point))
     }
 
+    /// The distance to keep.
+    #[inline(always)]
+    fn kept(&self, step: &Motion<'_, R>) -> R {
+        self.meeting.thickness * step.squeeze
+    }
+
     /// The gap along the contact's direction.
     #[inline(always)]
     fn gap(&self, at: &Places<R, N, M>) -> R {
@@ -146,7 +156,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     #[inline]
     pub fn resolve(&mut self, step: &Motion<'_, R>) -> bool {
         let now = self.now(step);
-        let held = self.meeting.thickness * R::from_f64(1.0 - TOUCH);
+        let held = self.kept(step) * R::from_f64(1.0 - TOUCH);
         let gap = self.gap(&now);
         if gap >= held {
             return false;
@@ -159,12 +169,12 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             if distance >= held {
                 return false;
             }
-            self.push(step, (b, c), &before, self.meeting.thickness - distance);
+            self.push(step, (b, c), &before, self.kept(step) - distance);
             return true;
         }
         // They may have passed. Back to the side that they were on.
         let (_, (b, c), _) = shortest(before);
-        let depth = self.meeting.thickness - dot(self.normal, sub(weigh(now.0, b), weigh(now.1, c)));
+        let depth = self.kept(step) - dot(self.normal, sub(weigh(now.0, b), weigh(now.1, c)));
         if depth > R::ZERO {
             self.push(step, (b, c), &before, depth);
         }
@@ -182,7 +192,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             return;
         }
         let line_before = sub(weigh(before.0, b), weigh(before.1, c));
-        let push = Push::new(depth, self.meeting.thickness - dot(self.normal, line_before), step.h);
+        let push = Push::new(depth, self.kept(step) - dot(self.normal, line_before), step.h);
         let along = scale(self.normal, push.length());
         let rub = self.rub(step, (b, c), line_before, along, push.pressed);
         let (moved, led) = (add(along, rub), scale(self.normal, push.led));
