@@ -8,7 +8,7 @@
 //! | what holds where scenes leave the ordinary       | [`nucleus_measure::extremes`] |
 //! | how far the solver is from exact physics         | [`nucleus_measure::validation`] |
 //! | what a prototype promised                        | [`nucleus_measure::experiments`] |
-//! | what a feature costs                             | [`features`]                 |
+//! | what a feature costs                             | [`mod@features`]             |
 
 use std::ffi::OsStr;
 use std::path::Path;
