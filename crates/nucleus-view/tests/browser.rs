@@ -55,6 +55,27 @@ fn look_with(chromium: &Path, cache: &Path, wish: &str, graphics: &[&str]) -> Se
 }
 
 fn look_at(player: &Player, chromium: &Path, wish: &str, graphics: &[&str]) -> Seen {
+    look_for(player, chromium, wish, graphics, BUDGETS[0])
+}
+
+/// Milliseconds of the page's own time after which it is looked at: what it reads and unpacks does not stop its clock, so
+/// on a busy machine the first may be too early.
+const BUDGETS: [u32; 3] = [5_000, 20_000, 80_000];
+
+/// Looks at the page ever later, until it shows what is wanted; at the last look it has to.
+fn look_until(player: &Player, chromium: &Path, wish: &str, is_there: impl Fn(&Seen) -> bool) -> Seen {
+    let look = |budget| look_for(player, chromium, wish, SOFTWARE, budget);
+    let mut seen = look(BUDGETS[0]);
+    for budget in &BUDGETS[1..] {
+        if is_there(&seen) {
+            break;
+        }
+        seen = look(*budget);
+    }
+    seen
+}
+
+fn look_for(player: &Player, chromium: &Path, wish: &str, graphics: &[&str], budget: u32) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let screen = folder.path().join("screen.png");
     let page = folder.path().join("page.html");
@@ -63,7 +84,8 @@ fn look_at(player: &Player, chromium: &Path, wish: &str, graphics: &[&str]) -> S
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
         .args(graphics)
         .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
-        .args(["--window-size=800,500", "--virtual-time-budget=5000", "--dump-dom"])
+        .args(["--window-size=800,500", "--dump-dom"])
+        .arg(format!("--virtual-time-budget={budget}"))
         .arg(format!("--screenshot={}", screen.display()))
         .arg(format!("{}#{wish}", player.url()))
         .stdout(std::fs::File::create(&page).unwrap())
@@ -253,12 +275,14 @@ fn two_runs_are_shown_one_over_the_other_or_side_by_side_with_their_difference()
     sample::write(&one, Sample::default());
     sample::write(&two, Sample { late: true, ..Sample::default() });
     let player = serve_both(&one, &two, 0).unwrap();
-    let over = look_at(&player, chromium, "frame=12&difference=0.05", SOFTWARE);
-    assert!(over.page.contains("distance, units"), "{}", over.page);
     let net = |seen: &Seen| seen.share(|[red, green, blue]| *blue > 150 && *green > 110 && *red < 150);
+    let over = look_until(&player, chromium, "frame=12&difference=0.05", |seen| net(seen) > 0.005);
+    assert!(over.page.contains("distance, units"), "{}", over.page);
     assert!(net(&over) > 0.005, "the other run is a net over this one: {}", net(&over));
-    let beside = look_at(&player, chromium, "frame=12&twin=beside", SOFTWARE);
     let indigo =
         |seen: &Seen| seen.share(|[red, _, blue]| *blue > 90 && i32::from(*blue) > 2 * i32::from(*red));
-    assert!(indigo(&beside) > 0.01 && indigo(&beside) > 2.0 * indigo(&look(chromium, &one, "frame=12")));
+    let alone = indigo(&look(chromium, &one, "frame=12"));
+    let is_there = |seen: &Seen| indigo(seen) > 0.01 && indigo(seen) > 2.0 * alone;
+    let beside = look_until(&player, chromium, "frame=12&twin=beside", is_there);
+    assert!(is_there(&beside), "{} of the screen, {alone} without the other run", indigo(&beside));
 }
