@@ -184,13 +184,14 @@ export class Player {
   }
 
   everyRefresh() {
+    // Asked for first, so that a picture that cannot be drawn is not the last.
+    requestAnimationFrame(() => this.everyRefresh());
     this.timeline?.tick();
     byId("play").setAttribute("aria-pressed", this.timeline?.isPlaying ?? false);
     if (this.isStale && this.timeline) {
       this.isStale = false;
       this.scene.draw(this.camera);
     }
-    requestAnimationFrame(() => this.everyRefresh());
   }
 }
 

@@ -55,10 +55,11 @@ export class Scene {
     this.hasOldShadow = true;
   }
 
-  // Those of the other run that are to be seen; an object that is hidden hides its twin.
+  // Those of the other run that are to be seen, once it is known where they are; an object that is hidden hides its twin.
   get drawnTwins() {
     const isShown = ({ name }) => this.things.find((thing) => thing.name === name)?.isShown ?? true;
-    return this.look.twin === "off" ? [] : this.twins.filter(isShown);
+    const isKnown = ({ mesh }) => Boolean(mesh.shown);
+    return this.look.twin === "off" ? [] : this.twins.filter((twin) => isKnown(twin) && isShown(twin));
   }
 
   // `stage` is the box of all that moves, over the run; the floor lies under it.
@@ -161,7 +162,7 @@ export class Scene {
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(2.5, 8);
     this.use(programs.depth, light);
-    for (const { mesh, vertices, isShown } of this.things.concat(this.look.twin === "beside" ? this.twins : [])) {
+    for (const { mesh, vertices, isShown } of this.things.concat(this.look.twin === "beside" ? this.drawnTwins : [])) {
       if (isShown && mesh.kind !== "particles") {
         vertices.draw(gl.TRIANGLES, TRIANGLES);
       }
