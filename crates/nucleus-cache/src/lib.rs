@@ -17,7 +17,7 @@
 //!
 //! **Invariant:** this crate knows no scene and no node; a cache opens without them. Same run, same bytes.
 //!
-//! A cache in five lines:
+//! A cache in a few lines:
 //!
 //! ```
 //! # use nucleus_cache::{ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
@@ -37,7 +37,8 @@
 //! let mut cache = nucleus_cache::Playback::open("hang.mcap")?;
 //! let last = cache.moments().len() - 1;
 //! for object in 0..cache.objects().len() {
-//!     println!("{}: {:?}", cache.objects()[object].name, cache.positions(object, last)?[0]);
+//!     let first = cache.positions(object, last)?[0];
+//!     println!("{}: {first:?}", cache.objects()[object].name);
 //! }
 //! # assert_eq!(cache.positions(0, last)?[1], [1.0, 1.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
