@@ -1,9 +1,10 @@
 //! The last word of a time step: the proof that nothing passed anything.
 //!
 //! What is not proven is pushed apart again; then by less and less of its thickness, for between two bodies there may be
-//! no room for all of it; then held back on its way, each on its own side; then it goes nowhere in this step, except along with what carries it. The places at the start of the step were proven, so going nowhere is
-//! proven too: only between bodies that close on it, and pins that cross, is there no such way out, and what is there
-//! is let go and counted.
+//! no room for all of it; then held back on its way, each on its own side; then it goes nowhere in this step, except
+//! along with what carries it. The places at the start of the step were proven, so going nowhere is proven too: only
+//! between bodies that close on it, and pins that cross, is there no such way out, and what is there is let go and
+//! counted.
 
 use crate::collision::mutual::Mutual;
 use crate::collision::resolve::Tally;

@@ -1,4 +1,4 @@
-//! Finds the edges that go through faces.
+//! Finds the edges that go through faces, and says what is done about each.
 
 use super::Mutual;
 use super::bodies::Bodies;
@@ -49,8 +49,7 @@ impl<R: Real> View<'_, R> {
         if !meets || !self.bodies.around[other as usize].meets(&self.bodies.around[group as usize]) {
             return;
         }
-        let place =
-            |point: u32| add(self.anchors[point as usize], self.moved[point as usize].xyz().map(R::to_f64));
+        let place = |point: u32| self.place(point);
         for &edge in &self.cloths[ours.cloth as usize].skin.edges[ours.group.edges.clone()] {
             for &face in &self.cloths[theirs.cloth as usize].skin.triangles[theirs.group.triangles.clone()] {
                 let is_joined = face.iter().any(|point| edge.contains(point));
@@ -60,9 +59,7 @@ impl<R: Real> View<'_, R> {
             }
         }
     }
-}
 
-impl<R: Real> View<'_, R> {
     /// Where two cloths pass through each other, the first is to be on that side of the second where most of it is.
     fn take_sides(&self, tangle: &mut Tangle) {
         let Tangle { crossings, sides, pairs, wings, .. } = tangle;

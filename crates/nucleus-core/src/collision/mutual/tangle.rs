@@ -1,11 +1,11 @@
 //! Meshes that pass through each other, because the scene began so or nothing helped: found, let go, and worked apart.
 //!
-//! Where an edge goes through a face, the curve in which the two surfaces cut each other crosses that edge. Curves that
-//! cut a piece off a surface say what is on the wrong side: the smallest piece (after Baraff, Witkin and Kass 2003,
-//! *Untangling cloth*), and the ends of edges in it are led back through the faces. Where no piece is cut off, edge and
-//! face are moved so that the curve grows shorter (Volino and Magnenat-Thalmann 2006, *Resolving surface collisions
-//! through intersection contour minimization*). Round the curve nothing is kept apart: contacts would hold the tangle
-//! as it is.
+//! Where an edge goes through a face, the curve in which the two surfaces cut each other crosses that edge, and one of its
+//! ends is on the wrong side. Of two cloths that is told by where most of the first is. Of one cloth it is the piece that
+//! the curve cuts off, if it does, the smallest (after Baraff, Witkin and Kass 2003, *Untangling cloth*). Those ends are
+//! led back through the faces. Where no piece of a cloth is cut off, edge and face are moved so that the curve grows
+//! shorter (Volino and Magnenat-Thalmann 2006, *Resolving surface collisions through intersection contour minimization*).
+//! Round the curve nothing is kept apart: contacts would hold the tangle as it is.
 
 use super::candidate::{Candidate, Kind};
 use super::near::Motion;
@@ -96,9 +96,9 @@ impl Tangle {
         self.is_there() && self.pairs.contains(&[low, high]) && is_near(ours) && is_near(theirs)
     }
 
-    /// Works every crossing a step farther apart, by `most` metres at most; how many there still are.
-    pub fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, most: f64) -> u64 {
-        self.crossings.iter().map(|crossing| u64::from(crossing.work_apart(anchors, step, most))).sum()
+    /// Works every crossing that is still there a step farther apart, by `most` metres at most.
+    pub fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, most: f64) {
+        self.crossings.iter().for_each(|crossing| crossing.work_apart(anchors, step, most));
     }
 }
 
@@ -132,36 +132,54 @@ pub fn goes_through(edge: [Vector; 2], face: [Vector; 3]) -> bool {
 }
 
 impl Crossing {
-    /// Whether it is still there; if so, worked apart by `most` metres at most.
-    fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, most: f64) -> bool {
+    /// Works the two apart by `most` metres at most, if the one still goes through the other.
+    fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, most: f64) {
         let place = |point: u32| add(anchors[point as usize], step.row(point).xyz().map(R::to_f64));
         let ends = self.edge.map(place);
-        let Some(mut cut) = cut(ends, self.face.map(place)) else { return false };
+        let Some(cut) = cut(ends, self.face.map(place)) else { return };
         match self.remedy {
-            Remedy::Wait => return true,
-            Remedy::Shorten => {}
-            Remedy::Back(end) => {
-                let depth = BEYOND * dot(cut.normal, sub(ends[1 - end], ends[end])) * cut.weights.0[1 - end];
-                cut.weights.0 = [0.0; 2];
-                cut.weights.0[end] = 1.0;
-                self.shift(step, &cut, scale(cut.normal, depth.clamp(-most, most)));
-                return true;
-            }
+            Remedy::Wait => {}
+            Remedy::Back(end) => self.lead_back(end, step, ends, cut, most),
+            Remedy::Shorten => self.shorten(step, ends, self.wings.map(place), &cut, most),
         }
-        let Some(along) = unit(sub(ends[1], ends[0]), 0.0) else { return true };
-        let wings = self.wings.into_iter().filter(|&wing| wing != self.edge[0]);
-        let inward = wings.filter_map(|wing| into_wing(sub(place(wing), ends[0]), along, cut.normal));
+    }
+
+    /// Leads one end to the other's side of the face.
+    fn lead_back<R: Real>(
+        &self,
+        end: usize,
+        step: &Motion<'_, R>,
+        ends: [Vector; 2],
+        mut cut: Cut,
+        most: f64,
+    ) {
+        let depth = BEYOND * dot(cut.normal, sub(ends[1 - end], ends[end])) * cut.weights.0[1 - end];
+        cut.weights.0 = [0.0; 2];
+        cut.weights.0[end] = 1.0;
+        self.shift(step, &cut, scale(cut.normal, depth.clamp(-most, most)));
+    }
+
+    /// Moves the place where the edge goes through the face inward, so that the curve grows shorter.
+    fn shorten<R: Real>(
+        &self,
+        step: &Motion<'_, R>,
+        ends: [Vector; 2],
+        wings: [Vector; 2],
+        cut: &Cut,
+        most: f64,
+    ) {
+        let Some(along) = unit(sub(ends[1], ends[0]), 0.0) else { return };
+        let wings = wings.into_iter().zip(self.wings).filter(|(_, point)| *point != self.edge[0]);
+        let inward = wings.filter_map(|(wing, _)| into_wing(sub(wing, ends[0]), along, cut.normal));
         let inward = inward.fold([0.0; 3], add);
-        // Moved like this, the place where the edge goes through the face moves inward, and the curve grows shorter.
         let slant = dot(along, cut.normal);
         let slant = slant.abs().max(LEAST_SLANT).copysign(slant);
         let way = sub(inward, scale(cut.normal, dot(inward, along) / slant));
         // A curve that goes straight on has no shorter way.
         let share = dot(inward, inward).sqrt().min(1.0);
         if let Some(direction) = unit(way, 1e-9) {
-            self.shift(step, &cut, scale(direction, most * share));
+            self.shift(step, cut, scale(direction, most * share));
         }
-        true
     }
 
     /// Moves edge and face by so much against each other, each by its mobility, without velocity.
