@@ -27,7 +27,7 @@ const FAR_BALL: [f64; 2] = [0.25, 0.15];
 /// In metres; nothing is foreseen more sharply.
 const LEAST_BALL: f64 = 1e-6;
 /// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
-const FARTHEST: f64 = 0.3;
+const FARTHEST: f64 = 2.0;
 
 impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.
@@ -47,6 +47,7 @@ impl<R: Real> Solver<R> {
         }
         if mutual.is_on() {
             mutual.far.move_anchors(&self.state.displacement);
+            mutual.candidates.forget_places();
         }
         mutual.window = [0.0; 2];
     }
@@ -92,7 +93,8 @@ impl<R: Real> Solver<R> {
         }
         if self.foresee(frame, span) {
             let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
-            search(mutual, cloths, &state.anchor, span.from, team);
+            let now = mutual.window[0];
+            search(mutual, cloths, &state.anchor, now, team);
             *tally.pairs.get_mut() += mutual.candidates.list.len() as u64;
             *tally.broad_phases.get_mut() += 1;
         }
@@ -152,12 +154,16 @@ impl<R: Real> Solver<R> {
                     // SAFETY: blocks do not overlap.
                     #[allow(unsafe_code)]
                     unsafe {
-                        near.set(row, soon);
-                        if strayed.get(row) || !ahead.is_kept(&soon, &far.of(row)) {
-                            far.set(row, ahead.in_frame(before, motion, balls[1], farthest));
-                            strayed.set(row, true);
-                            any.store(true, Ordering::Relaxed);
+                        let known = (!strayed.get(row)).then(|| far.of(row));
+                        if let Some(kept) = known.and_then(|later| ahead.keep(soon, &later, before, motion)) {
+                            near.set(row, kept);
+                            continue;
                         }
+                        let later = ahead.in_frame(before, motion, balls, farthest);
+                        far.set(row, later);
+                        near.set(row, ahead.keep(soon, &later, before, motion).unwrap_or(soon));
+                        strayed.set(row, true);
+                        any.store(true, Ordering::Relaxed);
                     }
                 }
             });
@@ -196,13 +202,41 @@ impl<R: Real> Ahead<R> {
         Path { from: sub(before, scale(travel, self.begun)), travel, ball }
     }
 
-    /// On through the frame as in this step, but no farther from what all do in common than `farthest`.
+    /// On through the frame as in this step, but no farther from what all do in common than `farthest`; within a ball
+    /// that has room for this step all the same.
     #[inline(always)]
-    fn in_frame(&self, before: [R; 3], motion: [R; 3], ball: R, farthest: R) -> Path<R> {
+    fn in_frame(&self, before: [R; 3], motion: [R; 3], [soon, ball]: [R; 2], farthest: R) -> Path<R> {
         let now = self.window[0] + (self.window[1] - self.window[0]) * self.begun;
         let most = farthest / (R::ONE - now + R::EPSILON);
         let travel = limited(scale(motion, self.steps[1]), scale(self.common, self.steps[1]), most);
+        let missed = sub(motion, scale(travel, R::ONE / self.steps[1]));
+        let room = dot(missed, missed).sqrt() * R::from_f64(1.5) + soon;
+        let ball = if room > ball { room } else { ball };
         Path { from: sub(before, scale(travel, now)), travel, ball }
+    }
+
+    /// What is foreseen for the window, given what is foreseen for the frame: `soon`, if that keeps to it. A point that
+    /// trembles is not where this step would take it in the next; it stays beside what was foreseen for the frame.
+    /// Nothing if it is no longer there.
+    #[inline(always)]
+    fn keep(&self, soon: Path<R>, later: &Path<R>, before: [R; 3], motion: [R; 3]) -> Option<Path<R>> {
+        if self.is_kept(&soon, later) {
+            return Some(soon);
+        }
+        let length = self.window[1] - self.window[0];
+        let step = R::ONE / self.steps[1];
+        let half = R::from_f64(0.5);
+        let amid = self.window[0] + length * self.begun + step * half;
+        let off = sub(add(before, scale(motion, half)), later.at(amid));
+        let room = later.ball - dot(off, off).sqrt();
+        let own = sub(motion, scale(later.travel, step));
+        let need = dot(own, own).sqrt() * half;
+        if room <= need * R::from_f64(1.0 + 1e-3) {
+            return None;
+        }
+        let wished = soon.ball * R::from_f64(4.0) + need + need;
+        let ball = if wished < room { wished } else { room };
+        Some(Path { from: add(off, later.at(self.window[0])), travel: scale(later.travel, length), ball })
     }
 
     /// Whether a point that keeps to `soon` from now to the end of the window keeps to `later` too.

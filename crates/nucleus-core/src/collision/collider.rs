@@ -107,7 +107,7 @@ impl ColliderState {
         refill(&mut boxes.triangles, skin.triangles.iter().map(|triangle| bound(triangle)));
         refill(&mut boxes.edges, skin.edges.iter().map(|edge| bound(edge)));
         refill(&mut boxes.points, skin.points.iter().map(|&point| bound(&[point])));
-        self.tree.refit(&boxes.triangles);
+        self.tree.refit(|triangle| boxes.triangles[triangle]);
         self.boxes = boxes;
         self.fitted = Some(span);
     }

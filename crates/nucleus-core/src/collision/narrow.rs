@@ -46,6 +46,18 @@ pub fn weigh<R: Real, const K: usize>(points: [[R; 3]; K], weights: [R; K]) -> [
     std::array::from_fn(|axis| (0..K).map(|k| points[k][axis] * weights[k]).sum())
 }
 
+/// The line from the middle of their element to the middle of ours.
+#[inline(always)]
+pub fn between_middles<R: Real, const N: usize, const M: usize>((ours, theirs): &Places<R, N, M>) -> [R; 3] {
+    sub(middle(ours), middle(theirs))
+}
+
+#[inline(always)]
+fn middle<R: Real, const K: usize>(points: &[[R; 3]; K]) -> [R; 3] {
+    let share = R::from_f64(1.0 / K as f64);
+    std::array::from_fn(|axis| (0..K).map(|k| points[k][axis]).sum::<R>() * share)
+}
+
 /// The smallest gap along a direction: of our points over theirs.
 #[inline(always)]
 pub fn gap_along<R: Real, const N: usize, const M: usize>(normal: [R; 3], at: &Places<R, N, M>) -> R {

@@ -75,19 +75,24 @@ impl Aabb {
     /// meet something else that does. Boxes that are apart on one side all the time cannot.
     #[inline(always)]
     pub fn may_meet(ours: &[Self; 2], theirs: &[Self; 2]) -> bool {
-        let apart = |k: usize| {
+        // All four numbers, though the last says nothing: four are compared at once.
+        let mut apart = [false; 4];
+        for (k, apart) in apart.iter_mut().enumerate() {
             let above = (ours[0].low[k] > theirs[0].high[k]) & (ours[1].low[k] > theirs[1].high[k]);
             let below = (ours[0].high[k] < theirs[0].low[k]) & (ours[1].high[k] < theirs[1].low[k]);
-            above | below
-        };
-        !(apart(0) | apart(1) | apart(2))
+            *apart = above | below;
+        }
+        apart == [false; 4]
     }
 
     /// Whether two boxes have a point in common.
     #[inline(always)]
     pub fn meets(&self, other: &Self) -> bool {
-        let overlaps = |k: usize| (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k]);
-        overlaps(0) & overlaps(1) & overlaps(2)
+        let mut overlaps = [false; 4];
+        for (k, overlaps) in overlaps.iter_mut().enumerate() {
+            *overlaps = (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k]);
+        }
+        overlaps == [true; 4]
     }
 }
 
@@ -114,9 +119,9 @@ impl Tree {
     }
 
     /// Sets every box from the boxes of the triangles.
-    pub fn refit(&mut self, boxes: &[Aabb]) {
+    pub fn refit(&mut self, of: impl Fn(usize) -> Aabb) {
         for (leaf, triangles) in self.triangles.chunks(LEAF).enumerate() {
-            let all = triangles.iter().map(|&triangle| boxes[triangle as usize]);
+            let all = triangles.iter().map(|&triangle| of(triangle as usize));
             self.nodes[self.leaves - 1 + leaf] = all.fold(Aabb::EMPTY, Aabb::union);
         }
         for node in (0..self.leaves - 1).rev() {
@@ -165,7 +170,7 @@ mod tests {
         fn the_tree_finds_every_box_that_meets(corners in boxes(), sought in 0usize..100) {
             let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();
             let mut tree = Tree::new(&corners.iter().map(|[low, high]| (low + high) / 2.0).collect::<Vec<_>>());
-            tree.refit(&boxes);
+            tree.refit(|triangle| boxes[triangle]);
             let [low, high] = corners[sought % corners.len()];
             let mut found = Vec::new();
             tree.query(&Aabb::new(low, high).inflate(0.5), |triangle| found.push(triangle));

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::local::Boxes;
+use super::stars::Stars;
 use crate::collision::skin::Group;
 use crate::collision::tree::{Aabb, Tree};
 use crate::model::ClothModel;
@@ -23,8 +25,10 @@ pub struct Bodies {
     pub groups: Vec<Body>,
     /// Boxes over groups.
     pub tree: Option<Tree>,
-    /// A box round all that is foreseen for each group.
-    pub around: Vec<Aabb>,
+    /// Boxes round each group at the start and at the end of what is foreseen.
+    pub around: Vec<Boxes>,
+    /// The elements of each point.
+    pub stars: Stars,
     /// The points of each group's elements, and where they end in that column.
     pub points: Vec<u32>,
     ends: Vec<u32>,
@@ -48,6 +52,7 @@ impl Bodies {
             block: vec![0; rows],
             cloth: vec![0; rows],
             rest: vec![[0.0; 3]; rows],
+            stars: Stars::new(cloths, rows),
             ..Self::default()
         };
         for (cloth, model) in (0..).zip(cloths) {
@@ -70,6 +75,12 @@ impl Bodies {
     pub fn points_of(&self, group: usize) -> &[u32] {
         let from = group.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.points[from as usize..self.ends[group] as usize]
+    }
+
+    /// The box round all that is foreseen for a group.
+    pub fn swept(&self, group: u32) -> Aabb {
+        let [start, end] = self.around[group as usize];
+        start.union(end)
     }
 
     /// Takes the shape at rest, and builds the tree over it.
@@ -105,6 +116,6 @@ impl Bodies {
         };
         let centres: Vec<_> = (0..self.groups.len()).map(centre).collect();
         self.tree = (!centres.is_empty()).then(|| Tree::new(&centres));
-        self.around = vec![Aabb::EMPTY; self.groups.len()];
+        self.around = vec![[Aabb::EMPTY; 2]; self.groups.len()];
     }
 }

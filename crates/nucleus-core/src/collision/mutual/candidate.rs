@@ -1,9 +1,9 @@
 //! Candidates: two elements that can touch while their points keep to what is foreseen for them.
 
 use super::paths::Paths;
-use crate::collision::narrow::{Places, gap_along, shortest};
+use crate::collision::narrow::{between_middles, gap_along, shortest};
 use crate::collision::tree::Aabb;
-use crate::scalar::{Real, dot, scale, sub};
+use crate::scalar::{Real, dot};
 
 /// What the points of a candidate are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,32 +51,49 @@ pub struct Seen {
     end: Vec<[f32; 4]>,
     /// Boxes round the balls at both.
     balls: Vec<[Aabb; 2]>,
+    /// From which time of the frame on, if that was looked at.
+    from: Option<f64>,
     /// What places are from: the same for all of a run, so that boxes stay good.
     origin: Option<[f64; 3]>,
 }
 
 impl Seen {
-    /// Looks ahead from a time of the frame to its end.
-    pub fn look<R: Real>(&mut self, anchors: &[[f64; 3]], far: &Paths<R>, now: R) {
+    /// Looks ahead from a time of the frame to its end: at all points where that time is a new one, else at those that
+    /// `strayed`. Whether it was at all.
+    pub fn look<R: Real>(
+        &mut self,
+        anchors: &[[f64; 3]],
+        far: &Paths<R>,
+        strayed: &[bool],
+        now: f64,
+    ) -> bool {
         let origin = *self.origin.get_or_insert_with(|| anchors.first().copied().unwrap_or_default());
-        self.start.clear();
-        self.end.clear();
-        self.balls.clear();
-        for (point, anchor) in (0..).zip(anchors) {
-            let path = far.of(point);
+        let is_all = self.from != Some(now);
+        self.from = Some(now);
+        self.start.resize(anchors.len(), [0.0; 4]);
+        self.end.resize(anchors.len(), [0.0; 4]);
+        self.balls.resize(anchors.len(), [Aabb::EMPTY; 2]);
+        for (point, anchor) in anchors.iter().enumerate().filter(|&(point, _)| is_all || strayed[point]) {
+            let path = far.of(point as u32);
             let anchor: [f64; 3] = std::array::from_fn(|axis| anchor[axis] - origin[axis]);
             let place = |share: R| {
                 let moved = path.at(share);
                 std::array::from_fn::<f32, 3, _>(|axis| (anchor[axis] + moved[axis].to_f64()) as f32)
             };
-            let (start, end) = (place(now), place(R::ONE));
+            let (start, end) = (place(R::from_f64(now)), place(R::ONE));
             let size = |[x, y, z]: [f32; 3]| x.abs() + y.abs() + z.abs();
             let stray = path.ball.to_f64() as f32 + (size(start) + size(end)) * 1e-6;
             let row = |[x, y, z]: [f32; 3]| [x, y, z, stray];
-            self.start.push(row(start));
-            self.end.push(row(end));
-            self.balls.push([Aabb::ball(start, stray), Aabb::ball(end, stray)]);
+            self.start[point] = row(start);
+            self.end[point] = row(end);
+            self.balls[point] = [Aabb::ball(start, stray), Aabb::ball(end, stray)];
         }
+        is_all
+    }
+
+    /// Forgets what was foreseen: anchors move.
+    pub fn forget(&mut self) {
+        self.from = None;
     }
 
     /// The boxes round some points, with a margin, at both ends of what is foreseen.
@@ -142,13 +159,4 @@ impl Seen {
         let kept = thickness.min(at_rest * OF_REST_DISTANCE);
         (least < kept).then_some(kept)
     }
-}
-
-/// The line from the middle of their element to the middle of ours.
-fn between_middles<const N: usize, const M: usize>((ours, theirs): &Places<f32, N, M>) -> [f32; 3] {
-    let middle = |points: &[[f32; 3]]| {
-        let sum = points.iter().fold([0.0; 3], |sum: [f32; 3], p| [0, 1, 2].map(|axis| sum[axis] + p[axis]));
-        scale(sum, 1.0 / points.len() as f32)
-    };
-    sub(middle(ours), middle(theirs))
 }

@@ -21,7 +21,7 @@ pub fn find_crossings<R: Real>(
     let Some(tree) = &bodies.tree else { return };
     let view = View { bodies, terms, cloths, anchors, moved };
     for group in 0..bodies.groups.len() as u32 {
-        tree.query(&bodies.around[group as usize], |other| view.cross(group, other, &mut tangle.crossings));
+        tree.query(&bodies.swept(group), |other| view.cross(group, other, &mut tangle.crossings));
     }
     if tangle.is_there() {
         tangle.spread(cloths);
@@ -46,7 +46,7 @@ impl<R: Real> View<'_, R> {
     fn cross(&self, group: u32, other: u32, found: &mut Vec<Crossing>) {
         let [ours, theirs] = [group, other].map(|group| &self.bodies.groups[group as usize]);
         let meets = self.terms[ours.cloth as usize * self.cloths.len() + theirs.cloth as usize].is_some();
-        if !meets || !self.bodies.around[other as usize].meets(&self.bodies.around[group as usize]) {
+        if !meets || !self.bodies.swept(other).meets(&self.bodies.swept(group)) {
             return;
         }
         let place = |point: u32| self.place(point);

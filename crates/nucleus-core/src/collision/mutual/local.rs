@@ -1,71 +1,36 @@
-//! A small group of elements as a search sees it: boxes round what is foreseen for each, and which are new.
+//! A small group of elements as a search sees it: boxes round what is foreseen for each.
 
 use super::search::Search;
 use crate::collision::tree::Aabb;
 use crate::scalar::Real;
 
+/// Boxes round something at the start and at the end of what is foreseen.
+pub type Boxes = [Aabb; 2];
+
 /// A group of elements.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Local {
     /// Which; none where this is room for one.
-    pub group: Option<u32>,
-    /// Round all elements, at the start and at the end of what is foreseen.
-    pub all: [Aabb; 2],
-    /// Round those that are new.
-    pub new: [Aabb; 2],
-    /// Its points.
-    pub points: Kind,
-    /// Its edges.
-    pub edges: Kind,
-    /// Its triangles.
-    pub triangles: Kind,
-}
-
-/// Elements of one kind in a group.
-#[derive(Debug, Default)]
-pub struct Kind {
-    /// Round each, at the start and at the end of what is foreseen.
-    pub boxes: Vec<[Aabb; 2]>,
-    /// Whether something new is foreseen for a point of it.
-    pub is_new: Vec<bool>,
-}
-
-impl Default for Local {
-    fn default() -> Self {
-        let nothing = [Aabb::EMPTY; 2];
-        let [points, edges, triangles] = [(); 3].map(|()| Kind::default());
-        Self { group: None, all: nothing, new: nothing, points, edges, triangles }
-    }
+    group: Option<u32>,
+    /// Round its points.
+    pub points: Vec<Boxes>,
+    /// Round its edges.
+    pub edges: Vec<Boxes>,
+    /// Round its triangles.
+    pub triangles: Vec<Boxes>,
 }
 
 impl Local {
     /// Looks at a group.
-    pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) {
+    fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) {
         let (skin, elements) = search.elements(group);
-        *self =
-            Self { group: Some(group), all: [Aabb::EMPTY; 2], new: [Aabb::EMPTY; 2], ..std::mem::take(self) };
-        let Self { all, new, points, edges, triangles, .. } = self;
-        let mut around = |kind: &mut Kind, element: &[u32]| {
-            let bound = search.seen.bound(element.iter().copied(), search.margin);
-            let is_new = element.iter().any(|&point| search.strayed[point as usize]);
-            kind.boxes.push(bound);
-            kind.is_new.push(is_new);
-            for end in 0..2 {
-                all[end] = all[end].union(bound[end]);
-                new[end] = if is_new { new[end].union(bound[end]) } else { new[end] };
-            }
-        };
-        [&mut *points, &mut *edges, &mut *triangles].into_iter().for_each(Kind::clear);
-        skin.triangles[elements.triangles.clone()].iter().for_each(|corners| around(triangles, corners));
-        skin.edges[elements.edges.clone()].iter().for_each(|ends| around(edges, ends));
-        skin.points[elements.points.clone()].iter().for_each(|&point| around(points, &[point]));
-    }
-}
-
-impl Kind {
-    fn clear(&mut self) {
-        self.boxes.clear();
-        self.is_new.clear();
+        let bound = |element: &[u32]| search.bound(element.iter().copied());
+        let Self { group: which, points, edges, triangles } = self;
+        *which = Some(group);
+        [&mut *points, &mut *edges, &mut *triangles].into_iter().for_each(Vec::clear);
+        triangles.extend(skin.triangles[elements.triangles.clone()].iter().map(|corners| bound(corners)));
+        edges.extend(skin.edges[elements.edges.clone()].iter().map(|ends| bound(ends)));
+        points.extend(skin.points[elements.points.clone()].iter().map(|&point| bound(&[point])));
     }
 }
 
@@ -76,7 +41,7 @@ pub struct Locals {
 }
 
 /// How many groups are remembered.
-const PLACES: usize = 128;
+const PLACES: usize = 256;
 
 impl Locals {
     /// Forgets all.

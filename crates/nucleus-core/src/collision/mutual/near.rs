@@ -4,7 +4,7 @@
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
 use crate::collision::friction::{Push, extra, rub};
-use crate::collision::narrow::{Places, across, gap_along, shortest, weigh};
+use crate::collision::narrow::{Places, across, between_middles, gap_along, shortest, weigh};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
 
@@ -111,14 +111,15 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let places = (ours.map(place), theirs.map(place));
         let mut near = Self { ours, theirs, places, normal: [R::ZERO; 3], meeting };
         let (before, after) = (near.at(|point| from(point).xyz()), near.at(to));
-        near.normal = shortest(near.at(start)).0;
-        let ball = |points: &[u32]| {
-            points
-                .iter()
-                .map(|&point| from(point).0[3])
-                .fold(R::ZERO, |most, x| if x > most { x } else { most })
-        };
+        let ball = |points: &[u32]| points.iter().map(|&point| from(point).0[3]).fold(R::ZERO, larger);
         let stray = ball(&ours) + ball(&theirs);
+        // Most are far apart already along the line between their middles, which costs less to see.
+        let line = between_middles(&before);
+        let far = (meeting.thickness + stray) * dot(line, line).sqrt();
+        if gap_along(line, &before) >= far && gap_along(line, &after) >= far {
+            return None;
+        }
+        near.normal = shortest(near.at(start)).0;
         let (first, last) = (near.gap(&before), near.gap(&after));
         let least = if last < first { last } else { first };
         (least - stray < meeting.thickness).then_some(near)
