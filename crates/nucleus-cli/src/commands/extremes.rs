@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, Color, ColorChoice, ColorSpec, WriteColor};
 use nucleus_measure::extremes::{
-    Extreme, Figure, Kind, Outcome as Judged, Trial, judge_all, miss, named, page, rows,
+    Extreme, Figure, Kind, Outcome as Judged, Patience, Trial, judge_all, miss, named, page, rows,
 };
 use serde_json::{Value, json};
 
@@ -62,7 +62,7 @@ impl Extremes {
             outcomes.push(outcome);
             Ok(())
         };
-        judge_all(&rows, self.threads(), &mut tell)?;
+        judge_all(&rows, self.threads(), Patience::Long, &mut tell)?;
         if !self.json {
             output::print(&total(&outcomes))?;
         }

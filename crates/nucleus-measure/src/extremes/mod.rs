@@ -28,4 +28,4 @@ pub use course::{Course, Seen};
 pub use page::{miss, page};
 pub use row::{Cost, Demand, Extreme, Recovery, Trial};
 pub use rows::{named, rows};
-pub use verdict::{Figure, Kind, Nominals, Outcome, Side, judge, judge_all};
+pub use verdict::{Figure, Kind, Nominals, Outcome, Patience, Side, judge, judge_all};

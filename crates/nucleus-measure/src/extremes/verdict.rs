@@ -19,8 +19,23 @@ pub const MOST_COST: f64 = 3.0;
 /// Energy is told to this share: the bound is exact, the sum over a frame's steps is not quite.
 const ENERGY: f64 = 1.01;
 
-/// Seconds of the processor after which a run that is too dear already is given up.
-const PATIENCE: f64 = 20.0;
+/// How long a run may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Patience {
+    /// To its end; one that is too dear is given up after 20 s of the processor.
+    Long,
+    /// 2 s of the processor, after which it is judged by what it has shown.
+    Short,
+}
+
+impl Patience {
+    fn seconds(self) -> f64 {
+        match self {
+            Self::Long => 20.0,
+            Self::Short => 2.0,
+        }
+    }
+}
 
 /// How often a run that is a little too dear is run again.
 const RERUNS: usize = 3;
@@ -133,12 +148,12 @@ impl Outcome {
 ///
 /// # Errors
 /// When a mesh cannot be written to a folder of its own.
-pub fn judge(extreme: &Extreme, nominals: &Nominals) -> io::Result<Outcome> {
+pub fn judge(extreme: &Extreme, nominals: &Nominals, patience: Patience) -> io::Result<Outcome> {
     let mut outcome = Outcome { extreme: *extreme, figures: Vec::new(), reported: Vec::new() };
     // A solver that panics has failed its row, not the table.
     let judged = catch_unwind(AssertUnwindSafe(|| match &extreme.trial {
         Trial::Refused { case, names } => outcome.refused(&case(), names),
-        Trial::Runs { .. } => outcome.runs(nominals),
+        Trial::Runs { .. } => outcome.runs(nominals, patience),
     }));
     match judged {
         Ok(result) => result?,
@@ -154,6 +169,7 @@ pub fn judge(extreme: &Extreme, nominals: &Nominals) -> io::Result<Outcome> {
 pub fn judge_all<E: From<io::Error>>(
     rows: &[&Extreme],
     threads: usize,
+    patience: Patience,
     tell: &mut dyn FnMut(Outcome) -> Result<(), E>,
 ) -> Result<(), E> {
     let nominals = Nominals::default();
@@ -165,7 +181,7 @@ pub fn judge_all<E: From<io::Error>>(
             scope.spawn(|| {
                 let done = done;
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if done.send((row.name, judge(row, &nominals))).is_err() {
+                    if done.send((row.name, judge(row, &nominals, patience))).is_err() {
                         return; // nobody wants to know any more
                     }
                 }
@@ -202,7 +218,7 @@ impl Outcome {
         Ok(())
     }
 
-    fn runs(&mut self, nominals: &Nominals) -> io::Result<()> {
+    fn runs(&mut self, nominals: &Nominals, patience: Patience) -> io::Result<()> {
         let Trial::Runs { case, nominal, cost, stored, recovery, demands, warns } = self.extreme.trial else {
             return Ok(());
         };
@@ -215,15 +231,16 @@ impl Outcome {
             return Ok(());
         };
         let nominal = nominals.of(&nominal())?;
-        let go_on =
-            |course: &Course| course.seconds < PATIENCE || cost.of(course) / cost.of(&nominal) <= MOST_COST;
+        let is_cheap = |course: &Course| cost.of(course) / cost.of(&nominal) <= MOST_COST;
+        let go_on = |course: &Course| {
+            course.seconds < patience.seconds() || (patience == Patience::Long && is_cheap(course))
+        };
         let run = || Course::of::<f32>(program, case.tamper, stored, &go_on);
         let mut course = run();
         // A busy machine makes a run dear, though never cheap: what is a little too dear is run again.
-        let too_dear = |course: &Course| cost.of(course) / cost.of(&nominal) > MOST_COST;
         let by_far = cost.of(&course) / cost.of(&nominal) > 2.0 * MOST_COST;
         for _ in 0..RERUNS {
-            if by_far || !too_dear(&course) {
+            if by_far || is_cheap(&course) || patience == Patience::Short {
                 break;
             }
             course.seconds = course.seconds.min(run().seconds);
@@ -238,7 +255,7 @@ impl Outcome {
         self.warns(warns);
         self.counts(&course);
         if let Some(frame) = course.given_up {
-            self.reported.push(format!("given up after frame {frame}: too dear"));
+            self.reported.push(format!("given up after frame {frame}"));
         }
         Ok(())
     }
