@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use mcap::records::Metadata;
 
+use crate::attribute::{CONTACTS, STRAIN};
+use crate::camera;
 use crate::open_error::OpenError;
 use crate::run::{Detail, Packing, Plane, RunInfo};
 
@@ -11,6 +13,7 @@ use crate::run::{Detail, Packing, Plane, RunInfo};
 const FORMAT: u32 = 1;
 pub(crate) const PROFILE: &str = "nucleus";
 const SCENE: &str = "nucleus.scene";
+const CAMERAS: &str = "nucleus.cameras";
 const RUN: &str = "nucleus.run";
 const GROUND: &str = "ground";
 /// The key of a record's checksum over all its other keys and values.
@@ -37,6 +40,8 @@ impl RunInfo {
             ]
             .map(|(key, value)| (key.to_owned(), value)),
         );
+        let also = [(CONTACTS.topic, self.contacts), (STRAIN.topic, self.strain)];
+        run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
         if let Some(Plane { origin, normal }) = self.ground {
             run.insert(
                 GROUND.to_owned(),
@@ -46,6 +51,11 @@ impl RunInfo {
         let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
             .map(|(key, value)| (key.to_owned(), value.clone()));
         [sealed(SCENE, scene.into()), sealed(RUN, run)]
+    }
+
+    /// The record of its cameras, if it has any.
+    pub(crate) fn cameras_to_metadata(&self) -> Option<Metadata> {
+        (!self.cameras.is_empty()).then(|| sealed(CAMERAS, camera::to_keys(&self.cameras)))
     }
 
     /// The run, and whether its scene is as it was written. A damaged scene is left out.
@@ -62,6 +72,7 @@ impl RunInfo {
         }
         run.0.remove(CHECKSUM);
         let scene = find(SCENE).filter(|record| is_sound(record));
+        let cameras = find(CAMERAS).filter(|record| is_sound(record));
         let (scene_is_sound, mut scene) =
             (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
         let info = Self {
@@ -73,7 +84,10 @@ impl RunInfo {
             units_per_metre: run.parse("units_per_metre")?,
             detail: run.detail()?,
             velocities: run.parse("velocities")?,
+            contacts: run.flag(CONTACTS.topic),
+            strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
+            cameras: cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default(),
             packing: Packing::default(),
             version,
             extra: run.0,
@@ -116,6 +130,11 @@ impl Keys {
         value.parse().map_err(|_| OpenError::BadValue { key, value })
     }
 
+    /// Whether a channel was recorded that older caches do not know.
+    fn flag(&mut self, key: &'static str) -> bool {
+        self.0.remove(key).is_some_and(|value| value == "true")
+    }
+
     fn detail(&mut self) -> Result<Detail, OpenError> {
         let value = self.0.remove("record").unwrap_or_default();
         match value.as_str() {
@@ -148,8 +167,15 @@ mod tests {
     fn what_is_written_of_a_run_is_what_is_read() {
         let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
         let ground = Some(Plane { origin: [0.1, -2.0, 0.0], normal: [0.0, 1.0, 1e-9] });
-        let run =
-            RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ground, ..RunInfo::default() };
+        let run = RunInfo {
+            scene_path: "a.ron".into(),
+            start: -3,
+            end: 9,
+            extra,
+            ground,
+            contacts: true,
+            ..RunInfo::default()
+        };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
             let run = RunInfo { detail, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
