@@ -16,7 +16,7 @@ pub struct Camera {
 }
 
 /// A camera at a frame. Lengths in scene units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CameraView {
     /// Where the eye is.
     pub eye: [f32; 3],

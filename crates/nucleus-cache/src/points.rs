@@ -90,20 +90,24 @@ impl<'a> PointsMessage<'a> {
         self.positions.len() / 12
     }
 
-    pub fn positions(&self) -> Vec<[f32; 3]> {
-        rows(self.positions)
+    pub fn positions(&self, out: &mut Vec<[f32; 3]>) {
+        rows(self.positions, out);
     }
 
     pub fn velocities(&self) -> Option<Vec<[f32; 3]>> {
-        self.velocities.map(rows)
+        self.velocities.map(|planes| {
+            let mut out = Vec::new();
+            rows(planes, &mut out);
+            out
+        })
     }
 }
 
-/// The rows of three floats that planes hold.
-fn rows(planes: &[u8]) -> Vec<[f32; 3]> {
-    let mut rows = vec![[0.0; 3]; planes.len() / 12];
-    unshuffle(planes, rows.as_flattened_mut());
-    rows
+/// Replaces `out` by the rows of three floats that planes hold.
+fn rows(planes: &[u8], out: &mut Vec<[f32; 3]>) {
+    // Not cleared before: all of it is written over.
+    out.resize(planes.len() / 12, [0.0; 3]);
+    unshuffle(planes, out.as_flattened_mut());
 }
 
 #[cfg(test)]
@@ -123,7 +127,9 @@ mod tests {
             bytes[12] = count;
             let points = PointsMessage::read(&bytes);
             prop_assert_eq!(points.is_some(), bytes.len() == HEAD + 12 * usize::from(count));
-            prop_assert!(points.is_none_or(|points| points.positions().len() == usize::from(count)));
+            let mut positions = Vec::new();
+            let read = points.map(|points| points.positions(&mut positions));
+            prop_assert!(read.is_none() || positions.len() == usize::from(count));
         }
     }
 

@@ -15,6 +15,8 @@ pub(crate) const PROFILE: &str = "nucleus";
 const SCENE: &str = "nucleus.scene";
 const CAMERAS: &str = "nucleus.cameras";
 const RUN: &str = "nucleus.run";
+/// How many cameras there are, so that one that is lost is missed.
+const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
 /// The key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
@@ -42,6 +44,9 @@ impl RunInfo {
         );
         let also = [(CONTACTS.topic, self.contacts), (STRAIN.topic, self.strain)];
         run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
+        if !self.cameras.is_empty() {
+            run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
+        }
         if let Some(Plane { origin, normal }) = self.ground {
             run.insert(
                 GROUND.to_owned(),
@@ -73,8 +78,11 @@ impl RunInfo {
         run.0.remove(CHECKSUM);
         let scene = find(SCENE).filter(|record| is_sound(record));
         let cameras = find(CAMERAS).filter(|record| is_sound(record));
+        let cameras = cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default();
+        let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
         let (scene_is_sound, mut scene) =
             (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
+        let scene_is_sound = scene_is_sound && cameras.len() == count;
         let info = Self {
             scene_path: scene.remove("path").unwrap_or_default(),
             scene_text: scene.remove("text").unwrap_or_default(),
@@ -87,7 +95,7 @@ impl RunInfo {
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
-            cameras: cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default(),
+            cameras,
             packing: Packing::default(),
             version,
             extra: run.0,
@@ -162,6 +170,7 @@ impl Keys {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Camera, CameraView, FilmFit};
 
     #[test]
     fn what_is_written_of_a_run_is_what_is_read() {
@@ -196,6 +205,23 @@ mod tests {
         assert!(refusal("fps", "-4").contains("frames per second must be above zero"));
         assert!(refusal("units_per_metre", "NaN").contains("units per metre must be above zero"));
         assert!(refusal("end", "-9").contains("frame -9 ends before frame 1"));
+    }
+
+    #[test]
+    fn cameras_that_are_lost_are_missed() {
+        let view = CameraView::default();
+        let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
+        let run = RunInfo { cameras: vec![camera], ..RunInfo::default() };
+        let [scene, record] = run.to_metadata();
+        let mut cameras = run.cameras_to_metadata().unwrap();
+        let read = |cameras: &Metadata| {
+            RunInfo::from_metadata(&[scene.clone(), record.clone(), cameras.clone()]).unwrap()
+        };
+        assert_eq!(read(&cameras), (run.clone(), true));
+        cameras.metadata.insert("camera shot".to_owned(), "fill".to_owned());
+        assert_eq!((read(&cameras).0.cameras, read(&cameras).1), (Vec::new(), false));
+        cameras.name = "nucleus.camerbs".to_owned();
+        assert!(!read(&cameras).1);
     }
 
     #[test]

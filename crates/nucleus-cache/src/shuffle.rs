@@ -10,8 +10,9 @@ pub(crate) fn shuffle(floats: &[f32], out: &mut Vec<u8>) {
     let (low, high) = out[begin..].split_at_mut(2 * floats.len());
     let (plane_0, plane_1) = low.split_at_mut(floats.len());
     let (plane_2, plane_3) = high.split_at_mut(floats.len());
-    for (i, float) in floats.iter().enumerate() {
-        [plane_0[i], plane_1[i], plane_2[i], plane_3[i]] = float.to_le_bytes();
+    let planes = plane_0.iter_mut().zip(plane_1).zip(plane_2.iter_mut().zip(plane_3));
+    for (float, ((a, b), (c, d))) in floats.iter().zip(planes) {
+        [*a, *b, *c, *d] = float.to_le_bytes();
     }
 }
 
@@ -21,8 +22,9 @@ pub(crate) fn unshuffle(planes: &[u8], floats: &mut [f32]) {
     let (low, high) = planes[..4 * count].split_at(2 * count);
     let (plane_0, plane_1) = low.split_at(count);
     let (plane_2, plane_3) = high.split_at(count);
-    for (i, float) in floats.iter_mut().enumerate() {
-        *float = f32::from_le_bytes([plane_0[i], plane_1[i], plane_2[i], plane_3[i]]);
+    let planes = plane_0.iter().zip(plane_1).zip(plane_2.iter().zip(plane_3));
+    for (float, ((&a, &b), (&c, &d))) in floats.iter_mut().zip(planes) {
+        *float = f32::from_le_bytes([a, b, c, d]);
     }
 }
 

@@ -4,7 +4,10 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
 
 use nalgebra::Vector3;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, RecordError, Recorded, Recorder, RunInfo, Source};
+use nucleus_cache::{
+    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, RecordError, Recorded, Recorder, RunInfo,
+    Source,
+};
 use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver};
 
 pub const START: i32 = 10;
@@ -79,7 +82,9 @@ pub fn run_info() -> RunInfo {
 
 /// The same, with all that can be recorded of cloth.
 pub fn with_all_channels() -> RunInfo {
-    RunInfo { contacts: true, strain: true, ..with_substeps() }
+    let views = (0..3).map(|k| CameraView { eye: [k as f32; 3], ..CameraView::default() }).collect();
+    let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Fill, views };
+    RunInfo { contacts: true, strain: true, cameras: vec![camera], ..with_substeps() }
 }
 
 /// Its objects. One name holds what names may hold.
