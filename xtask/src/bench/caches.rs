@@ -30,7 +30,7 @@ const LARGE: u32 = 67_500;
 pub fn tables(root: &Path) -> anyhow::Result<String> {
     let folder = crate::target(root).join("caches");
     std::fs::create_dir_all(&folder)?;
-    let tables = vec![
+    let tables = [
         throughput(root, &folder)?,
         large(root, &folder)?,
         recording::table()?,
