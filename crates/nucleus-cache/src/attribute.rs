@@ -4,6 +4,7 @@
 use nucleus_core::Contact;
 
 use crate::points::{HEAD, Stamp};
+use crate::run::RunInfo;
 
 /// An attribute that points have.
 pub(crate) struct Attribute {
@@ -42,6 +43,12 @@ largest size among the edges of faces at the point, length over rest length less
 pub(crate) const ALL: [&Attribute; 2] = [&CONTACTS, &STRAIN];
 
 impl Attribute {
+    /// Whether a run is recorded with it.
+    pub fn is_recorded(&self, run: &RunInfo) -> bool {
+        (self.encoding == CONTACTS.encoding && run.contacts)
+            || (self.encoding == STRAIN.encoding && run.strain)
+    }
+
     /// The bytes of the values in a message; `None` when it is of another moment or of another number of points.
     pub fn read<'a>(&self, data: &'a [u8], count: usize, stamp: (i32, u64)) -> Option<&'a [u8]> {
         let (head, values) = data.split_at_checked(HEAD)?;

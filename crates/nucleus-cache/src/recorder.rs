@@ -204,7 +204,7 @@ impl<W: Write + Seek> Recorder<W> {
         for record in self.run.to_metadata().into_iter().chain(self.run.cameras_to_metadata()) {
             self.stream.metadata(&record)?;
         }
-        let schemas = self.stream.own_schemas()?;
+        let schemas = self.stream.own_schemas(|one| one.is_recorded(&self.run))?;
         self.report_channel = self.stream.channel("/report", 0, "json")?;
         let mut meshes = Vec::with_capacity(objects.len());
         for (source, object) in &objects {

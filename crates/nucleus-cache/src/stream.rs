@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
-use crate::attribute;
+use crate::attribute::{self, Attribute};
 use crate::points::{self, Stamp};
 use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
@@ -62,10 +62,12 @@ impl<W: Write + Seek> Stream<W> {
         self.progress.check(self.writer.add_schema(name, "text", text.as_bytes()))
     }
 
-    /// Adds the schemas of a cache.
-    pub fn own_schemas(&mut self) -> Result<Schemas, RecordError> {
+    /// Adds the schemas of a cache; of attributes only those that it uses.
+    pub fn own_schemas(&mut self, uses: impl Fn(&Attribute) -> bool) -> Result<Schemas, RecordError> {
         let own = [(topology::ENCODING, topology::SCHEMA), (points::ENCODING, points::SCHEMA)];
-        let all = own.into_iter().chain(attribute::ALL.map(|one| (one.encoding, one.schema)));
+        let all = own
+            .into_iter()
+            .chain(attribute::ALL.into_iter().filter(|one| uses(one)).map(|one| (one.encoding, one.schema)));
         let schema = |(name, text)| Ok((name, self.schema(name, text)?));
         Ok(Schemas(all.map(schema).collect::<Result<_, RecordError>>()?))
     }
