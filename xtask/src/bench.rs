@@ -12,6 +12,7 @@
 //! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
 //! | the cost of a link; a million points; threads    | [`growth`]    |
 //! | what each feature costs                          | [`features`]  |
+//! | how fast caches are                              | [`caches`]    |
 //! | what is kept of a run                            | [`report`]    |
 
 use std::path::PathBuf;
@@ -19,6 +20,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 mod accuracy;
+pub mod caches;
 mod contact;
 mod contest;
 mod csv;

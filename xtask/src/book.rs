@@ -9,6 +9,7 @@
 //! | how far the solver is from exact physics         | [`nucleus_measure::validation`] |
 //! | what a prototype promised                        | [`nucleus_measure::experiments`] |
 //! | what a feature costs                             | [`mod@features`]             |
+//! | how fast caches are                              | [`mod@caches`]               |
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -20,7 +21,7 @@ use anyhow::{Context, ensure};
 use clap::ValueEnum;
 use nucleus_measure::{advice, experiments, machine, report, store, trade};
 
-use crate::bench::features;
+use crate::bench::{caches, features};
 
 /// What to make.
 #[derive(Debug, Clone, clap::Args)]
@@ -43,6 +44,8 @@ enum Page {
     Validation,
     /// `docs/experiments.md`: what a prototype promised, and what the solver does
     Experiments,
+    /// `docs/caches.md`: how fast caches are written, read, found their way about in, and played
+    Caches,
     /// `docs/features.md`: what each feature costs, on and off
     Features,
 }
@@ -70,6 +73,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
             Page::Extremes => by_command(root, "extremes", "extremes.md")?,
             Page::Validation => by_command(root, "validate", "validation.md")?,
             Page::Experiments => experiments(root)?,
+            Page::Caches => caches(root)?,
             Page::Features => features(root)?,
         }
         eprintln!("{page:?}: {:.0} s", start.elapsed().as_secs_f64());
@@ -119,6 +123,12 @@ fn experiments(root: &Path) -> anyhow::Result<()> {
     }
     let page = experiments::page(&results, &machine::describe().join("\n"));
     Ok(store::write_whole(&root.join("docs").join("experiments.md"), page.as_bytes())?)
+}
+
+fn caches(root: &Path) -> anyhow::Result<()> {
+    let machine = machine::describe().join("\n");
+    let page = format!("{}\n{machine}\n\n{}", caches::HEAD, caches::tables(root)?);
+    Ok(store::write_whole(&root.join("docs").join("caches.md"), page.as_bytes())?)
 }
 
 fn features(root: &Path) -> anyhow::Result<()> {

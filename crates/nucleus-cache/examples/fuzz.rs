@@ -14,7 +14,7 @@ use std::panic::catch_unwind;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use nucleus_cache::Playback;
+use nucleus_cache::{Playback, RunInfo};
 
 #[path = "../tests/cache/falling.rs"]
 #[allow(dead_code)]
@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let seconds = arguments.next().map_or(Ok(10), |text| text.parse())?;
     let corpus = arguments.next();
-    let seeds = [seed(false)?, seed(true)?, falling::whole_run(&falling::with_substeps()).0];
+    let all = falling::with_all_channels();
+    let seeds = [seed(&falling::run_info())?, seed(&all)?, falling::whole_run(&all).0];
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut endings: BTreeMap<String, (u64, Vec<u8>)> = BTreeMap::new();
     let (begin, mut runs) = (Instant::now(), 0_u64);
@@ -81,12 +82,11 @@ fn read(bytes: &[u8]) -> String {
     for object in 0..cache.objects().len() {
         for moment in (0..cache.moments().len()).take(40) {
             let positions = cache.positions(object, moment).map(drop);
-            faults.extend(
-                positions
-                    .and(cache.velocities(object, moment).map(drop))
-                    .err()
-                    .map(|error| error.to_string()),
-            );
+            let all = positions
+                .and(cache.velocities(object, moment).map(drop))
+                .and(cache.contacts(object, moment).map(drop))
+                .and(cache.strain(object, moment).map(drop));
+            faults.extend(all.err().map(|error| error.to_string()));
         }
     }
     faults.extend(cache.reports().err().map(|error| error.to_string()));
@@ -113,10 +113,9 @@ fn plain(message: &str) -> String {
     kept.collect::<String>().replace(" to ,", "").replace(", ,", "").replace("frames", "frame")
 }
 
-/// A cache whose chunks are not compressed, so that their bytes can be changed; of substeps or of frames.
-fn seed(substeps: bool) -> Result<Vec<u8>, Box<dyn Error>> {
-    let run = if substeps { falling::with_substeps() } else { falling::run_info() };
-    let (bytes, _) = falling::whole_run(&run);
+/// A cache whose chunks are not compressed, so that their bytes can be changed.
+fn seed(run: &RunInfo) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (bytes, _) = falling::whole_run(run);
     let summary = mcap::Summary::read(&bytes)?.ok_or("no summary")?;
     let mut plain = Cursor::new(Vec::new());
     let options =

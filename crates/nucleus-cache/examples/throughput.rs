@@ -1,17 +1,24 @@
-//! Writes and reads a waving sheet and prints megabytes of positions per second, memory per point, and how long
-//! it takes to get to any frame.
+//! Writes and reads a waving sheet and prints, as JSON: megabytes of positions per second, memory per point, how long it
+//! takes to open the file and to get to any frame of it.
 //!
-//! `cargo run --release -p nucleus-cache --example throughput -- 1000 20` (points along a side, frames; then `compact`).
+//! `cargo run --release -p nucleus-cache --example throughput -- 1000 20` (points along a side, frames; then `compact`,
+//! and `keep=PATH` where the file is to stay).
 
 use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::OnceLock;
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use nucleus_cache::{ObjectInfo, ObjectKind, Packing, Playback, Recorder, RunInfo, Source};
+use nucleus_cache::{ObjectInfo, ObjectKind, Packing, Playback, Recorded, Recorder, RunInfo, Source};
 use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver};
+use serde_json::json;
 
-/// A sheet of a metre, with waves that make every float differ from frame to frame.
+/// Shapes that the sheet goes through, again and again: making them would take longer than writing them.
+const SHAPES: usize = 12;
+
+/// A sheet of a metre, with waves that make every float differ from shape to shape.
 struct Sheet(Vec<[f32; 3]>);
 
 impl Sheet {
@@ -41,60 +48,107 @@ impl StateView for Sheet {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments =
-        std::env::args().skip(1).filter(|word| word != "compact").map(|argument| argument.parse::<u32>());
-    let side = arguments.next().transpose()?.unwrap_or(129);
-    let frames = arguments.next().transpose()?.unwrap_or(120) as i32;
-    let packing = if std::env::args().any(|word| word == "compact") { Packing::Small } else { Packing::Fast };
-    let path = std::env::temp_dir().join("nucleus-throughput.mcap");
-    let raw = 12.0e-6 * f64::from(side * side) * f64::from(frames);
-    let before = peak_kilobytes();
-
+    if let Some(path) = std::env::var_os(READER) {
+        let before = peak_kilobytes();
+        read(&mut Playback::open(path)?)?;
+        println!("{}", (peak_kilobytes() - before) / 1024.0);
+        return Ok(());
+    }
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let mut numbers = words.iter().filter_map(|word| word.parse::<u32>().ok());
+    let (side, frames) = (numbers.next().unwrap_or(129), numbers.next().unwrap_or(120) as i32);
+    let packing = if words.iter().any(|word| word == "compact") { Packing::Small } else { Packing::Fast };
+    let kept = words.iter().find_map(|word| word.strip_prefix("keep=")).map(PathBuf::from);
+    let path = kept.clone().unwrap_or_else(|| std::env::temp_dir().join("nucleus-throughput.mcap"));
+    let megabytes = 12e-6 * f64::from(side * side) * f64::from(frames);
     let run = RunInfo { start: 0, end: frames, packing, ..RunInfo::default() };
-    let mut recorder = Recorder::replace(&path, &run, vec![(Source::Cloth(ClothId(0)), sheet(side))])?;
-    recorder.record_start(&Sheet::at(side, 0.0))?;
-    let mut seconds = 0.0;
-    for frame in 1..=frames {
-        let state = Sheet::at(side, frame as f32 / 24.0);
-        let begin = clock();
-        recorder.frame(frame)?.substep(Moment { substep: 1, substeps: 1 }, &state);
-        recorder.end_frame(&())?;
-        seconds += clock() - begin;
-    }
-    let recorded = recorder.finish()?;
-    let peak = (peak_kilobytes() - before) * 1024.0 / f64::from(side * side);
-    println!(
-        "write {:.0} MB/s, {:.0} % of raw, {peak:.0} bytes per point",
-        raw / seconds,
-        1e-4 * recorded.bytes as f64 / raw
-    );
 
-    let begin = clock();
+    let shapes: Vec<Sheet> = (0..SHAPES).map(|k| Sheet::at(side, k as f32 / 24.0)).collect();
+    let before = peak_kilobytes();
+    let (recorded, write) = write(&path, &run, &shapes, sheet(side))?;
+    let recorder = peak_kilobytes() - before;
+    let begin = Instant::now();
     let mut cache = Playback::open(&path)?;
-    let opened = (clock() - begin) * 1e3;
-    let begin = clock();
-    for moment in 1..cache.moments().len() {
-        std::hint::black_box(cache.positions(0, moment)?);
+    let open = 1e3 * begin.elapsed().as_secs_f64();
+    let read = read(&mut cache)?;
+    let cold = forget(&path).then(|| seek(&mut cache)).transpose()?;
+    let warm = seek(&mut cache)?;
+    let gigabytes = 1e-9 * recorded.bytes as f64;
+    println!(
+        "{}",
+        json!({
+            "side": side, "frames": frames, "gigabytes": gigabytes, "packed": 1e3 * gigabytes / megabytes,
+            "write_mb_s": megabytes / write, "read_mb_s": megabytes / read, "open_ms": open,
+            "seek_ms": warm, "cold_seek_ms": cold, "recorder_bytes_per_point": 1024.0 * recorder / f64::from(side * side),
+            "reader_mb": memory(&path),
+        })
+    );
+    if kept.is_none() {
+        std::fs::remove_file(path)?;
     }
-    println!("read {:.0} MB/s, open {opened:.2} ms", raw / (clock() - begin));
-    let (middle, worst) = seek(&mut cache)?;
-    println!("seek {middle:.2} ms, at worst {worst:.2} ms, in {:.2} GB", 1e-9 * recorded.bytes as f64);
-    std::fs::remove_file(path)?;
     Ok(())
 }
 
-/// Milliseconds to read the sheet at a moment anywhere in the run: the median of 101, and the longest.
-fn seek(cache: &mut Playback) -> Result<(f64, f64), Box<dyn Error>> {
+/// Records all frames; the seconds are those of recording alone.
+fn write(
+    path: &Path,
+    run: &RunInfo,
+    shapes: &[Sheet],
+    object: ObjectInfo,
+) -> Result<(Recorded, f64), Box<dyn Error>> {
+    let mut recorder = Recorder::replace(path, run, vec![(Source::Cloth(ClothId(0)), object)])?;
+    recorder.record_start(&shapes[0])?;
+    let begin = clock();
+    for frame in 1..=run.end {
+        let shape = &shapes[frame as usize % SHAPES];
+        recorder.frame(frame)?.substep(Moment { substep: 1, substeps: 1 }, shape);
+        recorder.end_frame(&())?;
+    }
+    let recorded = recorder.finish()?;
+    Ok((recorded, clock() - begin))
+}
+
+/// Seconds to read all frames, one after the other.
+fn read(cache: &mut Playback) -> Result<f64, Box<dyn Error>> {
+    let begin = clock();
+    let mut positions = Vec::new();
+    for moment in 1..cache.moments().len() {
+        cache.positions_into(0, moment, &mut positions)?;
+        std::hint::black_box(&positions);
+    }
+    Ok(clock() - begin)
+}
+
+/// Milliseconds by the clock to read the sheet at a moment anywhere in the run: the median of 301, and what 99 of 100 stay
+/// below.
+fn seek(cache: &mut Playback) -> Result<[f64; 2], Box<dyn Error>> {
     let moments = cache.moments().len();
     let mut times = Vec::new();
-    for k in 0..101 {
-        let begin = clock();
-        std::hint::black_box(cache.positions(0, 7_919 * k % moments)?);
-        times.push((clock() - begin) * 1e3);
+    for k in 0..301 {
+        let begin = Instant::now();
+        std::hint::black_box(cache.positions(0, 7_919 * (k + 1) % moments)?);
+        times.push(1e3 * begin.elapsed().as_secs_f64());
     }
     times.sort_by(f64::total_cmp);
-    Ok((times[50], times[100]))
+    Ok([times[150], times[297]])
 }
+
+/// Has the system forget what it holds of a file in memory; whether that could be done.
+fn forget(path: &Path) -> bool {
+    let mut dd = Command::new("dd");
+    dd.arg(format!("if={}", path.display())).args(["iflag=nocache", "count=0", "status=none"]);
+    let synced = Command::new("sync").arg(path).status().is_ok_and(|status| status.success());
+    synced && dd.status().is_ok_and(|status| status.success())
+}
+
+/// Megabytes that a process of its own comes to hold when it reads a file from end to end.
+fn memory(path: &Path) -> Option<f64> {
+    let child = Command::new(std::env::current_exe().ok()?).env(READER, path).output().ok()?;
+    String::from_utf8(child.stdout).ok()?.trim().parse().ok()
+}
+
+/// Set to a path, the program only reads that and says how much memory that took.
+const READER: &str = "NUCLEUS_READS";
 
 fn sheet(side: u32) -> ObjectInfo {
     let quads = (side - 1) as usize * (side - 1) as usize;

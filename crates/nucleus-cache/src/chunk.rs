@@ -4,6 +4,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
 use mcap::records::{MessageHeader, Record, op};
+use zstd::bulk::Decompressor;
 
 /// Bytes before the body of a record: its kind and its length.
 pub(crate) const RECORD_HEAD: u64 = 9;
@@ -11,6 +12,11 @@ pub(crate) const RECORD_HEAD: u64 = 9;
 /// Bytes of a chunk's body besides the word for its compression and its records: two times, a size, a checksum,
 /// and the lengths of both.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4 + 8;
+
+/// Bytes of a chunk that are read in one go.
+const AT_ONCE: u64 = 1 << 26;
+/// No frame of zstd unpacks to more times its bytes: a block of 128 kB takes at least four.
+const LARGEST_RATIO: u64 = 1 << 15;
 
 /// Where a chunk lies in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,6 +32,8 @@ pub(crate) struct ChunkPlace {
 pub(crate) struct Chunk {
     compressed: Vec<u8>,
     records: Vec<u8>,
+    /// Made when it is first needed: its tables are larger than many a frame.
+    unpacker: Option<Decompressor<'static>>,
     channels: Vec<mcap::records::Channel>,
     messages: Vec<(MessageHeader, Range<usize>)>,
 }
@@ -48,11 +56,31 @@ impl Chunk {
     ) -> Result<(u64, u64), ChunkFault> {
         self.messages.clear();
         self.channels.clear();
-        self.compressed.clear();
         file.seek(SeekFrom::Start(bytes.start)).map_err(ChunkFault::Io)?;
-        let length = bytes.end.saturating_sub(bytes.start);
-        file.take(length).read_to_end(&mut self.compressed).map_err(ChunkFault::Io)?;
+        self.fetch(file, bytes.end.saturating_sub(bytes.start)).map_err(ChunkFault::Io)?;
         self.unpack().ok_or(ChunkFault::Damaged)
+    }
+
+    /// Reads so many bytes, or as many as there are.
+    fn fetch(&mut self, file: &mut impl Read, length: u64) -> io::Result<()> {
+        // What a damaged index may state is not to be believed; up to here it costs little.
+        let at_once = length.min(AT_ONCE) as usize;
+        // What is there already is written over, and need not be cleared.
+        self.compressed.resize(at_once, 0);
+        let mut read = 0;
+        while read < at_once {
+            match file.read(&mut self.compressed[read..]) {
+                Ok(0) => break,
+                Ok(count) => read += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        self.compressed.truncate(read);
+        if read == at_once {
+            file.take(length - at_once as u64).read_to_end(&mut self.compressed)?;
+        }
+        Ok(())
     }
 
     /// The channels that were introduced in this chunk.
@@ -87,15 +115,10 @@ impl Chunk {
         }
         self.records.clear();
         match header.compression.as_str() {
-            // One byte more than stated shows that the statement is wrong, whatever it says.
-            "zstd" => zstd::stream::read::Decoder::with_buffer(&*data)
-                .and_then(|unpacked| {
-                    unpacked.take(header.uncompressed_size.saturating_add(1)).read_to_end(&mut self.records)
-                })
-                .ok()?,
-            "" => io::copy(&mut &*data, &mut self.records).ok()? as usize,
+            "zstd" => expand(&mut self.unpacker, &data, header.uncompressed_size, &mut self.records)?,
+            "" => self.records.extend_from_slice(&data),
             _ => return None,
-        };
+        }
         let whole = self.records.len() as u64 == header.uncompressed_size;
         if !whole || crc32fast::hash(&self.records) != header.uncompressed_crc {
             return None;
@@ -121,6 +144,25 @@ impl Chunk {
         }
         rest.is_empty().then_some(())
     }
+}
+
+/// Unpacks `data` into `out`, in one go and to where it stays. `stated` is its length unpacked; more than that does not
+/// fit.
+fn expand(
+    unpacker: &mut Option<Decompressor<'static>>,
+    data: &[u8],
+    stated: u64,
+    out: &mut Vec<u8>,
+) -> Option<()> {
+    if stated / LARGEST_RATIO > data.len() as u64 {
+        return None;
+    }
+    out.try_reserve_exact(usize::try_from(stated).ok()?).ok()?;
+    if unpacker.is_none() {
+        *unpacker = Decompressor::new().ok();
+    }
+    unpacker.as_mut()?.decompress_to_buffer(data, out).ok()?;
+    Some(())
 }
 
 /// The kind and the body of the record at the start of `rest`, which is moved behind it; `None` at the end

@@ -8,7 +8,7 @@
 //! | where two runs differ first                         | [`compare`]                         |
 //! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
 //! | what is known of the run: scene, frames, units      | [`RunInfo`]                         |
-//! | the bytes of a message                              | `points.rs` and `topology.rs`       |
+//! | the bytes of a message                              | `points.rs`, `attribute.rs`, `topology.rs` |
 //! | how one frame is kept from harming another          | `stream.rs`, `chunk.rs`             |
 //! | why floats are stored byte by byte                  | `shuffle.rs`                        |
 //!
@@ -44,6 +44,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod attribute;
+mod camera;
 mod chunk;
 mod contents;
 mod diff;
@@ -60,6 +62,7 @@ mod recover;
 mod run;
 mod salvage;
 mod shuffle;
+mod strain;
 mod stream;
 mod summary;
 mod tally;
@@ -67,6 +70,7 @@ mod target;
 mod topic_file;
 mod topology;
 
+pub use camera::{Camera, CameraView, FilmFit};
 pub use diff::{Comparison, Difference, PointDifference, compare};
 pub use loss::Loss;
 pub use moment::RecordedMoment;

@@ -5,8 +5,10 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use nucleus_core::Contact;
 use serde_json::Value;
 
+use crate::attribute::{self, Attribute};
 use crate::chunk::{Chunk, ChunkFault};
 use crate::contents::Contents;
 use crate::loss::Loss;
@@ -16,6 +18,7 @@ use crate::open_error::{OpenError, ReadError};
 use crate::points::PointsMessage;
 use crate::provenance::PROFILE;
 use crate::run::RunInfo;
+use crate::shuffle::unshuffle;
 use crate::{salvage, summary, target, topology};
 
 /// An open cache.
@@ -169,7 +172,22 @@ impl<R: Read + Seek> Playback<R> {
     /// # Errors
     /// When there is no such object or moment, or its frame is damaged.
     pub fn positions(&mut self, object: usize, moment: usize) -> Result<Vec<[f32; 3]>, ReadError> {
-        self.points(object, moment).map(|points| points.positions())
+        let mut positions = Vec::new();
+        self.positions_into(object, moment, &mut positions)?;
+        Ok(positions)
+    }
+
+    /// The same into memory that is there already: whoever reads frame after frame is a third faster for it.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions); `out` is then as it was.
+    pub fn positions_into(
+        &mut self,
+        object: usize,
+        moment: usize,
+        out: &mut Vec<[f32; 3]>,
+    ) -> Result<(), ReadError> {
+        self.points(object, moment).map(|points| points.positions(out))
     }
 
     /// Velocities of an object at a moment, in scene units per second, if they were recorded.
@@ -178,6 +196,51 @@ impl<R: Read + Seek> Playback<R> {
     /// As [`positions`](Self::positions).
     pub fn velocities(&mut self, object: usize, moment: usize) -> Result<Option<Vec<[f32; 3]>>, ReadError> {
         self.points(object, moment).map(|points| points.velocities())
+    }
+
+    /// How contact stands at each point of an object at a moment; nothing where that was not recorded.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn contacts(&mut self, object: usize, moment: usize) -> Result<Option<Vec<Contact>>, ReadError> {
+        let frame = self.moments.get(moment).map_or(0, |moment| moment.frame);
+        let Some(bytes) = self.attribute(object, moment, &attribute::CONTACTS)? else { return Ok(None) };
+        attribute::read_contacts(bytes).map(Some).ok_or(ReadError::Damaged { frame })
+    }
+
+    /// The strain at each point of an object at a moment, the largest of its edges; nothing where it was not recorded.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn strain(&mut self, object: usize, moment: usize) -> Result<Option<Vec<f32>>, ReadError> {
+        let Some(planes) = self.attribute(object, moment, &attribute::STRAIN)? else { return Ok(None) };
+        let mut strain = vec![0.0; planes.len() / 4];
+        unshuffle(planes, &mut strain);
+        Ok(Some(strain))
+    }
+
+    /// The bytes of an attribute of an object at a moment.
+    fn attribute(
+        &mut self,
+        object: usize,
+        moment: usize,
+        attribute: &Attribute,
+    ) -> Result<Option<&[u8]>, ReadError> {
+        let (objects, moments) = (self.objects.len(), self.moments.len());
+        let ObjectInfo { name, rest, .. } =
+            self.objects.get(object).ok_or(ReadError::NoObject { object, objects })?;
+        let RecordedMoment { frame, log_time, .. } =
+            *self.moments.get(moment).ok_or(ReadError::NoMoment { moment, moments })?;
+        let channel = self.contents.channel(&format!("/{name}/{}", attribute.topic));
+        let found = channel.and_then(|channel| Some((channel, self.contents.latest(channel, log_time)?)));
+        let (Some((channel, (time, index))), count) = (found, rest.len()) else { return Ok(None) };
+        if time != log_time {
+            return Ok(None); // It is of another moment.
+        }
+        self.load(index)?;
+        let message = self.chunk.message(channel, log_time);
+        let values = message.and_then(|data| attribute.read(data, count, (frame, log_time)));
+        values.map(Some).ok_or(ReadError::Damaged { frame })
     }
 
     /// The report of each frame in order: JSON objects with a field `frame`. Reads the whole file; frames

@@ -16,7 +16,8 @@ the order x0 y0 z0 x1 ... With bit 0 set, velocities (scene units per second) fo
 
 /// The flag that says that velocities follow.
 const VELOCITIES: u32 = 1;
-const HEAD: usize = 32;
+/// Bytes of the head that all messages of points begin with.
+pub(crate) const HEAD: usize = 32;
 
 /// When a message was taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +32,14 @@ impl Stamp {
     /// The initial state, at the start frame.
     pub fn start(frame: i32) -> Self {
         Self { frame, substep: 0, substeps: 1, time: 0.0 }
+    }
+
+    /// Reads it, and the number of points, from the head of a message.
+    pub fn read(head: &[u8]) -> Option<(Self, u32)> {
+        let word = |k: usize| Some(u32::from_le_bytes(head.get(4 * k..4 * k + 4)?.try_into().ok()?));
+        let time = f64::from_le_bytes(head.get(24..32)?.try_into().ok()?);
+        let stamp = Self { frame: word(0)?.cast_signed(), substep: word(1)?, substeps: word(2)?, time };
+        Some((stamp, word(3)?))
     }
 
     /// The time as MCAP wants it.
@@ -67,11 +76,9 @@ impl<'a> PointsMessage<'a> {
     /// Reads the head; `None` when it contradicts the length.
     pub fn read(data: &'a [u8]) -> Option<Self> {
         let (head, values) = data.split_at_checked(HEAD)?;
-        let word = |k: usize| u32::from_le_bytes(head[4 * k..4 * k + 4].try_into().expect("four bytes"));
-        let time = f64::from_le_bytes(head[24..32].try_into().expect("eight bytes"));
-        let stamp = Stamp { frame: word(0).cast_signed(), substep: word(1), substeps: word(2), time };
-        let bytes = 12 * word(3) as usize;
-        let has_velocities = word(4) & VELOCITIES != 0;
+        let (stamp, count) = Stamp::read(head)?;
+        let bytes = 12 * count as usize;
+        let has_velocities = u32::from(head[16]) & VELOCITIES != 0;
         if values.len() != bytes * (1 + usize::from(has_velocities)) {
             return None;
         }
@@ -83,13 +90,24 @@ impl<'a> PointsMessage<'a> {
         self.positions.len() / 12
     }
 
-    pub fn positions(&self) -> Vec<[f32; 3]> {
-        unshuffle(self.positions)
+    pub fn positions(&self, out: &mut Vec<[f32; 3]>) {
+        rows(self.positions, out);
     }
 
     pub fn velocities(&self) -> Option<Vec<[f32; 3]>> {
-        self.velocities.map(unshuffle)
+        self.velocities.map(|planes| {
+            let mut out = Vec::new();
+            rows(planes, &mut out);
+            out
+        })
     }
+}
+
+/// Replaces `out` by the rows of three floats that planes hold.
+fn rows(planes: &[u8], out: &mut Vec<[f32; 3]>) {
+    // Not cleared before: all of it is written over.
+    out.resize(planes.len() / 12, [0.0; 3]);
+    unshuffle(planes, out.as_flattened_mut());
 }
 
 #[cfg(test)]
@@ -109,7 +127,9 @@ mod tests {
             bytes[12] = count;
             let points = PointsMessage::read(&bytes);
             prop_assert_eq!(points.is_some(), bytes.len() == HEAD + 12 * usize::from(count));
-            prop_assert!(points.is_none_or(|points| points.positions().len() == usize::from(count)));
+            let mut positions = Vec::new();
+            let read = points.map(|points| points.positions(&mut positions));
+            prop_assert!(read.is_none() || positions.len() == usize::from(count));
         }
     }
 
@@ -118,7 +138,7 @@ mod tests {
         let stamp = Stamp { frame: -2, substep: 3, substeps: 4, time: 0.5 };
         let mut bytes = Vec::new();
         write_head(&stamp, 1, false, &mut bytes);
-        shuffle(&[[1.0, 0.0, 0.0]], &mut bytes);
+        shuffle(&[1.0, 0.0, 0.0], &mut bytes);
         assert_eq!(bytes[..4], (-2_i32).to_le_bytes());
         assert_eq!(bytes[4..24], [3, 0, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(bytes[24..32], 0.5_f64.to_le_bytes());

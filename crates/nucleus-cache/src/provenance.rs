@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use mcap::records::Metadata;
 
+use crate::attribute::{CONTACTS, STRAIN};
+use crate::camera;
 use crate::open_error::OpenError;
 use crate::run::{Detail, Packing, Plane, RunInfo};
 
@@ -11,7 +13,10 @@ use crate::run::{Detail, Packing, Plane, RunInfo};
 const FORMAT: u32 = 1;
 pub(crate) const PROFILE: &str = "nucleus";
 const SCENE: &str = "nucleus.scene";
+const CAMERAS: &str = "nucleus.cameras";
 const RUN: &str = "nucleus.run";
+/// How many cameras there are, so that one that is lost is missed.
+const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
 /// The key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
@@ -37,6 +42,11 @@ impl RunInfo {
             ]
             .map(|(key, value)| (key.to_owned(), value)),
         );
+        let also = [(CONTACTS.topic, self.contacts), (STRAIN.topic, self.strain)];
+        run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
+        if !self.cameras.is_empty() {
+            run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
+        }
         if let Some(Plane { origin, normal }) = self.ground {
             run.insert(
                 GROUND.to_owned(),
@@ -46,6 +56,11 @@ impl RunInfo {
         let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
             .map(|(key, value)| (key.to_owned(), value.clone()));
         [sealed(SCENE, scene.into()), sealed(RUN, run)]
+    }
+
+    /// The record of its cameras, if it has any.
+    pub(crate) fn cameras_to_metadata(&self) -> Option<Metadata> {
+        (!self.cameras.is_empty()).then(|| sealed(CAMERAS, camera::to_keys(&self.cameras)))
     }
 
     /// The run, and whether its scene is as it was written. A damaged scene is left out.
@@ -62,8 +77,12 @@ impl RunInfo {
         }
         run.0.remove(CHECKSUM);
         let scene = find(SCENE).filter(|record| is_sound(record));
+        let cameras = find(CAMERAS).filter(|record| is_sound(record));
+        let cameras = cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default();
+        let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
         let (scene_is_sound, mut scene) =
             (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
+        let scene_is_sound = scene_is_sound && cameras.len() == count;
         let info = Self {
             scene_path: scene.remove("path").unwrap_or_default(),
             scene_text: scene.remove("text").unwrap_or_default(),
@@ -73,7 +92,10 @@ impl RunInfo {
             units_per_metre: run.parse("units_per_metre")?,
             detail: run.detail()?,
             velocities: run.parse("velocities")?,
+            contacts: run.flag(CONTACTS.topic),
+            strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
+            cameras,
             packing: Packing::default(),
             version,
             extra: run.0,
@@ -116,6 +138,11 @@ impl Keys {
         value.parse().map_err(|_| OpenError::BadValue { key, value })
     }
 
+    /// Whether a channel was recorded that older caches do not know.
+    fn flag(&mut self, key: &'static str) -> bool {
+        self.0.remove(key).is_some_and(|value| value == "true")
+    }
+
     fn detail(&mut self) -> Result<Detail, OpenError> {
         let value = self.0.remove("record").unwrap_or_default();
         match value.as_str() {
@@ -143,13 +170,21 @@ impl Keys {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Camera, CameraView, FilmFit};
 
     #[test]
     fn what_is_written_of_a_run_is_what_is_read() {
         let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
         let ground = Some(Plane { origin: [0.1, -2.0, 0.0], normal: [0.0, 1.0, 1e-9] });
-        let run =
-            RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ground, ..RunInfo::default() };
+        let run = RunInfo {
+            scene_path: "a.ron".into(),
+            start: -3,
+            end: 9,
+            extra,
+            ground,
+            contacts: true,
+            ..RunInfo::default()
+        };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
             let run = RunInfo { detail, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
@@ -170,6 +205,23 @@ mod tests {
         assert!(refusal("fps", "-4").contains("frames per second must be above zero"));
         assert!(refusal("units_per_metre", "NaN").contains("units per metre must be above zero"));
         assert!(refusal("end", "-9").contains("frame -9 ends before frame 1"));
+    }
+
+    #[test]
+    fn cameras_that_are_lost_are_missed() {
+        let view = CameraView::default();
+        let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
+        let run = RunInfo { cameras: vec![camera], ..RunInfo::default() };
+        let [scene, record] = run.to_metadata();
+        let mut cameras = run.cameras_to_metadata().unwrap();
+        let read = |cameras: &Metadata| {
+            RunInfo::from_metadata(&[scene.clone(), record.clone(), cameras.clone()]).unwrap()
+        };
+        assert_eq!(read(&cameras), (run.clone(), true));
+        cameras.metadata.insert("camera shot".to_owned(), "fill".to_owned());
+        assert_eq!((read(&cameras).0.cameras, read(&cameras).1), (Vec::new(), false));
+        cameras.name = "nucleus.camerbs".to_owned();
+        assert!(!read(&cameras).1);
     }
 
     #[test]

@@ -5,16 +5,18 @@ use std::fs::File;
 use std::io::{Seek, Write};
 use std::path::Path;
 
-use nucleus_core::{Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, Contact, Moment, StateView, StepObserver};
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::attribute::{CONTACTS, STRAIN, write_contacts};
 use crate::object::{ObjectInfo, Source};
 use crate::points::{self, Stamp};
 use crate::record_error::RecordError;
 use crate::run::{Detail, RunInfo};
 use crate::shuffle::shuffle;
-use crate::stream::Stream;
+use crate::strain::RestEdges;
+use crate::stream::{Schemas, Stream};
 use crate::target::{Places, Target};
 use crate::{target, topology};
 
@@ -48,6 +50,8 @@ pub struct Recorder<W: Write + Seek = File> {
     trouble: Option<RecordError>,
     // Reused for every message.
     values: Vec<[f32; 3]>,
+    strain: Vec<f32>,
+    contacts: Vec<Contact>,
     message: Vec<u8>,
 }
 
@@ -57,6 +61,10 @@ struct Track {
     source: Source,
     channel: u16,
     points: usize,
+    /// The channel of contacts, if they are recorded.
+    contacts: Option<u16>,
+    /// That of strain, and what it is found from.
+    strain: Option<(u16, RestEdges)>,
     /// Whether it has moved since it was last recorded.
     has_moved: bool,
 }
@@ -133,6 +141,8 @@ impl<W: Write + Seek> Recorder<W> {
             places: None,
             trouble: None,
             values: Vec::new(),
+            strain: Vec::new(),
+            contacts: Vec::new(),
             message: Vec::new(),
         };
         recorder.begin(objects)?;
@@ -191,26 +201,54 @@ impl<W: Write + Seek> Recorder<W> {
 
     /// Writes what stands before the first frame: the run, the channels, the meshes.
     fn begin(&mut self, objects: Vec<(Source, ObjectInfo)>) -> Result<(), RecordError> {
-        for record in self.run.to_metadata() {
+        for record in self.run.to_metadata().into_iter().chain(self.run.cameras_to_metadata()) {
             self.stream.metadata(&record)?;
         }
-        let schemas = self.stream.own_schemas()?;
+        let schemas = self.stream.own_schemas(|one| one.is_recorded(&self.run))?;
         self.report_channel = self.stream.channel("/report", 0, "json")?;
         let mut meshes = Vec::with_capacity(objects.len());
         for (source, object) in &objects {
             let (name, points) = (object.name.clone(), object.rest.len());
-            let mesh =
-                self.stream.channel(&format!("/{name}/topology"), schemas.topology, topology::ENCODING)?;
-            let channel =
-                self.stream.channel(&format!("/{name}/points"), schemas.points, points::ENCODING)?;
-            meshes.push(mesh);
-            self.tracks.push(Track { name, source: *source, channel, points, has_moved: false });
+            let is_cloth = matches!(source, Source::Cloth(_));
+            meshes.push(self.channel(&schemas, &name, "topology", topology::ENCODING)?);
+            let channel = self.channel(&schemas, &name, "points", points::ENCODING)?;
+            let contacts = match is_cloth && self.run.contacts {
+                true => Some(self.channel(&schemas, &name, CONTACTS.topic, CONTACTS.encoding)?),
+                false => None,
+            };
+            let strain = match is_cloth && self.run.strain {
+                true => Some((
+                    self.channel(&schemas, &name, STRAIN.topic, STRAIN.encoding)?,
+                    RestEdges::new(object),
+                )),
+                false => None,
+            };
+            self.tracks.push(Track {
+                name,
+                source: *source,
+                channel,
+                points,
+                contacts,
+                strain,
+                has_moved: false,
+            });
         }
         for ((_, object), mesh) in objects.into_iter().zip(meshes) {
             topology::write(object, &mut self.message);
             self.stream.send(&Stamp::start(self.run.start), mesh, &self.message)?;
         }
         Ok(())
+    }
+
+    /// A channel of an object.
+    fn channel(
+        &mut self,
+        schemas: &Schemas,
+        name: &str,
+        topic: &str,
+        encoding: &str,
+    ) -> Result<u16, RecordError> {
+        self.stream.channel(&format!("/{name}/{topic}"), schemas.of(encoding), encoding)
     }
 
     /// Keeps in mind which colliders move while nothing is recorded.
@@ -226,7 +264,7 @@ impl<W: Write + Seek> Recorder<W> {
     fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
         let units = self.run.units_per_metre;
         for k in 0..self.tracks.len() {
-            let Track { source, channel, points, has_moved, .. } = self.tracks[k];
+            let &Track { source, channel, points, has_moved, .. } = &self.tracks[k];
             match source {
                 Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
                     continue;
@@ -238,20 +276,52 @@ impl<W: Write + Seek> Recorder<W> {
                 let (object, found) = (self.tracks[k].name.clone(), self.values.len());
                 return Err(RecordError::PointCount { object, expected: points, found });
             }
+            if let Some((_, edges)) = &self.tracks[k].strain {
+                edges.strain(&self.values, &mut self.strain);
+            }
             let cloth = match source {
                 Source::Cloth(id) if self.run.velocities => Some(id),
                 _ => None,
             };
             points::write_head(&stamp, points, cloth.is_some(), &mut self.message);
-            shuffle(&self.values, &mut self.message);
+            shuffle(self.values.as_flattened(), &mut self.message);
             if let Some(id) = cloth {
                 state.velocities(id, units, &mut self.values);
-                shuffle(&self.values, &mut self.message);
+                shuffle(self.values.as_flattened(), &mut self.message);
             }
             self.stream.send(&stamp, channel, &self.message)?;
             self.tracks[k].has_moved = false;
+            if let Source::Cloth(id) = source {
+                self.record_attributes(k, id, &stamp, state)?;
+            }
         }
         self.moments += 1;
+        Ok(())
+    }
+
+    /// Writes what else is recorded of a cloth.
+    fn record_attributes(
+        &mut self,
+        track: usize,
+        cloth: ClothId,
+        stamp: &Stamp,
+        state: &dyn StateView,
+    ) -> Result<(), RecordError> {
+        let Track { contacts, strain, points, .. } = &self.tracks[track];
+        if let Some((channel, _)) = strain {
+            points::write_head(stamp, *points, false, &mut self.message);
+            shuffle(&self.strain, &mut self.message);
+            self.stream.send(stamp, *channel, &self.message)?;
+        }
+        if let Some(channel) = contacts {
+            state.contacts(cloth, &mut self.contacts);
+            // A scene in which nothing can touch has nothing to say.
+            if self.contacts.len() == *points {
+                points::write_head(stamp, *points, false, &mut self.message);
+                write_contacts(&self.contacts, &mut self.message);
+                self.stream.send(stamp, *channel, &self.message)?;
+            }
+        }
         Ok(())
     }
 }

@@ -42,7 +42,9 @@ impl<R: Read + Seek> Playback<R> {
         for record in &self.contents.metadata {
             stream.metadata(record)?;
         }
-        let schemas = stream.own_schemas()?;
+        let schemas = stream.own_schemas(|one| {
+            self.contents.channels.values().any(|channel| channel.message_encoding == one.encoding)
+        })?;
         let mut ids = std::collections::BTreeMap::new();
         for channel in self.contents.channels.values() {
             let schema = schemas.of(&channel.message_encoding);

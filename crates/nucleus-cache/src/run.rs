@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::camera::Camera;
+
 /// How finely time is recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
@@ -64,8 +66,14 @@ pub struct RunInfo {
     pub detail: Detail,
     /// Whether velocities follow the positions (units per second). Doubles the size.
     pub velocities: bool,
+    /// Whether it is told how contact stands at each point of cloth.
+    pub contacts: bool,
+    /// Whether the strain at each point of cloth follows. Whoever has positions can find it again.
+    pub strain: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
+    /// The cameras of the scene; a picture is taken by the first, if nobody says otherwise.
+    pub cameras: Vec<Camera>,
     /// How much time is spent on making the file small. Not stored: any reader reads both.
     pub packing: Packing,
     /// The version of Nucleus that wrote the cache. A recorder sets it.
@@ -86,7 +94,10 @@ impl Default for RunInfo {
             units_per_metre: 1.0,
             detail: Detail::Frames,
             velocities: false,
+            contacts: false,
+            strain: false,
             ground: None,
+            cameras: Vec::new(),
             packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: BTreeMap::new(),

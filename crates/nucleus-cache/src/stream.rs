@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
+use crate::attribute::{self, Attribute};
 use crate::points::{self, Stamp};
 use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
@@ -28,19 +29,12 @@ pub(crate) struct Stream<W: Write + Seek> {
 }
 
 /// The numbers of the schemas that a cache uses.
-pub(crate) struct Schemas {
-    pub topology: u16,
-    pub points: u16,
-}
+pub(crate) struct Schemas(Vec<(&'static str, u16)>);
 
 impl Schemas {
     /// The schema of an encoding; 0, which is none, for those that need none.
     pub fn of(&self, encoding: &str) -> u16 {
-        match encoding {
-            topology::ENCODING => self.topology,
-            points::ENCODING => self.points,
-            _ => 0,
-        }
+        self.0.iter().find(|(name, _)| *name == encoding).map_or(0, |&(_, schema)| schema)
     }
 }
 
@@ -68,12 +62,14 @@ impl<W: Write + Seek> Stream<W> {
         self.progress.check(self.writer.add_schema(name, "text", text.as_bytes()))
     }
 
-    /// Adds the schemas of a cache.
-    pub fn own_schemas(&mut self) -> Result<Schemas, RecordError> {
-        Ok(Schemas {
-            topology: self.schema(topology::ENCODING, topology::SCHEMA)?,
-            points: self.schema(points::ENCODING, points::SCHEMA)?,
-        })
+    /// Adds the schemas of a cache; of attributes only those that it uses.
+    pub fn own_schemas(&mut self, uses: impl Fn(&Attribute) -> bool) -> Result<Schemas, RecordError> {
+        let own = [(topology::ENCODING, topology::SCHEMA), (points::ENCODING, points::SCHEMA)];
+        let all = own
+            .into_iter()
+            .chain(attribute::ALL.into_iter().filter(|one| uses(one)).map(|one| (one.encoding, one.schema)));
+        let schema = |(name, text)| Ok((name, self.schema(name, text)?));
+        Ok(Schemas(all.map(schema).collect::<Result<_, RecordError>>()?))
     }
 
     pub fn channel(&mut self, topic: &str, schema: u16, encoding: &str) -> Result<u16, RecordError> {

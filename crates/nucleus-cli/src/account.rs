@@ -15,6 +15,8 @@ pub struct FrameFigures {
     pub strain_99: f64,
     /// Nothing where nothing is near: JSON has no infinity.
     pub min_gap: Option<f64>,
+    /// The same among cloths.
+    pub min_cloth_gap: Option<f64>,
     pub contacts: u64,
     pub pairs: u64,
     pub broad_phases: u32,
@@ -36,14 +38,17 @@ pub struct FrameFigures {
 impl FrameFigures {
     /// The figures of a frame from its report.
     pub fn new(frame: i32, report: &StepReport) -> Self {
-        let StepReport { max_strain, strain_99, min_gap, contacts, pairs, broad_phases, .. } = *report;
+        let StepReport {
+            max_strain, strain_99, min_gap, min_cloth_gap, contacts, pairs, broad_phases, ..
+        } = *report;
         let StepReport { caught, crossed, trapped, tangled, kinetic_energy, finite, refused, .. } = *report;
-        let min_gap = min_gap.is_finite().then_some(min_gap);
+        let [min_gap, min_cloth_gap] = [min_gap, min_cloth_gap].map(|gap| gap.is_finite().then_some(gap));
         Self {
             frame,
             max_strain,
             strain_99,
             min_gap,
+            min_cloth_gap,
             contacts,
             pairs,
             broad_phases,

@@ -25,10 +25,12 @@ mod outcome;
 mod output;
 mod progress;
 mod quality;
+mod record;
 mod recording;
 mod scene_file;
 mod simulate;
 mod summary;
+mod whole_file;
 
 use std::process::ExitCode;
 

@@ -2,57 +2,23 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::str::FromStr;
 
 use anyhow::{Context, Result, bail};
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source};
+use nucleus_cache::{
+    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source,
+};
+use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
-use nucleus_graph::{Simulation, scene};
 
-/// What is recorded of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Record {
-    /// Moments of it.
-    Moments(Detail),
-    /// Nothing.
-    None,
-}
-
-impl Record {
-    /// What is asked for, or else what the scene wants.
-    pub fn of(asked: Option<Self>, program: &Program) -> Self {
-        asked.unwrap_or(match program.record() {
-            scene::Record::Frames => Self::Moments(Detail::Frames),
-            scene::Record::Substeps => Self::Moments(Detail::Substeps),
-            scene::Record::Every(n) => Self::Moments(Detail::Every(n)),
-            scene::Record::None => Self::None,
-        })
-    }
-}
-
-impl FromStr for Record {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let every = || text.strip_prefix("every:")?.trim().parse().ok().filter(|&n| n > 0);
-        match text {
-            "frames" => Ok(Self::Moments(Detail::Frames)),
-            "substeps" => Ok(Self::Moments(Detail::Substeps)),
-            "none" => Ok(Self::None),
-            _ => every().map(|n| Self::Moments(Detail::Every(n))).ok_or_else(|| {
-                "write frames, substeps, every:10 (each tenth frame and the last) or none".to_owned()
-            }),
-        }
-    }
-}
+use crate::record::{Channels, Moments};
 
 /// How a cache is to be written.
 #[derive(Debug, Clone)]
 pub struct Manner {
-    /// What is recorded.
-    pub record: Record,
-    /// Whether velocities are, too.
-    pub velocities: bool,
+    /// Which moments are recorded.
+    pub moments: Moments,
+    /// What is recorded of them.
+    pub channels: Channels,
     /// Whether an older cache may be replaced.
     pub force: bool,
     /// Whether it is to be as small as can be, at the cost of time.
@@ -68,10 +34,11 @@ pub fn begin(
     out: &Path,
     scene: (&Path, &str),
 ) -> Result<Option<Recorder>> {
-    let Record::Moments(detail) = manner.record else { return Ok(None) };
+    let Moments::Of(detail) = manner.moments else { return Ok(None) };
     let program = simulation.program();
     let (start, end) = frames(program)?;
     let units = program.units_per_metre();
+    let Channels { velocities, contacts, strain } = manner.channels;
     let plane = program.first_input().plane;
     let run = RunInfo {
         scene_path: scene.0.display().to_string(),
@@ -81,9 +48,12 @@ pub fn begin(
         frames_per_second: program.time().fps,
         units_per_metre: units,
         detail,
-        velocities: manner.velocities,
+        velocities,
+        contacts,
+        strain,
         ground: plane
             .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
+        cameras: program.cameras().into_iter().map(camera).collect(),
         packing: if manner.compact { Packing::Small } else { Packing::Fast },
         extra: provenance(manner.from),
         ..RunInfo::default()
@@ -96,6 +66,25 @@ pub fn begin(
     let mut recorder = recorder?;
     recorder.record_start(simulation.state())?;
     Ok(Some(recorder))
+}
+
+/// A camera as a cache has it.
+fn camera(camera: compile::Camera) -> Camera {
+    let fit = match camera.fit {
+        compile::FilmFit::Fill => FilmFit::Fill,
+        compile::FilmFit::Horizontal => FilmFit::Horizontal,
+        compile::FilmFit::Vertical => FilmFit::Vertical,
+        compile::FilmFit::Overscan => FilmFit::Overscan,
+    };
+    let view = |view: compile::View| CameraView {
+        eye: view.eye.map(|x| x as f32).into(),
+        forward: view.forward.map(|x| x as f32).into(),
+        up: view.up.map(|x| x as f32).into(),
+        focal_length: view.focal_length as f32,
+        film: view.film.map(|x| x as f32),
+        interest: view.interest as f32,
+    };
+    Camera { name: camera.name, fit, views: camera.views.into_iter().map(view).collect() }
 }
 
 /// What else is worth knowing of a run. Nothing that may change from one run of a scene to the next, such as

@@ -25,6 +25,7 @@ impl<R: Real> Solver<R> {
         self.heights.clear();
         if let Some(ground) = &frame.plane {
             let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
+            self.up = [normal.x, normal.y, normal.z].map(R::from_f64);
             plane::heights(&self.state.anchor, ground.origin, normal, &mut self.heights);
         }
     }

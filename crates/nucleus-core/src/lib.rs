@@ -13,6 +13,7 @@
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
 //! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
+//! | how contact is seen to stand at each point | `ladder.rs` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
 //!
 //! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
@@ -31,6 +32,7 @@ mod frame;
 mod frame_start;
 mod ids;
 mod impact;
+mod ladder;
 mod measure;
 mod meet;
 mod model;
@@ -58,7 +60,7 @@ pub use frame::{
     SelfCollision, Stiffness,
 };
 pub use ids::{ClothId, ColliderId, PointId};
-pub use observe::{Moment, Stage, StateView, StepObserver};
+pub use observe::{Contact, Moment, Stage, StateView, StepObserver};
 pub use passes::PassCost;
 pub use refuse::{FARTHEST, Refusals, Refused};
 pub use report::StepReport;

@@ -20,12 +20,35 @@ impl Moment {
     }
 }
 
+/// How contact stands at a point of cloth: the higher, the less is as it should be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[repr(u8)]
+pub enum Contact {
+    /// It touches nothing.
+    #[default]
+    Free = 0,
+    /// It is held at its thickness.
+    Touching = 1,
+    /// It is nearer than nine tenths of its thickness, mostly for want of room.
+    Pinched = 2,
+    /// It is inside a closed collider, and is being led out.
+    Trapped = 3,
+    /// It is at an edge of cloth that goes through a face of cloth, and is being worked apart from it.
+    Tangled = 4,
+}
+
 /// What can be read of the state between substeps. Everything is in the user's order of points.
 pub trait StateView {
     /// Replaces `out` by the positions of a cloth, in units of which `units_per_metre` make a metre.
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Replaces `out` by the velocities of a cloth, in units per second.
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
+    /// Replaces `out` by how contact stands at each point of a cloth; by nothing where no contact can be, and by who does
+    /// not know.
+    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
+        let _ = cloth;
+        out.clear();
+    }
     /// Replaces `out` by the positions of a collider.
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Whether the collider has moved since the frame before.

@@ -9,7 +9,7 @@ use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
 use crate::ids::{ClothId, ColliderId, PointId};
 use crate::model::{ClothModel, ColliderModel};
-use crate::observe::StateView;
+use crate::observe::{Contact, StateView};
 use crate::scalar::{Real, Row4};
 use crate::state::State;
 use crate::team::Team;
@@ -39,6 +39,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) touches: bool,
     /// Heights of anchors above the ground plane; empty where the scene uses none.
     pub(crate) heights: Vec<R>,
+    /// The normal of the ground plane, where there is one.
+    pub(crate) up: [R; 3],
     pub(crate) team: Team,
 }
 
@@ -77,6 +79,7 @@ impl<R: Real> Solver<R> {
             colliders,
             state,
             heights: Vec::new(),
+            up: [R::ZERO, R::ONE, R::ZERO],
             team: Team::new(threads),
         };
         solver.anchor_rows();
@@ -116,6 +119,15 @@ impl<R: Real> StateView for Solver<R> {
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let velocity = |row: u32| self.state.velocity[row as usize].xyz();
         self.column(cloth, out, |row| velocity(row).map(|x| x.to_f64() * units_per_metre));
+    }
+
+    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
+        out.clear();
+        if self.can_meet() {
+            let (model, rungs) = (&self.cloths[cloth.index()], self.rungs());
+            let first = model.points().start;
+            out.extend(model.order.places().iter().map(|&place| rungs[(first + place) as usize]));
+        }
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

@@ -3,7 +3,7 @@
 mod scenes;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane, Moment,
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, GroundPlane, Moment,
     ResistanceModel, Solver, StateView, StepObserver, Surface,
 };
 use scenes::{INSCRIBED, LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, sphere, still};
@@ -58,6 +58,34 @@ fn cloth_rests_on_a_mesh_at_the_sum_of_the_thicknesses() {
                     heights.collect::<Vec<_>>()
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn points_over_a_table_touch_it_and_those_beyond_its_edge_are_free() {
+    let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
+    sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(0.0, 0.031, -0.5));
+    let mut builder = one_cloth(sheet.clone(), LINKS);
+    let mut table = grid(4, 4, Vec3::x() * 2.0, Vec3::z() * 2.0);
+    table.positions.iter_mut().for_each(|p| *p -= Vec3::new(1.49, 0.0, 1.0));
+    builder.collider(Collider { surface: table }).expect("a good mesh");
+    let colliders =
+        vec![ColliderFrame { collide: true, thickness: 0.01, friction: 0.9, ..Default::default() }];
+    let cloths = vec![ClothFrame { thickness: 0.02, ..still() }];
+    let input = FrameInput { cloths, colliders, ..frame(3, physical(96.0)) };
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let mut contacts = Vec::new();
+    solver.contacts(CLOTH, &mut contacts);
+    assert!(contacts.iter().all(|&contact| contact == Contact::Free), "before the first frame");
+    for _ in 0..6 {
+        solver.step(&input, &mut ());
+    }
+    solver.contacts(CLOTH, &mut contacts);
+    for (point, contact) in sheet.positions.iter().zip(contacts) {
+        if (point.x - 0.5).abs() > 0.2 {
+            let expected = if point.x < 0.5 { Contact::Touching } else { Contact::Free };
+            assert_eq!(contact, expected, "{point}");
         }
     }
 }

@@ -260,6 +260,34 @@ fn speed_colours_everything_that_moves_and_has_a_legend() {
 }
 
 #[test]
+fn contact_colours_the_points_and_counts_them() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let with = written(folder.path(), Sample { contacts: true, ..Sample::default() });
+    let seen = look(chromium, &with, "frame=12&contacts");
+    let page = seen.page.replace('\n', "");
+    assert!(page.contains(" tangled</dt><dd>1</dd>") && page.contains(" pinched</dt><dd>0</dd>"), "{page}");
+    let blue = seen.share(|[red, _, blue]| *blue > 120 && i32::from(*blue) > 2 * i32::from(*red));
+    assert!(blue > 0.01 && seen.cloth() < 0.01, "{blue} of the screen is blue");
+    let without = folder.path().join("without.mcap");
+    sample::write(&without, Sample::default());
+    let seen = look(chromium, &without, "frame=12&contacts");
+    assert!(seen.cloth() > 0.03, "where contact was not recorded, colours tell objects apart");
+}
+
+#[test]
+fn the_player_looks_through_the_camera_of_the_scene_until_one_looks_about() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample { camera: true, ..Sample::default() });
+    let through = look(chromium, &path, "frame=24");
+    assert!(through.page.contains(">close<"), "{}", through.page);
+    let free = look(chromium, &path, "frame=24&camera=none");
+    assert!(free.page.contains(">free<"), "{}", free.page);
+    assert!(through.cloth() > 2.0 * free.cloth(), "{} is near, {} is framed", through.cloth(), free.cloth());
+}
+
+#[test]
 fn the_curve_fills_with_the_reports_of_all_frames() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -40,7 +40,8 @@ fn recording_substeps_changes_no_picture_of_a_frame() {
 #[test]
 fn the_floor_stands_still_while_things_move() {
     let (_folder, mut cache) = recorded(Sample::default());
-    let camera = Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0 };
+    let camera =
+        Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
     let mut film = Film::of(&mut cache, 1, small()).unwrap().seen_by(camera);
     let [first, last] = [0, 23].map(|place| film.picture(place).unwrap());
     let row = |image: &nucleus_view::Image| (0..96).map(|x| image.pixel(x, 53)).collect::<Vec<_>>();
@@ -105,7 +106,8 @@ fn a_gif_has_every_frame_and_plays_as_fast_as_the_run() {
 #[test]
 fn the_floor_is_the_plane_that_the_scene_rests_on() {
     let (_folder, mut cache) = recorded(Sample { plane: Some(-1.5), ..Sample::default() });
-    let camera = Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0 };
+    let camera =
+        Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
     let at = |cache: &mut Playback, ground| {
         let style = Style { ground, ..small() };
         Film::of(cache, 1, style).unwrap().seen_by(camera).picture(0).unwrap()

@@ -9,7 +9,8 @@ use nucleus_view::{
 };
 use proptest::prelude::*;
 
-const FROM_ABOVE: Camera = Camera { eye: [0.0, 10.0, 0.0], target: [0.0; 3], field_of_view: 40.0 };
+const FROM_ABOVE: Camera =
+    Camera { eye: [0.0, 10.0, 0.0], target: [0.0; 3], field_of_view: 40.0, up: [0.0, 1.0, 0.0] };
 
 fn small() -> Style {
     Style { size: [64, 48], samples: 1, ground: Ground::None, ..Style::default() }
@@ -63,7 +64,7 @@ proptest! {
         let object = Object { name: "wild", kind, faces: &faces, positions: &positions, rest: Some(&rest) };
         let style = Style { colouring: Colouring::Strain { full_scale }, wireframe: true, ground, ..small() };
         for camera in [
-            Camera { eye, target, field_of_view },
+            Camera { eye, target, field_of_view, ..Camera::default() },
             Camera::framing(&Bounds::of_interest(&[object]), style.size),
         ] {
             prop_assert_eq!(draw(&[object], &camera, &style).size(), style.size);
@@ -113,7 +114,12 @@ fn moving_scene_and_camera_together_leaves_the_picture_as_it_was() {
     let faces = one_face();
     let far = |by: f32| square(0.5, 1.0).into_iter().map(|[x, y, z]| [x + by, y, z]).collect::<Vec<_>>();
     let picture = |by: f32| {
-        let camera = Camera { eye: [by + 3.0, 4.0, 5.0], target: [by, 0.0, 0.0], field_of_view: 40.0 };
+        let camera = Camera {
+            eye: [by + 3.0, 4.0, 5.0],
+            target: [by, 0.0, 0.0],
+            field_of_view: 40.0,
+            ..Camera::default()
+        };
         draw(&[object(Kind::Cloth, &faces, &far(by))], &camera, &small())
     };
     assert_eq!(picture(0.0), picture(256.0), "a power of two is exact in f32");

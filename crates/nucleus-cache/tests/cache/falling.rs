@@ -4,8 +4,11 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
 
 use nalgebra::Vector3;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, RecordError, Recorded, Recorder, RunInfo, Source};
-use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver};
+use nucleus_cache::{
+    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, RecordError, Recorded, Recorder, RunInfo,
+    Source,
+};
+use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver};
 
 pub const START: i32 = 10;
 pub const END: i32 = 18;
@@ -48,6 +51,10 @@ impl StateView for Falling {
         out.clear();
         out.extend((0..4).map(|k| [0.0, -(self.frame as f32), k as f32].map(|x| x * units as f32)));
     }
+    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
+        *out = vec![Contact::Free, Contact::Touching, Contact::Pinched, Contact::Tangled];
+        out[0] = if self.frame >= SHOVE { Contact::Trapped } else { Contact::Free };
+    }
     fn collider_positions(&self, _: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
         let shoved = if self.frame >= SHOVE { 1.0 } else { 0.0 };
         out.clear();
@@ -71,6 +78,13 @@ pub fn run_info() -> RunInfo {
         units_per_metre: 100.0,
         ..RunInfo::default()
     }
+}
+
+/// The same, with all that can be recorded of cloth.
+pub fn with_all_channels() -> RunInfo {
+    let views = (0..3).map(|k| CameraView { eye: [k as f32; 3], ..CameraView::default() }).collect();
+    let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Fill, views };
+    RunInfo { contacts: true, strain: true, cameras: vec![camera], ..with_substeps() }
 }
 
 /// Its objects. One name holds what names may hold.

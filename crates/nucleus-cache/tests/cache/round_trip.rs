@@ -4,6 +4,8 @@ use std::io::Cursor;
 
 use nucleus_cache::{Detail, Playback, RunInfo};
 
+use nucleus_core::Contact;
+
 use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS};
 
 fn open(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
@@ -34,6 +36,23 @@ fn every_substep_comes_back_with_its_velocities() {
         let velocities = cache.velocities(0, moment).unwrap().unwrap();
         assert_eq!(velocities[2], [0.0, -100.0 * frame as f32, 200.0]);
     }
+}
+
+#[test]
+fn contacts_and_strain_come_back_where_they_were_recorded() {
+    let mut cache = open(&falling::with_all_channels());
+    assert_eq!(cache.run(), &falling::with_all_channels());
+    for moment in 1..cache.moments().len() {
+        let contacts = cache.contacts(0, moment).unwrap().unwrap();
+        let first = if cache.moments()[moment].frame >= SHOVE { Contact::Trapped } else { Contact::Free };
+        assert_eq!(contacts, [first, Contact::Touching, Contact::Pinched, Contact::Tangled]);
+        // The cloth is recorded in centimetres, a hundred times as large as it says it is at rest.
+        assert_eq!(cache.strain(0, moment).unwrap().unwrap(), [99.0; 4]);
+    }
+    assert_eq!((cache.contacts(1, 3).unwrap(), cache.strain(1, 3).unwrap()), (None, None), "of a collider");
+    let mut plain = open(&falling::run_info());
+    assert_eq!((plain.contacts(0, 3).unwrap(), plain.strain(0, 3).unwrap()), (None, None));
+    assert!(cache.contacts(7, 3).is_err() && cache.contacts(0, 99).is_err());
 }
 
 #[test]

@@ -35,6 +35,10 @@ pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<St
     for (key, value) in &run.extra {
         writeln!(text, "  {key:<11} {value}")?;
     }
+    for camera in &run.cameras {
+        let way = if camera.views.len() > 1 { "moving" } else { "standing still" };
+        writeln!(text, "camera {}: {way}", camera.name)?;
+    }
     for object in cache.objects() {
         let [x, y, z] = size(object, run.units_per_metre).map(figures::number);
         let points = figures::count(object.rest.len(), "point");
@@ -88,6 +92,8 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "moments": cache.moments().len(),
         "record": detail(cache),
         "velocities": run.velocities,
+        "contacts": run.contacts,
+        "strain": run.strain,
         "units_per_metre": run.units_per_metre,
         "bytes": cache.bytes(),
         "loss": {
@@ -100,6 +106,7 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
             "text": loss.to_string(),
         },
         "ground": run.ground.map(|plane| json!({ "origin": plane.origin, "normal": plane.normal })),
+        "cameras": run.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "packed_bytes": sizes.map(|sizes| sizes.packed),
         "extra": run.extra,
         "objects": objects,

@@ -8,6 +8,8 @@ use std::process::{Child, Command, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_view::{AnimationWriter, Film, GifWriter, Image};
 
+use crate::whole_file;
+
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
@@ -40,7 +42,7 @@ impl Way {
     }
 }
 
-/// Writes a film; gives what was written, as a name.
+/// Writes a film; gives what was written, as a name. Nothing has its name before it is whole.
 pub fn write<R: Read + Seek>(
     film: &mut Film<R>,
     out: &Path,
@@ -49,25 +51,30 @@ pub fn write<R: Read + Seek>(
     told: &mut dyn FnMut(f64),
 ) -> Result<PathBuf> {
     match way {
-        Way::Gif => {
-            let mut file = GifWriter::create(out, size, film.fps())?;
+        Way::Gif => whole_file::write(out, |part| {
+            let mut file = GifWriter::create(part, size, film.fps())?;
             each(film, told, |image, _| Ok(file.push(image)?))?;
-            file.finish()?;
-        }
-        Way::Film => encode(film, out, size, told)?,
+            Ok(file.finish()?)
+        })?,
+        Way::Film => whole_file::write(out, |part| encode(film, part, muxer(out), size, told))?,
         Way::Sequence => {
             if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
             }
-            each(film, told, |image, frame| Ok(image.write_png(numbered(out, frame))?))?;
+            each(film, told, |image, frame| picture(image, &numbered(out, frame)))?;
         }
-        Way::Still | Way::Png => {
-            let mut file = AnimationWriter::create(out, size, film.fps())?;
+        Way::Still | Way::Png => whole_file::write(out, |part| {
+            let mut file = AnimationWriter::create(part, size, film.fps())?;
             each(film, told, |image, _| Ok(file.push(image)?))?;
-            file.finish()?;
-        }
+            Ok(file.finish()?)
+        })?,
     }
     Ok(out.to_owned())
+}
+
+/// Writes one picture.
+pub fn picture(image: &Image, out: &Path) -> Result<()> {
+    whole_file::write(out, |part| Ok(image.write_png(part)?))
 }
 
 fn each<R: Read + Seek>(
@@ -90,14 +97,21 @@ fn numbered(out: &Path, frame: i32) -> PathBuf {
     out.with_file_name(format!("{}{frame:0width$}{}", &name[..begin], &name[begin + width..]))
 }
 
+/// What ffmpeg calls the format of a film.
+fn muxer(out: &Path) -> &'static str {
+    let end = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    ["mov", "webm"].into_iter().find(|known| *known == end).unwrap_or("mp4")
+}
+
 /// Hands the pictures to ffmpeg.
 fn encode<R: Read + Seek>(
     film: &mut Film<R>,
     out: &Path,
+    muxer: &str,
     size: [u32; 2],
     told: &mut dyn FnMut(f64),
 ) -> Result<()> {
-    let mut ffmpeg = start_ffmpeg(out, size, film.fps())?;
+    let mut ffmpeg = start_ffmpeg(out, muxer, size, film.fps())?;
     let mut pipe = ffmpeg.stdin.take().context("ffmpeg takes no pictures")?;
     let sent =
         each(film, told, |image, _| pipe.write_all(image.bytes()).context("ffmpeg takes no more pictures"));
@@ -107,16 +121,35 @@ fn encode<R: Read + Seek>(
         stderr.read_to_string(&mut said)?;
     }
     let status = ffmpeg.wait()?;
-    ensure!(status.success(), "ffmpeg could not write `{}`: {}", out.display(), said.trim());
+    ensure!(status.success(), "ffmpeg could not write the film: {}", said.trim());
     sent
 }
 
-fn start_ffmpeg(out: &Path, [width, height]: [u32; 2], fps: f64) -> Result<Child> {
+/// How pictures become a film: sides that are even, as players want them; colours as most of them take them to be,
+/// BT.709 at half the resolution, and told so, for else they are guessed from the size.
+const PICTURES: [&str; 10] = [
+    "-vf",
+    "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+    "-colorspace",
+    "bt709",
+    "-color_primaries",
+    "bt709",
+    "-color_trc",
+    "bt709",
+    "-color_range",
+    "tv",
+];
+
+fn start_ffmpeg(out: &Path, muxer: &str, [width, height]: [u32; 2], fps: f64) -> Result<Child> {
     let mut command = Command::new("ffmpeg");
     command.args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
-    command.args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"]);
-    // Players want sides that are even, and colours at half the resolution.
-    command.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]).arg(out);
+    command.args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"]).args(PICTURES);
+    // Smooth shading in few colours shows bands where bits are spared.
+    command.args(match muxer {
+        "webm" => ["-crf", "24", "-b:v", "0"],
+        _ => ["-crf", "16", "-movflags", "+faststart"],
+    });
+    command.args(["-f", muxer]).arg(out);
     let started = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     started.map_err(|error| match error.kind() {
         ErrorKind::NotFound => {

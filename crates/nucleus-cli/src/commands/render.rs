@@ -40,6 +40,9 @@ pub struct Render {
     /// Draw only every so many frames.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
+    /// The camera of the scene to look through; `none` frames the run by itself. The first one if none is given.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
+    camera: Option<String>,
     /// Where the eye is, in scene units: `x,y,z`. The camera frames the run by itself if this is not given.
     #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
     eye: Option<[f32; 3]>,
@@ -80,20 +83,22 @@ impl Render {
         let frame = cache.moments()[moment].frame;
         let camera = self.seen_from(camera(cache, moment, self.size)?);
         // The floor is that of the whole run, found from a few of its frames.
-        let every = cache.moments().len() / 24;
-        Film::of(cache, every, self.style())?.seen_by(camera).moment(moment)?.write_png(out)?;
+        let (every, scene_camera) = (cache.moments().len() / 24, self.scene_camera(cache)?);
+        let film = Film::of(cache, every, self.style())?.seen_by(camera);
+        film::picture(&look_through(film, scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
     }
 
     fn film(&self, cache: &mut Playback, out: &Path, way: Way) -> Result<String> {
         let start = cache.moments().first().context("the cache holds no frame")?.frame;
+        let scene_camera = self.scene_camera(cache)?;
         let mut film = Film::of(cache, self.every as usize, self.style())?;
         if let Some(frames) = self.frames {
             let (first, last) = frames.within(start).context("there are not so many frames")?;
             film = film.between(first, last).context("none of these frames was recorded")?;
         }
         let camera = self.seen_from(film.camera());
-        let mut film = film.seen_by(camera);
+        let mut film = look_through(film.seen_by(camera), scene_camera);
         let mut steps = Steps::new("drawing");
         let result = film::write(&mut film, out, way, self.size, &mut |share| steps.show(share));
         steps.end();
@@ -113,17 +118,43 @@ impl Render {
         Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
     }
 
+    /// The camera of the scene that is looked through, if any is.
+    fn scene_camera(&self, cache: &Playback) -> Result<Option<nucleus_cache::Camera>> {
+        let cameras = &cache.run().cameras;
+        if self.eye.is_some() || self.target.is_some() || self.camera.as_deref() == Some("none") {
+            return Ok(None);
+        }
+        let Some(wanted) = &self.camera else { return Ok(cameras.first().cloned()) };
+        let found = cameras.iter().find(|camera| camera.name == *wanted);
+        let names: Vec<String> = cameras.iter().map(|camera| format!("`{}`", camera.name)).collect();
+        let known = || match names.is_empty() {
+            true => "the cache has none; a scene gets one by a node of type `camera`".to_owned(),
+            false => format!("there is {}", names.join(", ")),
+        };
+        found.cloned().map(Some).with_context(|| format!("there is no camera `{wanted}`: {}", known()))
+    }
+
     /// The camera as it was asked for; what was not asked for is as in `own`.
     fn seen_from(&self, own: Camera) -> Camera {
         let target = self.target.unwrap_or(own.target);
         match (self.eye, self.target) {
-            (Some(eye), _) => Camera { eye, target, field_of_view: self.fov },
+            (Some(eye), _) => Camera { eye, target, field_of_view: self.fov, ..own },
             (None, Some(_)) => {
                 let eye = [0, 1, 2].map(|axis| own.eye[axis] - own.target[axis] + target[axis]);
-                Camera { eye, target, field_of_view: self.fov }
+                Camera { eye, target, field_of_view: self.fov, ..own }
             }
             (None, None) => own,
         }
+    }
+}
+
+fn look_through<R>(film: Film<'_, R>, camera: Option<nucleus_cache::Camera>) -> Film<'_, R>
+where
+    R: std::io::Read + std::io::Seek,
+{
+    match camera {
+        Some(camera) => film.seen_through(camera),
+        None => film,
     }
 }
 

@@ -17,7 +17,8 @@ use crate::frame_range::FrameRange;
 use crate::initial_state::InitialState;
 use crate::outcome::Outcome;
 use crate::progress::Progress;
-use crate::recording::{self, Manner, Record};
+use crate::record::{Channels, Record};
+use crate::recording::{self, Manner};
 use crate::simulate::{Ending, simulate};
 use crate::summary::Summary;
 use crate::{interrupt, output, quality, scene_file};
@@ -39,7 +40,8 @@ pub struct Run {
     /// Cores to use; all if none are given. The result is the same, bit for bit.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// What to record, instead of what the scene says: frames, substeps, every:10 or none.
+    /// What to record, instead of what the scene says: frames, substeps, every:10 or none; and, behind commas, what of it:
+    /// positions, velocities, contacts, strain. `substeps,contacts,strain`; positions and contacts if nothing is said.
     #[arg(long, value_name = "WHAT")]
     record: Option<Record>,
     /// Record velocities too; the cache becomes twice as large.
@@ -118,10 +120,11 @@ impl Run {
             simulation.begin_audit(Closeness::Frames);
         }
         let mut judge = Judge::new(program.checks(), program.mass());
-        let record = Record::of(self.record, &program);
+        let record = self.record.unwrap_or_default();
+        let channels = record.channels();
         let manner = Manner {
-            record,
-            velocities: self.velocities,
+            moments: record.moments(&program),
+            channels: Channels { velocities: channels.velocities || self.velocities, ..channels },
             force: self.force,
             compact: self.compact,
             from: self.from.as_ref().map(ToString::to_string),

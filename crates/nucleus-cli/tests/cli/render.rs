@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
-use crate::sample::{assert_refused, cache, folder, nucleus, stderr};
+use crate::sample::{assert_refused, cache, folder, nucleus, stderr, stdout};
 
 /// Width and height that a PNG states, and how many frames it has.
 fn png(path: &Path) -> ([u32; 2], Option<u32>) {
@@ -42,5 +43,71 @@ fn a_frame_that_is_not_there_and_a_size_that_is_none_are_refused() {
     for size in ["0x5", "5", "99999x5", "-1x5"] {
         let output = nucleus(folder.path(), &["render", "fall.mcap", "--size", size]);
         assert_eq!(output.status.code(), Some(2), "{size}");
+    }
+}
+
+#[test]
+fn a_camera_that_is_not_in_the_scene_is_refused_and_none_frames_the_run_by_itself() {
+    let folder = folder();
+    cache(folder.path());
+    let render =
+        |camera| nucleus(folder.path(), &["render", "fall.mcap", "--camera", camera, "--size", "64x48"]);
+    assert_refused(&render("shot"), "there is no camera `shot`: the cache has none");
+    assert_eq!(render("none").status.code(), Some(0));
+}
+
+#[test]
+fn the_camera_of_a_scene_is_looked_through() {
+    let folder = folder();
+    let shot = r#""shot": camera(translateY: keys([(1, 1), (4, 3)]), translateZ: 4, focalLength: 50),"#;
+    let text = include_str!("../../src/commands/new/drape.ron").replacen(
+        "nodes: {",
+        &format!("nodes: {{ {shot}"),
+        1,
+    );
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    let run = nucleus(folder.path(), &["run", "drape.ron", "--frames", "4"]);
+    assert!(folder.path().join("drape.mcap").exists(), "{}", stderr(&run));
+    let info = stdout(&nucleus(folder.path(), &["info", "drape.mcap"]));
+    assert!(info.contains("camera shot: moving"), "{info}");
+    let picture = |arguments: &[&str]| {
+        let all = [&["render", "drape.mcap", "--size", "64x48", "-o", "a.png"], arguments].concat();
+        let output = nucleus(folder.path(), &all);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read(folder.path().join("a.png")).unwrap()
+    };
+    assert_eq!(picture(&[]), picture(&["--camera", "shot"]));
+    assert_ne!(picture(&[]), picture(&["--camera", "none"]));
+}
+
+/// Whether there is an ffmpeg; says so if not.
+fn has_ffmpeg() -> bool {
+    let found = Command::new("ffmpeg").arg("-version").output().is_ok();
+    if !found {
+        eprintln!("no ffmpeg here: no film was written");
+    }
+    found
+}
+
+#[test]
+fn a_film_has_every_frame_at_its_rate_and_the_colours_of_the_picture() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = folder();
+    cache(folder.path());
+    for name in ["a.mp4", "a.mov", "a.webm"] {
+        let output =
+            nucleus(folder.path(), &["render", "fall.mcap", "--frames", "6", "--size", "63x49", "-o", name]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+        let mut ffmpeg = Command::new("ffmpeg");
+        ffmpeg.args(["-i", name, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]).current_dir(folder.path());
+        let read = ffmpeg.output().unwrap();
+        let told = String::from_utf8_lossy(&read.stderr);
+        assert!(told.contains("bt709") && told.contains("64x50") && told.contains("24 fps"), "{told}");
+        assert_eq!(read.stdout.len(), 6 * 64 * 50 * 3, "{name}");
+        // The sky in the upper left corner is nearly white.
+        assert!(read.stdout[..3].iter().all(|&byte| byte > 200), "{:?}", &read.stdout[..3]);
+        assert!(!folder.path().join(format!("{name}.part")).exists());
     }
 }

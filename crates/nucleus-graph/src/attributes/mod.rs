@@ -13,6 +13,7 @@
 //! rows. An attribute that is not here does not exist.
 
 pub mod air_field;
+pub mod camera;
 pub mod drag_field;
 pub mod dyn_base;
 pub mod dynamic_constraint;

@@ -45,7 +45,7 @@ pub fn node_type(name: &str) -> Option<&'static NodeType> {
     TYPES.iter().copied().find(|node_type| node_type.name == name)
 }
 
-static TYPES: [&NodeType; 23] = [
+static TYPES: [&NodeType; 24] = [
     &nucleus::NUCLEUS,
     &n_cloth::N_CLOTH,
     &n_rigid::N_RIGID,
@@ -67,6 +67,7 @@ static TYPES: [&NodeType; 23] = [
     &poly_sphere::POLY_SPHERE,
     &poly_cube::POLY_CUBE,
     &poly_cylinder::POLY_CYLINDER,
+    &camera::CAMERA,
     &transform::TRANSFORM,
     &time::TIME,
 ];

@@ -12,6 +12,7 @@
 //! | how a cloth starts that does not start as its mesh   | `start.rs`       |
 //! | what holds points, and where it takes hold of them   | `pins.rs`        |
 //! | what an audit is to find kept apart                  | `apart.rs`       |
+//! | where a run is seen from                             | `camera.rs`      |
 //! | where scene units become metres                      | `units.rs`       |
 //! | the thickness that nobody sets                       | `thickness.rs`   |
 //!
@@ -19,6 +20,7 @@
 //! here: a program can only run.
 
 mod apart;
+mod camera;
 mod column;
 mod frame;
 mod geometry;
@@ -46,6 +48,7 @@ use geometry::Geometry;
 use objects::{Compiled, Compiler};
 use program::Whole;
 
+pub use camera::{Camera, FilmFit, View};
 pub(crate) use pins::Grips;
 pub use program::{Object, ObjectKind, Program, Universe};
 
@@ -73,9 +76,10 @@ pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     objects.sort_by_key(|object| matches!(object.kind, ObjectKind::Collider(_)));
     let starts = universes.iter().map(|universe| universe.start);
     let start = starts.min().unwrap_or(scene.time.start);
+    let time = crate::scene::TimeSpan { start, ..scene.time };
     let whole = Whole {
         graph: scene.graph.clone(),
-        time: crate::scene::TimeSpan { start, ..scene.time },
+        time,
         every: scene.every,
         record: scene.record,
         checks: scene.checks.clone(),

@@ -8,6 +8,7 @@ use crate::checks::Check;
 use crate::graph::{Graph, NodeId};
 use crate::scene::{Diagnostic, Record, TimeSpan};
 
+use super::camera::{self, Camera};
 use super::objects::{ClothSource, ColliderSource};
 use super::pins::PinSource;
 use super::units::Units;
@@ -85,6 +86,11 @@ impl Program {
     /// All objects: cloths, then colliders, each in the order of their ids.
     pub fn objects(&self) -> &[Object] {
         &self.whole.objects
+    }
+
+    /// The cameras over all frames, in the order of their names.
+    pub fn cameras(&self) -> Vec<Camera> {
+        camera::cameras(self.graph(), self.time())
     }
 
     /// The frames of the run. It begins at the nucleus' `startFrame` if that is later than the scene's start.

@@ -307,3 +307,17 @@ proptest! {
         prop_assert_eq!(given.first_input(), sorted.first_input());
     }
 }
+
+#[test]
+fn a_camera_moves_with_its_keys_and_with_the_transform_it_hangs_from() {
+    let rig = r#""rig": transform(rotateY: 90), "shot": camera(parent: "rig", translateZ: keys([(1, 5), (24, 7)]), focalLength: 50),"#;
+    let cameras = program(&format!("{}{rig}", sheet("", ""))).cameras();
+    let [shot] = &cameras[..] else { panic!("{cameras:?}") };
+    assert_eq!((shot.name.as_str(), shot.fit, shot.views.len()), ("shot", FilmFit::Fill, 24));
+    let last = shot.views[23];
+    assert!((last.eye - Vector3::new(7.0, 0.0, 0.0)).norm() < 1e-12, "{}", last.eye);
+    assert!((last.forward + Vector3::x()).norm() < 1e-12 && (last.up - Vector3::y()).norm() < 1e-12);
+    assert_eq!((last.focal_length, last.film), (50.0, [1.41732, 0.94488]), "Maya's 36 mm by 24 mm");
+    let still = program(&format!(r#"{}"shot": camera(translate: (0, 1, 5)),"#, sheet("", ""))).cameras();
+    assert_eq!(still[0].views.len(), 1);
+}

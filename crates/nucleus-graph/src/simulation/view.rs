@@ -1,7 +1,7 @@
 //! The states of several nuclei, seen as one.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, ColliderId, Moment, Real, Stage, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, Contact, Moment, Real, Stage, StateView, StepObserver};
 
 use crate::compile::{Program, Universe};
 
@@ -47,6 +47,11 @@ impl StateView for View<'_> {
         part.velocities(id, self.units(units_per_metre, universe), out);
     }
 
+    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
+        let (part, id, _) = self.cloth(cloth);
+        part.contacts(id, out);
+    }
+
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let (part, id, universe) = self.collider(collider);
         part.collider_positions(id, self.units(units_per_metre, universe), out);
@@ -75,6 +80,10 @@ impl<R: Real> StateView for Simulation<R> {
 
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         self.view().velocities(cloth, units_per_metre, out);
+    }
+
+    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
+        self.view().contacts(cloth, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

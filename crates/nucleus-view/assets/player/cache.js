@@ -2,7 +2,8 @@
 
 import { readChunk } from "./chunk.js";
 import { openIndex } from "./mcap.js";
-import { readPoints, readTopology } from "./points.js";
+import { readContacts, readPoints, readTopology } from "./points.js";
+import { readCameras } from "./track.js";
 import { Damage, Trouble } from "./trouble.js";
 
 // Unpacked frames are kept up to this many bytes.
@@ -65,7 +66,8 @@ export class Cache {
       throw new Damage();
     }
     const { frame, substep, substeps, time } = moments[last];
-    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions };
+    const contacts = this.objects.map((object) => moments[last].contacts.get(object.contacts) ?? null);
+    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions, contacts };
   }
 
   // Unpacks the frames that playing will need next. A damaged one is told of when it is shown.
@@ -109,22 +111,30 @@ export class Cache {
   async readMoments(chunk) {
     const { messages } = await readChunk(this.source, chunk);
     const moments = new Map(); // by time
+    const at = (time) => {
+      const moment = moments.get(time) ?? { positions: new Map(), contacts: new Map() };
+      moments.set(time, moment);
+      return moment;
+    };
+    const keep = (map, channel, values) => {
+      map.set(channel, values);
+      this.bytes += values.byteLength;
+      chunk.bytes = (chunk.bytes ?? 0) + values.byteLength;
+    };
     let report = null;
     for (const { channel, time, data } of messages) {
       const { topic, encoding } = this.channels.get(channel) ?? {};
       if (encoding === "nucleus.points.v1") {
         const { positions, ...stamp } = readPoints(data);
-        const moment = moments.get(time) ?? { ...stamp, positions: new Map() };
-        moments.set(time, moment);
-        moment.positions.set(channel, positions);
-        this.bytes += positions.byteLength;
-        chunk.bytes = (chunk.bytes ?? 0) + positions.byteLength;
+        keep(Object.assign(at(time), stamp).positions, channel, positions);
+      } else if (encoding === "nucleus.contacts.v1") {
+        keep(at(time).contacts, channel, readContacts(data));
       } else if (topic === "/report") {
         report = readReport(data);
       }
     }
     this.forget();
-    return { moments: [...moments.values()].sort((a, b) => a.time - b.time), report };
+    return { moments: [...moments.values()].filter(({ frame }) => frame !== undefined).sort((a, b) => a.time - b.time), report };
   }
 
   forget() {
@@ -160,7 +170,8 @@ function objectsOf(channels) {
     .filter(({ encoding }) => encoding === "nucleus.topology.v1")
     .map(({ id, topic }) => {
       const name = topic.replace(/^\//, "").replace(/\/topology$/, "");
-      return { name, mesh: id, points: all.find((channel) => channel.topic === `/${name}/points`)?.id };
+      const channel = (what) => all.find((channel) => channel.topic === `/${name}/${what}`)?.id;
+      return { name, mesh: id, points: channel("points"), contacts: channel("contacts") };
     })
     .filter(({ points }) => points !== undefined);
 }
@@ -178,6 +189,7 @@ function readRun(metadata) {
     fps: Math.max(number("fps", 24), 1e-3),
     version: run.get("version") ?? "",
     scene: scene.get("path") ?? "",
+    cameras: readCameras(metadata.get("nucleus.cameras")),
     floor: levelPlane(run.get("ground")),
   };
 }

@@ -1,5 +1,7 @@
-// An eye that goes round a target: drag to orbit, shift or right button to pan, wheel to zoom.
+// An eye that goes round a target: drag to orbit, shift or right button to pan, wheel to zoom. Or a camera of the scene,
+// until one of these is done.
 
+import { tangentOf, viewAt } from "./track.js";
 import { add, cross, dot, normalise, perspective, scale, subtract, view } from "./matrix.js";
 
 const TANGENT = Math.tan((30 * Math.PI) / 360);
@@ -13,6 +15,8 @@ export class Camera {
     this.yaw = 0.57;
     this.pitch = 0.44;
     this.size = 1; // of what was framed; limits how near and far one may go
+    this.track = null; // the camera of the scene that is looked through
+    this.frames = 0; // since the start of the run
     this.canvas = canvas;
     this.onChange = onChange;
     this.listen();
@@ -28,10 +32,43 @@ export class Camera {
   }
 
   get eye() {
+    if (this.track) {
+      return viewAt(this.track, this.frames).eye;
+    }
     return add(this.target, scale(this.toward, this.distance));
   }
 
   matrices(aspect) {
+    return this.track ? this.matricesOfTrack(aspect) : this.ownMatrices(aspect);
+  }
+
+  matricesOfTrack(aspect) {
+    const seen = viewAt(this.track, this.frames);
+    const toward = normalise(scale(seen.forward, -1));
+    const right = normalise(cross(seen.up, toward));
+    const far = Math.hypot(...subtract(this.target, seen.eye)) + this.size * 40;
+    return {
+      view: view(seen.eye, right, cross(toward, right), toward),
+      projection: perspective(tangentOf(seen, this.track.fit, aspect), aspect, this.size * 5e-3, far),
+    };
+  }
+
+  // Leaves the camera of the scene and stays where it was, level.
+  leave() {
+    if (!this.track) {
+      return;
+    }
+    const { eye, forward, interest } = viewAt(this.track, this.frames);
+    const ahead = dot(subtract(this.target, eye), forward);
+    this.distance = ahead > 0 ? ahead : interest;
+    this.target = add(eye, scale(forward, this.distance));
+    this.yaw = Math.atan2(-forward[0], -forward[2]);
+    this.pitch = Math.min(STEEPEST, Math.max(-STEEPEST, Math.asin(Math.min(1, Math.max(-1, -forward[1])))));
+    this.track = null;
+    this.onChange();
+  }
+
+  ownMatrices(aspect) {
     const up = cross(this.toward, this.right);
     const near = Math.max(this.distance * 0.02, this.size * 1e-3);
     return {
@@ -42,6 +79,7 @@ export class Camera {
 
   // Moves back or near until the box fills the picture.
   frame({ low, high }, aspect) {
+    this.track = null;
     this.target = scale(add(low, high), 0.5);
     this.size = Math.max(Math.hypot(...subtract(high, low)), 1e-6);
     const [right, up, toward] = [this.right, normalise(cross(this.toward, this.right)), this.toward];
@@ -83,6 +121,7 @@ export class Camera {
     canvas.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
       if (before) {
+        this.leave();
         this.drag(fingers, before, event);
         fingers.set(event.pointerId, event);
         this.onChange();
@@ -92,6 +131,7 @@ export class Camera {
     canvas.addEventListener("pointercancel", lift);
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
+      this.leave();
       this.zoom(event.deltaY * (event.deltaMode === 0 ? 1 : 16));
       this.onChange();
     }, { passive: false });

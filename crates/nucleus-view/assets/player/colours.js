@@ -11,6 +11,12 @@ export const STRAIN = [
   [0.02, 0.12, 0.42], [0.18, 0.46, 0.66], [0.72, 0.71, 0.67], [0.86, 0.42, 0.13], [0.52, 0.02, 0.05],
 ];
 
+// How contact stands at a point, by the byte that the cache has for it.
+export const RUNGS = ["free", "touching", "pinched", "trapped", "tangled"];
+export const RUNG_COLOURS = [
+  [0.45, 0.45, 0.43], [0.07, 0.3, 0.62], [0.9, 0.42, 0.03], [0.5, 0.03, 0.5], [0.7, 0.01, 0.02],
+];
+
 // Gives each object its colour: cloths by their order among cloths, colliders likewise.
 export function objectColours(objects) {
   const counts = { cloth: 0, collider: 0 };

@@ -12,11 +12,13 @@ const KEYS = {
   ".": ({ timeline }) => timeline.stepMoment(1),
   Home: ({ timeline }) => timeline.step(-Infinity),
   End: ({ timeline }) => timeline.step(Infinity),
+  t: (player) => player.nextCamera(),
   l: (player) => player.toggleLoop(),
   f: (player) => player.frameAll(),
   w: (player) => player.toggleWireframe(),
   s: (player) => player.colourBy("strain"),
   v: (player) => player.colourBy("speed"),
+  x: (player) => player.colourBy("contacts"),
   d: (player) => player.colourBy("difference"),
   b: (player) => player.nextTwin(),
   c: () => byId("curve").toggleAttribute("hidden"),
@@ -24,7 +26,7 @@ const KEYS = {
   "]": (player) => player.scaleColours(2),
   "?": () => byId("help").toggleAttribute("open"),
 };
-const BUTTONS = { play: " ", loop: "l", wireframe: "w", strain: "s", speed: "v", difference: "d", twin: "b", all: "f" };
+const BUTTONS = { play: " ", loop: "l", wireframe: "w", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
 
 export function listen(player) {
   document.addEventListener("keydown", (event) => {
@@ -62,16 +64,24 @@ function listenToTracks(player) {
 // A click on the curve goes to its frame, a drag through its frames.
 function listenToCurve(player) {
   const curve = byId("curve");
-  const go = (event) => {
+  const indexAt = (event) => {
     const share = (event.clientX - curve.getBoundingClientRect().left) / Math.max(1, curve.clientWidth);
+    return Math.round(Math.min(1, Math.max(0, share)) * player.timeline.last);
+  };
+  const go = (event) => {
     player.timeline.pause();
-    player.timeline.go(Math.round(share * player.timeline.last));
+    player.timeline.go(indexAt(event));
   };
   curve.addEventListener("pointerdown", (event) => {
     curve.setPointerCapture(event.pointerId);
     go(event);
   });
-  curve.addEventListener("pointermove", (event) => event.buttons & 1 && go(event));
+  curve.addEventListener("pointermove", (event) => {
+    curve.title = `${player.curve?.tell(indexAt(event)) ?? ""}: click to go there`;
+    if (event.buttons & 1) {
+      go(event);
+    }
+  });
 }
 
 function listenToFiles(player) {
@@ -91,7 +101,7 @@ export async function applyAddress(player) {
   if (wish.has("frame")) {
     await timeline.go(timeline.cache.indexOf(Number(wish.get("frame"))));
   }
-  for (const colour of ["strain", "speed", "difference"].filter((name) => wish.has(name))) {
+  for (const colour of ["strain", "speed", "contacts", "difference"].filter((name) => wish.has(name))) {
     player.setFullScale(colour, Number(wish.get(colour)));
     if (scene.look.colour !== colour) {
       player.colourBy(colour);
@@ -99,6 +109,9 @@ export async function applyAddress(player) {
   }
   if (wish.has("wireframe") && !scene.look.wireframe) {
     player.toggleWireframe();
+  }
+  if (wish.has("camera")) {
+    player.lookThrough(wish.get("camera"));
   }
   if (["over", "beside", "off"].includes(wish.get("twin"))) {
     player.placeTwin(wish.get("twin"));

@@ -1,7 +1,21 @@
-// Largest strain and smallest gap over the frames, drawn as they become known.
+// Largest strain, smallest gap and what went wrong with contact over the frames, drawn as they become known.
 
 // A run of more frames is looked at in this many places: each must be unpacked.
 const MOST = 240;
+
+// What stands behind the lines as bars: the rungs on which contact needed more than a push.
+const TROUBLES = [
+  { key: "caught", name: "caught", colour: "#c9a22750" },
+  { key: "trapped", name: "trapped", colour: "#b455c870" },
+  { key: "tangled", name: "tangled", colour: "#ff6a5a80" },
+  { key: "crossed", name: "let go", colour: "#ff2020c0" },
+];
+const LINES = [
+  ["max_strain", (x) => `strain ${(100 * x).toPrecision(3)} %`],
+  ["min_gap", (x) => `gap ${x.toPrecision(3)}`],
+  ["min_cloth_gap", (x) => `gap among cloths ${x.toPrecision(3)}`],
+  ["contacts", (x) => `${x} contacts`],
+];
 
 export class Curve {
   constructor(canvas, cache) {
@@ -45,20 +59,42 @@ export class Curve {
     const pen = canvas.getContext("2d");
     pen.lineWidth = ratio;
     const values = (key) => [...this.known].map(([index, report]) => [index, report[key]]).filter(([, x]) => Number.isFinite(x));
-    this.line(pen, values("max_strain"), 0, "#e0574a");
+    TROUBLES.forEach(({ key, colour }) => this.bars(pen, values(key), colour));
+    this.line(pen, values("max_strain"), "#e0574a");
     // A gap of one is a touch: of more, nothing is to be seen.
-    this.line(pen, values("min_gap").map(([index, gap]) => [index, Math.min(gap, 1.2)]), 0, "#6fa8dc");
+    const gap = (key) => values(key).map(([index, gap]) => [index, Math.min(gap, 1.2)]);
+    this.line(pen, gap("min_gap"), "#6fa8dc");
+    this.line(pen, gap("min_cloth_gap"), "#7fc6a4");
     pen.fillStyle = "#ffffff90";
     pen.fillRect(this.place(this.at, width), 0, Math.max(1, ratio), height);
   }
 
-  line(pen, points, from, colour) {
+  // What is known of the frame nearest to a place along the curve, in words.
+  tell(index) {
+    const report = this.known.get(index);
+    const found = LINES.filter(([key]) => Number.isFinite(report?.[key])).map(([key, write]) => write(report[key]));
+    const troubles = TROUBLES.filter(({ key }) => report?.[key] > 0).map(({ key, name }) => `${report[key]} ${name}`);
+    return [`Frame ${this.cache.frameNumber(index)}`, ...found, ...troubles].join(", ");
+  }
+
+  // Rises with the logarithm: a single point must be seen beside a thousand.
+  bars(pen, points, colour) {
+    const { width, height } = this.canvas;
+    const wide = Math.max(2, width / Math.max(1, this.cache.frames.length - 1));
+    pen.fillStyle = colour;
+    for (const [index, value] of points.filter(([, value]) => value > 0)) {
+      const tall = height * Math.min(1, 0.22 + 0.2 * Math.log10(value));
+      pen.fillRect(this.place(index, width) - wide / 2, height - tall, wide, tall);
+    }
+  }
+
+  line(pen, points, colour) {
     const { width, height } = this.canvas;
     const top = Math.max(1e-9, ...points.map(([, value]) => value));
     pen.strokeStyle = colour;
     pen.beginPath();
     for (const [index, value] of points) {
-      pen.lineTo(this.place(index, width), height - 1.5 - ((value - from) / (top - from)) * (height - 3));
+      pen.lineTo(this.place(index, width), height - 1.5 - (value / top) * (height - 3));
     }
     pen.stroke();
   }

@@ -7,6 +7,7 @@ import { UrlSource } from "./source.js";
 
 async function start() {
   const player = new Player(byId("canvas"));
+  globalThis.nucleusPlayer = player; // for the console, and for `cargo xtask book --only caches`
   listen(player);
   const served = await UrlSource.find("/cache.mcap");
   if (!served) {

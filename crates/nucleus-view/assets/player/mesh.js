@@ -93,6 +93,13 @@ export class Mesh {
     }
   }
 
+  // Of each vertex, the rung of its point.
+  updateRungs(contacts) {
+    for (let v = 0; v < this.count; v += 1) {
+      this.strain[v] = contacts?.[this.vertexPoint[v]] ?? 0;
+    }
+  }
+
   length(e) {
     const a = 3 * this.edges[2 * e];
     const b = 3 * this.edges[2 * e + 1];

@@ -1,6 +1,6 @@
 // What the page tells in words and numbers: objects, figures of the frame, legend, messages.
 
-import { STRAIN, css } from "./colours.js";
+import { RUNGS, RUNG_COLOURS, STRAIN, css } from "./colours.js";
 
 const percent = (x) => `${(x * 100).toFixed(Math.abs(x) < 0.0995 ? 2 : 1)} %`;
 const plain = (x) => (Number.isInteger(x) ? x.toLocaleString("en") : x.toPrecision(4));
@@ -10,14 +10,17 @@ const FIGURES = {
   max_strain: ["Largest strain", percent],
   strain_99: ["Strain, 99 %", percent],
   min_gap: ["Smallest gap / thickness", (x) => x.toFixed(3), (x) => x < 0],
+  min_cloth_gap: ["Smallest gap among cloths", (x) => x.toFixed(3), (x) => x < 0],
   contacts: ["Contacts", plain],
   pairs: ["Pairs tested", plain],
   caught: ["Caught and carried back", plain, (x) => x > 0],
-  crossed: ["Crossed", plain, (x) => x > 0],
+  crossed: ["Let go", plain, (x) => x > 0],
+  trapped: ["Trapped in colliders", plain, (x) => x > 0],
+  tangled: ["Tangled edges", plain, (x) => x > 0],
   kinetic_energy: ["Kinetic energy, J", plain],
 };
 // Told elsewhere, or of interest to the solver's makers only.
-const UNTOLD = ["frame", "broad_phases"];
+const UNTOLD = ["frame", "broad_phases", "refused"];
 
 export const byId = (id) => document.getElementById(id);
 
@@ -66,15 +69,35 @@ export function showFigures(report, lostPoints) {
 // Strain goes both ways from the middle of the legend; a speed or a distance goes up from its left end.
 export function showLegend({ colour, scales }) {
   byId("legend").hidden = colour === "object";
+  const tellsKinds = colour === "contacts";
+  byId("rungs").hidden = !tellsKinds;
+  ["ramp", "shorter", "middle", "longer"].forEach((id) => (byId(id).hidden = tellsKinds));
   const isStrain = colour === "strain";
   const colours = isStrain ? STRAIN : STRAIN.slice(2);
-  byId("told").textContent = { strain: "strain", speed: "speed, units a second", difference: "distance, units" }[colour] ?? "";
+  byId("told").textContent = {
+    strain: "strain", speed: "speed, units a second", difference: "distance, units", contacts: "contact, points of cloth",
+  }[colour] ?? "";
   byId("ramp").style.background = `linear-gradient(to right, ${colours.map(css).join(", ")})`;
   const full = scales[colour] ?? 0;
   const write = (x) => (isStrain ? `${Number((x * 100).toPrecision(3))} %` : `${Number(x.toPrecision(3))}`);
   byId("shorter").textContent = isStrain ? `−${write(full)}` : "0";
   byId("middle").textContent = isStrain ? "0" : write(full / 2);
   byId("longer").textContent = isStrain ? `+${write(full)}` : write(full);
+}
+
+// How many points of the shown objects are at each kind of contact.
+export function showRungs(scene, contacts) {
+  const counts = RUNGS.map(() => 0);
+  scene.things.forEach((thing, k) => {
+    for (const rung of (thing.isShown && contacts[k]) || []) {
+      counts[rung] += 1;
+    }
+  });
+  byId("rungs").replaceChildren(...RUNGS.flatMap((name, k) => {
+    const swatch = element("i", { className: "swatch" });
+    swatch.style.background = css(RUNG_COLOURS[k]);
+    return [element("dt", {}, swatch, ` ${name}`), element("dd", { textContent: plain(counts[k]) })];
+  }));
 }
 
 export function showMoment(cache, { index, frame, substep, substeps, moment, moments, time }) {

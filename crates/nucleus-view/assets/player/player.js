@@ -3,11 +3,11 @@
 import { Cache } from "./cache.js";
 import { Camera } from "./camera.js";
 import { Curve } from "./curve.js";
-import { byId, showFigures, showLegend, showMoment, showNotice, showObjects, showState } from "./panel.js";
+import { byId, showFigures, showLegend, showRungs, showMoment, showNotice, showObjects, showState } from "./panel.js";
 import { Scene, boxOf } from "./scene.js";
 import { Timeline } from "./timeline.js";
 
-const COLOURINGS = ["strain", "speed", "difference"];
+const COLOURINGS = ["strain", "speed", "contacts", "difference"];
 const NOWHERE = { low: [-1, -1, -1], high: [1, 1, 1] };
 
 export class Player {
@@ -40,10 +40,11 @@ export class Player {
   }
 
   async present(cache, name) {
-    const { scene } = this;
+    const { scene, camera } = this;
     const last = cache.frames.length - 1;
     scene.setObjects(cache.objects, this.other?.objects);
     ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
+    byId("contacts").hidden = !cache.objects.some((object) => object.contacts !== undefined);
     await this.survey(cache, [...new Set([last, last >> 1, 0])]);
     document.title = `${name} – Nucleus`;
     byId("name").textContent = cache.run.scene || name;
@@ -51,6 +52,8 @@ export class Player {
     byId("frames").max = last;
     showObjects(scene, this.redraw);
     showLoss(cache);
+    byId("camera").hidden = cache.run.cameras.length === 0;
+    camera.track = cache.run.cameras[0] ?? null;
     this.timeline = new Timeline(cache, (index, moment) => this.show(cache, index, moment));
     await this.timeline.go(0);
     this.curve = new Curve(byId("curve"), cache);
@@ -78,18 +81,22 @@ export class Player {
   }
 
   async show(cache, index, moment) {
+    const { scene } = this;
     try {
       const state = await cache.state(index, moment);
       const twin = await this.twinOf(cache, state);
       await this.findSpeed(cache, state);
+      scene.things.forEach((thing, k) => (thing.contacts = state.contacts[k]));
       if (cache !== this.timeline?.cache) {
         return; // another file was opened meanwhile
       }
       this.timeline.moments = state.moments;
-      this.scene.update(state.positions, twin);
+      this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
+      scene.update(state.positions, twin);
       this.curve?.mark(index);
       showMoment(cache, state);
-      showFigures(state.report, this.scene.lostPoints);
+      showFigures(state.report, scene.lostPoints);
+      showRungs(scene, state.contacts);
       this.redraw();
       cache.prefetch(index);
     } catch (error) {
@@ -129,8 +136,8 @@ export class Player {
   // Lets colours tell something; asked a second time, they tell objects apart again.
   colourBy(what) {
     const { look } = this.scene;
-    if (what === "difference" && !this.other) {
-      return;
+    if (byId(what).hidden) {
+      return; // nothing is known of it
     }
     look.colour = look.colour === what ? "object" : what;
     COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));
@@ -141,7 +148,7 @@ export class Player {
 
   // The value that has the full colour.
   setFullScale(what, value) {
-    if (value > 0) {
+    if (value > 0 && what in this.scene.look.scales) {
       this.scene.look.scales[what] = Math.min(1e6, Math.max(1e-7, value));
     }
     showLegend(this.scene.look);
@@ -150,7 +157,7 @@ export class Player {
 
   scaleColours(factor) {
     const { colour, scales } = this.scene.look;
-    if (colour !== "object") {
+    if (colour in scales) {
       this.setFullScale(colour, scales[colour] * factor);
     }
   }
@@ -169,6 +176,18 @@ export class Player {
       const places = ["over", "beside", "off"];
       this.placeTwin(places[(places.indexOf(this.scene.look.twin) + 1) % places.length]);
     }
+  }
+
+  // The cameras of the scene one after the other, then one's own.
+  nextCamera() {
+    const cameras = this.timeline.cache.run.cameras;
+    this.camera.track = cameras[cameras.indexOf(this.camera.track) + 1] ?? null;
+    this.redraw();
+  }
+
+  lookThrough(name) {
+    this.camera.track = this.timeline.cache.run.cameras.find((camera) => camera.name === name) ?? null;
+    this.redraw();
   }
 
   toggleLoop() {
@@ -190,6 +209,7 @@ export class Player {
     byId("play").setAttribute("aria-pressed", this.timeline?.isPlaying ?? false);
     if (this.isStale && this.timeline) {
       this.isStale = false;
+      byId("camera").textContent = this.camera.track?.name ?? "free";
       this.scene.draw(this.camera);
     }
   }

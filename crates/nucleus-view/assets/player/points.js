@@ -26,6 +26,15 @@ export function readPoints(data) {
   return { frame, substep, substeps, time, positions: unshuffle(reader.take(12 * count), 3 * count) };
 }
 
+// How contact stands at each point at one moment of a frame, a byte each: see RUNGS in colours.js.
+export function readContacts(data) {
+  const reader = new Reader(data);
+  reader.take(12); // frame, substep, substeps
+  const count = reader.u32();
+  reader.take(16); // zero, time
+  return reader.take(count).slice();
+}
+
 // Four planes of bytes, lowest byte of every float first, back to floats.
 function unshuffle(planes, count) {
   const bits = new Uint32Array(count);

@@ -1,6 +1,6 @@
 // Draws the objects of a run in the state they were last given.
 
-import { STRAIN, objectColours } from "./colours.js";
+import { RUNG_COLOURS, STRAIN, objectColours } from "./colours.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
 import { Mesh } from "./mesh.js";
 import { cross, multiply, normalise, orthographic, scale, view } from "./matrix.js";
@@ -23,7 +23,7 @@ export class Scene {
     this.empty = this.gl.createVertexArray();
     this.things = [];
     this.twins = [];
-    // What colours tell: "object", "strain", "speed" or "difference"; each has a full scale of its own.
+    // What colours tell: "object", "strain", "speed", "difference" or "contacts"; all that is measured has a full scale.
     this.look = { wireframe: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
 
@@ -186,7 +186,7 @@ export class Scene {
   }
 
   // Finds what the colours of a mesh tell, if that is not known yet.
-  colourMesh({ mesh, vertices, before, twin }, isColoured) {
+  colourMesh({ mesh, vertices, before, twin, contacts }, isColoured) {
     const { colour } = this.look;
     if (isColoured && mesh.coloured !== colour) {
       mesh.coloured = colour;
@@ -194,6 +194,8 @@ export class Scene {
         mesh.updateStrain();
       } else if (colour === "speed") {
         mesh.updateDistance(before?.positions, before ? 1 / before.seconds : 0);
+      } else if (colour === "contacts") {
+        mesh.updateRungs(contacts);
       } else {
         mesh.updateDistance(twin?.mesh.shown, 1);
       }
@@ -216,7 +218,8 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  drawThing({ mesh, vertices, colour, before, twin }, eye) {
+  drawThing(thing, eye) {
+    const { mesh, vertices, colour } = thing;
     const { gl, programs, look } = this;
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
@@ -225,9 +228,13 @@ export class Scene {
       gl.drawArrays(gl.POINTS, 0, mesh.count);
       return;
     }
-    const isColoured = look.colour !== "object" && (look.colour !== "strain" || mesh.kind === "cloth");
-    this.colourMesh({ mesh, vertices, before, twin }, isColoured);
-    this.use(programs.surface, { ...eye, colour, "ramp[0]": STRAIN.flat(), fullScale: isColoured ? look.scales[look.colour] : 0 });
+    const isOfCloth = ["strain", "contacts"].includes(look.colour);
+    const isColoured = look.colour !== "object" && (!isOfCloth || mesh.kind === "cloth");
+    this.colourMesh(thing, isColoured);
+    const tellsKinds = isColoured && look.colour === "contacts";
+    const ramp = (tellsKinds ? RUNG_COLOURS : STRAIN).flat();
+    const fullScale = (isColoured && look.scales[look.colour]) || 0;
+    this.use(programs.surface, { ...eye, colour, "ramp[0]": ramp, fullScale, kinds: tellsKinds ? 1 : 0 });
     vertices.draw(gl.TRIANGLES, TRIANGLES);
     if (look.wireframe) {
       gl.enable(gl.BLEND);

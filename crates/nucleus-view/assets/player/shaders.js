@@ -33,16 +33,18 @@ export const SURFACE = {
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float strain;
-out vec3 at, facing;
+uniform vec3 ramp[5];
+out vec3 at, facing, tint;
 out float strained;
 void main() {
   at = position; facing = normal; strained = strain;
+  tint = ramp[clamp(int(strain + 0.5), 0, 4)]; // of kinds there is no middle: the colours mix
   gl_Position = projection * view * vec4(position, 1.0);
 }`,
   fragment: `${HEAD}${SHADOW}
 uniform vec3 colour, ramp[5];
-uniform float fullScale;
-in vec3 at, facing;
+uniform float fullScale, kinds;
+in vec3 at, facing, tint;
 in float strained;
 out vec4 shown;
 vec3 strainColour() {
@@ -55,7 +57,7 @@ void main() {
   vec3 normal = normalize(facing);
   bool isBack = !gl_FrontFacing;
   if (isBack) normal = -normal;
-  vec3 base = fullScale > 0.0 ? strainColour() : colour;
+  vec3 base = kinds > 0.0 ? tint : fullScale > 0.0 ? strainColour() : colour;
   if (isBack) base *= 0.72;
   float key = keyReaches(at, normal);
   float grazing = 1.0 - min(abs(dot(ray, normal)), 1.0);

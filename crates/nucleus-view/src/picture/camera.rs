@@ -1,5 +1,7 @@
 //! Where the eye is, and how a point in space becomes a point in the picture.
 
+use nucleus_cache::{CameraView, FilmFit};
+
 use super::{Bounds, Vec3, is_drawable};
 
 /// An eye that looks at a target, with up as near +Y as it can be.
@@ -11,9 +13,28 @@ pub struct Camera {
     pub target: [f32; 3],
     /// Vertical field of view, in degrees; kept between 1 and 150.
     pub field_of_view: f32,
+    /// What is up in the picture, as near as can be.
+    pub up: [f32; 3],
+}
+
+impl Default for Camera {
+    /// Before the origin.
+    fn default() -> Self {
+        Self { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0, up: [0.0, 1.0, 0.0] }
+    }
 }
 
 impl Camera {
+    /// What a camera of a scene sees in a picture of `size` pixels; its target is beside the middle of `stage`.
+    pub fn of_scene(view: &CameraView, fit: FilmFit, size: [u32; 2], stage: &Bounds) -> Self {
+        let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
+        let [_, upward] = view.tangents(fit, aspect);
+        let (eye, forward) = (Vec3::from(view.eye), Vec3::from(view.forward));
+        let ahead = if stage.is_empty() { 0.0 } else { (stage.centre() - eye).dot(&forward) };
+        let target = eye + forward * if ahead > 0.0 { ahead } else { view.interest };
+        Self { eye: view.eye, target: target.into(), field_of_view: angle_of(upward), up: view.up }
+    }
+
     /// A three-quarter view from above that holds the whole of `bounds` in a picture of `size` pixels.
     pub fn framing(bounds: &Bounds, size: [u32; 2]) -> Self {
         const FIELD_OF_VIEW: f32 = 30.0;
@@ -22,7 +43,7 @@ impl Camera {
             return Self::framing(&Bounds { low: [-1.0; 3], high: [1.0; 3] }, size);
         }
         let toward_eye = Vec3::new(0.52, 0.46, 0.82).normalize();
-        let (right, up) = axes(&toward_eye);
+        let (right, up) = axes(&toward_eye, &Vec3::y());
         let tall = half_angle_tangent(FIELD_OF_VIEW) * FILLED;
         let wide = tall * size[0].max(1) as f32 / size[1].max(1) as f32;
         let centre = bounds.centre();
@@ -32,7 +53,7 @@ impl Camera {
             distance.max(side + offset.dot(&toward_eye))
         });
         let eye = centre + toward_eye * distance;
-        Self { eye: eye.into(), target: centre.into(), field_of_view: FIELD_OF_VIEW }
+        Self { eye: eye.into(), target: centre.into(), field_of_view: FIELD_OF_VIEW, ..Self::default() }
     }
 }
 
@@ -60,7 +81,8 @@ impl Lens {
         let usable = is_drawable(&offset.into()) && offset.norm() > 1e-9;
         let offset = if usable { offset } else { Vec3::new(2.0, 2.0, 3.0) };
         let toward_eye = offset.normalize();
-        let (right, up) = axes(&toward_eye);
+        let upward = if is_drawable(&camera.up) { Vec3::from(camera.up) } else { Vec3::y() };
+        let (right, up) = axes(&toward_eye, &upward);
         Self {
             eye: target + offset,
             target,
@@ -99,8 +121,8 @@ impl Lens {
 }
 
 /// Right and up of an eye that looks against `toward_eye`.
-fn axes(toward_eye: &Vec3) -> (Vec3, Vec3) {
-    let right = Vec3::y().cross(toward_eye);
+fn axes(toward_eye: &Vec3, up: &Vec3) -> (Vec3, Vec3) {
+    let right = up.cross(toward_eye);
     // Straight from above or below there is no horizon: the picture's up is then -Z.
     let right = if right.norm() > 1e-4 { right.normalize() } else { Vec3::x() };
     (right, toward_eye.cross(&right))
@@ -115,6 +137,17 @@ fn half_angle_tangent(degrees: f32) -> f32 {
     x / (1.0 - square / (3.0 - square / (5.0 - square / (7.0 - square / (9.0 - square / 11.0)))))
 }
 
+/// The angle in degrees of which half has this tangent: the inverse of [`half_angle_tangent`], by halving, for the
+/// same reason.
+fn angle_of(tangent: f32) -> f32 {
+    let [mut low, mut high] = [1.0_f32, 150.0];
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if half_angle_tangent(middle) < tangent { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,6 +159,26 @@ mod tests {
             let ours = f64::from(half_angle_tangent(degrees as f32));
             assert!((ours / exact - 1.0).abs() < 1e-6, "{degrees} degrees: {ours} for {exact}");
         }
+    }
+
+    #[test]
+    fn an_angle_is_found_again_from_its_tangent() {
+        for degrees in [1.5, 30.0, 54.432, 149.0] {
+            let found = angle_of(half_angle_tangent(degrees));
+            assert!((found - degrees).abs() < 1e-4 * degrees, "{degrees} degrees: {found}");
+        }
+    }
+
+    #[test]
+    fn a_camera_of_a_scene_looks_where_it_looks_with_its_own_up() {
+        let (eye, forward, up) = ([0.0, 2.0, 10.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
+        let view = CameraView { eye, forward, up, focal_length: 12.7, film: [1.0, 1.0], interest: 5.0 };
+        let stage = Bounds { low: [-1.0; 3], high: [1.0; 3] };
+        let lens = Lens::new(&Camera::of_scene(&view, FilmFit::Fill, [200, 200], &stage), [200, 200]);
+        // A right angle of view, lying on its side: what is 10 to the right is at the upper rim.
+        let [x, y] = lens.project(&lens.to_view(&Vec3::new(10.0, 2.0, 0.0)));
+        assert!((x - 100.0).abs() < 0.1 && y.abs() < 0.1, "{x}, {y}");
+        assert!((lens.distance - 10.0).abs() < 1e-4);
     }
 
     #[test]
@@ -145,7 +198,12 @@ mod tests {
 
     #[test]
     fn a_ray_comes_back_to_the_sample_it_left_from() {
-        let camera = Camera { eye: [3.0, 4.0, 5.0], target: [0.5, 0.0, -1.0], field_of_view: 50.0 };
+        let camera = Camera {
+            eye: [3.0, 4.0, 5.0],
+            target: [0.5, 0.0, -1.0],
+            field_of_view: 50.0,
+            ..Camera::default()
+        };
         let lens = Lens::new(&camera, [200, 100]);
         let [x, y] = lens.project(&lens.to_view(&(lens.eye + lens.ray([37.5, 81.5]) * 4.0)));
         assert!((x - 37.5).abs() < 1e-2 && (y - 81.5).abs() < 1e-2, "{x}, {y}");

@@ -174,7 +174,8 @@ mod tests {
         let positions = [[-1.0, 1.0, 1.0], [1.0, 1.5, 1.0], [1.0, 1.5, -1.0], [-1.0, 1.0, -1.0]];
         let object =
             Object { name: "square", kind: Kind::Cloth, faces: &faces, positions: &positions, rest: None };
-        let camera = Camera { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0 };
+        let camera =
+            Camera { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0, ..Camera::default() };
         let mesh = Mesh::gather(&[object], &Style::default(), &Lens::new(&camera, [64, 64]));
         DepthMap::of(&mesh, Vec3::new(0.0, 1.0, 0.0), Vec3::zeros(), 2.0, 100)
     }

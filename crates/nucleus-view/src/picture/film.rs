@@ -3,7 +3,7 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::{ObjectKind, Playback};
+use nucleus_cache::{CameraView, ObjectKind, Playback};
 
 use super::{AnimationWriter, Bounds, Camera, Ground, Image, Kind, Object, Style, draw};
 use crate::ViewError;
@@ -25,6 +25,10 @@ pub struct Film<'a, R> {
     moments: Vec<usize>,
     fps: f64,
     camera: Camera,
+    /// A camera of the scene that it is seen through instead.
+    through: Option<nucleus_cache::Camera>,
+    /// The box of what moves over the run.
+    stage: Bounds,
     style: Style,
 }
 
@@ -47,7 +51,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let floor = plane.map_or(floor, |plane| Ground::At(plane.origin[1] as f32));
         let ground = if style.ground == Ground::Below { floor } else { style.ground };
         let fps = cache.run().frames_per_second / every as f64;
-        Ok(Self { cache, moments, fps, camera, style: Style { ground, ..style } })
+        Ok(Self { cache, moments, fps, camera, through: None, stage, style: Style { ground, ..style } })
     }
 
     /// The same, of the frames from `first` to `last` only; the framing stays that of the whole run.
@@ -80,6 +84,27 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         Self { camera, ..self }
     }
 
+    /// The same, seen through a camera of the scene, wherever that is in each frame.
+    pub fn seen_through(self, camera: nucleus_cache::Camera) -> Self {
+        Self { through: Some(camera), ..self }
+    }
+
+    /// The camera at a recorded moment. Within a frame, cameras go straight.
+    fn camera_at(&self, moment: usize) -> Camera {
+        let (run, moments) = (self.cache.run(), self.cache.moments());
+        let Some((track, moment)) = self.through.as_ref().zip(moments.get(moment)) else {
+            return self.camera;
+        };
+        let share = moment.time * run.frames_per_second - f64::from(moment.frame - run.start);
+        let at = |frame| track.at(frame, run.start);
+        let Some((before, now)) = at(moment.frame - 1).zip(at(moment.frame)) else { return self.camera };
+        let view = match share < -1e-6 {
+            true => CameraView::between(before, now, (1.0 + share) as f32),
+            false => *now,
+        };
+        Camera::of_scene(&view, track.fit, self.style.size, &self.stage)
+    }
+
     /// The number of pictures, at least one.
     #[expect(clippy::len_without_is_empty, reason = "it never is")]
     pub fn len(&self) -> usize {
@@ -100,8 +125,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If there is no such moment, or its frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
-        let positions = positions(self.cache, moment)?;
-        Ok(draw(&objects(self.cache, &positions), &self.camera, &self.style))
+        let (positions, camera) = (positions(self.cache, moment)?, self.camera_at(moment));
+        Ok(draw(&objects(self.cache, &positions), &camera, &self.style))
     }
 
     /// Writes all pictures as one animated PNG that plays as fast as the run was.

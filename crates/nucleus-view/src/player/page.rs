@@ -47,6 +47,7 @@ const ASSETS: &[Asset] = assets![
     "/player/source.js" as SCRIPT,
     "/player/timeline.js" as SCRIPT,
     "/player/topology.js" as SCRIPT,
+    "/player/track.js" as SCRIPT,
     "/player/trouble.js" as SCRIPT,
     "/vendor/fzstd.mjs" as SCRIPT,
 ];

@@ -7,8 +7,10 @@ use std::f32::consts::{PI, TAU};
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo, Source};
-use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver, StepReport};
+use nucleus_cache::{
+    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo, Source,
+};
+use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver, StepReport};
 
 pub const FRAMES: i32 = 24;
 /// The first frame in which the ball has moved.
@@ -27,6 +29,10 @@ pub struct Sample {
     pub broken: bool,
     /// The flag waves a frame later than it should.
     pub late: bool,
+    /// Contacts are recorded: the hoist of the flag touches, its first corner is tangled.
+    pub contacts: bool,
+    /// The scene has a camera that comes near.
+    pub camera: bool,
     /// Height of a ground plane.
     pub plane: Option<f64>,
 }
@@ -45,13 +51,28 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
     let run = RunInfo {
         scene_path: "scenes/sample.ron".into(),
         end: FRAMES,
+        contacts: sample.contacts,
         ground: sample.plane.map(|y| Plane { origin: [0.0, y, 0.0], normal: [0.0, 1.0, 0.0] }),
         detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
         ..RunInfo::default()
     };
+    let run = RunInfo { cameras: sample.camera.then(camera).into_iter().collect(), ..run };
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();
     recorder.record_start(&State { time: 0.0, frame: 1, broken: false }).unwrap();
     recorder
+}
+
+/// A camera that goes up to the flag.
+fn camera() -> Camera {
+    let view = |frame: i32| CameraView {
+        eye: [1.0, 1.3, 9.0 - 0.3 * frame as f32],
+        forward: [0.0, 0.0, -1.0],
+        up: [0.0, 1.0, 0.0],
+        focal_length: 35.0,
+        film: [1.41732, 0.94488],
+        interest: 5.0,
+    };
+    Camera { name: "close".into(), fit: FilmFit::Fill, views: (1..=FRAMES).map(view).collect() }
 }
 
 /// Records one frame.
@@ -83,6 +104,11 @@ impl StateView for State {
         }
     }
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
+    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
+        let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { Contact::Touching } else { Contact::Free };
+        *out = (0..SIDE * SIDE).map(at_hoist).collect();
+        out[0] = Contact::Tangled;
+    }
     fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = if collider == BALL { sphere().1 } else { cube().1 };
         if collider == BALL {

@@ -328,6 +328,11 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         }
     }
 
+    /// The distance that is to be kept, in metres.
+    pub fn thickness(&self) -> R {
+        self.meeting.thickness
+    }
+
     /// The distance between the two, over their thickness.
     pub fn closeness(&self, step: &Motion<'_, R>) -> R {
         shortest(self.now(step)).2 / self.meeting.thickness

@@ -1,0 +1,129 @@
+//! How contact stands at each point of a cloth: the rungs of the ladder that `settle.rs` climbs, as far as they can be
+//! seen once a step is over. It is looked at only where somebody asks.
+
+use crate::collision::contact::Pair;
+use crate::collision::mutual::near::Near;
+use crate::collision::narrow::shortest;
+use crate::collision::pairs::PairList;
+use crate::observe::Contact;
+use crate::scalar::{Real, dot};
+use crate::solver::Solver;
+
+/// Share of the thickness up to which two elements touch. Passes keep them apart by all of it along a plane, to which
+/// the sweeps after them and curved meshes add a little.
+const TOUCHING: f64 = 1.02;
+/// Share of the thickness below which contact has less room than it wants.
+const PINCHED: f64 = 0.9;
+/// Least share of a contact by which the corner of an edge or a face has part in it.
+const LEAST_SHARE: f64 = 0.25;
+
+/// The highest rung of each place of the solver.
+struct Ladder(Vec<Contact>);
+
+impl Ladder {
+    fn climb(&mut self, point: u32, to: Contact) {
+        let rung = &mut self.0[point as usize];
+        *rung = (*rung).max(to);
+    }
+
+    /// A gap, over the thickness that is to be kept.
+    fn near(&mut self, point: u32, closeness: f64) {
+        if closeness < PINCHED {
+            self.climb(point, Contact::Pinched);
+        } else if closeness < TOUCHING {
+            self.climb(point, Contact::Touching);
+        }
+    }
+
+    fn near_all<const N: usize>(&mut self, points: [u32; N], shares: [f64; N], closeness: f64) {
+        let parts = points.into_iter().zip(shares).filter(|&(_, share)| share >= LEAST_SHARE);
+        parts.for_each(|(point, _)| self.near(point, closeness));
+    }
+}
+
+impl<R: Real> Solver<R> {
+    /// Whether anything of this scene can touch anything.
+    pub(crate) fn can_meet(&self) -> bool {
+        !self.heights.is_empty() || !self.pairs.is_empty() || self.mutual.is_some()
+    }
+
+    /// How contact stands at each place of the solver.
+    pub(crate) fn rungs(&self) -> Vec<Contact> {
+        let mut ladder = Ladder(vec![Contact::Free; self.state.anchor.len()]);
+        self.on_the_ground(&mut ladder);
+        self.pairs.iter().for_each(|list| self.at_collider(list, &mut ladder));
+        self.among_cloths(&mut ladder);
+        ladder.0
+    }
+
+    fn on_the_ground(&self, ladder: &mut Ladder) {
+        if self.heights.is_empty() {
+            return;
+        }
+        for (cloth, thickness) in self.cloths.iter().zip(&self.terms).filter(|(_, x)| x.is_finite()) {
+            for row in cloth.points() {
+                let moved = self.state.displacement[row as usize].xyz();
+                let height = self.heights[row as usize] + dot(self.up, moved);
+                ladder.near(row, height.to_f64() / thickness);
+            }
+        }
+    }
+
+    fn at_collider(&self, list: &PairList<R>, ladder: &mut Ladder) {
+        let PairList { point_face, edge_edge, face_point, active, trapped, .. } = list;
+        trapped.points.iter().for_each(|&(point, _)| ladder.climb(point, Contact::Trapped));
+        let of = |k: usize| self.terms.get(k).copied().unwrap_or(f64::INFINITY);
+        let thickness = of(list.cloth) + of(self.cloths.len() + list.collider);
+        if !thickness.is_finite() {
+            return; // One of them does not collide.
+        }
+        let collider = list.collider;
+        active
+            .point_face
+            .iter()
+            .for_each(|&k| self.touch(&point_face[k as usize], collider, thickness, ladder));
+        active
+            .edge_edge
+            .iter()
+            .for_each(|&k| self.touch(&edge_edge[k as usize], collider, thickness, ladder));
+        active
+            .face_point
+            .iter()
+            .for_each(|&k| self.touch(&face_point[k as usize], collider, thickness, ladder));
+    }
+
+    fn touch<const N: usize, const M: usize>(
+        &self,
+        pair: &Pair<R, N, M>,
+        collider: usize,
+        thickness: f64,
+        ladder: &mut Ladder,
+    ) {
+        let state = &self.collider_states[collider];
+        let ours = pair.points.map(|point| self.state.position(point));
+        let theirs = pair.collider_points.map(|point| state.point(point, state.now).into());
+        let (_, (shares, _), distance) = shortest::<f64, N, M>((ours, theirs));
+        ladder.near_all(pair.points, shares, distance / thickness);
+    }
+
+    fn among_cloths(&self, ladder: &mut Ladder) {
+        let Some(mutual) = self.mutual.as_ref().filter(|mutual| mutual.is_on()) else { return };
+        let active = &mutual.active;
+        active.point_face.list.iter().for_each(|near| self.meets(near, ladder));
+        active.edge_edge.list.iter().for_each(|near| self.meets(near, ladder));
+        active.point_edge.list.iter().for_each(|near| self.meets(near, ladder));
+        active.point_point.list.iter().for_each(|near| self.meets(near, ladder));
+        for crossing in &mutual.tangle.crossings {
+            let corners = crossing.edge.iter().chain(&crossing.face);
+            corners.for_each(|&point| ladder.climb(point, Contact::Tangled));
+        }
+    }
+
+    fn meets<const N: usize, const M: usize>(&self, near: &Near<R, N, M>, ladder: &mut Ladder) {
+        let place = |point: u32| self.state.position(point);
+        let (_, (ours, theirs), distance) = shortest((near.ours.map(place), near.theirs.map(place)));
+        let closeness = distance / near.thickness().to_f64();
+        ladder.near_all(near.ours, ours, closeness);
+        ladder.near_all(near.theirs, theirs, closeness);
+    }
+}

@@ -1,0 +1,110 @@
+//! How fast caches are written, read, sought in and played, and what recording costs a run.
+
+mod player;
+mod recording;
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, ensure};
+use serde_json::Value;
+
+use super::table::{Table, figure};
+
+/// What stands above the tables.
+pub const HEAD: &str = "# Caches
+
+**Write** and **read** are megabytes of positions in a second of one core, as they are in memory: byte shuffling, zstd, checksums and the system's own work are all in it.
+The sheet waves so that every float differs from frame to frame; the median of three runs counts.
+**Packed** is the file over that.
+**Seek** is the time to any frame in milliseconds by the clock: the median, and what 99 of 100 stay below.
+`cargo xtask book --only caches` makes this page anew; it takes 12 GB of disk for a while.
+";
+
+/// Points along a side, frames, and whether it is packed hard.
+const SHEETS: [(u32, u32, bool); 3] = [(129, 600, false), (129, 60, true), (1000, 40, false)];
+/// Frames of 129² points in 10 GB.
+const LARGE: u32 = 67_500;
+
+/// All tables of the page.
+pub fn tables(root: &Path) -> anyhow::Result<String> {
+    let folder = crate::target(root).join("caches");
+    std::fs::create_dir_all(&folder)?;
+    let tables = [
+        throughput(root, &folder)?,
+        large(root, &folder)?,
+        recording::table()?,
+        player::table(root, &folder)?,
+    ];
+    Ok(tables.iter().map(|table| format!("{table}\n")).collect())
+}
+
+fn throughput(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+    let head =
+        ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
+    let mut table = Table::new("Speed and memory", &head);
+    for (side, frames, is_compact) in SHEETS {
+        let mut runs = Vec::new();
+        for _ in 0..3 {
+            runs.push(example(root, folder, side, frames, is_compact, None)?);
+        }
+        let median = |key: &str| {
+            let mut all: Vec<f64> = runs.iter().filter_map(|run| run[key].as_f64()).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+        };
+        let packing = if is_compact { "`--compact`" } else { "usual" };
+        let keys = ["write_mb_s", "read_mb_s", "packed", "recorder_bytes_per_point", "reader_mb"];
+        let cells = [format!("{side}²"), packing.to_owned()];
+        table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
+    }
+    table.note("Memory is what recorder and reader add to the process at the most, meshes among it: a few frames, however long the run.");
+    Ok(table)
+}
+
+fn large(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+    let found = example(root, folder, 129, LARGE, false, None)?;
+    let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
+    let mut row = |name: &str, key: &str| {
+        let times = [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
+        table.row([name.to_owned()].into_iter().chain(times));
+    };
+    row("seek, the system has forgotten the file", "cold_seek_ms");
+    row("seek, it has not", "seek_ms");
+    let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
+    table.note(format!(
+        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process that grew by {} MB.",
+        number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
+    ));
+    Ok(table)
+}
+
+/// Has a sheet written and read; what the example of the cache crate finds.
+fn example(
+    root: &Path,
+    folder: &Path,
+    side: u32,
+    frames: u32,
+    is_compact: bool,
+    keep: Option<&Path>,
+) -> anyhow::Result<Value> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args([
+        "run",
+        "--quiet",
+        "--release",
+        "--package",
+        "nucleus-cache",
+        "--example",
+        "throughput",
+        "--",
+    ]);
+    command.args([side.to_string(), frames.to_string()]).args(is_compact.then_some("compact"));
+    command.args(keep.map(|path| format!("keep={}", path.display())));
+    let output =
+        command.current_dir(root).env("TMPDIR", folder).output().context("cargo cannot be started")?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "throughput {side} {frames}: {said}");
+    Ok(serde_json::from_slice(&output.stdout)?)
+}

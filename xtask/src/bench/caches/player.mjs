@@ -1,0 +1,34 @@
+// Opens the player in Chromium and prints, as JSON, how long what took.
+
+import puppeteer from "puppeteer-core";
+
+const [executablePath, url] = process.argv.slice(2);
+const args = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const browser = await puppeteer.launch({ executablePath, args, defaultViewport: { width: 1280, height: 720 } });
+const page = await browser.newPage();
+const begin = performance.now();
+await page.goto(url, { waitUntil: "commit" }).catch(() => page.goto(url));
+await page.waitForFunction(() => document.body?.dataset.state === "ready", { polling: 5, timeout: 120000 });
+const opened = performance.now() - begin;
+const times = await page.evaluate(async () => {
+  const { scene, camera, timeline } = globalThis.nucleusPlayer;
+  const { cache } = timeline;
+  const found = { fetch: [], update: [], draw: [] };
+  const timed = async (key, work) => {
+    const begin = performance.now();
+    const result = await work();
+    found[key].push(performance.now() - begin);
+    return result;
+  };
+  for (let k = 1; k <= 300; k += 1) {
+    const state = await timed("fetch", () => cache.state((k * 7919) % cache.frames.length));
+    await timed("update", () => scene.update(state.positions));
+    if (k % 10 === 0) {
+      await timed("draw", () => scene.draw(camera));
+    }
+  }
+  const share = (list, part) => list.sort((a, b) => a - b)[Math.floor((list.length - 1) * part)];
+  return Object.fromEntries(Object.entries(found).map(([key, list]) => [key, [share(list, 0.5), share(list, 0.99)]]));
+});
+console.log(JSON.stringify({ opened, browser: await browser.version(), ...times }));
+await browser.close();

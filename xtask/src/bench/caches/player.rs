@@ -1,0 +1,64 @@
+//! The player in a browser: how long until the first picture, and how fast one can scrub.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, ensure};
+use serde_json::Value;
+
+use super::{Table, example, figure};
+
+/// Frames of 129² points in 2 GB.
+const FRAMES: u32 = 13_500;
+/// What drives the browser.
+const DRIVER: &str = "puppeteer-core@24";
+/// Where Chromium may be.
+const PLACES: [&str; 3] = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+
+/// The table of the page; says so where there is no browser.
+pub fn table(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+    let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median ms", "99 of 100 ms"]);
+    let Some(chromium) = PLACES.iter().map(Path::new).find(|path| path.exists()) else {
+        table.note("There was no Chromium here.");
+        return Ok(table);
+    };
+    let cache = folder.join("player.mcap");
+    example(root, folder, 129, FRAMES, false, Some(&cache))?;
+    let player = nucleus_view::serve(&cache, 0)?;
+    let found = drive(&install(folder)?, chromium, &player.url())?;
+    fs::remove_file(cache)?;
+    let both = |key: &str| [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
+    for (name, key) in [
+        ("fetch and unpack a frame anywhere", "fetch"),
+        ("take it up: normals, bounds, to the graphics", "update"),
+        ("draw it, 1280 x 720, without a graphics card", "draw"),
+    ] {
+        table.row([name.to_owned()].into_iter().chain(both(key)));
+    }
+    let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
+    table.note(format!(
+        "From the call of the page to the first picture: {} ms. {}, headless; a screen of 60 Hz leaves 16.7 ms.",
+        number("opened"),
+        found["browser"].as_str().unwrap_or_default()
+    ));
+    Ok(table)
+}
+
+fn install(folder: &Path) -> anyhow::Result<PathBuf> {
+    if !folder.join("node_modules/puppeteer-core").exists() {
+        let mut npm = Command::new("npm");
+        npm.args(["install", "--no-audit", "--no-fund", "--prefix"]).arg(folder).arg(DRIVER);
+        ensure!(npm.status().context("npm cannot be started")?.success(), "npm cannot install {DRIVER}");
+    }
+    let script = folder.join("player.mjs");
+    fs::write(&script, include_str!("player.mjs"))?;
+    Ok(script)
+}
+
+fn drive(script: &Path, chromium: &Path, url: &str) -> anyhow::Result<Value> {
+    let output =
+        Command::new("node").arg(script).arg(chromium).arg(url).output().context("node cannot be started")?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Ok(serde_json::from_slice(&output.stdout)?)
+}
