@@ -13,6 +13,7 @@
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
 //! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
+//! | how a run goes on from where it was saved | `checkpoint/` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
 //!
 //! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
@@ -22,6 +23,7 @@
 
 mod air;
 mod builder;
+mod checkpoint;
 mod collide;
 mod collision;
 mod columns;
@@ -52,6 +54,7 @@ mod team;
 mod velocity;
 
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder, Start};
+pub use checkpoint::{Item, Reader, RestoreError, sealed, unsealed};
 pub use factors::PointFactors;
 pub use frame::{
     COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::checkpoint::kept;
 use crate::collision::skin::Group;
 use crate::collision::tree::{Aabb, Tree};
 use crate::model::ClothModel;
@@ -39,6 +40,13 @@ pub struct Bodies {
     /// Where each point is at rest, in metres from the first of its cloth.
     pub rest: Vec<[f32; 3]>,
 }
+
+kept!([] Bodies {
+    columns: [around, rest],
+    values: [],
+    parts: [tree],
+    anew: [groups, points, ends, block, cloth, edge_length, blocks],
+});
 
 impl Bodies {
     /// The elements of these cloths in their shape at rest, which `anchors` have.

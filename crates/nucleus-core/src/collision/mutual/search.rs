@@ -8,6 +8,7 @@ use super::bodies::Bodies;
 use super::candidate::{Candidate, Kind, Seen};
 use super::local::{self, Local, Locals};
 use super::terms::Terms;
+use crate::checkpoint::kept;
 use crate::collision::skin::{Group, Skin};
 use crate::collision::tree::Aabb;
 use crate::frame::Elements;
@@ -24,6 +25,8 @@ pub struct Candidates {
     tasks: Vec<Mutex<Found>>,
     seen: Seen,
 }
+
+kept!([] Candidates { columns: [], values: [list], parts: [seen], anew: [again, tasks] });
 
 impl Clone for Candidates {
     /// A copy of what was found; the room is made anew.
