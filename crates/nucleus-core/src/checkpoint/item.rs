@@ -111,6 +111,9 @@ impl<T: Item> Item for Option<T> {
     }
 }
 
+/// Values that are taken apart in one go, while they are near.
+const RUN: usize = 256;
+
 /// How many, then the values; where all are of one size, byte by byte of all of them: the high bytes of numbers are
 /// much alike, and pack well side by side.
 impl<T: Item> Item for Vec<T> {
@@ -122,12 +125,15 @@ impl<T: Item> Item for Vec<T> {
         }
         let begin = out.len();
         out.resize(begin + self.len() * T::SIZE, 0);
-        let planes = &mut out[begin..];
-        let mut bytes = Vec::with_capacity(T::SIZE);
-        for (at, value) in self.iter().enumerate() {
+        let mut bytes = Vec::with_capacity(RUN * T::SIZE);
+        for (run, values) in self.chunks(RUN).enumerate() {
             bytes.clear();
-            value.put(&mut bytes);
-            bytes.iter().enumerate().for_each(|(plane, &byte)| planes[plane * self.len() + at] = byte);
+            values.iter().for_each(|value| value.put(&mut bytes));
+            for plane in 0..T::SIZE {
+                let from = begin + plane * self.len() + run * RUN;
+                let column = bytes[plane..].iter().step_by(T::SIZE);
+                out[from..from + values.len()].iter_mut().zip(column).for_each(|(to, &byte)| *to = byte);
+            }
         }
     }
     fn take(from: &mut Reader<'_>) -> Option<Self> {

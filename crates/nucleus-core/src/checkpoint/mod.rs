@@ -42,7 +42,28 @@ impl<R: Real> Solver<R> {
         (R::SIZE as u8).put(&mut bytes);
         self.fingerprint().put(&mut bytes);
         Kept::save(self, &mut bytes);
+        self.save_pairs(&mut bytes);
         sealed(KIND, &bytes)
+    }
+
+    /// Pairs with a collider that moves hold for this frame alone: all are found anew in the next, but for the points that
+    /// are trapped.
+    fn save_pairs(&self, out: &mut Vec<u8>) {
+        let hold = !self.collider_states.iter().any(|collider| collider.moves);
+        hold.put(out);
+        self.pairs.iter().for_each(|list| if hold { list.save(out) } else { list.trapped.put(out) });
+    }
+
+    fn load_pairs(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        let hold = bool::take(from)?;
+        for list in &mut self.pairs {
+            if hold {
+                list.load(from)?;
+            } else {
+                list.trapped = Item::take(from)?;
+            }
+        }
+        Some(())
     }
 
     /// A solver that goes on from where one of the same model was saved, with the same bits. `threads` is the number of
@@ -60,7 +81,8 @@ impl<R: Real> Solver<R> {
         if u64::take(&mut from).ok_or(RestoreError::Damaged)? != solver.fingerprint() {
             return Err(RestoreError::OtherModel);
         }
-        solver.load(&mut from).filter(|()| from.is_at_end()).ok_or(RestoreError::Damaged)?;
+        let read = solver.load(&mut from).and_then(|()| solver.load_pairs(&mut from));
+        read.filter(|()| from.is_at_end()).ok_or(RestoreError::Damaged)?;
         if !solver.fits() {
             return Err(RestoreError::Damaged);
         }
@@ -84,11 +106,12 @@ impl<R: Real> Solver<R> {
     }
 }
 
+// Pairs are kept beside the rest, where they hold.
 kept!([R: Real] Solver<R> {
     columns: [far, strayed],
     values: [terms, touches],
-    parts: [state, collider_states, pairs, mutual],
-    anew: [cloths, colliders, spans, windows, near, heights, team],
+    parts: [state, collider_states, mutual],
+    anew: [cloths, colliders, pairs, spans, windows, near, heights, team],
 });
 
 kept!([R: Real] State<R> {
