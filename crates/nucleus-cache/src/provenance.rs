@@ -13,6 +13,9 @@ pub(crate) const PROFILE: &str = "nucleus";
 const SCENE: &str = "nucleus.scene";
 const RUN: &str = "nucleus.run";
 const GROUND: &str = "ground";
+const CHECKPOINT: &str = "checkpoint";
+const PACKING: &str = "packing";
+const SMALL: &str = "small";
 /// The key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 
@@ -37,6 +40,13 @@ impl RunInfo {
             ]
             .map(|(key, value)| (key.to_owned(), value)),
         );
+        // Only what is not as ever is said.
+        if self.checkpoint > 0 {
+            run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
+        }
+        if self.packing == Packing::Small {
+            run.insert(PACKING.to_owned(), SMALL.to_owned());
+        }
         if let Some(Plane { origin, normal }) = self.ground {
             run.insert(
                 GROUND.to_owned(),
@@ -74,7 +84,8 @@ impl RunInfo {
             detail: run.detail()?,
             velocities: run.parse("velocities")?,
             ground: run.ground()?,
-            packing: Packing::default(),
+            checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
+            packing: run.packing(),
             version,
             extra: run.0,
         };
@@ -128,6 +139,14 @@ impl Keys {
         }
     }
 
+    fn packing(&mut self) -> Packing {
+        if self.0.remove(PACKING).is_some_and(|packing| packing == SMALL) {
+            Packing::Small
+        } else {
+            Packing::Fast
+        }
+    }
+
     /// Six numbers: a point, and the normal.
     fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
         let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
@@ -151,7 +170,7 @@ mod tests {
         let run =
             RunInfo { scene_path: "a.ron".into(), start: -3, end: 9, extra, ground, ..RunInfo::default() };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
-            let run = RunInfo { detail, ..run.clone() };
+            let run = RunInfo { detail, checkpoint: 24, packing: Packing::Small, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
         }
     }

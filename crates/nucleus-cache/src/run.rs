@@ -66,7 +66,9 @@ pub struct RunInfo {
     pub velocities: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
-    /// How much time is spent on making the file small. Not stored: any reader reads both.
+    /// Frames from one checkpoint to the next; at 0 there is none.
+    pub checkpoint: u32,
+    /// How much time is spent on making the file small. Any reader reads both.
     pub packing: Packing,
     /// The version of Nucleus that wrote the cache. A recorder sets it.
     pub version: String,
@@ -87,6 +89,7 @@ impl Default for RunInfo {
             detail: Detail::Frames,
             velocities: false,
             ground: None,
+            checkpoint: 0,
             packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: BTreeMap::new(),

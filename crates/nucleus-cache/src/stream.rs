@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
+use crate::checkpoint;
 use crate::points::{self, Stamp};
 use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
@@ -31,6 +32,8 @@ pub(crate) struct Stream<W: Write + Seek> {
 pub(crate) struct Schemas {
     pub topology: u16,
     pub points: u16,
+    /// Of checkpoints, where there are any.
+    pub checkpoint: u16,
 }
 
 impl Schemas {
@@ -39,6 +42,7 @@ impl Schemas {
         match encoding {
             topology::ENCODING => self.topology,
             points::ENCODING => self.points,
+            checkpoint::ENCODING => self.checkpoint,
             _ => 0,
         }
     }
@@ -68,11 +72,12 @@ impl<W: Write + Seek> Stream<W> {
         self.progress.check(self.writer.add_schema(name, "text", text.as_bytes()))
     }
 
-    /// Adds the schemas of a cache.
-    pub fn own_schemas(&mut self) -> Result<Schemas, RecordError> {
+    /// Adds the schemas of a cache, with that of checkpoints if there are to be any.
+    pub fn own_schemas(&mut self, checkpoints: bool) -> Result<Schemas, RecordError> {
         Ok(Schemas {
             topology: self.schema(topology::ENCODING, topology::SCHEMA)?,
             points: self.schema(points::ENCODING, points::SCHEMA)?,
+            checkpoint: if checkpoints { self.schema(checkpoint::ENCODING, checkpoint::SCHEMA)? } else { 0 },
         })
     }
 
@@ -95,9 +100,19 @@ impl<W: Write + Seek> Stream<W> {
 
     /// Closes the chunk and hands it to the system, so that only the next frame can be lost.
     pub fn close_frame(&mut self) -> Result<(), RecordError> {
-        self.progress.check(self.writer.flush())?;
+        self.close_chunk()?;
         self.progress.frames += 1;
         Ok(())
+    }
+
+    /// The same for a chunk that is no frame.
+    pub fn close_chunk(&mut self) -> Result<(), RecordError> {
+        self.progress.check(self.writer.flush())
+    }
+
+    /// Frames and bytes so far.
+    pub fn progress(&self) -> (u32, u64) {
+        (self.progress.frames, self.progress.bytes())
     }
 
     /// Writes the index; gives frames and bytes.
