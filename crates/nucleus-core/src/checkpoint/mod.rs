@@ -51,7 +51,14 @@ impl<R: Real> Solver<R> {
     fn save_pairs(&self, out: &mut Vec<u8>) {
         let hold = !self.collider_states.iter().any(|collider| collider.moves);
         hold.put(out);
-        self.pairs.iter().for_each(|list| if hold { list.save(out) } else { list.trapped.put(out) });
+        for list in &self.pairs {
+            if hold {
+                list.save(out);
+            } else {
+                list.span.put(out);
+                list.trapped.put(out);
+            }
+        }
     }
 
     fn load_pairs(&mut self, from: &mut Reader<'_>) -> Option<()> {
@@ -60,6 +67,7 @@ impl<R: Real> Solver<R> {
             if hold {
                 list.load(from)?;
             } else {
+                list.span = Item::take(from)?;
                 list.trapped = Item::take(from)?;
             }
         }
