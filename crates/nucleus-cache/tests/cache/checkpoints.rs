@@ -104,7 +104,7 @@ fn a_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
             fs::write(&path, whole_run(&run, last)).unwrap();
             let mut old = Playback::open_to_resume(&path).unwrap();
             let last_recorded = old.moments().last().unwrap().frame;
-            let copied = old.checkpoints().into_iter().filter(|&frame| frame <= last).next_back().unwrap();
+            let copied = old.checkpoints().into_iter().rfind(|&frame| frame <= last).unwrap();
             assert_eq!(old.checkpoint(copied).unwrap().unwrap().bytes, bytes(copied));
             let kept = Kept { copied, compared: last_recorded.max(copied) };
             let mut recorder = Recorder::resume(&path, true, &run, falling::objects(), old, kept).unwrap();

@@ -199,7 +199,7 @@ mod tests {
         fn any_bytes_are_a_value_or_nothing(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
             Vec::<[f64; 3]>::take(&mut Reader::new(&bytes));
             Vec::<Vec<bool>>::take(&mut Reader::new(&bytes));
-            Option::<Vec<(u8, Option<u32>)>>::take(&mut Reader::new(&bytes));
+            <Option<Vec<(u8, Option<u32>)>> as Item>::take(&mut Reader::new(&bytes));
         }
     }
 
