@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use mcap::records::{Channel, Metadata};
 
+use crate::checkpoint;
 use crate::chunk::{Chunk, ChunkPlace};
 
 /// The table of contents.
@@ -31,6 +32,17 @@ impl Contents {
         for (channel, log_time) in messages {
             self.messages.entry(channel).or_default().push((log_time, index));
         }
+    }
+
+    /// Whether a chunk holds a checkpoint, and no frame.
+    pub fn is_checkpoint(&self, chunk: usize) -> bool {
+        self.checkpoints().any(|(_, index)| index == chunk)
+    }
+
+    /// Times and chunks of all checkpoints.
+    pub fn checkpoints(&self) -> impl Iterator<Item = (u64, usize)> + '_ {
+        let channel = self.channels.values().find(|channel| channel.message_encoding == checkpoint::ENCODING);
+        channel.and_then(|channel| self.messages.get(&channel.id)).into_iter().flatten().copied()
     }
 
     /// The channel of a topic.

@@ -7,6 +7,7 @@
 //! | what a killed run or a flipped byte costs           | [`Loss`]                            |
 //! | where two runs differ first                         | [`compare`]                         |
 //! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
+//! | how a run goes on from its cache                    | [`Recorder::resume`]                |
 //! | what is known of the run: scene, frames, units      | [`RunInfo`]                         |
 //! | the bytes of a message                              | `points.rs`, `attribute.rs`, `topology.rs` |
 //! | how one frame is kept from harming another          | `stream.rs`, `chunk.rs`             |
@@ -46,6 +47,7 @@
 
 mod attribute;
 mod camera;
+mod checkpoint;
 mod chunk;
 mod contents;
 mod diff;
@@ -59,6 +61,7 @@ mod provenance;
 mod record_error;
 mod recorder;
 mod recover;
+mod resume;
 mod run;
 mod salvage;
 mod shuffle;
@@ -69,8 +72,10 @@ mod tally;
 mod target;
 mod topic_file;
 mod topology;
+mod witness;
 
 pub use camera::{Camera, CameraView, FilmFit};
+pub use checkpoint::Checkpoint;
 pub use diff::{Comparison, Difference, PointDifference, compare};
 pub use loss::Loss;
 pub use moment::RecordedMoment;
@@ -80,6 +85,7 @@ pub use playback::{Playback, Sizes};
 pub use record_error::RecordError;
 pub use recorder::{FrameRecorder, Recorded, Recorder};
 pub use recover::{RecoverError, Recovered};
+pub use resume::Kept;
 pub use run::{Detail, Packing, Plane, RunInfo};
 pub use target::unfinished;
 pub use topic_file::TopicFile;

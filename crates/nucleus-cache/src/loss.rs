@@ -16,9 +16,19 @@ pub struct Loss {
     pub bytes: u64,
     /// Frames that should be in the file and are not, or cannot be read.
     pub frames: Vec<i32>,
+    /// Frames whose checkpoints cannot be read. Nothing that is shown is missing; the run goes on from an earlier one.
+    pub checkpoints: Vec<i32>,
 }
 
 impl Loss {
+    /// Each once, in order.
+    pub(crate) fn in_order(&mut self) {
+        for frames in [&mut self.frames, &mut self.checkpoints] {
+            frames.sort_unstable();
+            frames.dedup();
+        }
+    }
+
     /// Whether nothing is missing.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
@@ -42,6 +52,9 @@ impl fmt::Display for Loss {
         }
         if !self.frames.is_empty() {
             parts.push(format!("missing or damaged: {}", ranges(&self.frames)));
+        }
+        if !self.checkpoints.is_empty() {
+            parts.push(format!("damaged: the checkpoint of {}", ranges(&self.checkpoints)));
         }
         match parts.is_empty() {
             true => f.write_str("nothing is lost"),

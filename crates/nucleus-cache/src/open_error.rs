@@ -24,6 +24,12 @@ pub enum OpenError {
         /// The folder.
         path: PathBuf,
     },
+    /// A run is writing it.
+    #[error("`{}` is being written by another run", path.display())]
+    InUse {
+        /// The file.
+        path: PathBuf,
+    },
     /// It holds nothing.
     #[error("the file is empty: the run that made it wrote nothing")]
     Empty,

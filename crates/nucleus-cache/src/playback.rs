@@ -271,13 +271,20 @@ impl<R: Read + Seek> Playback<R> {
         for index in 0..self.contents.chunks.len() {
             match self.load(index) {
                 Ok(()) => {}
-                Err(ReadError::Damaged { frame }) => self.loss.frames.push(frame),
+                Err(ReadError::Damaged { frame }) => self.note_damage(index, frame),
                 Err(error) => return Err(error),
             }
         }
-        self.loss.frames.sort_unstable();
-        self.loss.frames.dedup();
+        self.loss.in_order();
         Ok(&self.loss)
+    }
+
+    /// Keeps in mind that a chunk is damaged.
+    pub(crate) fn note_damage(&mut self, chunk: usize, frame: i32) {
+        match self.contents.is_checkpoint(chunk) {
+            true => self.loss.checkpoints.push(frame),
+            false => self.loss.frames.push(frame),
+        }
     }
 
     /// The message that holds for an object at a moment.

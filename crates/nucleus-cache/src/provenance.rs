@@ -18,6 +18,9 @@ const RUN: &str = "nucleus.run";
 /// How many cameras there are, so that one that is lost is missed.
 const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
+const CHECKPOINT: &str = "checkpoint";
+const PACKING: &str = "packing";
+const SMALL: &str = "small";
 /// The key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 
@@ -46,6 +49,13 @@ impl RunInfo {
         run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
         if !self.cameras.is_empty() {
             run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
+        }
+        // Only what is not as ever is said.
+        if self.checkpoint > 0 {
+            run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
+        }
+        if self.packing == Packing::Small {
+            run.insert(PACKING.to_owned(), SMALL.to_owned());
         }
         if let Some(Plane { origin, normal }) = self.ground {
             run.insert(
@@ -96,7 +106,8 @@ impl RunInfo {
             strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
             cameras,
-            packing: Packing::default(),
+            checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
+            packing: run.packing(),
             version,
             extra: run.0,
         };
@@ -155,6 +166,14 @@ impl Keys {
         }
     }
 
+    fn packing(&mut self) -> Packing {
+        if self.0.remove(PACKING).is_some_and(|packing| packing == SMALL) {
+            Packing::Small
+        } else {
+            Packing::Fast
+        }
+    }
+
     /// Six numbers: a point, and the normal.
     fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
         let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
@@ -186,7 +205,7 @@ mod tests {
             ..RunInfo::default()
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
-            let run = RunInfo { detail, ..run.clone() };
+            let run = RunInfo { detail, checkpoint: 24, packing: Packing::Small, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
         }
     }

@@ -72,6 +72,30 @@ pub enum RecordError {
         /// Points in the solver.
         found: usize,
     },
+    /// A frame that is solved again is not what was recorded before.
+    #[error("frame {frame} does not come out as it was recorded: `{object}` is elsewhere")]
+    Differs {
+        /// The frame.
+        frame: i32,
+        /// The first object that differs.
+        object: String,
+    },
+    /// A run that goes on was ended before it had come as far as the cache that it goes on from.
+    #[error(
+        "ended at frame {frame}, before frame {until}, up to which the cache is kept: it is left as it was"
+    )]
+    NotCaughtUp {
+        /// The last frame that was solved.
+        frame: i32,
+        /// The frame up to which the older cache is kept.
+        until: i32,
+    },
+    /// The cache that a run goes on from cannot be read.
+    #[error("the cache to go on from cannot be read")]
+    Original {
+        /// Why not.
+        source: crate::open_error::ReadError,
+    },
     /// Frames must come in order, after the start frame.
     #[error("frame {frame} cannot follow frame {last}")]
     FrameOrder {

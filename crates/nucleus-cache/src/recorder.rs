@@ -18,7 +18,8 @@ use crate::shuffle::shuffle;
 use crate::strain::RestEdges;
 use crate::stream::{Schemas, Stream};
 use crate::target::{Places, Target};
-use crate::{target, topology};
+use crate::witness::Witness;
+use crate::{checkpoint, target, topology};
 
 /// Records a run.
 ///
@@ -39,13 +40,19 @@ use crate::{target, topology};
 /// The file grows under its name with `.part` behind it, and has its name when it is whole. A recorder that is
 /// dropped before [`finish`](Self::finish) leaves a `.part` that plays to its last whole frame.
 pub struct Recorder<W: Write + Seek = File> {
-    stream: Stream<W>,
+    pub(crate) stream: Stream<W>,
     run: RunInfo,
-    tracks: Vec<Track>,
-    report_channel: u16,
-    last_frame: i32,
-    moments: u64,
-    places: Option<Places>,
+    pub(crate) tracks: Vec<Track>,
+    pub(crate) report_channel: u16,
+    /// Where checkpoints go, if there are to be any.
+    pub(crate) checkpoint_channel: Option<u16>,
+    /// The frame of the last checkpoint.
+    pub(crate) checkpointed: Option<i32>,
+    pub(crate) last_frame: i32,
+    pub(crate) moments: u64,
+    pub(crate) places: Option<Places>,
+    /// An older cache, to which what is recorded is held.
+    pub(crate) witness: Option<Box<Witness>>,
     /// What went wrong inside the step, where it could not be said.
     trouble: Option<RecordError>,
     // Reused for every message.
@@ -56,17 +63,17 @@ pub struct Recorder<W: Write + Seek = File> {
 }
 
 /// An object while it is recorded.
-struct Track {
-    name: String,
+pub(crate) struct Track {
+    pub name: String,
     source: Source,
-    channel: u16,
+    pub channel: u16,
     points: usize,
     /// The channel of contacts, if they are recorded.
     contacts: Option<u16>,
     /// That of strain, and what it is found from.
     strain: Option<(u16, RestEdges)>,
     /// Whether it has moved since it was last recorded.
-    has_moved: bool,
+    pub has_moved: bool,
 }
 
 /// What has been recorded.
@@ -136,9 +143,12 @@ impl<W: Write + Seek> Recorder<W> {
             run: run.clone(),
             tracks: Vec::with_capacity(objects.len()),
             report_channel: 0,
+            checkpoint_channel: None,
+            checkpointed: None,
             last_frame: run.start,
             moments: 0,
             places: None,
+            witness: None,
             trouble: None,
             values: Vec::new(),
             strain: Vec::new(),
@@ -184,7 +194,39 @@ impl<W: Write + Seek> Recorder<W> {
         self.message.clear();
         self.message.extend_from_slice(report.to_string().as_bytes());
         self.stream.send(&stamp, self.report_channel, &self.message)?;
-        self.stream.close_frame()
+        self.stream.close_frame()?;
+        self.catch_up()
+    }
+
+    /// Whether a checkpoint is due at the end of the frame that was recorded last.
+    pub fn wants_checkpoint(&self) -> bool {
+        let RunInfo { start, checkpoint, .. } = self.run;
+        let period = |frame: i32| (i64::from(frame) - i64::from(start)) / i64::from(checkpoint.max(1));
+        let due = |last: i32| period(self.last_frame) > period(last);
+        checkpoint > 0 && self.checkpointed.is_none_or(due)
+    }
+
+    /// Whether the frame that was recorded last, if it is to remain the last, is without a checkpoint.
+    pub fn wants_last_checkpoint(&self) -> bool {
+        self.run.checkpoint > 0 && self.witness.is_none() && self.checkpointed != Some(self.last_frame)
+    }
+
+    /// Records what the run can be gone on with from the end of the frame that was recorded last, and puts it on disk.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn record_checkpoint(&mut self, bytes: &[u8]) -> Result<(), RecordError> {
+        let Some(channel) = self.checkpoint_channel else { return Ok(()) };
+        let (frame, is_last) = (self.last_frame, !self.wants_checkpoint());
+        let has_moved = self.tracks.iter().map(|track| track.has_moved);
+        checkpoint::write(frame, is_last, has_moved, bytes, &mut self.message);
+        let stamp = match frame == self.run.start {
+            true => Stamp::start(frame),
+            false => Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) },
+        };
+        self.stream.send(&stamp, channel, &self.message)?;
+        self.checkpointed = Some(frame);
+        self.stream.close_chunk()
     }
 
     /// Writes the index and closes the file.
@@ -192,6 +234,10 @@ impl<W: Write + Seek> Recorder<W> {
     /// # Errors
     /// When writing fails; the frames before are in the file all the same.
     pub fn finish(self) -> Result<Recorded, RecordError> {
+        if let Some(witness) = &self.witness {
+            self.places.iter().for_each(Places::give_up);
+            return Err(RecordError::NotCaughtUp { frame: self.last_frame, until: witness.until() });
+        }
         let (frames, bytes) = self.stream.finish()?;
         if let Some(places) = self.places {
             places.settle().map_err(|source| RecordError::Write { frames, bytes, source })?;
@@ -204,8 +250,16 @@ impl<W: Write + Seek> Recorder<W> {
         for record in self.run.to_metadata().into_iter().chain(self.run.cameras_to_metadata()) {
             self.stream.metadata(&record)?;
         }
-        let schemas = self.stream.own_schemas(|one| one.is_recorded(&self.run))?;
+        let schemas = self.stream.own_schemas(|one| one.is_recorded(&self.run), self.run.checkpoint > 0)?;
         self.report_channel = self.stream.channel("/report", 0, "json")?;
+        if self.run.checkpoint > 0 {
+            let channel = self.stream.channel(
+                checkpoint::TOPIC,
+                schemas.of(checkpoint::ENCODING),
+                checkpoint::ENCODING,
+            )?;
+            self.checkpoint_channel = Some(channel);
+        }
         let mut meshes = Vec::with_capacity(objects.len());
         for (source, object) in &objects {
             let (name, points) = (object.name.clone(), object.rest.len());
@@ -289,6 +343,9 @@ impl<W: Write + Seek> Recorder<W> {
                 state.velocities(id, units, &mut self.values);
                 shuffle(self.values.as_flattened(), &mut self.message);
             }
+            if let Some(witness) = &mut self.witness {
+                witness.see(&stamp, &self.tracks[k].name, &self.message);
+            }
             self.stream.send(&stamp, channel, &self.message)?;
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
@@ -355,7 +412,7 @@ impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
 }
 
 /// Refuses a run that could not be read back.
-fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(), RecordError> {
+pub(crate) fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(), RecordError> {
     if let Some(fault) = run.fault() {
         return Err(RecordError::BadRun { fault });
     }

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek, Write};
 
+use crate::attribute::Attribute;
 use crate::open_error::ReadError;
 use crate::playback::Playback;
 use crate::record_error::RecordError;
@@ -42,9 +43,10 @@ impl<R: Read + Seek> Playback<R> {
         for record in &self.contents.metadata {
             stream.metadata(record)?;
         }
-        let schemas = stream.own_schemas(|one| {
+        let uses = |one: &Attribute| {
             self.contents.channels.values().any(|channel| channel.message_encoding == one.encoding)
-        })?;
+        };
+        let schemas = stream.own_schemas(uses, self.contents.checkpoints().next().is_some())?;
         let mut ids = std::collections::BTreeMap::new();
         for channel in self.contents.channels.values() {
             let schema = schemas.of(&channel.message_encoding);
@@ -56,7 +58,7 @@ impl<R: Read + Seek> Playback<R> {
                 Ok(()) => {}
                 Err(ReadError::Damaged { frame }) => {
                     recovered.damaged += 1;
-                    self.loss.frames.push(frame);
+                    self.note_damage(index, frame);
                     continue;
                 }
                 Err(error) => return Err(error.into()),
@@ -66,11 +68,14 @@ impl<R: Read + Seek> Playback<R> {
                     stream.copy(channel, header, data)?;
                 }
             }
+            if self.contents.is_checkpoint(index) {
+                stream.close_chunk()?;
+                continue;
+            }
             stream.close_frame()?;
             recovered.frames += 1;
         }
-        self.loss.frames.sort_unstable();
-        self.loss.frames.dedup();
+        self.loss.in_order();
         (_, recovered.bytes) = stream.finish()?;
         Ok(recovered)
     }

@@ -74,7 +74,9 @@ pub struct RunInfo {
     pub ground: Option<Plane>,
     /// The cameras of the scene; a picture is taken by the first, if nobody says otherwise.
     pub cameras: Vec<Camera>,
-    /// How much time is spent on making the file small. Not stored: any reader reads both.
+    /// Frames from one checkpoint to the next; at 0 there is none.
+    pub checkpoint: u32,
+    /// How much time is spent on making the file small. Any reader reads both.
     pub packing: Packing,
     /// The version of Nucleus that wrote the cache. A recorder sets it.
     pub version: String,
@@ -98,6 +100,7 @@ impl Default for RunInfo {
             strain: false,
             ground: None,
             cameras: Vec::new(),
+            checkpoint: 0,
             packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: BTreeMap::new(),

@@ -9,6 +9,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 
 use crate::attribute::{self, Attribute};
+use crate::checkpoint;
 use crate::points::{self, Stamp};
 use crate::provenance::PROFILE;
 use crate::record_error::{RecordError, cause};
@@ -62,13 +63,18 @@ impl<W: Write + Seek> Stream<W> {
         self.progress.check(self.writer.add_schema(name, "text", text.as_bytes()))
     }
 
-    /// Adds the schemas of a cache; of attributes only those that it uses.
-    pub fn own_schemas(&mut self, uses: impl Fn(&Attribute) -> bool) -> Result<Schemas, RecordError> {
+    /// Adds the schemas of a cache; of attributes only those that it uses, and that of checkpoints if there are to be any.
+    pub fn own_schemas(
+        &mut self,
+        uses: impl Fn(&Attribute) -> bool,
+        checkpoints: bool,
+    ) -> Result<Schemas, RecordError> {
         let own = [(topology::ENCODING, topology::SCHEMA), (points::ENCODING, points::SCHEMA)];
-        let all = own
-            .into_iter()
-            .chain(attribute::ALL.into_iter().filter(|one| uses(one)).map(|one| (one.encoding, one.schema)));
+        let attributes =
+            attribute::ALL.into_iter().filter(|one| uses(one)).map(|one| (one.encoding, one.schema));
+        let checkpoint = checkpoints.then_some((checkpoint::ENCODING, checkpoint::SCHEMA));
         let schema = |(name, text)| Ok((name, self.schema(name, text)?));
+        let all = own.into_iter().chain(attributes).chain(checkpoint);
         Ok(Schemas(all.map(schema).collect::<Result<_, RecordError>>()?))
     }
 
@@ -91,9 +97,19 @@ impl<W: Write + Seek> Stream<W> {
 
     /// Closes the chunk and hands it to the system, so that only the next frame can be lost.
     pub fn close_frame(&mut self) -> Result<(), RecordError> {
-        self.progress.check(self.writer.flush())?;
+        self.close_chunk()?;
         self.progress.frames += 1;
         Ok(())
+    }
+
+    /// The same for a chunk that is no frame.
+    pub fn close_chunk(&mut self) -> Result<(), RecordError> {
+        self.progress.check(self.writer.flush())
+    }
+
+    /// Frames and bytes so far.
+    pub fn progress(&self) -> (u32, u64) {
+        (self.progress.frames, self.progress.bytes())
     }
 
     /// Writes the index; gives frames and bytes.

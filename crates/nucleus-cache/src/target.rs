@@ -28,7 +28,49 @@ pub(crate) struct Places {
 /// Makes the file beside its place, after a look at what is there. With `replace` an older cache may be in
 /// the way, and what a killed run has left behind.
 pub(crate) fn create(path: &Path, replace: bool) -> Result<Target, RecordError> {
-    let failed = |source| RecordError::Create { path: path.to_owned(), source };
+    look_at(path, replace)?;
+    let growing = unfinished(path);
+    let file = open(&growing, path)?;
+    let length = file.metadata().map_err(|source| failed(path, source))?.len();
+    if length > 0 && !replace {
+        return Err(RecordError::Unfinished { path: growing });
+    }
+    file.set_len(0).map_err(|source| failed(path, source))?;
+    Ok(Target { file, places: Places { growing, whole: path.to_owned() } })
+}
+
+/// Makes the file of a run that goes on, beside the one that grows. With `replace` an older cache may be in the way.
+pub(crate) fn beside(path: &Path, replace: bool) -> Result<Target, RecordError> {
+    look_at(path, replace)?;
+    let mut growing = path.file_name().unwrap_or_default().to_owned();
+    growing.push(".resuming");
+    let growing = path.with_file_name(growing);
+    let file = open(&growing, path)?;
+    file.set_len(0).map_err(|source| failed(path, source))?;
+    Ok(Target { file, places: Places { growing, whole: path.to_owned() } })
+}
+
+fn failed(path: &Path, source: io::Error) -> RecordError {
+    RecordError::Create { path: path.to_owned(), source }
+}
+
+/// Opens a file to be written by this run alone.
+fn open(growing: &Path, path: &Path) -> Result<File, RecordError> {
+    let mut options = File::options();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let file = options.open(growing).map_err(|source| failed(path, source))?;
+    if is_locked(&file) { Err(RecordError::InUse { path: growing.to_owned() }) } else { Ok(file) }
+}
+
+/// Whether another run has a file for itself; if not, this one has from now on.
+pub(crate) fn is_locked(file: &File) -> bool {
+    // A file system without locks is no reason not to record.
+    matches!(file.try_lock(), Err(TryLockError::WouldBlock))
+}
+
+/// Looks at what is in the way.
+fn look_at(path: &Path, replace: bool) -> Result<(), RecordError> {
+    let failed = |source| failed(path, source);
     let path_buf = || path.to_owned();
     match path.metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => {}
@@ -43,19 +85,7 @@ pub(crate) fn create(path: &Path, replace: bool) -> Result<Target, RecordError> 
         }
         Ok(_) => {}
     }
-    let growing = unfinished(path);
-    let mut options = File::options();
-    let file = options.read(true).write(true).create(true).truncate(false).open(&growing).map_err(failed)?;
-    // A file system without locks is no reason not to record.
-    if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-        return Err(RecordError::InUse { path: growing });
-    }
-    let length = file.metadata().map_err(failed)?.len();
-    if length > 0 && !replace {
-        return Err(RecordError::Unfinished { path: growing });
-    }
-    file.set_len(0).map_err(failed)?;
-    Ok(Target { file, places: Places { growing, whole: path_buf() } })
+    Ok(())
 }
 
 /// Where the cache of a run is while it grows: its name with `.part` behind it.
@@ -66,6 +96,19 @@ pub fn unfinished(path: &Path) -> PathBuf {
 }
 
 impl Places {
+    /// Moves a file that was begun beside to where files grow.
+    pub fn take_over(&mut self) -> io::Result<()> {
+        let growing = unfinished(&self.whole);
+        fs::rename(&self.growing, &growing)?;
+        self.growing = growing;
+        Ok(())
+    }
+
+    /// Removes what was begun. If it cannot be, its name says what it is.
+    pub fn give_up(&self) {
+        let _ = fs::remove_file(&self.growing);
+    }
+
     /// Moves the file, which is whole now, to its place.
     pub fn settle(&self) -> io::Result<()> {
         fs::rename(&self.growing, &self.whole)

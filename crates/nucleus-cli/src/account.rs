@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use nucleus_core::{Refused, StepReport};
-use serde::Serialize;
+use nucleus_graph::FrameReport;
+use serde::{Deserialize, Serialize};
 
 /// The figures of one frame, as they are recorded and printed for machines.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct FrameFigures {
     /// The frame.
     pub frame: i32,
@@ -33,6 +34,28 @@ pub struct FrameFigures {
     /// The first of that.
     #[serde(skip)]
     pub first_refused: Option<Refused>,
+}
+
+impl FrameFigures {
+    /// What was reported of the frame, as far as it is kept.
+    pub fn report(&self) -> FrameReport {
+        let report = StepReport {
+            max_strain: self.max_strain,
+            strain_99: self.strain_99,
+            min_gap: self.min_gap.unwrap_or(f64::INFINITY),
+            contacts: self.contacts,
+            pairs: self.pairs,
+            broad_phases: self.broad_phases,
+            caught: self.caught,
+            crossed: self.crossed,
+            trapped: self.trapped,
+            tangled: self.tangled,
+            kinetic_energy: self.kinetic_energy,
+            finite: self.finite,
+            ..StepReport::default()
+        };
+        FrameReport { frame: self.frame.into(), report, passed_through: None }
+    }
 }
 
 impl FrameFigures {
@@ -94,10 +117,15 @@ pub struct Account {
 impl Account {
     /// Adds a frame.
     pub fn add(&mut self, figures: &FrameFigures, spent: Duration) {
-        let frame = figures.frame;
         self.frames += 1;
         self.spent += spent;
         self.last = spent;
+        self.recall(figures);
+    }
+
+    /// Adds a frame that was simulated long ago.
+    pub fn recall(&mut self, figures: &FrameFigures) {
+        let frame = figures.frame;
         if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {
             self.worst_strain = Some((figures.max_strain, frame));
         }

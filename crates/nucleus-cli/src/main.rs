@@ -6,6 +6,7 @@
 //! | what the exit code means                   | `outcome.rs`               |
 //! | how a run goes, frame by frame             | `simulate.rs`              |
 //! | what its cache says of it                  | `recording.rs`             |
+//! | how it is gone on with                     | `continued.rs`             |
 //! | how a scene is opened, and refused         | `scene_file.rs`            |
 //! | how a cache is opened, and refused         | `cache_file.rs`            |
 //! | how numbers are written for people         | `figures.rs`               |
@@ -16,8 +17,10 @@ mod account;
 mod cache_file;
 mod cache_folder;
 mod commands;
+mod continued;
 mod diagnostics;
 mod figures;
+mod fingerprint;
 mod frame_range;
 mod initial_state;
 mod interrupt;
@@ -28,8 +31,10 @@ mod quality;
 mod record;
 mod recording;
 mod scene_file;
+mod session;
 mod simulate;
 mod summary;
+mod threads;
 mod whole_file;
 
 use std::process::ExitCode;

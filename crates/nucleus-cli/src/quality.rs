@@ -5,7 +5,7 @@ use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
 use nucleus_measure::store::Store;
 use nucleus_measure::trade::recommend::{Choice, for_error};
-use nucleus_measure::trade::{Subject, Trade};
+use nucleus_measure::trade::{Setting, Subject, Trade};
 
 use crate::cache_folder;
 
@@ -43,7 +43,7 @@ pub fn store(subject: &Subject) -> Store {
 }
 
 /// The scene at the cheapest setting for an error, by the curve that `nucleus trade` has stored; and which it is.
-pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String)> {
+pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
     let subject = Subject::new(scene)?;
     let trade = Trade::find(&store(&subject))?.with_context(|| {
         format!("nothing is known of `{name}` and this solver yet: run `nucleus trade {name}` first")
@@ -64,7 +64,7 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
         point.setting,
         report::figure(point.ms)
     );
-    Ok((subject.set(&point.setting), said))
+    Ok((subject.set(&point.setting), said, point.setting))
 }
 
 #[cfg(test)]

@@ -9,6 +9,11 @@ use nucleus_cache::{
 };
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
+use nucleus_measure::trade::Setting;
+
+use crate::continued::{PROGRAM, SETTING};
+use crate::fingerprint::fingerprint;
+use crate::initial_state::InitialState;
 
 use crate::record::{Channels, Moments};
 
@@ -23,8 +28,10 @@ pub struct Manner {
     pub force: bool,
     /// Whether it is to be as small as can be, at the cost of time.
     pub compact: bool,
-    /// What the run starts from, if that is a frame of another cache.
-    pub from: Option<String>,
+    /// Frames from one checkpoint to the next; 0 for none.
+    pub checkpoint: u32,
+    /// What else is worth knowing.
+    pub facts: BTreeMap<String, String>,
 }
 
 /// Begins the cache of a run at its start frame; none if nothing is to be recorded.
@@ -55,7 +62,8 @@ pub fn begin(
             .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
         cameras: program.cameras().into_iter().map(camera).collect(),
         packing: if manner.compact { Packing::Small } else { Packing::Fast },
-        extra: provenance(manner.from),
+        checkpoint: manner.checkpoint,
+        extra: manner.facts,
         ..RunInfo::default()
     };
     let objects = objects(simulation);
@@ -65,6 +73,9 @@ pub fn begin(
     };
     let mut recorder = recorder?;
     recorder.record_start(simulation.state())?;
+    if recorder.wants_checkpoint() {
+        recorder.record_checkpoint(&simulation.save())?;
+    }
     Ok(Some(recorder))
 }
 
@@ -87,14 +98,33 @@ fn camera(camera: compile::Camera) -> Camera {
     Camera { name: camera.name, fit, views: camera.views.into_iter().map(view).collect() }
 }
 
-/// What else is worth knowing of a run. Nothing that may change from one run of a scene to the next, such as
-/// the date or the number of threads: the same run gives the same bytes.
-fn provenance(from: Option<String>) -> BTreeMap<String, String> {
-    let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
+/// What else is worth knowing of a run: where it begins, if that is a frame of another cache; the setting that a quality
+/// stands for; a fingerprint of what was `read`. Nothing that may change from one run of a scene to the next, such as the
+/// date or the number of threads: the same run gives the same bytes.
+pub fn facts(
+    from: Option<&InitialState>,
+    setting: Option<Setting>,
+    read: &Program,
+) -> Result<BTreeMap<String, String>> {
     let mut facts =
-        BTreeMap::from([("machine".to_owned(), machine), ("scalar".to_owned(), "f32".to_owned())]);
-    facts.extend(from.map(|from| ("from".to_owned(), from)));
+        BTreeMap::from([("scalar".to_owned(), "f32".to_owned()), ("machine".to_owned(), machine())]);
+    facts.extend(from.map(|from| ("from".to_owned(), from.to_string())));
+    if let Some(setting) = setting {
+        facts.insert(SETTING.to_owned(), serde_json::to_string(&setting)?);
+    }
+    facts.insert(PROGRAM.to_owned(), fingerprint(read));
+    Ok(facts)
+}
+
+/// The same of a run that goes on, perhaps with a scene that has `changed`.
+pub fn facts_of(run: &RunInfo, changed: Option<&Program>) -> BTreeMap<String, String> {
+    let mut facts = run.extra.clone();
+    facts.extend(changed.map(|program| (PROGRAM.to_owned(), fingerprint(program))));
     facts
+}
+
+fn machine() -> String {
+    format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
 }
 
 /// First and last frame of a program.
@@ -105,6 +135,18 @@ pub fn frames(program: &Program) -> Result<(i32, i32)> {
     }
     let frame = |frame: i64| i32::try_from(frame).with_context(|| format!("frame {frame} is out of range"));
     Ok((frame(time.start)?, frame(time.end)?))
+}
+
+/// What each recorded object is to the solver, for objects of these names.
+pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source, ObjectInfo)> {
+    let source = |recorded: &ObjectInfo| {
+        let object = simulation.objects().iter().find(|object| object.name == recorded.name)?;
+        Some(match object.kind {
+            compile::ObjectKind::Cloth(id) => Source::Cloth(id),
+            compile::ObjectKind::Collider(id) => Source::Collider(id),
+        })
+    };
+    objects.into_iter().filter_map(|object| source(&object).map(|source| (source, object))).collect()
 }
 
 /// The objects as they are now, at the start frame.

@@ -26,6 +26,11 @@ pub fn open(path: &Path, frames: Option<FrameRange>) -> Result<SceneFile> {
     let bytes = fs::read(path).with_context(|| format!("cannot read `{}`", path.display()))?;
     let text = String::from_utf8(bytes);
     let text = text.ok().with_context(|| format!("`{}` is not text: scenes are UTF-8", path.display()))?;
+    of_text(text, path, frames)
+}
+
+/// The same for a text that is at hand; files that it names are looked for beside `path`.
+pub fn of_text(text: String, path: &Path, frames: Option<FrameRange>) -> Result<SceneFile> {
     let (mut scene, mut diagnostics) = match read_scene_text(&text, path) {
         Ok(read) => read,
         Err(diagnostics) => return Ok(SceneFile { text, diagnostics, compiled: None }),

@@ -23,14 +23,14 @@ pub enum Ending {
     Lost(anyhow::Error),
 }
 
-/// Advances to the last frame. `tell` is shown each frame with the account so far.
+/// Advances to the last frame, from where `account` stands. `tell` is shown each frame with the account so far.
 pub fn simulate(
     simulation: &mut Simulation,
     recorder: &mut Option<Recorder>,
     judge: &mut Judge,
+    mut account: Account,
     tell: &mut dyn FnMut(&FrameFigures, &Account) -> Result<()>,
 ) -> Result<(Account, Ending)> {
-    let mut account = Account::default();
     while !simulation.is_done() {
         if interrupt::asked() {
             return Ok((account, Ending::Interrupted));
@@ -67,6 +67,9 @@ fn advance(
             let seen = simulation.advance(&mut recorder.frame(frame)?);
             let figures = look(seen, judge);
             recorder.end_frame(&figures)?;
+            if figures.finite && recorder.wants_checkpoint() {
+                recorder.record_checkpoint(&simulation.save())?;
+            }
             Ok(figures)
         }
     }

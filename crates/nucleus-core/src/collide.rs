@@ -317,6 +317,11 @@ impl<R: Real> Solver<R> {
         if !same || moves || moved {
             self.terms = cloths.chain(colliders).map(terms).collect();
             self.strayed.fill(true);
+            for cloth in 0..self.cloths.len() {
+                if !self.can_touch(frame, cloth) {
+                    self.pairs.iter_mut().filter(|list| list.cloth == cloth).for_each(PairList::clear);
+                }
+            }
             return;
         }
         let Self { pairs, state, far, strayed, .. } = self;

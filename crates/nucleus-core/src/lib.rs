@@ -14,6 +14,7 @@
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
 //! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
 //! | how contact is seen to stand at each point | `ladder.rs` |
+//! | how a run goes on from where it was saved | `checkpoint/` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
 //!
 //! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
@@ -23,6 +24,7 @@
 
 mod air;
 mod builder;
+mod checkpoint;
 mod collide;
 mod collision;
 mod columns;
@@ -54,6 +56,7 @@ mod team;
 mod velocity;
 
 pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder, Start};
+pub use checkpoint::{Item, Reader, RestoreError, sealed, unsealed};
 pub use factors::PointFactors;
 pub use frame::{
     COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,

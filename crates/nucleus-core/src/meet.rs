@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::collision::mutual::Mutual;
-use crate::collision::mutual::active::{WINDOW, pick};
+use crate::collision::mutual::active::{Active, WINDOW, pick};
 use crate::collision::mutual::crossings::find_crossings;
 use crate::collision::mutual::near::Motion;
 use crate::collision::mutual::paths::Path;
@@ -48,6 +48,8 @@ impl<R: Real> Solver<R> {
         if mutual.is_on() {
             mutual.far.move_anchors(&self.state.displacement);
             mutual.candidates.forget_places();
+        } else {
+            mutual.active = Active::default(); // what nothing looks after any more holds nothing
         }
         mutual.window = [0.0; 2];
     }

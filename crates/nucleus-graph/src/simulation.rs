@@ -12,6 +12,7 @@ use crate::compile::{Grips, Object, Program};
 use plan::Leap;
 use view::{Merge, View};
 
+mod checkpoint;
 mod plan;
 mod view;
 

@@ -1,5 +1,6 @@
 //! The cache as others use it: recorded, damaged, refused, and played back.
 
+mod checkpoints;
 mod compared;
 mod damage;
 mod falling;

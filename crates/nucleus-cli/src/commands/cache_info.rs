@@ -32,6 +32,13 @@ pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<St
         None => writeln!(text, "  packed      not counted in a file of this size; --verify does")?,
     }
     writeln!(text, "  lost        {}", cache.loss())?;
+    if let Some(last) = cache.checkpoints().last() {
+        let (count, size) = (cache.checkpoints().len(), figures::bytes(cache.checkpoint_bytes()));
+        writeln!(
+            text,
+            "  checkpoints {count}, the last of frame {last}, {size}; `nucleus resume` goes on from it"
+        )?;
+    }
     for (key, value) in &run.extra {
         writeln!(text, "  {key:<11} {value}")?;
     }
@@ -103,10 +110,12 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
             "scene": loss.scene,
             "bytes": loss.bytes,
             "frames": loss.frames,
+            "checkpoints": loss.checkpoints,
             "text": loss.to_string(),
         },
         "ground": run.ground.map(|plane| json!({ "origin": plane.origin, "normal": plane.normal })),
         "cameras": run.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
+        "checkpoints": { "frames": cache.checkpoints(), "bytes": cache.checkpoint_bytes() },
         "packed_bytes": sizes.map(|sizes| sizes.packed),
         "extra": run.extra,
         "objects": objects,

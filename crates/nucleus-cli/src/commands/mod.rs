@@ -15,6 +15,7 @@ mod play;
 mod presets;
 mod recover;
 mod render;
+mod resume;
 mod run;
 mod scene_info;
 mod trade;
@@ -29,6 +30,7 @@ use crate::outcome::Outcome;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Run(run::Run),
+    Resume(resume::Resume),
     Check(check::Check),
     Info(info::Info),
     Play(play::Play),
@@ -51,6 +53,7 @@ impl Command {
     pub fn run(self) -> Result<Outcome> {
         match self {
             Self::Run(run) => run.run(),
+            Self::Resume(resume) => resume.run(),
             Self::Check(check) => check.run(),
             Self::Play(play) => play.run(),
             Self::Info(info) => info.run(),

@@ -4,29 +4,30 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
-use nucleus_cache::Recorder;
 use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Diagnostic, Scene};
-use serde_json::json;
+use nucleus_measure::trade::Setting;
 
-use crate::account::{Account, FrameFigures};
+use crate::account::Account;
 use crate::frame_range::FrameRange;
 use crate::initial_state::InitialState;
 use crate::outcome::Outcome;
-use crate::progress::Progress;
 use crate::record::{Channels, Record};
 use crate::recording::{self, Manner};
-use crate::simulate::{Ending, simulate};
-use crate::summary::Summary;
-use crate::{interrupt, output, quality, scene_file};
+use crate::session::Session;
+use crate::{interrupt, quality, scene_file, threads};
+
+/// Frames from one checkpoint to the next, unless others are asked for: two seconds of film. A checkpoint takes about as
+/// much as twenty frames.
+const CHECKPOINT: u32 = 48;
 
 /// Simulates a scene and records it as a cache.
 ///
 /// Ctrl-C ends the run after the frame it is in and closes the cache; the exit code is then 130. A second
-/// Ctrl-C ends it at once; the cache then plays to its last whole frame.
+/// Ctrl-C ends it at once; the cache then plays to its last whole frame. `nucleus resume` goes on after either.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The scene (.ron).
@@ -50,6 +51,9 @@ pub struct Run {
     /// Pack harder: a cache about a tenth smaller, without loss, a hundred times slower to write.
     #[arg(long)]
     compact: bool,
+    /// Frames from one checkpoint to the next, from which `nucleus resume` goes on; the last frame has one too. 0: none.
+    #[arg(long, value_name = "FRAMES", default_value_t = CHECKPOINT)]
+    checkpoint: u32,
     /// Replace a cache that exists.
     #[arg(long)]
     force: bool,
@@ -79,6 +83,7 @@ impl Run {
             record: None,
             velocities: false,
             compact: false,
+            checkpoint: CHECKPOINT,
             force,
             out: None,
             audit: false,
@@ -103,23 +108,26 @@ impl Run {
         let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
             return Ok(Outcome::Refused);
         };
+        let (read, is_from) = (program.clone(), self.from.is_some());
         let (scene, program) = match &self.from {
             None => (scene, program),
             Some(from) => from.applied(scene, &program)?,
         };
-        let program = match self.quality {
-            None => program,
-            Some(wanted) => self.program_of(&scene, wanted)?,
+        let (program, setting) = match self.quality {
+            None => (program, None),
+            Some(wanted) => {
+                self.program_of(&scene, wanted).map(|(program, setting)| (program, Some(setting)))?
+            }
         };
         interrupt::listen()?;
         let (start, end) = recording::frames(&program)?;
-        let mut simulation = Simulation::new(&program, self.threads());
+        let mut simulation = Simulation::new(&program, threads::count(self.threads));
         if self.audit {
             simulation.begin_audit(Closeness::Steps);
         } else if program.checks().iter().any(Check::needs_audit) {
             simulation.begin_audit(Closeness::Frames);
         }
-        let mut judge = Judge::new(program.checks(), program.mass());
+        let judge = Judge::new(program.checks(), program.mass());
         let record = self.record.unwrap_or_default();
         let channels = record.channels();
         let manner = Manner {
@@ -127,59 +135,24 @@ impl Run {
             channels: Channels { velocities: channels.velocities || self.velocities, ..channels },
             force: self.force,
             compact: self.compact,
-            from: self.from.as_ref().map(ToString::to_string),
+            checkpoint: self.checkpoint,
+            facts: recording::facts(self.from.as_ref(), setting, if is_from { &read } else { &program })?,
         };
         let out = self.out()?;
-        let mut recorder = recording::begin(&simulation, manner, &out, (&self.scene, &text))?;
-        let mut progress = Progress::new(end.abs_diff(start));
-        let mut tell = |figures: &FrameFigures, account: &Account| {
-            progress.show(account);
-            if self.json { print_frame(figures, account) } else { Ok(()) }
-        };
-        let (account, mut ending) = simulate(&mut simulation, &mut recorder, &mut judge, &mut tell)?;
-        progress.end();
-        let recorded = close(recorder, &mut ending).map(|bytes| (out, bytes));
-        interrupt::run_is_over();
-        let last = simulation.frame();
-        let audit = simulation.audit().filter(|_| self.audit);
-        let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
-        let summary = Summary { account, ending, checks, audit, recorded, frames, objects };
-        match self.json {
-            true => output::print_json(&summary.as_json())?,
-            false => output::print(&summary.as_text()?)?,
-        }
-        Ok(summary.outcome())
+        let recorder = recording::begin(&simulation, manner, &out, (&self.scene, &text))?;
+        let (account, frames, audit, json) = (Account::default(), end.abs_diff(start), self.audit, self.json);
+        let session = Session { simulation, recorder, out, judge, account, start, frames, audit, json };
+        session.run(|_| false)
     }
 
-    /// The program at the setting that a quality wants.
-    fn program_of(&self, scene: &Scene, wanted: f64) -> Result<Program> {
-        let (scene, said) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
+    /// The program at the setting that a quality wants, and that setting.
+    fn program_of(&self, scene: &Scene, wanted: f64) -> Result<(Program, Setting)> {
+        let (scene, said, setting) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
         eprintln!("{said}");
         let first =
             |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
-        compile(&scene).map_err(|found| anyhow!("the scene cannot run so: {}", first(found)))
+        let program =
+            compile(&scene).map_err(|found| anyhow!("the scene cannot run so: {}", first(found)))?;
+        Ok((program, setting))
     }
-
-    fn threads(&self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(all, usize::from)
-    }
-}
-
-/// Closes the cache; gives its size in bytes, if there is one and it could be written to its end.
-fn close(recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
-    let recorder = recorder.filter(|_| !matches!(ending, Ending::Lost(_)))?;
-    match recorder.finish() {
-        Ok(recorded) => Some(recorded.bytes),
-        Err(error) => {
-            *ending = Ending::Lost(error.into());
-            None
-        }
-    }
-}
-
-fn print_frame(figures: &FrameFigures, account: &Account) -> Result<()> {
-    let mut line = serde_json::to_value(figures)?;
-    line["milliseconds"] = json!(account.last.as_secs_f64() * 1e3);
-    output::print_json(&line)
 }

@@ -9,6 +9,7 @@ mod info;
 mod interrupted;
 mod play;
 mod render;
+mod resume;
 mod run;
 mod sample;
 mod scenes;

@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 
 use super::tree::{Aabb, Tree};
+use crate::checkpoint::kept;
 use crate::model::ColliderModel;
 
 /// A collider in the current frame, and the boxes over its elements for a span of it.
@@ -30,6 +31,13 @@ pub struct ColliderState {
     /// The span that the boxes hold for; none if they are out of date.
     fitted: Option<[f64; 2]>,
 }
+
+kept!([] ColliderState {
+    columns: [start, end],
+    values: [now],
+    parts: [],
+    anew: [moves, way, corners, origin, boxes, tree, fitted],
+});
 
 /// The boxes of an object's elements.
 #[derive(Debug, Clone, Default)]

@@ -12,6 +12,7 @@ use super::bounce::Bounce;
 use super::foresee::{Cover, spread};
 use super::friction::{Push, extra, rub};
 use super::narrow;
+use crate::checkpoint::item;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
 
@@ -47,6 +48,11 @@ pub struct Pair<R, const N: usize, const M: usize> {
     /// Displacement of the contact when the plane was found.
     found_at: [R; 3],
 }
+
+item!([R: Real, const N: usize, const M: usize] Pair<R, N, M> {
+    points: [u32; N], collider_points: [u32; M], group: u32, normal: [R; 3], plane: [[R; N]; 2], weights: [R; N],
+    surface_motion: [R; 3], found_at: [R; 3],
+});
 
 /// How a step went for a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,6 +10,7 @@ use super::collider::ColliderState;
 use super::contact::Step;
 use super::narrow::closest_on_triangle;
 use super::tree::Aabb;
+use crate::checkpoint::item;
 use crate::model::ColliderModel;
 use crate::scalar::Real;
 
@@ -30,6 +31,8 @@ pub struct Trapped {
     /// Whether the start has been looked at, where a point may be far from any face.
     has_begun: bool,
 }
+
+item!([] Trapped { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
 
 impl Trapped {
     /// Whether a point is trapped.

@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use crate::checkpoint::{item, kept};
 use crate::model::Order;
 
 /// An axis-aligned box in metres, relative to some origin. In single precision, rounded outwards; the fourth
@@ -109,6 +110,10 @@ pub struct Tree {
     leaves: usize,
 }
 
+item!([] Aabb { low: [f32; 4], high: [f32; 4] });
+
+kept!([] Tree { columns: [triangles], values: [], parts: [], anew: [nodes, leaves] });
+
 impl Tree {
     /// A tree over triangles with these centres. The boxes are empty until [`Tree::refit`].
     pub fn new(centres: &[Vector3<f64>]) -> Self {
@@ -116,6 +121,15 @@ impl Tree {
         let triangles: Vec<u32> = (0..order.len()).map(|place| order.user(place) as u32).collect();
         let leaves = triangles.len().div_ceil(LEAF).next_power_of_two();
         Self { triangles, nodes: vec![Aabb::EMPTY; 2 * leaves - 1], leaves }
+    }
+
+    /// Whether each of so many triangles is in it once.
+    pub fn is_over(&self, triangles: usize) -> bool {
+        let mut seen = vec![false; triangles];
+        let is_new = |triangle: &u32| {
+            seen.get_mut(*triangle as usize).is_some_and(|seen| !std::mem::replace(seen, true))
+        };
+        self.triangles.len() == triangles && self.triangles.iter().all(is_new)
     }
 
     /// Sets every box from the boxes of the triangles.

@@ -11,6 +11,8 @@ mod vector;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use crate::checkpoint::Item;
+
 pub use lanes::{Lanes, Quad};
 pub use vector::{add, cross, scale, sub, unit};
 
@@ -31,6 +33,7 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + Sum
+    + Item
     + 'static
 {
     /// Four of them.

@@ -10,6 +10,7 @@ use crate::graph::{Moment, NodeId};
 
 use super::frame::Stretch;
 use super::objects::Compiler;
+use super::program::Universe;
 
 /// `constraintType: transform`.
 const TRANSFORM: Choice = Choice(0);
@@ -41,7 +42,17 @@ struct HeldPoint {
 /// points are in its own space, in scene units.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Grips {
-    held: Vec<Option<Vec<Vector3<f64>>>>,
+    pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
+}
+
+impl Universe {
+    /// Whether its constraints can hold so: none is there yet, or each holds all of its points or nothing.
+    pub(crate) fn holds(&self, held: &[Option<Vec<Vector3<f64>>>]) -> bool {
+        let fits = |(grip, source): (&Option<Vec<_>>, &PinSource)| {
+            grip.as_ref().is_none_or(|grip| grip.len() == source.points.len())
+        };
+        held.is_empty() || (held.len() == self.pins.len() && held.iter().zip(&self.pins).all(fits))
+    }
 }
 
 impl Compiler<'_> {

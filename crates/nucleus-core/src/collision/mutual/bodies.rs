@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::local::Boxes;
 use super::stars::Stars;
+use crate::checkpoint::kept;
 use crate::collision::skin::Group;
 use crate::collision::tree::{Aabb, Tree};
 use crate::model::ClothModel;
@@ -44,6 +45,13 @@ pub struct Bodies {
     pub rest: Vec<[f32; 3]>,
 }
 
+kept!([] Bodies {
+    columns: [around, rest],
+    values: [],
+    parts: [tree],
+    anew: [groups, points, ends, block, cloth, edge_length, blocks, stars],
+});
+
 impl Bodies {
     /// The elements of these cloths in their shape at rest, which `anchors` have.
     pub fn new<R: Real>(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
@@ -75,6 +83,14 @@ impl Bodies {
     pub fn points_of(&self, group: usize) -> &[u32] {
         let from = group.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.points[from as usize..self.ends[group] as usize]
+    }
+
+    /// Fits the tree to what is round the groups.
+    pub fn refit(&mut self) {
+        let Self { tree, around, .. } = self;
+        if let Some(tree) = tree {
+            tree.refit(|group| around[group][0].union(around[group][1]));
+        }
     }
 
     /// The box round all that is foreseen for a group.

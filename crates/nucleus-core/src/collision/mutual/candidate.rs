@@ -1,6 +1,7 @@
 //! Candidates: two elements that can touch while their points keep to what is foreseen for them.
 
 use super::paths::Paths;
+use crate::checkpoint::kept;
 use crate::collision::narrow::{between_middles, gap_along, shortest};
 use crate::collision::tree::Aabb;
 use crate::scalar::{Real, dot};
@@ -56,6 +57,8 @@ pub struct Seen {
     /// What places are from: the same for all of a run, so that boxes stay good.
     origin: Option<[f64; 3]>,
 }
+
+kept!([] Seen { columns: [], values: [origin], parts: [], anew: [start, end, balls, from] });
 
 impl Seen {
     /// Looks ahead from a time of the frame to its end: at all points where that time is a new one, else at those that

@@ -9,6 +9,7 @@ use super::candidate::{Candidate, Seen};
 use super::local::{Boxes, Locals};
 use super::new::New;
 use super::terms::Terms;
+use crate::checkpoint::kept;
 use crate::collision::skin::{Group, Skin};
 use crate::collision::tree::Aabb;
 use crate::model::ClothModel;
@@ -24,6 +25,8 @@ pub struct Candidates {
     tasks: Vec<Mutex<Found>>,
     seen: Seen,
 }
+
+kept!([] Candidates { columns: [], values: [list], parts: [seen], anew: [again, tasks] });
 
 impl Clone for Candidates {
     /// A copy of what was found; the room is made anew.
@@ -82,10 +85,7 @@ pub fn search<R: Real>(
             bodies.around[group] = seen.bound(points.iter().copied(), margin);
         }
     }
-    let Bodies { tree, around, .. } = bodies;
-    if let Some(tree) = tree {
-        tree.refit(|group| around[group][0].union(around[group][1]));
-    }
+    bodies.refit();
     list.retain(|candidate| !is_changed(&candidate.points));
     again.clear();
     again.extend((0..).zip(&*strayed).filter(|(_, strayed)| **strayed).map(|(point, _)| point));

@@ -9,6 +9,7 @@
 
 use super::candidate::{Candidate, Kind};
 use super::near::Motion;
+use crate::checkpoint::kept;
 use crate::scalar::{Real, Row4, add, cross, dot, scale, sub, unit};
 
 /// Metres.
@@ -67,6 +68,13 @@ pub struct Tangle {
     /// The third point of each face beside each edge, sorted; made when the first crossing is found.
     pub(super) wings: Vec<Wing>,
 }
+
+kept!([] Tangle {
+    columns: [points, is_wrong],
+    values: [crossings, pairs, sides, is_suspected],
+    parts: [],
+    anew: [wings],
+});
 
 impl Tangle {
     /// None known yet; the start is looked at.

@@ -1,0 +1,134 @@
+//! Checkpoints among the frames of a cache: found, damaged, recovered, and in nobody's way.
+
+use std::fs;
+use std::io::Cursor;
+
+use nucleus_cache::{Detail, Kept, Playback, RecordError, Recorder, RunInfo, compare};
+use nucleus_core::{Moment, StepObserver};
+
+use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
+
+/// A checkpoint at every third frame, and whenever the run ends.
+fn run_info() -> RunInfo {
+    RunInfo { checkpoint: 3, ..falling::run_info() }
+}
+
+/// Records the frames after `from`, with a checkpoint wherever one is due.
+fn record<W: std::io::Write + std::io::Seek>(
+    recorder: &mut Recorder<W>,
+    from: i32,
+    last: i32,
+) -> Result<(), RecordError> {
+    for frame in from + 1..=last {
+        let mut observer = recorder.frame(frame)?;
+        for substep in 1..=SUBSTEPS {
+            observer.substep(Moment { substep, substeps: SUBSTEPS }, &Falling { frame, substep });
+        }
+        recorder.end_frame(&serde_json::json!({ "max_strain": 0.5 }))?;
+        if recorder.wants_checkpoint() {
+            recorder.record_checkpoint(&bytes(frame))?;
+        }
+    }
+    if recorder.wants_last_checkpoint() {
+        recorder.record_checkpoint(&bytes(last))?;
+    }
+    Ok(())
+}
+
+/// What stands for the state of a solver.
+fn bytes(frame: i32) -> Vec<u8> {
+    frame.to_le_bytes().repeat(100)
+}
+
+fn begin<W: std::io::Write + std::io::Seek>(recorder: &mut Recorder<W>) {
+    recorder.record_start(&Falling::INITIAL).unwrap();
+    recorder.record_checkpoint(&bytes(START)).unwrap();
+}
+
+fn whole_run(run: &RunInfo, last: i32) -> Vec<u8> {
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), run, falling::objects()).unwrap();
+    begin(&mut recorder);
+    record(&mut recorder, START, last).unwrap();
+    recorder.finish().unwrap();
+    file.contents()
+}
+
+fn read(bytes: &[u8]) -> Playback<Cursor<Vec<u8>>> {
+    Playback::read(Cursor::new(bytes.to_vec())).unwrap()
+}
+
+#[test]
+fn checkpoints_are_found_and_change_nothing_that_is_shown() {
+    let whole = whole_run(&run_info(), END);
+    let mut cache = read(&whole);
+    assert_eq!(cache.checkpoints(), [START, START + 3, START + 6, END]);
+    assert_eq!(cache.checkpoint(START + 3).unwrap().unwrap().bytes, bytes(START + 3));
+    assert_eq!(cache.checkpoint(START + 4).unwrap(), None);
+    assert!(cache.verify().unwrap().is_none());
+    let (plain, recorded) = falling::whole_run(&falling::run_info());
+    assert_eq!(cache.moments().len() as u64, recorded.moments);
+    assert_eq!(compare(&mut cache, &mut read(&plain), 0.0).unwrap().differences, []);
+}
+
+#[test]
+fn damage_to_a_checkpoint_costs_no_frame_and_recovering_keeps_the_others() {
+    let whole = whole_run(&run_info(), END);
+    let file = Shared::default();
+    let recovered = read(&whole).recover(file.clone()).unwrap();
+    assert!(file.contents() == whole && recovered.frames as i32 == END - START + 1);
+    // The start and its checkpoint, three frames and theirs.
+    let chunk = mcap::Summary::read(&whole).unwrap().unwrap().chunk_indexes[5].clone();
+    let mut damaged = whole.clone();
+    damaged[(chunk.chunk_start_offset + chunk.chunk_length) as usize - 9] ^= 1;
+    let mut cache = read(&damaged);
+    assert_eq!(
+        cache.verify().unwrap().to_string(),
+        format!("damaged: the checkpoint of frame {}", START + 3)
+    );
+    assert!(cache.checkpoint(START + 3).is_err());
+    let file = Shared::default();
+    let recovered = cache.recover(file.clone()).unwrap();
+    assert_eq!((recovered.frames as i32, recovered.damaged), (END - START + 1, 1));
+    assert_eq!(read(&file.contents()).checkpoints(), [START, START + 6, END]);
+}
+
+#[test]
+fn a_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.mcap");
+    for detail in [Detail::Frames, Detail::Substeps, Detail::Every(4)] {
+        let run = RunInfo { detail, ..run_info() };
+        let whole = whole_run(&run, END);
+        for last in START..=END {
+            fs::write(&path, whole_run(&run, last)).unwrap();
+            let mut old = Playback::open_to_resume(&path).unwrap();
+            let last_recorded = old.moments().last().unwrap().frame;
+            let copied = old.checkpoints().into_iter().rfind(|&frame| frame <= last).unwrap();
+            assert_eq!(old.checkpoint(copied).unwrap().unwrap().bytes, bytes(copied));
+            let kept = Kept { copied, compared: last_recorded.max(copied) };
+            let mut recorder = Recorder::resume(&path, true, &run, falling::objects(), old, kept).unwrap();
+            record(&mut recorder, copied, END).unwrap();
+            recorder.finish().unwrap();
+            assert!(fs::read(&path).unwrap() == whole, "{detail:?}, stopped at {last}");
+        }
+    }
+}
+
+#[test]
+fn frames_that_do_not_come_out_as_before_are_refused_and_nothing_is_touched() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.mcap");
+    let whole = whole_run(&run_info(), END);
+    fs::write(&path, &whole).unwrap();
+    let old = Playback::open_to_resume(&path).unwrap();
+    let kept = Kept { copied: START + 3, compared: END };
+    let mut recorder = Recorder::resume(&path, true, &run_info(), falling::objects(), old, kept).unwrap();
+    let frame = START + 4;
+    let elsewhere = Falling { frame: frame + 1, substep: SUBSTEPS };
+    recorder.frame(frame).unwrap().substep(Moment { substep: SUBSTEPS, substeps: SUBSTEPS }, &elsewhere);
+    let error = recorder.end_frame(&serde_json::json!({})).unwrap_err();
+    assert!(matches!(error, RecordError::Differs { frame: found, .. } if found == frame), "{error}");
+    assert!(fs::read(&path).unwrap() == whole);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "what was begun is gone");
+}

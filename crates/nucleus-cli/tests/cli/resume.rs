@@ -1,0 +1,252 @@
+//! `nucleus resume`: a run that was ended goes on to the bytes of one that never was.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::sample::{assert_refused, cache, folder, nucleus, scene, stderr, stdout};
+
+/// Twelve frames with a checkpoint at every fourth; its bytes.
+fn whole(folder: &Path) -> Vec<u8> {
+    scene(folder, 12, "noPenetration");
+    let output = nucleus(folder, &["run", "drape.ron", "--checkpoint", "4", "-o", "whole.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    fs::read(folder.join("whole.mcap")).unwrap()
+}
+
+fn resume(folder: &Path, arguments: &[&str]) -> Output {
+    nucleus(folder, &[&["resume", "x.mcap"], arguments].concat())
+}
+
+/// Asserts that it went on, and gives what it wrote.
+fn resumed(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+    let output = resume(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    fs::read(folder.join("x.mcap")).unwrap()
+}
+
+#[test]
+fn a_cache_that_is_cut_off_anywhere_goes_on_to_the_same_bytes() {
+    let folder = folder();
+    let whole = whole(folder.path());
+    let part = folder.path().join("x.mcap.part");
+    // What a run that went on and was killed has left is no hindrance.
+    fs::write(folder.path().join("x.mcap.resuming"), "half a cache").unwrap();
+    for cut in (1..20).map(|k| whole.len() * k / 20) {
+        fs::write(&part, &whole[..cut]).unwrap();
+        let threads = if cut % 2 == 0 { "1" } else { "2" };
+        assert!(resumed(folder.path(), &["--threads", threads]) == whole, "cut off after {cut} bytes");
+        assert!(!part.exists() && !folder.path().join("x.mcap.resuming").exists());
+        fs::remove_file(folder.path().join("x.mcap")).unwrap();
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_or_frame_is_solved_again() {
+    let folder = folder();
+    let whole = whole(folder.path());
+    for at in (1..40).map(|k| whole.len() * k / 40) {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x20;
+        fs::write(folder.path().join("x.mcap"), &damaged).unwrap();
+        let output = resume(folder.path(), &["--at", "11"]);
+        match output.status.code() {
+            Some(0) => {
+                // A checkpoint that is damaged before the one that is taken stays lost; no frame does.
+                let info = nucleus(folder.path(), &["info", "x.mcap", "--verify"]);
+                assert_eq!(info.status.code(), Some(0), "byte {at}: {}", stdout(&info));
+                let diff = nucleus(folder.path(), &["diff", "x.mcap", "whole.mcap"]);
+                assert_eq!(diff.status.code(), Some(0), "byte {at}: {}", stdout(&diff));
+            }
+            // The start, the run or its scene: nothing can be gone on from, and it says so.
+            _ => assert!(stderr(&output).contains("error: "), "byte {at}: {}", stderr(&output)),
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_run_is_solved_again_and_comes_out_the_same() {
+    let folder = folder();
+    let whole = whole(folder.path());
+    for at in ["1", "4", "7", "12"] {
+        fs::copy(folder.path().join("whole.mcap"), folder.path().join("x.mcap")).unwrap();
+        assert!(resumed(folder.path(), &["--at", at]) == whole, "from frame {at}");
+    }
+    let output = resume(folder.path(), &[]);
+    assert!(stdout(&output).contains("is finished: frame 12 is its last"), "{}", stdout(&output));
+    assert_eq!(output.status.code(), Some(0));
+    // It goes on past its end, and back to it.
+    assert!(resumed(folder.path(), &["--to", "20"]) != whole);
+    assert!(resumed(folder.path(), &["--at", "12", "--to", "12"]) == whole);
+    // Elsewhere, if asked for.
+    let output = resume(folder.path(), &["--at", "6", "-o", "y.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(fs::read(folder.path().join("y.mcap")).unwrap() == whole);
+    assert_refused(
+        &resume(folder.path(), &["--at", "6", "-o", "y.mcap"]),
+        "`y.mcap` exists; `--force` replaces it",
+    );
+}
+
+#[test]
+fn a_run_without_checkpoints_is_solved_again_from_its_start() {
+    let folder = folder();
+    scene(folder.path(), 6, "");
+    nucleus(folder.path(), &["run", "drape.ron", "--checkpoint", "0", "-o", "x.mcap"]);
+    let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+    let output = resume(folder.path(), &["--at", "4"]);
+    assert!(stderr(&output).contains("all is solved again from frame 1"), "{}", stderr(&output));
+    assert!(fs::read(folder.path().join("x.mcap")).unwrap() == whole);
+}
+
+#[test]
+fn a_run_that_began_from_another_cache_goes_on_without_it() {
+    let folder = folder();
+    scene(folder.path(), 9, "");
+    nucleus(folder.path(), &["run", "drape.ron", "-o", "before.mcap", "--velocities"]);
+    nucleus(
+        folder.path(),
+        &["run", "drape.ron", "--from", "before.mcap@5", "-o", "x.mcap", "--checkpoint", "4"],
+    );
+    let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+    fs::remove_file(folder.path().join("before.mcap")).unwrap();
+    assert!(resumed(folder.path(), &["--at", "3"]) == whole);
+}
+
+#[test]
+fn a_scene_that_has_changed_goes_on_only_from_where_it_is_said_to() {
+    let folder = folder();
+    whole(folder.path());
+    fs::copy(folder.path().join("whole.mcap"), folder.path().join("x.mcap")).unwrap();
+    let before = fs::read(folder.path().join("x.mcap")).unwrap();
+    let path = folder.path().join("drape.ron");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("subSteps: 2", "subSteps: 3")).unwrap();
+    // Frames 10 and 11 are kept, but do not come out as they were.
+    let output = resume(folder.path(), &["--at", "11", "--scene", "drape.ron"]);
+    assert_refused(&output, "frame 10 does not come out as it was recorded");
+    assert!(stderr(&output).contains("--scene drape.ron --at 9` solves all"), "{}", stderr(&output));
+    assert!(fs::read(folder.path().join("x.mcap")).unwrap() == before, "nothing is touched");
+    assert!(!folder.path().join("x.mcap.resuming").exists());
+    assert!(resumed(folder.path(), &["--at", "9", "--scene", "drape.ron"]) != before);
+    // Other objects are another run.
+    fs::write(&path, text.replace("(6, 6)", "(7, 6)")).unwrap();
+    let output = resume(folder.path(), &["--at", "9", "--scene", "drape.ron"]);
+    assert_refused(&output, "the mesh of `cloth1` is not that in `x.mcap`");
+    fs::write(&path, text.replace("\"cloth1\"", "\"silk\"")).unwrap();
+    assert_refused(
+        &resume(folder.path(), &["--at", "9", "--scene", "drape.ron"]),
+        "`silk` is not in `x.mcap`",
+    );
+}
+
+#[test]
+fn a_mesh_that_has_changed_since_is_noticed() {
+    let folder = folder();
+    let mesh = |height: f64| {
+        let text = format!("v 0 {height} 0\nv 10 25 0\nv 10 25 10\nv 0 25 10\nf 1 2 3 4\n");
+        fs::write(folder.path().join("sheet.obj"), text).unwrap();
+    };
+    mesh(25.0);
+    scene(folder.path(), 6, "");
+    let path = folder.path().join("drape.ron");
+    let text = fs::read_to_string(&path).unwrap();
+    let plane = "polyPlane(width: 50, height: 50, subdivisions: (6, 6), translate: (0, 25, 0))";
+    fs::write(&path, text.replace(plane, "mesh(file: \"sheet.obj\")")).unwrap();
+    let run = nucleus(folder.path(), &["run", "drape.ron", "-o", "x.mcap"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    mesh(25.5);
+    assert_refused(&resume(folder.path(), &["--at", "4"]), "a mesh or map that the scene reads");
+    mesh(25.0);
+    resumed(folder.path(), &["--at", "4"]);
+}
+
+#[test]
+fn what_cannot_be_gone_on_with_is_refused_with_a_way_out() {
+    let folder = folder();
+    let path = folder.path();
+    assert_refused(&resume(path, &[]), "cannot go on with `x.mcap`");
+    fs::write(path.join("x.mcap"), "").unwrap();
+    assert_refused(&resume(path, &[]), "`nucleus run` begins it again");
+    fs::write(path.join("x.mcap"), "my thesis, chapter one").unwrap();
+    assert_refused(&resume(path, &[]), "not an MCAP file");
+    fs::remove_file(path.join("x.mcap")).unwrap();
+    fs::create_dir(path.join("x.mcap")).unwrap();
+    assert_refused(&resume(path, &[]), "is a folder, not a cache");
+    fs::remove_dir(path.join("x.mcap")).unwrap();
+    // A cache that no scene made.
+    fs::rename(cache(path), path.join("x.mcap")).unwrap();
+    assert_refused(&resume(path, &[]), "holds no scene: `--scene` names it");
+    let whole = whole(path);
+    fs::write(path.join("x.mcap"), whole).unwrap();
+    assert_refused(
+        &resume(path, &["--at", "13"]),
+        "there is no frame 13 to go on from; `x.mcap` has 1 to 12",
+    );
+    assert_refused(&resume(path, &["--to", "5"]), "`--at` drops what comes after a frame");
+}
+
+#[test]
+fn info_says_what_checkpoints_there_are() {
+    let folder = folder();
+    whole(folder.path());
+    let said = stdout(&nucleus(folder.path(), &["info", "whole.mcap"]));
+    assert!(said.contains("checkpoints 4, the last of frame 12, "), "{said}");
+    assert!(said.contains("channel /checkpoint: nucleus.checkpoint.v1, 4 messages"), "{said}");
+}
+
+#[cfg(unix)]
+mod killed {
+    use std::process::{Child, Stdio};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
+    use nucleus_cache::Playback;
+
+    use super::*;
+
+    /// Starts a command and waits until what it writes has so many frames.
+    fn until(folder: &Path, arguments: &[&str], frames: usize) -> Child {
+        let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
+        run.args(arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = run.spawn().unwrap();
+        let begin = Instant::now();
+        let count = || Playback::open(folder.join("x.mcap.part")).map_or(0, |cache| cache.moments().len());
+        while count() < frames {
+            assert!(begin.elapsed() < Duration::from_secs(60), "the run does not come so far");
+            sleep(Duration::from_millis(2));
+        }
+        child
+    }
+
+    #[test]
+    fn a_run_that_is_killed_again_and_again_loses_nothing_and_ends_in_the_same_bytes() {
+        let folder = folder();
+        scene(folder.path(), 1_000_000, "");
+        let last = || {
+            let cache = Playback::open(folder.path().join("x.mcap.part")).unwrap();
+            cache.moments().last().unwrap().frame
+        };
+        let run = ["run", "drape.ron", "--checkpoint", "5", "-o", "x.mcap"];
+        let mut child = until(folder.path(), &run, 8);
+        for more in [12, 12, 0] {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            let reached = last();
+            if more > 0 {
+                let frames = reached as usize + more;
+                child = until(folder.path(), &["resume", "x.mcap"], frames);
+                let busy = resume(folder.path(), &[]);
+                assert_refused(&busy, "is being written by another run");
+                assert!(last() >= reached, "what was there is there");
+            }
+        }
+        let end = (last() + 7).to_string();
+        let resumed = resumed(folder.path(), &["--to", &end]);
+        nucleus(
+            folder.path(),
+            &["run", "drape.ron", "--frames", &end, "--checkpoint", "5", "-o", "whole.mcap"],
+        );
+        assert!(resumed == fs::read(folder.path().join("whole.mcap")).unwrap());
+    }
+}

@@ -1,0 +1,73 @@
+//! The small values that solvers are full of.
+
+use super::item::{Item, Reader, item};
+use super::kept::kept;
+use crate::collision::mutual::candidate::{Candidate, Kind};
+use crate::collision::mutual::paths::Paths;
+use crate::collision::mutual::tangle::{Crossing, Remedy};
+use crate::collision::mutual::terms::Terms;
+use crate::frame::Elements;
+use crate::scalar::{Real, Row4};
+
+impl<R: Real> Item for Row4<R> {
+    const SIZE: usize = 4 * R::SIZE;
+    fn put(&self, out: &mut Vec<u8>) {
+        self.0.put(out);
+    }
+    fn take(from: &mut Reader<'_>) -> Option<Self> {
+        Item::take(from).map(Self)
+    }
+}
+
+kept!([R: Real] Paths<R> { columns: [from, travel], values: [], parts: [], anew: [] });
+
+item!([R: Real] Terms<R> {
+    thickness: f64, friction: R, mobility: [R; 2], elements: [Elements; 2], edges: bool,
+});
+
+item!([] Candidate { kind: Kind, points: [u32; 4], thickness: f32, limited: bool });
+
+item!([] Crossing { edge: [u32; 2], wings: [u32; 2], face: [u32; 3], remedy: Remedy });
+
+/// Names as numbers. A name that is added comes last.
+macro_rules! names {
+    ($type:ty { $($name:path = $number:literal),* }) => {
+        impl Item for $type {
+            const SIZE: usize = 1;
+            fn put(&self, out: &mut Vec<u8>) {
+                let number: u8 = match self { $($name => $number),* };
+                number.put(out);
+            }
+            fn take(from: &mut Reader<'_>) -> Option<Self> {
+                match u8::take(from)? {
+                    $($number => Some($name),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+names!(Elements { Elements::Points = 0, Elements::Edges = 1, Elements::Faces = 2 });
+names!(Kind { Kind::PointPoint = 0, Kind::PointEdge = 1, Kind::PointFace = 2, Kind::EdgeEdge = 3 });
+
+impl Item for Remedy {
+    const SIZE: usize = 1;
+    fn put(&self, out: &mut Vec<u8>) {
+        let number: u8 = match self {
+            Self::Back(0) => 0,
+            Self::Back(_) => 1,
+            Self::Shorten => 2,
+            Self::Wait => 3,
+        };
+        number.put(out);
+    }
+    fn take(from: &mut Reader<'_>) -> Option<Self> {
+        match u8::take(from)? {
+            end @ (0 | 1) => Some(Self::Back(end.into())),
+            2 => Some(Self::Shorten),
+            3 => Some(Self::Wait),
+            _ => None,
+        }
+    }
+}

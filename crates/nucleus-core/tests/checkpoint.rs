@@ -1,0 +1,71 @@
+//! Checkpoints whose seal is sound and whose content is not: refused or taken, never a panic.
+
+mod scenes;
+
+use std::sync::OnceLock;
+
+use nucleus_core::{
+    Collider, FrameInput, GroundPlane, ModelBuilder, RestoreError, SelfCollision, Solver, sealed, unsealed,
+};
+use proptest::prelude::*;
+use scenes::{Vec3, frame, grid, physical, sphere, still};
+
+/// A cloth with self-collision that falls on a ball and the ground.
+fn scene() -> (ModelBuilder, FrameInput) {
+    let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
+    sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.5, 0.21, -0.5));
+    let mut builder = scenes::one_cloth(sheet, nucleus_core::ClothLists::ALL);
+    builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
+    let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
+    let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };
+    let plane = GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.1 };
+    let collider = nucleus_core::ColliderFrame { collide: true, thickness: 0.01, ..Default::default() };
+    let input = FrameInput {
+        plane: Some(plane),
+        cloths: vec![cloth],
+        colliders: vec![collider],
+        ..frame(1, physical(24.0))
+    };
+    (builder, input)
+}
+
+/// What it is after some frames.
+fn saved() -> Vec<u8> {
+    let (builder, input) = scene();
+    let mut solver = Solver::<f32>::new(builder, 1);
+    (0..8).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    solver.save()
+}
+
+static SAVED: OnceLock<Vec<u8>> = OnceLock::new();
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn no_content_makes_restoring_panic(at in 0.0..1.0f64, byte: u8, cut in 0usize..3) {
+        let whole = SAVED.get_or_init(saved);
+        let kind: [u8; 8] = whole[..8].try_into().unwrap();
+        let mut inner = unsealed(kind, whole).unwrap().to_vec();
+        let at = (at * inner.len() as f64) as usize;
+        match cut {
+            0 => inner.truncate(at),
+            _ => inner[at] = byte,
+        }
+        if let Ok(solver) = Solver::<f32>::restored(scene().0, 1, &sealed(kind, &inner)) {
+            prop_assert_eq!(solver.save().len(), whole.len());
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_version_is_refused_as_such() {
+    let whole = saved();
+    let kind: [u8; 8] = whole[..8].try_into().unwrap();
+    let inner = unsealed(kind, &whole).unwrap();
+    let newer = sealed(*b"solver 9", inner);
+    let restored = Solver::<f32>::restored(scene().0, 1, &newer).map(|_| ());
+    assert_eq!(restored, Err(RestoreError::OtherVersion));
+}

@@ -1,0 +1,186 @@
+//! A run that is saved at any frame and gone on with has the same bits as one that never stopped.
+
+use nucleus_core::{Real, RestoreError, StepReport};
+use nucleus_graph::Simulation;
+use nucleus_graph::compile::Program;
+use nucleus_tests::gallery::program_of;
+
+/// What a run comes to, frame by frame.
+struct Run {
+    hashes: Vec<Vec<u64>>,
+    reports: Vec<StepReport>,
+    saved: Vec<Vec<u8>>,
+}
+
+/// Runs on for so many frames.
+fn run<R: Real>(simulation: &mut Simulation<R>, frames: usize) -> Run {
+    let mut run = Run { hashes: Vec::new(), reports: Vec::new(), saved: vec![simulation.save()] };
+    for _ in 0..frames {
+        run.reports.push(simulation.advance(&mut ()).report);
+        run.hashes.push(simulation.solvers().map(|solver| solver.state_hash()).collect());
+        run.saved.push(simulation.save());
+    }
+    run
+}
+
+/// Stops at every so manieth frame, and goes on from there on another number of threads. Gives the whole run.
+fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: usize) -> Run {
+    let whole = run::<R>(&mut Simulation::new(program, 1), frames);
+    for stop in (0..frames).step_by(every) {
+        let threads = 1 + stop % 2;
+        let mut simulation = Simulation::<R>::restored(program, threads, &whole.saved[stop])
+            .unwrap_or_else(|error| panic!("{name}, frame {stop}: {error}"));
+        assert!(
+            simulation.save() == whole.saved[stop],
+            "{name}: what is restored at {stop} is what was saved"
+        );
+        // A few frames show what is missing; the last stops go on to the end.
+        let further = (frames - stop).min(3);
+        let rest = run(&mut simulation, further);
+        assert_eq!(rest.hashes, whole.hashes[stop..stop + further], "{name}, stopped after {stop} frames");
+        assert!(rest.reports == whole.reports[stop..stop + further], "{name}: reports after {stop} frames");
+        assert!(rest.saved[further] == whole.saved[stop + further], "{name}: saved after {stop} frames");
+    }
+    whole
+}
+
+/// In both precisions and both readings of resistance.
+fn assert_resumes_always(name: &str, nodes: &str, frames: usize) -> Run {
+    let classic = nodes.replacen("nucleus(", "nucleus(resistanceModel: classic, ", 1);
+    assert_resumes::<f32>(&format!("{name}, classic"), &program_of(&classic), frames, 3);
+    assert_resumes::<f64>(&format!("{name}, f64"), &program_of(nodes), frames, 3);
+    assert_resumes::<f32>(name, &program_of(nodes), frames, 1)
+}
+
+/// Whether a figure is above nought in some frame.
+fn ever(run: &Run, figure: impl Fn(&StepReport) -> u64) -> bool {
+    run.reports.iter().any(|report| figure(report) > 0)
+}
+
+#[test]
+fn a_cloth_in_the_wind_goes_on_as_if_it_had_not_stopped() {
+    let nodes = r#""n": nucleus(subSteps: 2, windSpeed: 3),
+        "p": polyPlane(width: 2, height: 1, subdivisions: (9, 5), ty: 5, rx: 30),
+        "c": nCloth(inputMesh: "p", thickness: 0.01, drag: 0.1, lift: 0.1, damp: 0.2),
+        "k": dynamicConstraint(constraintType: transform, components: ["c.vtx[0:3]"],
+            ty: keys([(1, 0), (9, 1)]), enable: keys([(1, true), (9, false), (12, true)]))"#;
+    assert_resumes_always("wind", nodes, 14);
+}
+
+#[test]
+fn cloth_that_meets_a_moving_collider_goes_on_in_the_midst_of_it() {
+    // The ball comes, stops while the cloth lies on it and on the ground, and goes on: pairs are found anew, carried
+    // over, and found anew.
+    let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
+        "p": polyPlane(width: 60, height: 60, subdivisions: (9, 9), ty: 26),
+        "c": nCloth(inputMesh: "p", thickness: 1, friction: 0.3, bounce: 0.3, bendResistance: 0.1),
+        "b": polySphere(radius: 20, subdivisions: (12, 8), ty: 2,
+            tx: keys([(1, -30), (6, 0), (16, 0), (20, 25)])),
+        "r": nRigid(inputMesh: "b", friction: 0.2, collide: keys([(1, true), (21, false)]))"#;
+    let run = assert_resumes_always("moving ball", nodes, 24);
+    assert!(ever(&run, |report| report.contacts));
+}
+
+/// A sheet that falls on its edge and folds up on the floor.
+fn folded(more: &str) -> String {
+    format!(
+        r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
+        "p": polyPlane(width: 10, height: 60, subdivisions: (3, 20), ty: 32, rx: 88),
+        "c": nCloth(inputMesh: "p", thickness: 0.8, friction: 0.2, bendResistance: 0.02,
+            selfCollide: true, selfCollisionFlag: "Full Surface", {more})"#
+    )
+}
+
+#[test]
+fn cloth_that_lies_on_itself_in_folds_goes_on_as_if_it_had_not_stopped() {
+    let run = assert_resumes_always("fold", &folded(""), 30);
+    assert!(run.reports.iter().any(|report| report.min_cloth_gap.is_finite()), "it lies on itself");
+}
+
+#[test]
+fn contact_that_is_keyed_off_and_on_goes_on_as_if_it_had_not_stopped() {
+    let keyed =
+        folded("").replace("selfCollide: true", "selfCollide: keys([(1, true), (18, false), (24, true)])");
+    assert_resumes_always("keyed fold", &keyed, 28);
+}
+
+#[test]
+fn cloth_that_is_pinched_and_let_go_of_goes_on_as_if_it_had_not_stopped() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01, evaluations: 48),
+        "p": polyPlane(width: 30, height: 30, subdivisions: (6, 6), ty: 50, rx: 90),
+        "c": nCloth(inputMesh: "p", thickness: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface"),
+        "k": dynamicConstraint(constraintType: transform, components: ["c.vtx[42:48]"]),
+        "a": polyCube(width: 16, height: 12, depth: 8, subdivisions: (3, 3, 2), ty: 46, tz: keys([(1, 12), (6, 3), (9, 3), (12, 14)])),
+        "ra": nRigid(inputMesh: "a", thickness: 0.3),
+        "b": polyCube(width: 16, height: 12, depth: 8, subdivisions: (3, 3, 2), ty: 45, tx: 1, tz: keys([(1, -12), (6, -3), (9, -3), (12, -14)])),
+        "rb": nRigid(inputMesh: "b", thickness: 0.3)"#;
+    // They close on each other, and leave no room.
+    let run = assert_resumes_always("pinch", nodes, 15);
+    assert!(ever(&run, |report| report.trapped), "points are inside");
+    assert!(ever(&run, |report| report.crossed), "pairs are let go");
+}
+
+#[test]
+fn sheets_that_begin_inside_each_other_go_on_being_worked_apart() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
+        "p": polyPlane(width: 40, height: 40, subdivisions: (9, 9), ty: 30),
+        "c": nCloth(inputMesh: "p", thickness: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface"),
+        "q": polyPlane(width: 40, height: 40, subdivisions: (9, 9), ty: 31, rx: 8, ry: 20),
+        "d": nCloth(inputMesh: "q", thickness: 0.5, collisionLayer: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface")"#;
+    let run = assert_resumes_always("tangle", nodes, 24);
+    assert!(ever(&run, |report| report.tangled), "they are inside each other");
+}
+
+#[test]
+fn several_nuclei_go_on_together() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
+        "m": nucleus(subSteps: 2, startFrame: 4, enable: keys([(1, true), (8, false), (10, true)])),
+        "p": polyPlane(width: 40, height: 40, subdivisions: (6, 6), ty: 10),
+        "c": nCloth(inputMesh: "p", nucleus: "n", thickness: 0.5),
+        "q": polyPlane(width: 4, height: 4, subdivisions: (6, 6), ty: 3),
+        "d": nCloth(inputMesh: "q", nucleus: "m", thickness: 0.05),
+        "k": dynamicConstraint(constraintType: transform, components: ["d.vtx[0:2]"], ty: keys([(1, 0), (9, 2)])),
+        "b": polySphere(radius: 1, subdivisions: (8, 6)),
+        "r": nRigid(inputMesh: "b", nucleus: "m")"#;
+    assert_resumes_always("two nuclei", nodes, 16);
+}
+
+#[test]
+fn particles_go_on_as_if_they_had_not_stopped() {
+    let nodes = r#""n": nucleus(usePlane: true, evaluations: 48),
+        "p": polyPlane(width: 2, height: 2, subdivisions: (5, 5), ty: 0.4),
+        "c": nCloth(inputMesh: "p", thickness: 0.1, collisionFlag: "Vertex", selfCollide: true, selfCollisionFlag: "Vertex"),
+        "q": polyPlane(width: 2, height: 2, subdivisions: (5, 5), ty: 0.9, ry: 30),
+        "d": nCloth(inputMesh: "q", thickness: 0.1, collisionFlag: "Edge")"#;
+    assert_resumes_always("points and edges", nodes, 16);
+}
+
+#[test]
+fn damaged_checkpoints_are_refused_and_never_panic() {
+    let program = program_of(&folded(""));
+    let mut simulation = Simulation::<f32>::new(&program, 1);
+    (0..16).for_each(|_| {
+        simulation.advance(&mut ());
+    });
+    let sound = simulation.save();
+    let restored = |bytes: &[u8]| Simulation::<f32>::restored(&program, 1, bytes).map(|_| ());
+    assert_eq!(restored(&sound), Ok(()));
+    for at in (0..sound.len()).step_by(sound.len() / 500) {
+        let mut damaged = sound.clone();
+        damaged[at] ^= 1 << (at % 8);
+        assert_eq!(restored(&damaged), Err(RestoreError::Damaged), "byte {at}");
+        assert_eq!(restored(&sound[..at]), Err(RestoreError::Damaged), "{at} bytes");
+    }
+}
+
+#[test]
+fn a_checkpoint_of_other_objects_or_another_precision_is_refused_by_name() {
+    let program = program_of(&folded(""));
+    let saved = Simulation::<f32>::new(&program, 1).save();
+    let finer = program_of(&folded("").replace("(3, 20)", "(3, 21)"));
+    let restored = Simulation::<f32>::restored(&finer, 1, &saved).map(|_| ());
+    assert_eq!(restored, Err(RestoreError::OtherModel));
+    let restored = Simulation::<f64>::restored(&program, 1, &saved).map(|_| ());
+    assert_eq!(restored, Err(RestoreError::Scalar { found: 32, wanted: 64 }));
+    assert_eq!(Simulation::<f32>::restored(&program, 1, &[]).map(|_| ()), Err(RestoreError::Damaged));
+}
