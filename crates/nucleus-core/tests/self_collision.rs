@@ -90,3 +90,19 @@ fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
         assert!(contacts > 1000, "it folded: {contacts}");
     }
 }
+
+#[test]
+fn a_flat_sheet_without_gravity_meets_nothing_and_stays_where_it_is() {
+    // Its points fill no whole number of blocks, and it lies about the origin.
+    let mut sheet = grid(17, 17, Vec3::x(), Vec3::y());
+    sheet.positions.iter_mut().for_each(|p| *p -= Vec3::new(0.5, 0.5, 0.0));
+    let mut builder = ModelBuilder::new();
+    builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(0.2), LISTS)).expect("a mesh");
+    let cloth = ClothFrame { thickness: 0.02, self_collision: full_surface(0.02), ..still() };
+    let input = FrameInput { cloths: vec![cloth], gravity: Vec3::zeros(), ..frame(1, physical(96.0)) };
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let start = positions(&solver, 0, 17 * 17);
+    let report = solver.step(&input, &mut ());
+    assert_eq!(report.contacts, 0, "{report:?}");
+    assert_eq!(positions(&solver, 0, 17 * 17), start);
+}

@@ -88,7 +88,8 @@ pub fn search<R: Real>(
     bodies.refit();
     list.retain(|candidate| !is_changed(&candidate.points));
     again.clear();
-    again.extend((0..).zip(&*strayed).filter(|(_, strayed)| **strayed).map(|(point, _)| point));
+    let strays = (0..).zip(&*strayed).filter(|(_, strayed)| **strayed).map(|(row, _)| row);
+    again.extend(strays.filter(|&row| bodies.stars.has(row)));
     let chunks = again.len().div_ceil(POINTS_PER_TASK);
     tasks.resize_with(tasks.len().max(chunks), Mutex::default);
     let view = Search { bodies, cloths, terms, strayed, seen, margin };

@@ -1,4 +1,4 @@
-//! The star of a point: the edges and triangles that have it.
+//! The star of a point: the edges and triangles that have it. Rows that only fill up a block are no points, and have none.
 
 use crate::model::ClothModel;
 use crate::scalar::Real;
@@ -8,6 +8,7 @@ use crate::scalar::Real;
 pub struct Stars {
     edges: Lists,
     triangles: Lists,
+    is_point: Vec<bool>,
 }
 
 /// A list of elements for each point, one after the other.
@@ -20,10 +21,18 @@ struct Lists {
 impl Stars {
     /// Of all cloths, whose points are `rows` in all.
     pub fn new<R: Real>(cloths: &[ClothModel<R>], rows: usize) -> Self {
+        let mut is_point = vec![false; rows];
+        cloths.iter().flat_map(|cloth| &cloth.skin.points).for_each(|&point| is_point[point as usize] = true);
         Self {
+            is_point,
             edges: Lists::new(rows, cloths.iter().map(|cloth| &cloth.skin.edges[..])),
             triangles: Lists::new(rows, cloths.iter().map(|cloth| &cloth.skin.triangles[..])),
         }
+    }
+
+    /// Whether a row is a point.
+    pub fn has(&self, row: u32) -> bool {
+        self.is_point[row as usize]
     }
 
     /// The edges of a point, in the skin of its cloth.
