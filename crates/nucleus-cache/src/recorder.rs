@@ -69,9 +69,9 @@ pub(crate) struct Track {
     pub channel: u16,
     points: usize,
     /// The channel of contacts, if they are recorded.
-    contacts: Option<u16>,
+    pub contacts: Option<u16>,
     /// That of strain, and what it is found from.
-    strain: Option<(u16, RestEdges)>,
+    pub strain: Option<(u16, RestEdges)>,
     /// Whether it has moved since it was last recorded.
     pub has_moved: bool,
 }

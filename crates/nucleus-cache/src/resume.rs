@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{BufReader, Seek, Write};
 use std::path::Path;
 
+use crate::attribute::{CONTACTS, STRAIN};
 use crate::object::{ObjectInfo, Source};
 use crate::open_error::{OpenError, ReadError};
 use crate::playback::Playback;
@@ -151,8 +152,14 @@ impl<W: Write + Seek> Recorder<W> {
             "/report" => Some(self.report_channel),
             checkpoint::TOPIC => self.checkpoint_channel,
             _ => {
-                let name = topic.strip_prefix('/')?.strip_suffix("/points")?;
-                self.tracks.iter().find(|track| track.name == name).map(|track| track.channel)
+                let (name, what) = topic.strip_prefix('/')?.rsplit_once('/')?;
+                let track = self.tracks.iter().find(|track| track.name == name)?;
+                match what {
+                    "points" => Some(track.channel),
+                    _ if what == CONTACTS.topic => track.contacts,
+                    _ if what == STRAIN.topic => track.strain.as_ref().map(|(channel, _)| *channel),
+                    _ => None,
+                }
             }
         }
     }

@@ -9,7 +9,11 @@ use crate::sample::{assert_refused, cache, folder, nucleus, scene, stderr, stdou
 /// Twelve frames with a checkpoint at every fourth; its bytes.
 fn whole(folder: &Path) -> Vec<u8> {
     scene(folder, 12, "noPenetration");
-    let output = nucleus(folder, &["run", "drape.ron", "--checkpoint", "4", "-o", "whole.mcap"]);
+    let record = ["--record", "frames,contacts,strain"];
+    let output = nucleus(
+        folder,
+        &[&["run", "drape.ron", "--checkpoint", "4", "-o", "whole.mcap"], &record[..]].concat(),
+    );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     fs::read(folder.join("whole.mcap")).unwrap()
 }
