@@ -27,7 +27,9 @@ pub static ROWS: [Extreme; 9] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The half without resistance falls in a heap on itself, whose contacts are most of the cost.",
+        ),
     },
     Extreme {
         name: "resistance-0-beside-1e6-classic",

@@ -29,7 +29,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; this one rebounds when the weight is taken off, and meets itself.",
+        ),
     },
     Extreme {
         name: "gravity-1e4-classic",
@@ -45,7 +47,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "As `gravity-1e4`, from a stretch that Classic cloth has no stiffness against.",
+        ),
     },
     Extreme {
         name: "gravity-1e4-floor",
@@ -72,7 +76,9 @@ pub static ROWS: [Extreme; 12] = [
             ..DRAPED
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The sheet is still sliding down on the ball after two seconds; drawn tight over it, it has many more contacts than the ordinary drape.",
+        ),
     },
     Extreme {
         name: "gravity-flips",
@@ -85,7 +91,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
     Extreme {
         name: "wind-1e3",
@@ -98,7 +106,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
     Extreme {
         name: "wind-1e3-light",
@@ -118,7 +128,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
     Extreme {
         name: "wind-1e3-one-step",
@@ -138,7 +150,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
     Extreme {
         name: "wind-flips",
@@ -151,7 +165,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
     Extreme {
         name: "air-1e6",
@@ -164,7 +180,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "Why it costs more is not known.",
+        ),
     },
     Extreme {
         name: "force-1e3",
@@ -180,7 +198,9 @@ pub static ROWS: [Extreme; 12] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some(
+            "The ordinary banner touches nothing; here the cloth crumples, and each of its contacts with itself is found and proven in every step.",
+        ),
     },
 ];
 

@@ -63,7 +63,7 @@ pub static ROWS: [Extreme; 5] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some("Every point, edge and face is a pair with every other, in every step."),
     },
     Extreme {
         name: "thickness-leaps",
@@ -81,6 +81,6 @@ pub static ROWS: [Extreme; 5] = [
             ..RUNS
         }
         .trial(),
-        fails: None,
+        fails: Some("Every time the thickness leaps up, all that is within it is pushed apart at once."),
     },
 ];
