@@ -55,7 +55,8 @@ proptest! {
             _ => inner[at] = byte,
         }
         if let Ok(solver) = Solver::<f32>::restored(scene().0, 1, &sealed(kind, &inner)) {
-            prop_assert_eq!(solver.save().len(), whole.len());
+            // What it holds may be another thing: pairs with a collider that moves are not kept.
+            prop_assert!(unsealed(kind, &solver.save()).is_ok());
         }
     }
 }
