@@ -6,7 +6,7 @@
 //! | the elements of all cloths in one tree | [`bodies`] |
 //! | which elements have a point | [`stars`] |
 //! | where each point is foreseen to go | [`paths`] |
-//! | broad phase: which elements can touch while the points keep to that | [`search`], [`new`], [`candidate`] |
+//! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`candidate`] |
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
@@ -22,10 +22,10 @@ pub mod candidate;
 pub mod crossings;
 mod local;
 pub mod near;
-mod new;
 pub mod paths;
 mod pieces;
 pub mod search;
+mod sought;
 mod stars;
 pub mod tangle;
 pub mod tasks;

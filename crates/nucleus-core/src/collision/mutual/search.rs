@@ -7,7 +7,7 @@ use super::Mutual;
 use super::bodies::Bodies;
 use super::candidate::{Candidate, Seen};
 use super::local::{Boxes, Locals};
-use super::new::New;
+use super::sought::Sought;
 use super::terms::Terms;
 use crate::checkpoint::kept;
 use crate::collision::skin::{Group, Skin};
@@ -46,7 +46,7 @@ impl Candidates {
 #[derive(Debug, Default)]
 struct Found {
     list: Vec<Candidate>,
-    new: New,
+    sought: Sought,
     locals: Locals,
 }
 
@@ -64,8 +64,8 @@ pub(super) struct Search<'a, R> {
     margin: f32,
 }
 
-/// Finds the candidates of all elements that have a strayed point. What is foreseen is looked at from time `now` of
-/// the frame on, when no point has strayed yet that is looked at again.
+/// Finds the candidates of all elements that have a strayed point. `now` is when the window began, as a share of the
+/// frame: all of its searches look from there, so that what is known of points that did not stray is of the same time.
 pub fn search<R: Real>(
     mutual: &mut Mutual<R>,
     cloths: &[ClothModel<R>],
@@ -111,11 +111,11 @@ impl<R: Real> Search<'_, R> {
     /// Everything that meets what is new about a point.
     fn around(&self, point: u32, found: &mut Found) {
         let Some(tree) = &self.bodies.tree else { return };
-        let Found { list, new, locals } = found;
-        new.look(self, point);
-        tree.query(&new.all[0].union(new.all[1]), |group| {
-            if Aabb::may_meet(&new.all, &self.bodies.around[group as usize]) {
-                new.meet(self, group, locals.of(self, group), list);
+        let Found { list, sought, locals } = found;
+        sought.look(self, point);
+        tree.query(&sought.all[0].union(sought.all[1]), |group| {
+            if Aabb::may_meet(&sought.all, &self.bodies.around[group as usize]) {
+                sought.meet(self, group, locals.of(self, group), list);
             }
         });
     }

@@ -1,4 +1,4 @@
-//! What is new about a point that strayed: itself, and the elements that it is the first strayed point of.
+//! What pairs are sought for: a point that strayed, and the elements that it is the first strayed point of.
 
 use super::candidate::{Candidate, Kind};
 use super::local::{Boxes, Local};
@@ -7,9 +7,9 @@ use crate::collision::tree::Aabb;
 use crate::frame::Elements;
 use crate::scalar::Real;
 
-/// Elements that new pairs are sought for.
+/// A point and elements of it that pairs are sought for.
 #[derive(Debug)]
-pub struct New {
+pub struct Sought {
     point: u32,
     cloth: usize,
     /// Round all of them.
@@ -22,7 +22,7 @@ pub struct New {
     is_free: bool,
 }
 
-impl Default for New {
+impl Default for Sought {
     fn default() -> Self {
         let nothing = [Aabb::EMPTY; 2];
         let (edges, triangles) = (Vec::new(), Vec::new());
@@ -30,7 +30,7 @@ impl Default for New {
     }
 }
 
-impl New {
+impl Sought {
     /// Looks at a point.
     pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, point: u32) {
         let stars = &search.bodies.stars;
@@ -91,15 +91,21 @@ impl New {
                 self.point_meets_points(points().filter(|&(q, _)| counts(q)), &mut keep);
             }
             Elements::Points => {}
-            Elements::Edges => self.point_meets_edges(edges.clone(), &mut keep),
-            Elements::Faces => self.point_meets_faces(triangles, &mut keep),
+            Elements::Edges => self.point_meets(edges.clone(), &mut keep),
+            Elements::Faces => self.point_meets(triangles, &mut keep),
         }
         let known =
             points().filter(|&(q, there)| !search.strayed[q as usize] && Aabb::may_meet(&self.all, there));
         match ours {
             Elements::Points => {}
-            Elements::Edges => self.edges_meet_points(known, &mut keep),
-            Elements::Faces => self.faces_meet_points(known, &mut keep),
+            Elements::Edges => {
+                meet_points(|| self.edges.iter().map(|(_, ends, boxes)| (ends, boxes)), known, &mut keep)
+            }
+            Elements::Faces => meet_points(
+                || self.triangles.iter().map(|(corners, boxes)| (corners, boxes)),
+                known,
+                &mut keep,
+            ),
         }
         if terms.edges {
             let is_new = |ends: &[u32; 2]| ends.iter().any(|&point| search.strayed[point as usize]);
@@ -125,56 +131,16 @@ impl New {
         }
     }
 
-    fn point_meets_edges<'a>(
+    /// The point against edges or faces.
+    fn point_meets<'a, const N: usize>(
         &self,
-        theirs: impl Iterator<Item = (&'a [u32; 2], &'a Boxes)>,
+        theirs: impl Iterator<Item = (&'a [u32; N], &'a Boxes)>,
         keep: &mut impl FnMut(Kind, [u32; 4]),
     ) {
-        let p = self.point;
-        for (&[a, b], there) in theirs {
-            if a != p && b != p && Aabb::may_meet(&self.round_point, there) {
-                keep(Kind::PointEdge, [p, a, b, p]);
-            }
-        }
-    }
-
-    fn point_meets_faces<'a>(
-        &self,
-        theirs: impl Iterator<Item = (&'a [u32; 3], &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
-    ) {
-        let p = self.point;
-        for (&[a, b, c], there) in theirs {
-            if a != p && b != p && c != p && Aabb::may_meet(&self.round_point, there) {
-                keep(Kind::PointFace, [p, a, b, c]);
-            }
-        }
-    }
-
-    fn edges_meet_points<'a>(
-        &self,
-        theirs: impl Iterator<Item = (u32, &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
-    ) {
-        for (q, there) in theirs {
-            for &(_, [a, b], ref here) in &self.edges {
-                if a != q && b != q && Aabb::may_meet(here, there) {
-                    keep(Kind::PointEdge, [q, a, b, q]);
-                }
-            }
-        }
-    }
-
-    fn faces_meet_points<'a>(
-        &self,
-        theirs: impl Iterator<Item = (u32, &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
-    ) {
-        for (q, there) in theirs {
-            for &([a, b, c], ref here) in &self.triangles {
-                if a != q && b != q && c != q && Aabb::may_meet(here, there) {
-                    keep(Kind::PointFace, [q, a, b, c]);
-                }
+        for (element, there) in theirs {
+            if !element.contains(&self.point) && Aabb::may_meet(&self.round_point, there) {
+                let (kind, points) = pair(self.point, element);
+                keep(kind, points);
             }
         }
     }
@@ -194,4 +160,27 @@ impl New {
             }
         }
     }
+}
+
+/// Edges or faces of ours against points of theirs.
+fn meet_points<'a, 'b, const N: usize, I: Iterator<Item = (&'b [u32; N], &'b Boxes)>>(
+    ours: impl Fn() -> I,
+    theirs: impl Iterator<Item = (u32, &'a Boxes)>,
+    keep: &mut impl FnMut(Kind, [u32; 4]),
+) {
+    for (q, there) in theirs {
+        for (element, here) in ours() {
+            if !element.contains(&q) && Aabb::may_meet(here, there) {
+                let (kind, points) = pair(q, element);
+                keep(kind, points);
+            }
+        }
+    }
+}
+
+/// A point against an edge, or a face.
+fn pair<const N: usize>(point: u32, element: &[u32; N]) -> (Kind, [u32; 4]) {
+    let mut points = [point; 4];
+    points[1..=N].copy_from_slice(element);
+    (if N == 2 { Kind::PointEdge } else { Kind::PointFace }, points)
 }
