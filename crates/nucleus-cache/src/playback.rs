@@ -54,13 +54,16 @@ impl Playback {
     /// # Errors
     /// When it is no cache, or so damaged that no frame can be shown; see [`OpenError`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
-        let path = path.as_ref();
-        let failed = |source| OpenError::Io { path: path.to_owned(), source };
-        if path.is_dir() {
-            return Err(OpenError::Folder { path: path.to_owned() });
-        }
-        Self::read(BufReader::new(File::open(path).map_err(failed)?))
+        Self::read(BufReader::new(file_at(path.as_ref())?))
     }
+}
+
+/// The file of a cache.
+pub(crate) fn file_at(path: &Path) -> Result<File, OpenError> {
+    if path.is_dir() {
+        return Err(OpenError::Folder { path: path.to_owned() });
+    }
+    File::open(path).map_err(|source| OpenError::Io { path: path.to_owned(), source })
 }
 
 impl<R: Read + Seek> Playback<R> {

@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::attribute::{CONTACTS, STRAIN};
 use crate::object::{ObjectInfo, Source};
 use crate::open_error::{OpenError, ReadError};
-use crate::playback::Playback;
+use crate::playback::{Playback, file_at};
 use crate::record_error::RecordError;
 use crate::recorder::{Recorder, check};
 use crate::run::RunInfo;
@@ -32,11 +32,7 @@ impl Playback {
     /// As [`open`](Self::open), and when a run is writing it.
     pub fn open_to_resume(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let failed = |source| OpenError::Io { path: path.to_owned(), source };
-        if path.is_dir() {
-            return Err(OpenError::Folder { path: path.to_owned() });
-        }
-        let file = File::open(path).map_err(failed)?;
+        let file = file_at(path)?;
         if target::is_locked(&file) {
             return Err(OpenError::InUse { path: path.to_owned() });
         }
