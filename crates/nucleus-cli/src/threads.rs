@@ -1,4 +1,4 @@
-//! How many cores a run takes.
+//! How many cores a command takes.
 
 /// So many as are asked for; all if none are.
 pub fn count(asked: Option<u16>) -> usize {

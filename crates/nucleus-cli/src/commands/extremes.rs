@@ -13,7 +13,7 @@ use nucleus_measure::extremes::{
 use serde_json::{Value, json};
 
 use crate::outcome::Outcome;
-use crate::{figures, output};
+use crate::{figures, output, threads};
 
 /// Runs the table of extremes: scenes that leave the ordinary, each with what has to hold all the same.
 ///
@@ -62,7 +62,7 @@ impl Extremes {
             outcomes.push(outcome);
             Ok(())
         };
-        judge_all(&rows, self.threads(), Patience::Long, &mut tell)?;
+        judge_all(&rows, threads::count(self.threads), Patience::Long, &mut tell)?;
         if !self.json {
             output::print(&total(&outcomes))?;
         }
@@ -86,11 +86,6 @@ impl Extremes {
             self.only.is_empty() || self.only.iter().any(asked)
         };
         Ok(rows().filter(wanted).collect())
-    }
-
-    fn threads(&self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(all, usize::from)
     }
 }
 

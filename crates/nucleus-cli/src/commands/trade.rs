@@ -1,7 +1,6 @@
 //! `nucleus trade`: what a scene's settings cost, and how wrong they are.
 
 use std::path::PathBuf;
-use std::thread::available_parallelism;
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
@@ -14,7 +13,7 @@ use nucleus_measure::trade::{Found, Point, Reading, Setting, Subject, TradeError
 
 use crate::frame_range::FrameRange;
 use crate::outcome::Outcome;
-use crate::{interrupt, output, quality, scene_file};
+use crate::{interrupt, output, quality, scene_file, threads};
 
 mod page;
 mod progress;
@@ -119,14 +118,13 @@ impl Trade {
     }
 
     fn measure(&self, subject: &Subject, store: &Store) -> Result<Found, TradeError> {
-        let cores = available_parallelism().map_or(1, usize::from);
         let mut bar = Bar::new();
         let found = measure(
             subject,
             &self.wishes(),
             store,
             Watch {
-                side_by_side: self.jobs.map_or(cores, usize::from),
+                side_by_side: threads::count(self.jobs),
                 tell: &mut |progress| bar.show(progress),
                 go_on: &|| !interrupt::asked(),
             },

@@ -10,7 +10,7 @@ use nucleus_measure::validation::{Case, Finding, cases, page};
 use serde_json::json;
 
 use crate::outcome::Outcome;
-use crate::output;
+use crate::{output, threads};
 
 /// Holds the solver against exact physics: strips that bend and buckle, sheets that hang, friction, swings, drape.
 #[derive(Debug, Args)]
@@ -71,8 +71,7 @@ impl Validate {
 
     /// Runs the cases, some at a time, and says on standard error when one is done.
     fn run_all(&self, cases: &[Case]) -> Result<Vec<CaseResult>> {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = self.threads.unwrap_or(cores).clamp(1, cases.len().max(1));
+        let threads = self.threads.unwrap_or_else(|| threads::count(None)).clamp(1, cases.len().max(1));
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let work = || -> Result<Vec<(usize, CaseResult)>> {
             let mut results = Vec::new();
