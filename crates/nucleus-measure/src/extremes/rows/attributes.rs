@@ -79,7 +79,7 @@ pub static ROWS: [Extreme; 9] = [
             ..RUNS
         }
         .trial(),
-        fails: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step: 7 times the cost of the ordinary banner."),
+        fails: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step."),
     },
     Extreme {
         name: "tiny-resistances",

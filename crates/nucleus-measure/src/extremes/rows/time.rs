@@ -24,9 +24,7 @@ pub static ROWS: [Extreme; 10] = [
             ..RUNS
         }
         .trial(),
-        fails: Some(
-            "One sweep a frame does not hold the cloth apart from itself and together at once: it comes to 0.9 m/s, at 7 times the cost.",
-        ),
+        fails: Some("One sweep a frame does not hold the cloth apart from itself and together at once."),
     },
     Extreme {
         name: "one-step-a-frame-classic",
@@ -45,9 +43,7 @@ pub static ROWS: [Extreme; 10] = [
             ..RUNS
         }
         .trial(),
-        fails: Some(
-            "As above: stretched to twice its length it does not come to rest, at 84 times the cost.",
-        ),
+        fails: Some("As above."),
     },
     Extreme {
         name: "one-step-a-frame-contact",
@@ -67,9 +63,7 @@ pub static ROWS: [Extreme; 10] = [
             ..DRAPED
         }
         .trial(),
-        fails: Some(
-            "One point crosses, and a step of 10 m has a pair for everything within it: 23 times the cost.",
-        ),
+        fails: Some("A step of 10 m has a pair for everything within it."),
     },
     Extreme {
         name: "substeps-1000",
@@ -148,8 +142,7 @@ pub static ROWS: [Extreme; 10] = [
         }
         .trial(),
         fails: Some(
-            "Steps of 14 ms leave the cloth stretched by a fifth. When they become short again, the links return that as \
-            if it had been put in: 3 m/s, gone after ten frames.",
+            "Steps of 14 ms leave the cloth stretched by a fifth. When they become short again, the links return that as if it had been put in.",
         ),
     },
     Extreme {
@@ -171,9 +164,7 @@ pub static ROWS: [Extreme; 10] = [
             ..RUNS
         }
         .trial(),
-        fails: Some(
-            "The broad phase runs once a frame, of which each is one step long: 5 times the cost of a step.",
-        ),
+        fails: Some("The broad phase runs once a frame, of which each is one step long."),
     },
     Extreme {
         name: "rest-for-1000-frames",
