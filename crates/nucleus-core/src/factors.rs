@@ -27,8 +27,16 @@ pub struct PointFactors {
     pub tangential_drag: Vec<f64>,
     /// On `lift`.
     pub lift: Vec<f64>,
-    /// On `friction`; where an element touches, the mean by how near each of its points is.
+    /// On `thickness`; here and below, where an element touches, the mean by how near each of its points is.
+    pub thickness: Vec<f64>,
+    /// On `friction`.
     pub friction: Vec<f64>,
+    /// On `stickiness`.
+    pub stickiness: Vec<f64>,
+    /// On `bounce`.
+    pub bounce: Vec<f64>,
+    /// On `collide_strength`.
+    pub collide_strength: Vec<f64>,
 }
 
 /// Smaller shares than this are none: so soft a link is not there.
@@ -36,7 +44,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 impl PointFactors {
     /// Every column, with the least and the most it may hold.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 10] {
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 14] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
         [
@@ -49,7 +57,11 @@ impl PointFactors {
             ("drag", &self.drag, ANY),
             ("tangential drag", &self.tangential_drag, ANY),
             ("lift", &self.lift, ANY),
+            ("thickness", &self.thickness, ANY),
             ("friction", &self.friction, ANY),
+            ("stickiness", &self.stickiness, ANY),
+            ("bounce", &self.bounce, ANY),
+            ("collide strength", &self.collide_strength, ANY),
         ]
     }
 

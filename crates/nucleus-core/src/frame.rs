@@ -67,6 +67,8 @@ pub struct GroundPlane {
     pub bounce: f64,
     /// `planeFriction`, added to the cloth's own.
     pub friction: f64,
+    /// `planeStickiness`, added to the cloth's own.
+    pub stickiness: f64,
 }
 
 /// Stiffnesses of a cloth as a laboratory gives them. Where there is one, the resistance beside it has no say; nought
@@ -123,8 +125,20 @@ pub struct ClothFrame {
     pub thickness: f64,
     /// Friction; the two sides' values are added.
     pub friction: f64,
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    pub stickiness: f64,
     /// Bounce, 0 to 1; the larger of the two sides counts.
     pub bounce: f64,
+    /// How much of a collision is carried out; the two sides' values are multiplied. At 1 and above nothing passes, below
+    /// it things may, at 0 there is no collision.
+    pub collide_strength: f64,
+    /// How it moves points of other objects to its own side.
+    pub push_out: PushOut,
+    /// How much faster than by itself the solver works it and other cloth apart where they pass through each other; the
+    /// two sides' values are added.
+    pub crossover_push: f64,
+    /// The same where it passes through itself.
+    pub self_crossover_push: f64,
     /// Which of its elements meet other cloth (`collisionFlag`).
     pub elements: Elements,
     /// `collisionLayer`: of two cloths the one in the lower layer is the heavier, and at a difference of one
@@ -143,6 +157,20 @@ pub enum Elements {
     Edges,
     /// Faces too.
     Faces,
+}
+
+/// How an object moves points of others to a side of its surface (`pushOut`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PushOut {
+    /// Share of the way that points go in a substep, 0 to 1; below nought to the inner side.
+    pub share: f64,
+    /// Metres from the surface within which points are moved (`pushOutRadius`).
+    pub radius: f64,
+}
+
+impl PushOut {
+    /// None.
+    pub const OFF: Self = Self { share: 0.0, radius: 0.0 };
 }
 
 /// How a cloth meets itself.
@@ -185,7 +213,12 @@ impl Default for ClothFrame {
             collide: true,
             thickness: 0.0,
             friction: 0.1,
+            stickiness: 0.0,
             bounce: 0.0,
+            collide_strength: 1.0,
+            push_out: PushOut::OFF,
+            crossover_push: 0.0,
+            self_crossover_push: 0.0,
             elements: Elements::Faces,
             layer: 0.0,
             self_collision: SelfCollision::OFF,
@@ -194,7 +227,7 @@ impl Default for ClothFrame {
 }
 
 /// One collider in one frame: where its points start and end, and how it feels.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ColliderFrame {
     /// Positions at the start of the frame in metres, in the mesh's order. Empty: as the frame before ended.
     pub start: Vec<Vector3<f64>>,
@@ -206,8 +239,35 @@ pub struct ColliderFrame {
     pub thickness: f64,
     /// Friction; the two sides' values are added.
     pub friction: f64,
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    pub stickiness: f64,
     /// Bounce, 0 to 1; the larger of the two sides counts.
     pub bounce: f64,
+    /// How much of a collision is carried out, as of a cloth.
+    pub collide_strength: f64,
+    /// How it moves points of other objects to its own side.
+    pub push_out: PushOut,
+    /// Whether points that are inside it, where it is closed, are led out; otherwise they stay in (`trappedCheck`).
+    pub trapped_check: bool,
+}
+
+impl Default for ColliderFrame {
+    /// Maya's defaults of an nRigid, except that it stays where it is and nothing meets it, and `friction` and
+    /// `thickness`, which are nought.
+    fn default() -> Self {
+        Self {
+            start: Vec::new(),
+            end: Vec::new(),
+            collide: false,
+            thickness: 0.0,
+            friction: 0.0,
+            stickiness: 0.0,
+            bounce: 0.0,
+            collide_strength: 1.0,
+            push_out: PushOut::OFF,
+            trapped_check: true,
+        }
+    }
 }
 
 /// A point that is held and carried along a straight line during the frame (a transform constraint).

@@ -18,7 +18,6 @@ impl<R: Real> Solver<R> {
             self.hold(pin, frame.duration);
         }
         self.anchor_rows();
-        self.find_extra_friction(frame);
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);
         }
@@ -27,16 +26,6 @@ impl<R: Real> Solver<R> {
             let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
             self.up = [normal.x, normal.y, normal.z].map(R::from_f64);
             plane::heights(&self.state.anchor, ground.origin, normal, &mut self.heights);
-        }
-    }
-
-    /// What each point has of friction beyond its cloth.
-    fn find_extra_friction(&mut self, frame: &FrameInput) {
-        for (cloth, settings) in self.cloths.iter().zip(&frame.cloths) {
-            let rows = cloth.points().map(|row| row as usize);
-            for (row, factor) in rows.zip(&cloth.friction) {
-                self.state.extra_friction[row] = R::from_f64(settings.friction * (factor - 1.0));
-            }
         }
     }
 

@@ -4,7 +4,6 @@
 use nalgebra::Vector3;
 
 use crate::collision::collider::ColliderState;
-use crate::frame::FrameInput;
 use crate::scalar::Real;
 use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
@@ -16,22 +15,17 @@ const MOST_PARTS: f64 = 256.0;
 
 impl<R: Real> Solver<R> {
     /// Into how many parts a time step is to be split.
-    pub(crate) fn parts(
-        &self,
-        frame: &FrameInput,
-        schedule: &Schedule<R>,
-        span: Span,
-        fastest: &[f64],
-    ) -> u32 {
+    pub(crate) fn parts(&self, schedule: &Schedule<R>, span: Span, fastest: &[f64]) -> u32 {
         let mut parts = 1.0f64;
-        for (collider, settings) in self.collider_states.iter().zip(&frame.colliders) {
+        for (at, collider) in self.collider_states.iter().enumerate() {
             let leap = collider.way * (span.to - span.from);
-            if !settings.collide || leap == 0.0 {
+            if leap == 0.0 {
                 continue;
             }
-            for (index, cloth) in self.cloths.iter().enumerate().filter(|(k, _)| frame.cloths[*k].collide) {
+            for (index, cloth) in self.cloths.iter().enumerate() {
+                let Some(terms) = &self.terms_of(index)[at] else { continue };
                 let wanted = leap / (LEAP * cloth.edge_length);
-                let room = frame.cloths[index].thickness + settings.thickness + fastest[index] * schedule.h;
+                let room = terms.thickness + fastest[index] * schedule.h;
                 // A cloth without edges is points, which nothing can leap over.
                 if wanted.is_finite() && wanted > parts && self.is_near(index, collider, span, room) {
                     parts = wanted;

@@ -5,6 +5,7 @@ use crate::collision::contact::Pair;
 use crate::collision::mutual::near::Near;
 use crate::collision::narrow::shortest;
 use crate::collision::pairs::PairList;
+use crate::collision::terms::Terms;
 use crate::observe::Contact;
 use crate::scalar::{Real, dot};
 use crate::solver::Solver;
@@ -60,8 +61,10 @@ impl<R: Real> Solver<R> {
         if self.heights.is_empty() {
             return;
         }
-        for (cloth, thickness) in self.cloths.iter().zip(&self.terms).filter(|(_, x)| x.is_finite()) {
+        let grounded = self.cloths.iter().zip(&self.ground_terms);
+        for (cloth, terms) in grounded.filter_map(|(cloth, terms)| Some((cloth, terms.as_ref()?))) {
             for row in cloth.points() {
+                let thickness = self.kept(terms, [row], [R::ONE]);
                 let moved = self.state.displacement[row as usize].xyz();
                 let height = self.heights[row as usize] + dot(self.up, moved);
                 ladder.near(row, height.to_f64() / thickness);
@@ -72,57 +75,59 @@ impl<R: Real> Solver<R> {
     fn at_collider(&self, list: &PairList<R>, ladder: &mut Ladder) {
         let PairList { point_face, edge_edge, face_point, active, trapped, .. } = list;
         trapped.points.iter().for_each(|&(point, _)| ladder.climb(point, Contact::Trapped));
-        let of = |k: usize| self.terms.get(k).copied().unwrap_or(f64::INFINITY);
-        let thickness = of(list.cloth) + of(self.cloths.len() + list.collider);
-        if !thickness.is_finite() {
-            return; // One of them does not collide.
-        }
+        // One of them may not collide.
+        let Some(Some(terms)) = self.terms_of(list.cloth).get(list.collider) else { return };
         let collider = list.collider;
-        active
-            .point_face
-            .iter()
-            .for_each(|&k| self.touch(&point_face[k as usize], collider, thickness, ladder));
-        active
-            .edge_edge
-            .iter()
-            .for_each(|&k| self.touch(&edge_edge[k as usize], collider, thickness, ladder));
-        active
-            .face_point
-            .iter()
-            .for_each(|&k| self.touch(&face_point[k as usize], collider, thickness, ladder));
+        active.point_face.iter().for_each(|&k| self.touch(&point_face[k as usize], collider, terms, ladder));
+        active.edge_edge.iter().for_each(|&k| self.touch(&edge_edge[k as usize], collider, terms, ladder));
+        active.face_point.iter().for_each(|&k| self.touch(&face_point[k as usize], collider, terms, ladder));
     }
 
     fn touch<const N: usize, const M: usize>(
         &self,
         pair: &Pair<R, N, M>,
         collider: usize,
-        thickness: f64,
+        terms: &Terms<R>,
         ladder: &mut Ladder,
     ) {
         let state = &self.collider_states[collider];
         let ours = pair.points.map(|point| self.state.position(point));
         let theirs = pair.collider_points.map(|point| state.point(point, state.now).into());
         let (_, (shares, _), distance) = shortest::<f64, N, M>((ours, theirs));
+        let thickness = self.kept(terms, pair.points, shares.map(R::from_f64));
         ladder.near_all(pair.points, shares, distance / thickness);
+    }
+
+    /// The thickness that is kept where a cloth's element touches something that is no cloth, in metres.
+    fn kept<const N: usize>(&self, terms: &Terms<R>, points: [u32; N], shares: [R; N]) -> f64 {
+        let most = R::from_f64(terms.thickness);
+        terms.thickness_at(&self.maps, (points, [], &(shares, [])), most).to_f64()
     }
 
     fn among_cloths(&self, ladder: &mut Ladder) {
         let Some(mutual) = self.mutual.as_ref().filter(|mutual| mutual.is_on()) else { return };
         let active = &mutual.active;
-        active.point_face.list.iter().for_each(|near| self.meets(near, ladder));
-        active.edge_edge.list.iter().for_each(|near| self.meets(near, ladder));
-        active.point_edge.list.iter().for_each(|near| self.meets(near, ladder));
-        active.point_point.list.iter().for_each(|near| self.meets(near, ladder));
+        let terms = &mutual.terms[..];
+        active.point_face.list.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.edge_edge.list.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.point_edge.list.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.point_point.list.iter().for_each(|near| self.meets(near, terms, ladder));
         for crossing in &mutual.tangle.crossings {
             let corners = crossing.edge.iter().chain(&crossing.face);
             corners.for_each(|&point| ladder.climb(point, Contact::Tangled));
         }
     }
 
-    fn meets<const N: usize, const M: usize>(&self, near: &Near<R, N, M>, ladder: &mut Ladder) {
+    fn meets<const N: usize, const M: usize>(
+        &self,
+        near: &Near<R, N, M>,
+        terms: &[Option<Terms<R>>],
+        ladder: &mut Ladder,
+    ) {
         let place = |point: u32| self.state.position(point);
         let (_, (ours, theirs), distance) = shortest((near.ours.map(place), near.theirs.map(place)));
-        let closeness = distance / near.thickness().to_f64();
+        let weights = (ours.map(R::from_f64), theirs.map(R::from_f64));
+        let closeness = distance / near.thickness_at(terms, &self.maps, &weights).to_f64();
         ladder.near_all(near.ours, ours, closeness);
         ladder.near_all(near.theirs, theirs, closeness);
     }

@@ -12,7 +12,8 @@
 //! | attributes that differ from point to point | `factors.rs`, `constraints/shares.rs` |
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
-//! | how contact is found and proven | `collision/`, `collide.rs`, `meet.rs` |
+//! | how contact is found and proven | `collision/`, `collide.rs`, `seek.rs`, `meet.rs` |
+//! | what sticks, bounces, is pushed out | `collision/stick.rs`, `bounce.rs`, `push_out.rs` |
 //! | how contact is seen to stand at each point | `ladder.rs` |
 //! | how a run goes on from where it was saved | `checkpoint/` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
@@ -23,6 +24,7 @@
 #![deny(unsafe_code)] // allowed where columns are shared among tasks, each time with its reason
 
 mod air;
+mod bounce;
 mod builder;
 mod checkpoint;
 mod collide;
@@ -41,12 +43,14 @@ mod model;
 mod observe;
 mod passes;
 mod predict;
+mod push_out;
 mod refuse;
 mod relax;
 mod report;
 mod resistance;
 mod scalar;
 mod schedule;
+mod seek;
 mod settle;
 mod solver;
 mod state;
@@ -59,8 +63,8 @@ pub use builder::{BuildError, Cloth, ClothLists, Collider, Mass, ModelBuilder, S
 pub use checkpoint::{Item, Reader, RestoreError, sealed, unsealed};
 pub use factors::PointFactors;
 pub use frame::{
-    COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, ResistanceModel,
-    SelfCollision, Stiffness,
+    COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, PushOut,
+    ResistanceModel, SelfCollision, Stiffness,
 };
 pub use ids::{ClothId, ColliderId, PointId};
 pub use observe::{Contact, Moment, Stage, StateView, StepObserver};

@@ -3,6 +3,7 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use crate::collide::StepParts;
+use crate::collision::mutual::Mutual;
 use crate::collision::resolve::Tally;
 use crate::constraints::hinge::{HingeGroup, held};
 use crate::constraints::shares::ShareGroup;
@@ -162,8 +163,9 @@ impl<R: Real> Solver<R> {
 
     /// The smallest distance between two elements of cloth, over the thickness kept there.
     fn smallest_cloth_gap(&mut self) -> f64 {
-        let Self { mutual: Some(mutual), state, .. } = self else { return f64::INFINITY };
-        let closeness = mutual.active.closeness(&motion(state, 0.0));
+        let Self { mutual: Some(mutual), state, maps, .. } = self else { return f64::INFINITY };
+        let Mutual { active, terms, .. } = mutual;
+        let closeness = active.closeness(&motion(state, terms, maps, 0.0));
         closeness.map_or(f64::INFINITY, R::to_f64)
     }
 
@@ -188,13 +190,13 @@ impl<R: Real> Solver<R> {
                 }
             }
         }
-        let Self { state, collider_states, pairs, .. } = self;
+        let Self { state, collider_states, pairs, terms, maps, .. } = self;
         for list in pairs.iter() {
-            let (cloth, collider) = (list.cloth, list.collider);
-            let view = StepParts { frame, cloth, collider, h: schedule.h, time: [1.0; 2], span: list.span };
-            let step = view.of(state, &collider_states[collider]);
-            let distances = list.point_face.iter().map(|pair| pair.distance(&step));
-            least = distances.map(|distance| distance / step.thickness.to_f64()).fold(least, f64::min);
+            let Some(terms) = terms[list.cloth * collider_states.len() + list.collider] else { continue };
+            let view = StepParts { terms, maps, h: schedule.h, time: [1.0; 2], span: list.span };
+            let step = view.of(state, &collider_states[list.collider]);
+            let distances = list.point_face.iter().map(|pair| pair.closeness(&step));
+            least = distances.fold(least, f64::min);
         }
         least
     }

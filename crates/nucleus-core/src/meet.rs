@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::collision::maps::Maps;
 use crate::collision::mutual::Mutual;
 use crate::collision::mutual::active::{Active, WINDOW, pick};
 use crate::collision::mutual::crossings::find_crossings;
@@ -9,8 +10,8 @@ use crate::collision::mutual::near::Motion;
 use crate::collision::mutual::paths::Path;
 use crate::collision::mutual::search::search;
 use crate::collision::mutual::tangle::SPEED;
-use crate::collision::mutual::terms::Terms;
 use crate::collision::resolve::Tally;
+use crate::collision::terms::Terms;
 use crate::columns::Shared;
 use crate::frame::FrameInput;
 use crate::observe::{Stage, StepObserver};
@@ -33,18 +34,24 @@ impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.
     pub(crate) fn begin_meeting(&mut self, frame: &FrameInput) {
         let Some(mutual) = &mut self.mutual else { return };
-        let cloths = &frame.cloths;
+        let (cloths, thickest) = (&frame.cloths, &self.maps.thickest);
         let terms = (0..cloths.len()).flat_map(|a| {
             cloths.iter().enumerate().map(move |(b, other)| match a == b {
-                true => Terms::with_itself(other),
-                false => Terms::between(&cloths[a], other, frame.layer_range),
+                true => Terms::with_itself(other, thickest[a]),
+                false => Terms::between([&cloths[a], other], [thickest[a], thickest[b]], frame.layer_range),
             })
         });
         let terms: Vec<Option<Terms<R>>> = terms.collect();
-        if terms != mutual.terms {
-            mutual.terms = terms;
+        if !Terms::find_alike(&terms, &mutual.terms) {
             mutual.strayed.fill(true);
         }
+        let holds = |terms: &[Option<Terms<R>>]| -> Vec<bool> {
+            terms.iter().map(|terms| terms.as_ref().is_some_and(|terms| !terms.is_weak(&self.maps))).collect()
+        };
+        if holds(&terms) != holds(&mutual.terms) {
+            mutual.tangle.is_suspected = true; // what was let pass may be amid it
+        }
+        mutual.terms = terms;
         if mutual.is_on() {
             mutual.far.move_anchors(&self.state.displacement);
             mutual.candidates.forget_places();
@@ -70,15 +77,32 @@ impl<R: Real> Solver<R> {
         watch.enter(Stage::FindPairs);
         self.watch_contacts(frame, span, tally);
         watch.enter(Stage::Collide);
-        let Self { mutual: Some(mutual), state, team, .. } = self else { return };
-        if mutual.tangle.is_there() {
-            let most = mutual.bodies.edge_length * SPEED * schedule.h;
+        let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
+        let Mutual { bodies, terms, active, tangle, .. } = mutual;
+        if tangle.is_there() {
+            let most = bodies.edge_length * SPEED * schedule.h;
             let anchors = std::mem::take(&mut state.anchor);
-            mutual.tangle.work_apart(&anchors, &motion(state, schedule.h), most);
+            tangle.work_apart(&anchors, &motion(state, terms, maps, schedule.h), &bodies.cloth, most);
             state.anchor = anchors;
         }
-        let step = Motion { squeeze: R::from_f64(squeeze), ..motion(state, schedule.h) };
-        *tally.contacts.get_mut() += mutual.active.sweep(&step, team);
+        let step = Motion { squeeze: R::from_f64(squeeze), ..motion(state, terms, maps, schedule.h) };
+        *tally.contacts.get_mut() += active.sweep(&step, team);
+    }
+
+    /// Holds cloth to itself and to other cloth by what sticks.
+    pub(crate) fn stick_to_cloth(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        tally: &mut Tally,
+    ) {
+        let sticks = |mutual: &Mutual<R>| mutual.terms.iter().flatten().any(Terms::sticks);
+        if self.mutual.as_ref().is_some_and(sticks) {
+            self.watch_contacts(frame, span, tally);
+            let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
+            mutual.active.stick(&motion(state, &mutual.terms, maps, schedule.h), team);
+        }
     }
 
     /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
@@ -251,12 +275,18 @@ impl<R: Real> Ahead<R> {
 }
 
 /// A time step as contacts see it.
-pub(crate) fn motion<R: Real>(state: &mut State<R>, h: f64) -> Motion<'_, R> {
+pub(crate) fn motion<'a, R: Real>(
+    state: &'a mut State<R>,
+    terms: &'a [Option<Terms<R>>],
+    maps: &'a Maps<R>,
+    h: f64,
+) -> Motion<'a, R> {
     Motion {
         displacement: Shared::new(&mut state.displacement),
         predicted: Shared::new(&mut state.predicted),
         start: &state.start,
-        extra_friction: &state.extra_friction,
+        terms,
+        maps,
         h: R::from_f64(h),
         squeeze: R::ONE,
     }

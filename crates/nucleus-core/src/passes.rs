@@ -67,7 +67,7 @@ impl<R: Real> Solver<R> {
         });
         let grounded = if frame.plane.is_some() { points } else { 0 };
         passes.push(PassCost { name: "ground", rows: grounded, sweeps: count });
-        let factors: usize = self.cloths.iter().map(ClothModel::factors).sum();
+        let factors: usize = self.cloths.iter().map(ClothModel::factors).sum::<usize>() + self.maps.len();
         passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
         passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
         passes

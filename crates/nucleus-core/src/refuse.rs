@@ -162,7 +162,11 @@ fn mend_settings(frame: &mut FrameInput) -> bool {
         mended |= mend_numbers([(evaluations, 1.0)]);
     }
     if let Some(plane) = &mut frame.plane {
-        mended |= mend_numbers([(&mut plane.bounce, 0.0), (&mut plane.friction, 0.0)]);
+        mended |= mend_numbers([
+            (&mut plane.bounce, 0.0),
+            (&mut plane.friction, 0.0),
+            (&mut plane.stickiness, 0.0),
+        ]);
         if !is_usable(&plane.origin) || !is_usable(&plane.normal) {
             frame.plane = None;
             mended = true;
@@ -187,13 +191,27 @@ fn mend_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.lift, usual.lift),
         (&mut cloth.thickness, usual.thickness),
         (&mut cloth.friction, usual.friction),
+        (&mut cloth.stickiness, usual.stickiness),
         (&mut cloth.bounce, usual.bounce),
+        (&mut cloth.collide_strength, usual.collide_strength),
+        (&mut cloth.push_out.share, usual.push_out.share),
+        (&mut cloth.push_out.radius, usual.push_out.radius),
+        (&mut cloth.crossover_push, usual.crossover_push),
+        (&mut cloth.self_crossover_push, usual.self_crossover_push),
     ]);
     vectors | numbers
 }
 
 fn mend_collider_settings(collider: &mut ColliderFrame) -> bool {
-    mend_numbers([(&mut collider.thickness, 0.0), (&mut collider.friction, 0.0), (&mut collider.bounce, 0.0)])
+    mend_numbers([
+        (&mut collider.thickness, 0.0),
+        (&mut collider.friction, 0.0),
+        (&mut collider.stickiness, 0.0),
+        (&mut collider.bounce, 0.0),
+        (&mut collider.collide_strength, 1.0),
+        (&mut collider.push_out.share, 0.0),
+        (&mut collider.push_out.radius, 0.0),
+    ])
 }
 
 fn mend_vectors<const N: usize>(vectors: [&mut Vector3<f64>; N]) -> bool {

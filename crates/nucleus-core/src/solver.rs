@@ -5,8 +5,10 @@ use nalgebra::Vector3;
 use crate::builder::ModelBuilder;
 use crate::collision::collider::ColliderState;
 use crate::collision::foresee::Cover;
+use crate::collision::maps::Maps;
 use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
+use crate::collision::terms::Terms;
 use crate::ids::{ClothId, ColliderId, PointId};
 use crate::model::{ClothModel, ColliderModel};
 use crate::observe::{Contact, StateView};
@@ -31,8 +33,12 @@ pub struct Solver<R: Real = f32> {
     pub(crate) far: Vec<Cover<R>>,
     /// Points for which something new is foreseen, so that their pairs are to be found again.
     pub(crate) strayed: Vec<bool>,
-    /// What the pairs were found under: the thickness of each cloth and collider, endless where it does not collide.
-    pub(crate) terms: Vec<f64>,
+    /// How each cloth meets each collider in this frame, by cloth and collider.
+    pub(crate) terms: Vec<Option<Terms<R>>>,
+    /// How each cloth meets the ground plane.
+    pub(crate) ground_terms: Vec<Option<Terms<R>>>,
+    /// What points bring into a contact beyond their cloth.
+    pub(crate) maps: Maps<R>,
     /// Contact among cloths; none where no two can ever meet.
     pub(crate) mutual: Option<Mutual<R>>,
     /// Whether anything touched anything in the last frame.
@@ -59,6 +65,7 @@ impl<R: Real> Solver<R> {
         let state = State::new(&cloths, &models);
         // What goes on from a state may lie on something; whether it does is only known after a frame.
         let touches = cloths.iter().any(|cloth| !cloth.start.positions.is_empty());
+        let maps = Maps::new(&cloths, &models, state.anchor.len());
         let mutual = meets.then(|| Mutual::new(&models, &state.anchor));
         drop(cloths);
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
@@ -71,8 +78,10 @@ impl<R: Real> Solver<R> {
             far: vec![[Row4::ZERO; 2]; covered],
             strayed: vec![true; covered],
             terms: Vec::new(),
+            ground_terms: Vec::new(),
             pairs: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
+            maps,
             mutual,
             touches,
             cloths: models,

@@ -23,8 +23,6 @@ pub struct State<R> {
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
     pub normal: Vec<Row4<R>>,
-    /// Friction beyond that of the cloth; empty where none has a map of it. Written when a frame begins.
-    pub extra_friction: Vec<R>,
     /// Inverse mass in 1/kg of the point when it is free.
     pub inverse_mass: Vec<R>,
 }
@@ -42,14 +40,6 @@ impl<R: Real> State<R> {
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             inverse_mass: vec![R::ZERO; rows],
-            extra_friction: vec![
-                R::ZERO;
-                if cloths.iter().any(|cloth| !cloth.factors.friction.is_empty()) {
-                    rows
-                } else {
-                    0
-                }
-            ],
         };
         for (cloth, model) in cloths.iter().zip(models) {
             let masses = point_masses(cloth);

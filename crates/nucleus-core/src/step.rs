@@ -58,10 +58,11 @@ impl<R: Real> Solver<R> {
         for substep in 1..=schedule.substeps {
             watch.enter(Stage::Normals);
             self.find_normals();
+            self.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
                 let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(frame, &schedule, span, &fastest);
+                let parts = self.parts(&schedule, span, &fastest);
                 if parts == 1 {
                     let now = Step { schedule: &schedule, index: step, span, direction };
                     self.advance(frame, &now, &fastest, &mut tally, watch);
@@ -103,8 +104,14 @@ impl<R: Real> Solver<R> {
                     watch.enter(Stage::Relax);
                     relax::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
                 }
-                Round::MeetEachOther => self.meet(1.0, frame, schedule, span, tally, watch),
-                Round::Collide => self.meet_colliders(1.0, frame, schedule, span, tally, watch),
+                Round::MeetEachOther => {
+                    self.stick_to_cloth(frame, schedule, span, tally);
+                    self.meet(1.0, frame, schedule, span, tally, watch);
+                }
+                Round::Collide => {
+                    self.stick_to_colliders(frame, schedule, span, tally);
+                    self.meet_colliders(1.0, frame, schedule, span, tally, watch);
+                }
                 Round::Settle => self.settle(frame, schedule, span, tally, watch), // the last word
             }
         }

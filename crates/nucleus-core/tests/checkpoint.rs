@@ -18,7 +18,8 @@ fn scene() -> (ModelBuilder, FrameInput) {
     builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
     let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
     let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };
-    let plane = GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.1 };
+    let plane =
+        GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.1, stickiness: 0.0 };
     let collider = nucleus_core::ColliderFrame { collide: true, thickness: 0.01, ..Default::default() };
     let input = FrameInput {
         plane: Some(plane),

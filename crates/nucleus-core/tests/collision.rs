@@ -11,7 +11,7 @@ use scenes::{INSCRIBED, LINKS, Vec3, drape, frame, grid, one_cloth, physical, pi
 const CLOTH: ClothId = ClothId(0);
 
 fn ground(friction: f64) -> Option<GroundPlane> {
-    Some(GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction })
+    Some(GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction, stickiness: 0.0 })
 }
 
 // EVIDENCE: N2.3-2  contact is at the thickness
@@ -142,8 +142,14 @@ fn a_fast_ball_never_gets_through_a_hanging_sheet() {
                 };
                 let start: Vec<Vec3> = at(f64::from(step));
                 let end = at(f64::from(step + 1));
-                let moving =
-                    ColliderFrame { start, end, collide: true, thickness: 0.002, friction: 0.3, bounce: 0.0 };
+                let moving = ColliderFrame {
+                    start,
+                    end,
+                    collide: true,
+                    thickness: 0.002,
+                    friction: 0.3,
+                    ..ColliderFrame::default()
+                };
                 let cloths = vec![ClothFrame { thickness: 0.003, ..still() }];
                 let input = FrameInput {
                     colliders: vec![moving],

@@ -297,7 +297,8 @@ fn slid(floor: Floor, factor: f64) -> f64 {
     match floor {
         Floor::Plane => {
             let origin = Vec3::y() * 0.005;
-            input.plane = Some(GroundPlane { origin, normal: Vec3::y(), bounce: 0.0, friction: 0.1 });
+            input.plane =
+                Some(GroundPlane { origin, normal: Vec3::y(), bounce: 0.0, friction: 0.1, stickiness: 0.0 });
         }
         Floor::Collider => {
             builder.collider(Collider { surface: wide }).expect("a good mesh");

@@ -34,6 +34,7 @@ const PLANE: GroundPlane = GroundPlane {
     normal: Vec3::new(0.0, 1.0, 0.0),
     bounce: 0.0,
     friction: 0.0,
+    stickiness: 0.0,
 };
 
 /// A frame in which nothing is on but gravity.

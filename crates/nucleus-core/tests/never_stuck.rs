@@ -36,7 +36,14 @@ fn pinch(gap: f64) -> Vec<StepReport> {
             let at =
                 |frame: f64| slab.positions.iter().map(|p| p + Vec3::y() * (sign * height(frame))).collect();
             let (start, end) = (at(f64::from(frame)), at(f64::from(frame + 1)));
-            ColliderFrame { start, end, collide: true, thickness: 0.005, friction: 0.25, bounce: 0.0 }
+            ColliderFrame {
+                start,
+                end,
+                collide: true,
+                thickness: 0.005,
+                friction: 0.25,
+                ..ColliderFrame::default()
+            }
         };
         FrameInput {
             gravity: Vec3::new(0.0, -1.0, 0.0),

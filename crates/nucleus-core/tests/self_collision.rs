@@ -54,7 +54,13 @@ fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
 }
 
 fn floor() -> Option<GroundPlane> {
-    Some(GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.3 })
+    Some(GroundPlane {
+        origin: Vec3::zeros(),
+        normal: Vec3::y(),
+        bounce: 0.0,
+        friction: 0.3,
+        stickiness: 0.0,
+    })
 }
 
 // EVIDENCE: N2.3-3  cloth against itself, in point and face and edge and edge

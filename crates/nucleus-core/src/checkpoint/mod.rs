@@ -116,16 +116,16 @@ impl<R: Real> Solver<R> {
 // Pairs are kept beside the rest, where they hold.
 kept!([R: Real] Solver<R> {
     columns: [far, strayed],
-    values: [terms, touches],
+    values: [terms, ground_terms, touches],
     parts: [state, collider_states, mutual],
-    anew: [cloths, colliders, pairs, spans, windows, near, heights, up, team],
+    anew: [cloths, colliders, pairs, spans, windows, near, maps, heights, up, team],
 });
 
 kept!([R: Real] State<R> {
     columns: [anchor, displacement, velocity],
     values: [],
     parts: [],
-    anew: [start, predicted, normal, extra_friction, inverse_mass],
+    anew: [start, predicted, normal, inverse_mass],
 });
 
 kept!([R: Real] PairList<R> {

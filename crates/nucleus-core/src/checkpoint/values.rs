@@ -5,7 +5,7 @@ use super::kept::kept;
 use crate::collision::mutual::candidate::{Candidate, Kind};
 use crate::collision::mutual::paths::Paths;
 use crate::collision::mutual::tangle::{Crossing, Remedy};
-use crate::collision::mutual::terms::Terms;
+use crate::collision::terms::Terms;
 use crate::frame::Elements;
 use crate::scalar::{Real, Row4};
 
@@ -22,7 +22,8 @@ impl<R: Real> Item for Row4<R> {
 kept!([R: Real] Paths<R> { columns: [from, travel], values: [], parts: [], anew: [] });
 
 item!([R: Real] Terms<R> {
-    thickness: f64, friction: R, mobility: [R; 2], elements: [Elements; 2], edges: bool,
+    thickness: f64, reach: f64, sides: [R; 2], friction: [R; 2], stickiness: [R; 2], bounce: [R; 2],
+    strength: [R; 2], untangling: f64, traps: bool, mobility: [R; 2], elements: [Elements; 2], edges: bool,
 });
 
 item!([] Candidate { kind: Kind, points: [u32; 4], thickness: f32, limited: bool });

@@ -6,12 +6,15 @@
 //! below its chord). Where the pair's own plane proves nothing any more, others are tried; where none does,
 //! the cloth would pass, and is pushed back to its side by the plane that held at the start of the step.
 
+mod rebound;
+
 use nalgebra::Vector3;
 
-use super::bounce::Bounce;
 use super::foresee::{Cover, spread};
-use super::friction::{Push, extra, rub};
+use super::friction::{Push, rub};
+use super::maps::Maps;
 use super::narrow;
+use super::terms::{Sides, Terms};
 use crate::checkpoint::item;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
@@ -85,15 +88,38 @@ pub struct Step<'a, R> {
     pub span: [f64; 2],
     /// Length of the step in seconds.
     pub h: R,
-    /// Sum of the two thicknesses in metres.
+    /// The distance to keep, in metres; the most that maps make of it.
     pub thickness: R,
-    /// Sum of the two frictions.
-    pub friction: R,
-    /// What points have of it beyond their cloth; empty where nothing has.
-    pub extra_friction: &'a [R],
+    /// The share of every thickness that is kept: less than one where there is no room for all of it.
+    pub squeeze: R,
+    /// How the two meet.
+    pub terms: Terms<R>,
+    /// What the cloth's points bring into a contact beyond their cloth.
+    pub maps: &'a Maps<R>,
 }
 
 impl<R: Real> Step<'_, R> {
+    /// The same where only a share of every thickness is kept.
+    pub fn squeezed(self, share: f64) -> Self {
+        let share = R::from_f64(share);
+        Self { thickness: self.thickness * share, squeeze: self.squeeze * share, ..self }
+    }
+
+    /// The distance in metres up to which anything acts.
+    pub fn reach(&self) -> R {
+        R::from_f64(self.terms.thickness * self.terms.reach)
+    }
+
+    /// The distance to keep where a contact is.
+    #[inline(always)]
+    fn kept<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
+        if self.maps.thickness.is_empty() {
+            return self.thickness;
+        }
+        let most = R::from_f64(self.terms.thickness);
+        self.terms.thickness_at(self.maps, (points, [], &(weights, [])), most) * self.squeeze
+    }
+
     /// The cloth's points at the start and at the end of the step.
     #[inline]
     fn cloth<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
@@ -197,7 +223,8 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let ours =
             points.map(|point| spread(&cover[point as usize]).to_f64()).into_iter().fold(0.0, f64::max);
         let theirs = collider_points.map(|q| step.way(q)).into_iter().fold(0.0, f64::max);
-        if line.norm() > step.thickness.to_f64() + ours + theirs {
+        let reach = step.reach();
+        if line.norm() > reach.to_f64() + ours + theirs {
             return None;
         }
         let touching = || across(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
@@ -215,7 +242,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         };
         pair.turn_to(normal, (b, c), step);
         let gap = pair.least_gap([R::ZERO, R::ONE], |point| cover[point as usize]);
-        (gap < step.thickness).then_some(pair)
+        (gap < reach).then_some(pair)
     }
 
     /// Whether the cloth's element, in its midst, is on the far side of the collider's, given the way out there.
@@ -261,40 +288,32 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         self.plane[0][k] + (self.plane[1][k] - self.plane[0][k]) * share
     }
 
-    /// The plane's normal, the collider's velocity at the contact in m/s, and whether the two touch at the end
-    /// of the step.
-    pub fn touch(&self, step: &Step<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
-        let moved = self.points.map(|point| step.moved(point).xyz());
-        let (gap, _) = self.gaps(moved, step.share(step.time[1]));
-        let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
-        Bounce::touches(gap, step.thickness).then_some((self.normal, velocity))
-    }
-
-    /// The distance between the two elements at the end of the step, in metres.
-    pub fn distance(&self, step: &Step<'_, R>) -> f64 {
+    /// The distance between the two elements at the end of the step, over the thickness kept between them.
+    pub fn closeness(&self, step: &Step<'_, R>) -> f64 {
         let (x, q) = (step.cloth(self.points)[1], step.surface(self.collider_points)[1]);
         let (b, c) = closest(x, q);
-        (weigh(x, b) - weigh(q, c)).norm()
+        (weigh(x, b) - weigh(q, c)).norm() / step.kept(self.points, b.map(R::from_f64)).to_f64()
     }
 
     /// Keeps the two apart. The caller hands in points that no other task of the phase touches.
     #[inline]
     pub fn resolve(&mut self, step: &Step<'_, R>) -> Outcome {
         let moved = self.points.map(|point| step.moved(point).xyz());
-        let held = step.thickness * R::from_f64(1.0 - TOUCH);
+        let touching = R::from_f64(1.0 - TOUCH);
         let (gap, least) = self.gaps(moved, step.share(step.time[1]));
-        if least >= held {
+        if least >= step.thickness * touching {
             return Outcome::Apart;
         }
         if least < R::ZERO || !self.plane_reaches(moved, step) {
             return self.look_closer(step, least);
         }
-        if gap >= held {
+        let kept = step.kept(self.points, self.weights);
+        if gap >= kept * touching {
             return Outcome::Apart;
         }
         let start = self.points.map(|point| step.start(point));
         let (gap_at_start, _) = self.gaps(start, step.share(step.time[0]));
-        self.push(step, step.thickness - gap, step.thickness - gap_at_start);
+        self.push(step, kept - gap, kept - gap_at_start);
         Outcome::Pushed
     }
 
@@ -333,10 +352,10 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     fn look_closer(&mut self, step: &Step<'_, R>, least: R) -> Outcome {
         let [x0, x1] = step.cloth(self.points);
         let [q0, q1] = step.surface(self.collider_points);
-        let thickness = step.thickness.to_f64();
         let at_start = closest(x0, q0);
         let start_line = weigh(x0, at_start.0) - weigh(q0, at_start.1);
         let at_end = closest(x1, q1);
+        let thickness = step.kept(self.points, at_end.0.map(R::from_f64)).to_f64();
         let line = weigh(x1, at_end.0) - weigh(q1, at_end.1);
         let distance = line.norm();
         let mut proof = None;
@@ -395,7 +414,10 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         if mobility <= R::ZERO {
             return;
         }
-        let push = Push::new(depth, before, step.h);
+        let mut push = Push::new(depth, before, step.h);
+        if step.terms.is_weak(step.maps) {
+            push = push.times(step.terms.strength_at(step.maps, self.sides(&(self.weights, []))));
+        }
         let along = self.normal.map(|n| n * push.length());
         let rub = self.friction(step, rows, along, push.pressed);
         for k in 0..N {
@@ -406,6 +428,11 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             }
             self.write(step, self.points[k], row, self.normal.map(|n| n * push.led * mobile));
         }
+    }
+
+    /// The points of the cloth's element, with how near each of them is; of the collider's there is nothing to tell.
+    fn sides<'a>(&self, weights: &'a ([R; N], [R; 0])) -> Sides<'a, R, N, 0> {
+        (self.points, [], weights)
     }
 
     /// Moves all of the cloth's element along the plane's normal: no point of it is behind the plane then.
@@ -432,7 +459,15 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let (_, at_end) = self.gaps(moved, step.share(step.time[1]));
         // The plane may be of the end of a pass in this step, and good for nothing at its start.
         let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0]));
-        (at_end > grain && at_start > grain) || self.prove_otherwise(step)
+        (at_end > grain && at_start > grain) || self.may_pass(step) || self.prove_otherwise(step)
+    }
+
+    /// Whether the scene lets the two pass through each other: a collision that is carried out in part is none that holds.
+    #[cold]
+    fn may_pass(&self, step: &Step<'_, R>) -> bool {
+        let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
+        let all = step.terms.strength.iter().any(|&side| side < R::ONE);
+        step.terms.is_weak(step.maps) && (all || of_points(&step.maps.strength))
     }
 
     #[cold]
@@ -468,8 +503,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
 
     /// The correction along the surface, against the motion over it within the step.
     fn friction(&self, step: &Step<'_, R>, rows: [Row4<R>; N], along: [R; 3], pressed: R) -> [R; 3] {
-        let own = extra(step.extra_friction, self.points, self.weights);
-        let slip_limit = (step.friction + own) * pressed;
+        let slip_limit = step.terms.friction_at(step.maps, self.sides(&(self.weights, []))) * pressed;
         if slip_limit <= R::ZERO {
             return [R::ZERO; 3];
         }

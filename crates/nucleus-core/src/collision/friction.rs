@@ -24,6 +24,12 @@ impl<R: Real> Push<R> {
         Self { pressed: depth - free, led }
     }
 
+    /// A share of it.
+    #[inline(always)]
+    pub fn times(self, share: R) -> Self {
+        Self { pressed: self.pressed * share, led: self.led * share }
+    }
+
     /// The whole push.
     #[inline(always)]
     pub fn length(&self) -> R {
@@ -52,13 +58,4 @@ fn clamp<R: Real>(x: R, most: R) -> R {
     } else {
         x
     }
-}
-
-/// What the points of an element have of friction beyond their cloth, by how near each of them is.
-#[inline(always)]
-pub fn extra<R: Real, const N: usize>(column: &[R], points: [u32; N], weights: [R; N]) -> R {
-    if column.is_empty() {
-        return R::ZERO;
-    }
-    (0..N).map(|k| weights[k] * column[points[k] as usize]).sum()
 }

@@ -4,7 +4,10 @@
 
 use nalgebra::Vector3;
 
-use super::friction::{Push, extra, rub};
+use super::friction::{Push, rub};
+use super::maps::Maps;
+use super::stick::Film;
+use super::terms::{Sides, Terms};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
 use std::ops::Range;
@@ -21,12 +24,12 @@ pub struct Ground<'a, R> {
     pub height: &'a [R],
     /// The plane's normal, of unit length.
     pub normal: [R; 3],
-    /// Thickness of the cloth in metres.
-    pub thickness: R,
-    /// Sum of the two frictions.
-    pub friction: R,
-    /// What points have of it beyond their cloth; empty where nothing has.
-    pub extra_friction: &'a [R],
+    /// The share of every thickness that is kept.
+    pub squeeze: R,
+    /// How the cloth meets it.
+    pub terms: Terms<R>,
+    /// What the cloth's points bring into a contact beyond their cloth.
+    pub maps: &'a Maps<R>,
     /// Length of the step in seconds.
     pub h: R,
 }
@@ -46,23 +49,57 @@ impl<R: Real> Ground<'_, R> {
         let mut contacts = 0;
         for (row, point) in rows.iter_mut().zip(points) {
             let gap = self.height[point as usize] + dot(self.normal, row.xyz());
-            if gap < self.thickness && row.0[3] > R::ZERO {
+            let kept = self.kept(point);
+            if gap < kept && row.0[3] > R::ZERO {
                 contacts += 1;
-                self.lift_point(point, row, gap);
+                self.lift_point(point, row, [kept, gap]);
             }
         }
         contacts
     }
 
+    /// Holds the points of a run to the plane by what sticks.
     #[allow(unsafe_code)]
-    fn lift_point(&self, point: u32, row: &mut Row4<R>, gap: R) {
+    pub fn stick(&self, points: Range<u32>) {
+        // SAFETY: the phase hands every task a block of its own.
+        let rows = unsafe { self.displacement.run(points.clone()) };
+        for (row, point) in rows.iter_mut().zip(points).filter(|(row, _)| row.0[3] > R::ZERO) {
+            let start = self.start[point as usize].xyz();
+            let gap = self.height[point as usize] + dot(self.normal, start);
+            let sides: Sides<'_, R, 1, 0> = ([point], [], &([R::ONE], []));
+            let film = Film {
+                reach: self.kept(point) * R::from_f64(self.terms.reach),
+                thickness: self.kept(point),
+                stickiness: self.terms.stickiness_at(self.maps, sides),
+                friction: self.terms.friction_at(self.maps, sides),
+            };
+            let before = self.normal.map(|n| n * gap);
+            let now = std::array::from_fn(|axis| before[axis] + row.0[axis] - start[axis]);
+            let held = film.hold(before, now, self.normal, self.h).unwrap_or([R::ZERO; 3]);
+            (0..3).for_each(|axis| row.0[axis] += held[axis]);
+        }
+    }
+
+    /// The height that a point is kept at.
+    #[inline(always)]
+    fn kept(&self, point: u32) -> R {
+        let most = R::from_f64(self.terms.thickness);
+        self.terms.thickness_at(self.maps, ([point], [], &([R::ONE], [])), most) * self.squeeze
+    }
+
+    #[allow(unsafe_code)]
+    fn lift_point(&self, point: u32, row: &mut Row4<R>, [kept, gap]: [R; 2]) {
         // SAFETY: as above.
         let mut p = unsafe { self.predicted.get(point) };
         let start = self.start[point as usize].xyz();
         let gap_at_start = self.height[point as usize] + dot(self.normal, start);
-        let push = Push::new(self.thickness - gap, self.thickness - gap_at_start, self.h);
+        let mut push = Push::new(kept - gap, kept - gap_at_start, self.h);
+        let sides: Sides<'_, R, 1, 0> = ([point], [], &([R::ONE], []));
+        if self.terms.is_weak(self.maps) {
+            push = push.times(self.terms.strength_at(self.maps, sides));
+        }
         let motion: [R; 3] = std::array::from_fn(|axis| row.0[axis] - start[axis]);
-        let friction = self.friction + extra(self.extra_friction, [point], [R::ONE]);
+        let friction = self.terms.friction_at(self.maps, sides);
         let rub = rub(motion, self.normal, friction * push.pressed);
         for axis in 0..3 {
             row.0[axis] += self.normal[axis] * push.length() + rub[axis];

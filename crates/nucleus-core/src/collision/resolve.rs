@@ -155,6 +155,29 @@ fn settle_points<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Tea
     });
 }
 
+/// Holds every point to the nearest face of the collider by what sticks.
+pub fn stick<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) {
+    let PairList { point_face, active, .. } = list;
+    let pairs = &*point_face;
+    team.phase(active.runs.len(), |block| {
+        let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];
+        let pairs = || run.iter().map(|&pair| &pairs[pair as usize]);
+        let mut nearest: Option<(&Pair<R, 1, 3>, R)> = None;
+        for pair in pairs() {
+            let gap = pair.gap(step);
+            match nearest {
+                Some((other, least)) if other.points == pair.points && least <= gap => {}
+                Some((other, _)) if other.points == pair.points => nearest = Some((pair, gap)),
+                before => {
+                    before.into_iter().for_each(|(before, _)| before.stick(step));
+                    nearest = Some((pair, gap));
+                }
+            }
+        }
+        nearest.into_iter().for_each(|(last, _)| last.stick(step));
+    });
+}
+
 /// Goes through the pairs of one point until none pushes it any more. A point that is still being caught then
 /// rides along with the face that caught it: what moves with a rigid surface passes no part of it.
 fn settle_point<R: Real>(

@@ -40,6 +40,12 @@ impl Trapped {
         self.points.binary_search_by_key(&point, |&(point, _)| point).is_ok()
     }
 
+    /// Leaves everything where it is.
+    pub fn forget(&mut self) {
+        self.points.clear();
+        self.suspects.clear();
+    }
+
     /// Suspects all points that start in the box round a closed collider.
     pub fn begin<R: Real>(
         &mut self,

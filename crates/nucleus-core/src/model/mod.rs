@@ -60,8 +60,6 @@ pub struct ClothModel<R> {
     pub shares: Shares<R>,
     /// Factors on what its points feel of the air; empty where they are none.
     pub air: Vec<AirFactors>,
-    /// Factors on the friction of its points; empty where they are none.
-    pub friction: Vec<f64>,
 }
 
 impl<R: Real> ClothModel<R> {
@@ -86,7 +84,6 @@ impl<R: Real> ClothModel<R> {
             damps: cloth.lists.damp,
             shares: Shares::default(),
             air: Vec::new(),
-            friction: Vec::new(),
         };
         let places = model.order.places().to_vec();
         let place = |point: u32| first + places[point as usize];
@@ -113,7 +110,6 @@ impl<R: Real> ClothModel<R> {
         if cloth.lists.air {
             model.air = factors.of_air(model.points());
         }
-        model.friction = factors.of_friction(model.points());
         model.shares = shares;
         if cloth.lists.air {
             model.triangles = triangles_by_block(surface, place, &model.blocks);
@@ -139,7 +135,7 @@ impl<R: Real> ClothModel<R> {
 
     /// How many rows and points have factors of their own.
     pub fn factors(&self) -> usize {
-        self.shares.len() + self.air.len() + self.friction.len()
+        self.shares.len() + self.air.len()
     }
 
     /// The place in the columns of one of the user's points.

@@ -101,16 +101,6 @@ impl Factors<'_> {
         places.map(|place| factors((self.point)(place))).collect()
     }
 
-    /// Factors on the friction at each place.
-    pub fn of_friction(&self, places: Range<u32>) -> Vec<f64> {
-        let friction = &self.factors.friction;
-        if friction.is_empty() {
-            Vec::new()
-        } else {
-            places.map(|place| friction[(self.point)(place)]).collect()
-        }
-    }
-
     fn share<const N: usize>(&self, column: &[f64], places: [u32; N]) -> f64 {
         mean_share(column, places.map(|place| (self.point)(place)).into_iter())
     }

@@ -63,10 +63,10 @@ node_table! {
         BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("contact");
         /// Resistance to sliding; the values of both sides are added.
         FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("contact");
-        /// Resistance to coming apart after a contact; the values of both sides are added.
-        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0);
-        /// How much of a collision is carried out: 1 all, 0 none.
-        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0);
+        /// Resistance to coming apart after a contact; the values of both sides are added, and at 1 they never part. With a friction of 1 they do not slide either.
+        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("stick");
+        /// How much of a collision is carried out; the values of both sides are multiplied. 1 and above: all, nothing passes. Below 1 things may pass through each other; at 0 there is no collision.
+        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("terms");
         /// Up to which elements it collides: points, edges or faces.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("self_collision");
         /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
@@ -127,14 +127,14 @@ node_table! {
         MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s").solved("schedule");
         /// No effect is given more iterations than this, whatever its resistance.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0);
-        /// Pushes points of other objects to the nearest place outside; the sign says which side that is.
-        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0);
-        /// Points farther from the surface than this are not pushed out.
-        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0);
-        /// Pushes along the line where two objects pass through each other, until they come free.
-        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
-        /// Remembers on which side points started and brings them back there.
-        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false);
+        /// Share of the way by which points of other objects go, in a substep, to the outer side of the surface; below 0 to the inner. For scenes that start with one object in another.
+        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("push_out");
+        /// Points farther from the surface than this are not pushed out. Left out, it is four times the thickness.
+        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("push_out");
+        /// How much faster cloths are worked apart where they pass through each other: 0 half an edge length in 1/24 s, 1 ten times that. The values of both sides are added.
+        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("tangle");
+        /// Brings points that got to the wrong side back. The solver always does so for cloth, whatever is set here.
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("tangle");
     }
     "Initial State" {
         /// Initial positions in world space, in place of those of the input mesh; how the cloth is at rest is still the mesh's to say.
@@ -156,35 +156,35 @@ node_table! {
     }
     "Collision Properties Maps" {
         /// Texture that varies thickness.
-        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1);
+        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1).solved("factors");
         /// Factor on thickness at each point.
-        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv");
+        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv").solved("factors");
         /// Texture that varies bounce.
-        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0);
+        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0).solved("factors");
         /// Factor on bounce at each point.
-        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
+        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv").solved("factors");
         /// Texture that varies friction.
         FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("factors");
         /// Factor on friction at each point.
         FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("factors");
         /// Texture that varies stickiness.
-        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0);
+        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0).solved("factors");
         /// Factor on stickiness at each point.
-        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv");
+        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv").solved("factors");
         /// Texture that varies collide strength.
-        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0);
+        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0).solved("factors");
         /// Factor on collide strength at each point.
-        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv");
+        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv").solved("factors");
         /// Whether thickness is varied by nothing, by point, or by a texture.
-        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES);
+        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether bounce is varied by nothing, by point, or by a texture.
-        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
+        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether friction is varied by nothing, by point, or by a texture.
         FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether stickiness is varied by nothing, by point, or by a texture.
-        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
+        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES).solved("factors").fixed();
         /// Whether collide strength is varied by nothing, by point, or by a texture.
-        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES);
+        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES).solved("factors").fixed();
     }
     "Dynamic Properties Maps" {
         /// Texture that varies damp.

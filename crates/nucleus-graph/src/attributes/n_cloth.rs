@@ -89,8 +89,8 @@ node_table! {
     "Quality Settings" {
         /// How bending is worked out.
         BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]);
-        /// When shape attraction is in use: whether collision still has the last word in a step.
-        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0);
+        /// Whether collision has the last word in a step where shape attraction is in use. It always has, as at 1, whatever is set here.
+        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("schedule");
         /// Solves links in the order of their distance from contacts and constraints.
         SORT_LINKS: bool = toggle("sortLinks", "stlk", false);
         /// Whether links are solved one after another, or all from the same state.
@@ -98,9 +98,9 @@ node_table! {
         /// Links all corners of faces with more than three.
         ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("stretch").fixed();
         /// `crossoverPush` of the object against itself.
-        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0);
-        /// `trappedCheck` of the object against itself.
-        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false);
+        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("tangle");
+        /// `trappedCheck` of the object against itself: always done, whatever is set here.
+        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("tangle");
     }
     "Nucleus (open)" {
         /// Physical: stiffness of the cloth against being stretched, Young's modulus times its thickness. Below 0 it comes from `stretchResistance`, 500 N/m for 1.

@@ -1,7 +1,7 @@
 //! Colliders. Rows of its base are repeated where creation in Maya sets another value.
 
 use super::Choice;
-use super::key::{choice, floats, texture, toggle};
+use super::key::{choice, float, floats, texture, toggle};
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::table::node_table;
 
@@ -24,10 +24,36 @@ node_table! {
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", false);
     }
     "Quality Settings" {
-        /// Remembers on which side points started and brings them back there.
-        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true);
+        /// Leads points that are inside it, where it is closed, to the nearest way out; off, they stay in.
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("trapped");
+        /// Cloth that starts in it is led out point by point, whatever is set here: there is nothing to work apart.
+        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Collision Properties Maps" {
+        /// Texture that varies thickness.
+        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1);
+        /// Factor on thickness at each point.
+        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv");
+        /// Texture that varies bounce.
+        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0);
+        /// Factor on bounce at each point.
+        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
+        /// Texture that varies stickiness.
+        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0);
+        /// Factor on stickiness at each point.
+        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv");
+        /// Texture that varies collide strength.
+        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0);
+        /// Factor on collide strength at each point.
+        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv");
+        /// Whether thickness is varied by nothing, by point, or by a texture.
+        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES);
+        /// Whether bounce is varied by nothing, by point, or by a texture.
+        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
+        /// Whether stickiness is varied by nothing, by point, or by a texture.
+        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
+        /// Whether collide strength is varied by nothing, by point, or by a texture.
+        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES);
         /// Texture that varies friction.
         FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0);
         /// Factor on friction at each point.

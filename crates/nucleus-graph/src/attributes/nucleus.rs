@@ -37,8 +37,8 @@ node_table! {
         PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("contact");
         /// Friction of the ground plane, added to the other side's.
         PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("contact");
-        /// How strongly the ground plane holds on to what touches it.
-        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0);
+        /// Stickiness of the ground plane, added to the other side's.
+        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("stick");
     }
     "Solver Attributes" {
         /// Reads directions and the ground plane in the space of this node's own transform.

@@ -6,11 +6,11 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, PointId, ResistanceModel, Stiffness,
+    ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, PointId, PushOut, ResistanceModel, Stiffness,
 };
 
 use crate::animation::Affine;
-use crate::attributes::{Key, n_base, n_cloth, nucleus};
+use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus};
 use crate::graph::{Graph, Moment, NodeId};
 
 use super::objects::{CLASSIC, ClothSource, ColliderSource};
@@ -18,6 +18,9 @@ use super::pins::Grips;
 use super::program::{Program, Universe};
 use super::self_collision::elements;
 use super::shape::Points;
+
+/// Thicknesses to which Maya sets `pushOutRadius` when it makes an object.
+const CREATED_PUSH_OUT_RADIUS: f64 = 4.0;
 
 /// A stretch of time that is solved in one go: from one evaluation to the next.
 pub(crate) struct Stretch<'p> {
@@ -118,6 +121,7 @@ impl Stretch<'_> {
             normal,
             bounce: to.get(nucleus, &nucleus::PLANE_BOUNCE),
             friction: to.get(nucleus, &nucleus::PLANE_FRICTION),
+            stickiness: to.get(nucleus, &nucleus::PLANE_STICKINESS),
         })
     }
 
@@ -148,9 +152,14 @@ impl Stretch<'_> {
             local_force: Vector3::from(to.get(node, &n_base::LOCAL_FORCE)),
             local_wind: Vector3::from(to.get(node, &n_base::LOCAL_WIND)),
             collide: to.get(node, &n_base::COLLIDE),
-            thickness: self.thickness(node, cloth.default_thickness),
+            thickness: self.thickness(node, cloth.default_thickness) * scales.thickness,
             friction: number(&n_base::FRICTION) * scales.friction,
-            bounce: number(&n_base::BOUNCE),
+            stickiness: number(&n_base::STICKINESS) * scales.stickiness,
+            bounce: number(&n_base::BOUNCE) * scales.bounce,
+            collide_strength: number(&n_base::COLLIDE_STRENGTH) * scales.collide_strength,
+            push_out: self.push_out(node, cloth.default_thickness),
+            crossover_push: number(&n_base::CROSSOVER_PUSH),
+            self_crossover_push: number(&n_cloth::SELF_CROSSOVER_PUSH),
             elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),
             self_collision: self.self_collision(cloth),
@@ -166,7 +175,11 @@ impl Stretch<'_> {
             collide: to.get(node, &n_base::COLLIDE),
             thickness: self.thickness(node, collider.default_thickness),
             friction: to.get(node, &n_base::FRICTION),
+            stickiness: to.get(node, &n_base::STICKINESS),
             bounce: to.get(node, &n_base::BOUNCE),
+            collide_strength: to.get(node, &n_base::COLLIDE_STRENGTH),
+            push_out: self.push_out(node, collider.default_thickness),
+            trapped_check: to.get(node, &n_rigid::TRAPPED_CHECK),
         }
     }
 
@@ -182,6 +195,19 @@ impl Stretch<'_> {
         let start = if self.leaps { points(&before) } else { Vec::new() };
         let stays = before == now && !self.leaps;
         (start, if stays { Vec::new() } else { points(&now) })
+    }
+
+    /// How an object pushes points of others out. Left out, the radius is what Maya sets when it makes the object.
+    fn push_out(&self, node: NodeId, default_thickness: f64) -> PushOut {
+        let share = self.to.get(node, &n_base::PUSH_OUT);
+        if share == 0.0 {
+            return PushOut::OFF;
+        }
+        let radius = match self.graph.is_given(node, &n_base::PUSH_OUT_RADIUS) {
+            true => self.universe.units.length(self.to.get(node, &n_base::PUSH_OUT_RADIUS)),
+            false => CREATED_PUSH_OUT_RADIUS * self.thickness(node, default_thickness),
+        };
+        PushOut { share, radius }
     }
 
     /// In metres.

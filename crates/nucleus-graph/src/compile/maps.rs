@@ -43,7 +43,11 @@ maps! {
     DRAG: n_cloth::DRAG_PER_VERTEX, DRAG_MAP, DRAG_MAP_TYPE;
     TANGENTIAL_DRAG: n_cloth::TANGENTIAL_DRAG_PER_VERTEX, TANGENTIAL_DRAG_MAP, TANGENTIAL_DRAG_MAP_TYPE;
     LIFT: n_cloth::LIFT_PER_VERTEX, LIFT_MAP, LIFT_MAP_TYPE;
+    THICKNESS: n_base::THICKNESS_PER_VERTEX, THICKNESS_MAP, THICKNESS_MAP_TYPE;
     FRICTION: n_base::FRICTION_PER_VERTEX, FRICTION_MAP, FRICTION_MAP_TYPE;
+    STICKINESS: n_base::STICKINESS_PER_VERTEX, STICKINESS_MAP, STICKINESS_MAP_TYPE;
+    BOUNCE: n_base::BOUNCE_PER_VERTEX, BOUNCE_MAP, BOUNCE_MAP_TYPE;
+    COLLIDE_STRENGTH: n_base::COLLIDE_STRENGTH_PER_VERTEX, COLLIDE_STRENGTH_MAP, COLLIDE_STRENGTH_MAP_TYPE;
 }
 
 /// Factors on the attributes of a cloth that are the same for all of its points.
@@ -58,7 +62,11 @@ pub(super) struct Scales {
     pub(super) drag: f64,
     pub(super) tangential_drag: f64,
     pub(super) lift: f64,
+    pub(super) thickness: f64,
     pub(super) friction: f64,
+    pub(super) stickiness: f64,
+    pub(super) bounce: f64,
+    pub(super) collide_strength: f64,
 }
 
 /// What the maps of a cloth come to.
@@ -111,7 +119,9 @@ impl Compiler<'_> {
         let [mass, damp] = [&MASS, &DAMP].map(|map| Varied::of(read(map)));
         let [rest_length, drag] = [&REST_LENGTH, &DRAG].map(|map| Varied::of(read(map)));
         let [tangential_drag, lift] = [&TANGENTIAL_DRAG, &LIFT].map(|map| Varied::of(read(map)));
-        let friction = Varied::of(read(&FRICTION));
+        let [thickness, friction] = [&THICKNESS, &FRICTION].map(|map| Varied::of(read(map)));
+        let [stickiness, bounce] = [&STICKINESS, &BOUNCE].map(|map| Varied::of(read(map)));
+        let collide_strength = Varied::of(read(&COLLIDE_STRENGTH));
         let [stretch, compression, bend] = [stretch, compression, read(&BEND)].map(Varied::of_shares);
         self.check_mass(cloth, &mass);
         if self.findings.errors() > before {
@@ -127,7 +137,11 @@ impl Compiler<'_> {
             drag: drag.scale,
             tangential_drag: tangential_drag.scale,
             lift: lift.scale,
+            thickness: thickness.scale,
             friction: friction.scale,
+            stickiness: stickiness.scale,
+            bounce: bounce.scale,
+            collide_strength: collide_strength.scale,
         };
         let factors = PointFactors {
             mass: mass.factors,
@@ -139,7 +153,11 @@ impl Compiler<'_> {
             drag: drag.factors,
             tangential_drag: tangential_drag.factors,
             lift: lift.factors,
+            thickness: thickness.factors,
             friction: friction.factors,
+            stickiness: stickiness.factors,
+            bounce: bounce.factors,
+            collide_strength: collide_strength.factors,
         };
         Some(Maps { scales, factors })
     }

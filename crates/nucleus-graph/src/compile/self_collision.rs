@@ -24,7 +24,7 @@ impl Stretch<'_> {
         let scale = if is_given { to.get(node, &n_cloth::SELF_COLLIDE_WIDTH_SCALE) } else { width };
         SelfCollision {
             on: to.get(node, &n_base::SELF_COLLIDE),
-            thickness: self.thickness(node, cloth.default_thickness) * scale,
+            thickness: self.thickness(node, cloth.default_thickness) * cloth.scales.thickness * scale,
             elements: elements(Choice(flag)),
             edges: flag == FULL_SURFACE,
         }

@@ -2,7 +2,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothFrame, ClothId, Elements, FrameInput, PointId, ResistanceModel, SelfCollision, Stiffness,
+    ClothFrame, ClothId, Elements, FrameInput, PointId, PushOut, ResistanceModel, SelfCollision, Stiffness,
 };
 use proptest::prelude::*;
 
@@ -145,6 +145,8 @@ fn every_attribute_of_cloth_reaches_its_place() {
         stretchStiffness: 20, compressionStiffness: 21, shearStiffness: 0, bendStiffness: -1, \
         ignoreSolverGravity: true, ignoreSolverWind: true, localForce: (11, 12, 13), localWind: (14, 15, 16), \
         collide: false, thickness: 17, friction: 18, bounce: 19, collisionFlag: Edge, collisionLayer: 20, \
+        stickiness: 22, collideStrength: 23, pushOut: 24, pushOutRadius: 25, crossoverPush: 26, \
+        selfCrossoverPush: 27, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
@@ -165,7 +167,12 @@ fn every_attribute_of_cloth_reaches_its_place() {
         collide: false,
         thickness: 17.0,
         friction: 18.0,
+        stickiness: 22.0,
         bounce: 19.0,
+        collide_strength: 23.0,
+        push_out: PushOut { share: 24.0, radius: 25.0 },
+        crossover_push: 26.0,
+        self_crossover_push: 27.0,
         elements: Elements::Edges,
         layer: 20.0,
         self_collision: SelfCollision {
@@ -205,11 +212,14 @@ fn a_collider_moves_from_frame_to_frame() {
 
 #[test]
 fn a_collider_that_never_moves_has_no_positions() {
-    let still =
-        program(r#""n": nucleus(), "box": polyCube(tx: 3), "c": nRigid(inputMesh: "box", friction: 0.7)"#);
+    let still = program(
+        r#""n": nucleus(), "box": polyCube(tx: 3), "c": nRigid(inputMesh: "box", friction: 0.7, thickness: 1e-3,
+            stickiness: 0.2, collideStrength: 0.9, pushOut: -1, trappedCheck: false)"#,
+    );
     let collider = &still.first_input().colliders[0];
     assert!(collider.start.is_empty() && collider.end.is_empty() && collider.collide);
-    assert_eq!(collider.friction, 0.7);
+    assert_eq!((collider.friction, collider.stickiness, collider.collide_strength), (0.7, 0.2, 0.9));
+    assert_eq!((collider.push_out, collider.trapped_check), (PushOut { share: -1.0, radius: 4e-3 }, false));
     assert!(model(&still).contains("3.5"));
 }
 

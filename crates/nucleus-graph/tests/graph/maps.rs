@@ -184,7 +184,7 @@ fn what_is_set_of_a_map_and_does_not_count_is_a_warning() {
             "`bendMap` of `c` has no effect: `bendMapType` is none",
             r#"texture("a.png")"#,
         ),
-        ("thicknessMapType: perVertex", "`thicknessMapType` of `c` has no effect yet", "thicknessMapType"),
+        ("rigidityMapType: perVertex", "`rigidityMapType` of `c` has no effect yet", "rigidityMapType"),
     ] {
         let text = hanging(fields);
         let warnings = told(&text, file);

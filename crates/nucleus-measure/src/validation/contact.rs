@@ -44,7 +44,8 @@ fn on_plane(normal: Vec3, friction: f64, height: f64) -> Result<Rig, BuildError>
     rig.cloth().stiffness = membrane(1e3);
     rig.cloth().thickness = THICKNESS;
     rig.cloth().friction = 0.0;
-    rig.frame.plane = Some(GroundPlane { origin: Vec3::zeros(), normal, bounce: 0.0, friction });
+    rig.frame.plane =
+        Some(GroundPlane { origin: Vec3::zeros(), normal, bounce: 0.0, friction, stickiness: 0.0 });
     Ok(rig)
 }
 

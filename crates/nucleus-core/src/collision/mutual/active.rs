@@ -8,8 +8,9 @@ use super::near::{Meeting, Motion, Near};
 use super::paths::Paths;
 use super::tangle::Tangle;
 use super::tasks::Tasks;
-use super::terms::Terms;
 use super::{Mutual, bodies::Bodies};
+use crate::collision::bounce::Bounce;
+use crate::collision::terms::Terms;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add};
 use crate::team::Team;
@@ -136,10 +137,11 @@ impl<R: Real> View<'_, R> {
         }
         let [ours, theirs] = cloths.map(|cloth| cloth as usize);
         let Some(terms) = &self.terms[ours * self.cloths + theirs] else { return };
+        let thickness = f64::from(candidate.thickness);
         let meeting = Meeting {
-            thickness: R::from_f64(f64::from(candidate.thickness)),
-            friction: terms.friction,
-            mobility: terms.mobility,
+            thickness: R::from_f64(thickness),
+            reach: R::from_f64(thickness * terms.reach),
+            terms: (ours * self.cloths + theirs) as u32,
         };
         let [a, b, c, d] = candidate.points;
         match candidate.kind {
@@ -236,6 +238,27 @@ impl<R: Real> Active<R> {
             + self.point_point.sweep(step, team)
             + self.point_edge.sweep(step, team)
             + self.point_face.sweep(step, team)
+    }
+
+    /// Holds together what sticks: points to what they touch.
+    pub fn stick(&mut self, step: &Motion<'_, R>, team: &Team) {
+        self.point_point.count(team, |near| near.stick(step));
+        self.point_edge.count(team, |near| near.stick(step));
+        self.point_face.count(team, |near| near.stick(step));
+    }
+
+    /// Gives back part of their speed to what came together.
+    pub fn bounce(
+        &mut self,
+        step: &Motion<'_, R>,
+        velocities: Shared<'_, Row4<R>>,
+        rebound: Bounce<R>,
+        team: &Team,
+    ) {
+        self.edge_edge.count(team, |near| near.bounce(step, velocities, rebound));
+        self.point_point.count(team, |near| near.bounce(step, velocities, rebound));
+        self.point_edge.count(team, |near| near.bounce(step, velocities, rebound));
+        self.point_face.count(team, |near| near.bounce(step, velocities, rebound));
     }
 
     /// How many contacts are not proven.

@@ -110,18 +110,18 @@ impl Seen {
         [start.inflate(margin), end.inflate(margin)]
     }
 
-    /// A candidate, if the two can come nearer than the thickness. `rest` is the shape at rest, for elements
-    /// of one cloth.
+    /// A candidate, if the two can come nearer than what is kept of the thickness, times `reach`. `rest` is the shape at
+    /// rest, for elements of one cloth.
     #[inline]
     pub fn candidate(
         &self,
         kind: Kind,
         points: [u32; 4],
-        thickness: f32,
+        [thickness, reach]: [f32; 2],
         rest: Option<&[[f32; 3]]>,
     ) -> Option<Candidate> {
         let [a, b, c, d] = points;
-        let terms = (thickness, rest);
+        let terms = ([thickness, reach], rest);
         let kept = match kind {
             Kind::PointPoint => self.kept(([a], [b]), terms),
             Kind::PointEdge => self.kept(([a], [b, c]), terms),
@@ -136,7 +136,7 @@ impl Seen {
     fn kept<const N: usize, const M: usize>(
         &self,
         (ours, theirs): ([u32; N], [u32; M]),
-        (thickness, rest): (f32, Option<&[[f32; 3]]>),
+        ([thickness, reach], rest): ([f32; 2], Option<&[[f32; 3]]>),
     ) -> Option<f32> {
         let xyz = |[x, y, z, _]: [f32; 4]| [x, y, z];
         let at = |places: &[[f32; 4]]| {
@@ -146,13 +146,13 @@ impl Seen {
         let stray = most(&ours) + most(&theirs);
         let [start, end] = [at(&self.start), at(&self.end)];
         let line = between_middles(&start);
-        let far = (thickness + stray) * dot(line, line).sqrt();
+        let far = (thickness * reach + stray) * dot(line, line).sqrt();
         if gap_along(line, &start) >= far && gap_along(line, &end) >= far {
             return None;
         }
         let (normal, _, distance) = shortest(start);
         let least = distance.min(gap_along(normal, &end)) - stray;
-        if least >= thickness {
+        if least >= thickness * reach {
             return None;
         }
         let resting = |rest: &[[f32; 3]]| {
@@ -160,6 +160,6 @@ impl Seen {
         };
         let at_rest = rest.map_or(f32::INFINITY, |rest| shortest(resting(rest)).2);
         let kept = thickness.min(at_rest * OF_REST_DISTANCE);
-        (least < kept).then_some(kept)
+        (least < kept * reach).then_some(kept)
     }
 }

@@ -4,7 +4,7 @@ use super::Mutual;
 use super::bodies::Bodies;
 use super::pieces::Pieces;
 use super::tangle::{Crossing, Remedy, Tangle, Wing, goes_through};
-use super::terms::Terms;
+use crate::collision::terms::Terms;
 use crate::model::ClothModel;
 use crate::scalar::{Real, Row4, add, cross, dot, scale, sub};
 
@@ -45,7 +45,8 @@ impl<R: Real> View<'_, R> {
     /// Every edge of one group that goes through a face of another.
     fn cross(&self, group: u32, other: u32, found: &mut Vec<Crossing>) {
         let [ours, theirs] = [group, other].map(|group| &self.bodies.groups[group as usize]);
-        let meets = self.terms[ours.cloth as usize * self.cloths.len() + theirs.cloth as usize].is_some();
+        let terms = &self.terms[ours.cloth as usize * self.cloths.len() + theirs.cloth as usize];
+        let meets = terms.as_ref().is_some_and(|terms| terms.strength == [R::ONE; 2]);
         if !meets || !self.bodies.swept(other).meets(&self.bodies.swept(group)) {
             return;
         }

@@ -2,13 +2,14 @@
 //!
 //! | You want to know... | Read |
 //! |---|---|
-//! | who meets whom, at which thickness and friction | [`terms`] |
+//! | who meets whom, at which thickness and friction | [`terms`](super::terms) |
 //! | the elements of all cloths in one tree | [`bodies`] |
 //! | which elements have a point | [`stars`] |
 //! | where each point is foreseen to go | [`paths`] |
 //! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`candidate`] |
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
+//! | what sticks, and what bounces | [`rebound`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
 //! | meshes that pass through each other: found, and worked apart | [`crossings`], [`tangle`] |
 //!
@@ -24,20 +25,20 @@ mod local;
 pub mod near;
 pub mod paths;
 mod pieces;
+mod rebound;
 pub mod search;
 mod sought;
 mod stars;
 pub mod tangle;
 pub mod tasks;
-pub mod terms;
 
 use active::Active;
 use bodies::Bodies;
 use paths::Paths;
 use search::Candidates;
 use tangle::Tangle;
-use terms::Terms;
 
+use crate::collision::terms::Terms;
 use crate::model::ClothModel;
 use crate::scalar::Real;
 

@@ -3,8 +3,10 @@
 //! It carries a direction along which the two were apart at the start of the time step. As long as they are
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
-use crate::collision::friction::{Push, extra, rub};
+use crate::collision::friction::{Push, rub};
+use crate::collision::maps::Maps;
 use crate::collision::narrow::{Places, across, between_middles, gap_along, shortest, weigh};
+use crate::collision::terms::{Sides, Terms};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
 
@@ -28,8 +30,10 @@ pub struct Motion<'a, R> {
     pub predicted: Shared<'a, Row4<R>>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
-    /// What points have of friction beyond their cloth; empty where nothing has.
-    pub extra_friction: &'a [R],
+    /// How cloths meet, by cloth and cloth.
+    pub terms: &'a [Option<Terms<R>>],
+    /// What points bring into a contact beyond their cloth.
+    pub maps: &'a Maps<R>,
     /// Length of the step in seconds.
     pub h: R,
     /// The share of every thickness that is kept: less than one where there is no room for all of it.
@@ -65,15 +69,15 @@ impl<R: Real> Motion<'_, R> {
     }
 }
 
-/// What a contact is between, and on which terms.
+/// On which terms two elements meet.
 #[derive(Debug, Clone, Copy)]
 pub struct Meeting<R> {
-    /// The distance to keep, in metres.
+    /// The distance to keep, in metres; the most that maps make of it.
     pub thickness: R,
-    /// Sum of the two frictions.
-    pub friction: R,
-    /// Factor on the mobility of each side.
-    pub mobility: [R; 2],
+    /// The distance in metres up to which anything acts.
+    pub reach: R,
+    /// The terms of the two cloths, by their place among all.
+    pub terms: u32,
 }
 
 /// A contact: `N` points of one element, `M` of the other.
@@ -115,14 +119,14 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let stray = ball(&ours) + ball(&theirs);
         // Most are far apart already along the line between their middles, which costs less to see.
         let line = between_middles(&before);
-        let far = (meeting.thickness + stray) * dot(line, line).sqrt();
+        let far = (meeting.reach + stray) * dot(line, line).sqrt();
         if gap_along(line, &before) >= far && gap_along(line, &after) >= far {
             return None;
         }
         near.normal = shortest(near.at(start)).0;
         let (first, last) = (near.gap(&before), near.gap(&after));
         let least = if last < first { last } else { first };
-        (least - stray < meeting.thickness).then_some(near)
+        (least - stray < meeting.reach).then_some(near)
     }
 
     #[inline(always)]
@@ -132,19 +136,42 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     }
 
     #[inline(always)]
-    fn now(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
+    pub(super) fn now(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
         self.at(|point| step.row(point).xyz())
     }
 
     #[inline(always)]
-    fn before(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
+    pub(super) fn before(&self, step: &Motion<'_, R>) -> Places<R, N, M> {
         self.at(|point| step.start(point))
     }
 
-    /// The distance to keep.
+    /// The terms of the two cloths.
     #[inline(always)]
-    fn kept(&self, step: &Motion<'_, R>) -> R {
-        self.meeting.thickness * step.squeeze
+    pub(super) fn terms<'a>(&self, step: &Motion<'a, R>) -> Option<&'a Terms<R>> {
+        step.terms[self.meeting.terms as usize].as_ref()
+    }
+
+    /// The points of the two, with how near each of them is.
+    #[inline(always)]
+    pub(super) fn sides<'a>(&self, weights: &'a ([R; N], [R; M])) -> Sides<'a, R, N, M> {
+        (self.ours, self.theirs, weights)
+    }
+
+    /// The distance to keep where the contact is.
+    #[inline(always)]
+    fn kept(&self, step: &Motion<'_, R>, weights: &([R; N], [R; M])) -> R {
+        self.thickness_at(step.terms, step.maps, weights) * step.squeeze
+    }
+
+    /// The thickness of both where the contact is, in metres.
+    #[inline(always)]
+    pub fn thickness_at(&self, terms: &[Option<Terms<R>>], maps: &Maps<R>, weights: &([R; N], [R; M])) -> R {
+        let most = self.meeting.thickness;
+        let there = |terms: &Terms<R>| terms.thickness_at(maps, self.sides(weights), most);
+        if maps.thickness.is_empty() {
+            return most;
+        }
+        terms[self.meeting.terms as usize].as_ref().map_or(most, there)
     }
 
     /// The gap along the contact's direction.
@@ -157,46 +184,70 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     #[inline]
     pub fn resolve(&mut self, step: &Motion<'_, R>) -> bool {
         let now = self.now(step);
-        let held = self.kept(step) * R::from_f64(1.0 - TOUCH);
+        let touching = R::from_f64(1.0 - TOUCH);
         let gap = self.gap(&now);
-        if gap >= held {
+        if gap >= self.meeting.thickness * step.squeeze * touching {
             return false;
         }
         let before = self.before(step);
-        let (normal, (b, c), distance) = shortest(now);
+        let (normal, weights, distance) = shortest(now);
         if distance > R::ZERO && gap_along(normal, &before) > grain(&now) * R::from_f64(AT_START) {
             // Apart along this line at both ends of the step: it is theirs from now on.
             self.normal = normal;
-            if distance >= held {
+            let kept = self.kept(step, &weights);
+            if distance >= kept * touching {
                 return false;
             }
-            self.push(step, (b, c), &before, self.kept(step) - distance);
+            self.push(step, &weights, &before, [kept, kept - distance]);
             return true;
         }
         // They may have passed. Back to the side that they were on.
-        let (_, (b, c), _) = shortest(before);
-        let depth = self.kept(step) - dot(self.normal, sub(weigh(now.0, b), weigh(now.1, c)));
+        let (_, weights, _) = shortest(before);
+        let kept = self.kept(step, &weights);
+        let depth = kept - dot(self.normal, self.line(&now, &weights));
         if depth > R::ZERO {
-            self.push(step, (b, c), &before, depth);
+            self.push(step, &weights, &before, [kept, depth]);
         }
         true
     }
 
-    /// Moves both sides by `depth` in all, each by its mobility, with friction.
-    fn push(&self, step: &Motion<'_, R>, (b, c): ([R; N], [R; M]), before: &Places<R, N, M>, depth: R) {
+    /// Moves both sides by `depth` in all, where `kept` is to be kept, each by its mobility, with friction.
+    fn push(
+        &self,
+        step: &Motion<'_, R>,
+        weights: &([R; N], [R; M]),
+        before: &Places<R, N, M>,
+        [kept, depth]: [R; 2],
+    ) {
+        let Some(terms) = self.terms(step) else { return };
+        let line_before = self.line(before, weights);
+        let mut push = Push::new(depth, kept - dot(self.normal, line_before), step.h);
+        if terms.is_weak(step.maps) {
+            push = push.times(terms.strength_at(step.maps, self.sides(weights)));
+        }
+        let along = scale(self.normal, push.length());
+        let rub = self.rub(step, terms, weights, line_before, along, push.pressed);
+        self.part(step, terms, weights, add(along, rub), scale(self.normal, push.led));
+    }
+
+    /// Moves the two by `moved` from each other, each side by its mobility; `led` is the part of it that is not to
+    /// become velocity.
+    pub(super) fn part(
+        &self,
+        step: &Motion<'_, R>,
+        terms: &Terms<R>,
+        (b, c): &([R; N], [R; M]),
+        moved: [R; 3],
+        led: [R; 3],
+    ) {
         let mobile =
-            |point: u32, weight: R, side: usize| step.row(point).0[3] * weight * self.meeting.mobility[side];
+            |point: u32, weight: R, side: usize| step.row(point).0[3] * weight * terms.mobility[side];
         let ours: [R; N] = std::array::from_fn(|k| mobile(self.ours[k], b[k], 0));
         let theirs: [R; M] = std::array::from_fn(|k| mobile(self.theirs[k], c[k], 1));
         let all = (0..N).map(|k| ours[k] * b[k]).sum::<R>() + (0..M).map(|k| theirs[k] * c[k]).sum::<R>();
         if all <= R::TINY {
             return;
         }
-        let line_before = sub(weigh(before.0, b), weigh(before.1, c));
-        let push = Push::new(depth, self.kept(step) - dot(self.normal, line_before), step.h);
-        let along = scale(self.normal, push.length());
-        let rub = self.rub(step, (b, c), line_before, along, push.pressed);
-        let (moved, led) = (add(along, rub), scale(self.normal, push.led));
         let part = R::ONE / all;
         for k in 0..N {
             self.shift(step, self.ours[k], ours[k] * part, moved, led);
@@ -219,19 +270,24 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     fn rub(
         &self,
         step: &Motion<'_, R>,
-        (b, c): ([R; N], [R; M]),
+        terms: &Terms<R>,
+        weights: &([R; N], [R; M]),
         line_before: [R; 3],
         along: [R; 3],
         pressed: R,
     ) -> [R; 3] {
-        let own = extra(step.extra_friction, self.ours, b) + extra(step.extra_friction, self.theirs, c);
-        let limit = (self.meeting.friction + own) * pressed;
+        let limit = terms.friction_at(step.maps, self.sides(weights)) * pressed;
         if limit <= R::ZERO {
             return [R::ZERO; 3];
         }
-        let now = self.now(step);
-        let line = sub(weigh(now.0, b), weigh(now.1, c));
+        let line = self.line(&self.now(step), weights);
         rub(add(sub(line, line_before), along), self.normal, limit)
+    }
+
+    /// The line from the contact on theirs to the contact on ours.
+    #[inline(always)]
+    pub(super) fn line(&self, at: &Places<R, N, M>, (b, c): &([R; N], [R; M])) -> [R; 3] {
+        sub(weigh(at.0, *b), weigh(at.1, *c))
     }
 
     /// Whether it is certain that the two did not pass each other in this step. Takes up another direction
@@ -239,10 +295,17 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     #[inline]
     pub fn prove(&mut self, step: &Motion<'_, R>) -> bool {
         let now = self.now(step);
-        if self.gap(&now) > grain(&now) {
-            return true;
-        }
-        self.prove_otherwise(step, now)
+        self.gap(&now) > grain(&now) || self.may_pass(step) || self.prove_otherwise(step, now)
+    }
+
+    /// Whether the scene lets the two pass through each other: a collision that is carried out in part is none that holds.
+    #[cold]
+    fn may_pass(&self, step: &Motion<'_, R>) -> bool {
+        let Some(terms) = self.terms(step) else { return true };
+        let map = &step.maps.strength;
+        let mut points = self.ours.iter().chain(&self.theirs);
+        let all = terms.strength.iter().any(|&side| side < R::ONE);
+        terms.is_weak(step.maps) && (all || points.any(|&point| map[point as usize] < R::ONE))
     }
 
     #[cold]
@@ -328,14 +391,10 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         }
     }
 
-    /// The distance that is to be kept, in metres.
-    pub fn thickness(&self) -> R {
-        self.meeting.thickness
-    }
-
-    /// The distance between the two, over their thickness.
+    /// The distance between the two, over the thickness kept between them.
     pub fn closeness(&self, step: &Motion<'_, R>) -> R {
-        shortest(self.now(step)).2 / self.meeting.thickness
+        let (_, weights, distance) = shortest(self.now(step));
+        distance / self.kept(step, &weights)
     }
 }
 

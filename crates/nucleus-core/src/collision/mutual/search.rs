@@ -8,9 +8,9 @@ use super::bodies::Bodies;
 use super::candidate::{Candidate, Seen};
 use super::local::{Boxes, Locals};
 use super::sought::Sought;
-use super::terms::Terms;
 use crate::checkpoint::kept;
 use crate::collision::skin::{Group, Skin};
+use crate::collision::terms::Terms;
 use crate::collision::tree::Aabb;
 use crate::model::ClothModel;
 use crate::scalar::Real;
@@ -75,7 +75,7 @@ pub fn search<R: Real>(
 ) {
     let Mutual { bodies, terms, far, strayed, candidates, .. } = mutual;
     let Candidates { list, again, tasks, seen } = candidates;
-    let widest = terms.iter().flatten().map(|terms| terms.thickness).fold(0.0, f64::max) as f32;
+    let widest = terms.iter().flatten().map(|terms| terms.thickness * terms.reach).fold(0.0, f64::max) as f32;
     let margin = widest * 0.5 * (1.0 + 1e-5);
     let is_changed = |points: &[u32]| points.iter().any(|&point| strayed[point as usize]);
     let is_all_new = seen.look(anchors, far, strayed, now);

@@ -75,8 +75,9 @@ impl Sought {
         let Some(terms) = &search.terms[cloths[0] * search.cloths.len() + cloths[1]] else { return };
         let (skin, elements) = search.elements(group);
         let rest = (cloths[0] == cloths[1]).then_some(&search.bodies.rest[..]);
+        let near = [terms.thickness as f32, terms.reach as f32];
         let mut keep = |kind: Kind, points: [u32; 4]| {
-            list.extend(search.seen.candidate(kind, points, terms.thickness as f32, rest));
+            list.extend(search.seen.candidate(kind, points, near, rest));
         };
         // What has no face is points, whatever its cloth's are.
         let reach = |is_free: bool, elements: Elements| if is_free { Elements::Points } else { elements };

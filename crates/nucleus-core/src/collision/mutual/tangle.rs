@@ -104,9 +104,17 @@ impl Tangle {
         self.is_there() && self.pairs.contains(&[low, high]) && is_near(ours) && is_near(theirs)
     }
 
-    /// Works every crossing that is still there a step farther apart, by `most` metres at most.
-    pub fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, most: f64) {
-        self.crossings.iter().for_each(|crossing| crossing.work_apart(anchors, step, most));
+    /// Works every crossing that is still there a step farther apart, by `most` metres at most, or more where the scene
+    /// pushes. `cloth` says for each point of which cloth it is.
+    pub fn work_apart<R: Real>(&self, anchors: &[Vector], step: &Motion<'_, R>, cloth: &[u32], most: f64) {
+        let cloths = step.terms.len().isqrt();
+        for crossing in &self.crossings {
+            let [ours, theirs] =
+                [crossing.edge[0], crossing.face[0]].map(|point| cloth[point as usize] as usize);
+            let terms = &step.terms[ours * cloths + theirs];
+            let pace = terms.as_ref().map_or(1.0, |terms| terms.untangling);
+            crossing.work_apart(anchors, step, most * pace);
+        }
     }
 }
 

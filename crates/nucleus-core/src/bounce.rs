@@ -1,0 +1,98 @@
+//! Bounce: what hit something leaves it with part of its speed, once the velocities of a step are known.
+
+use nalgebra::Vector3;
+
+use crate::collide::StepParts;
+use crate::collision::bounce::{Bounce, Hit};
+use crate::collision::maps::at;
+use crate::collision::mutual::Mutual;
+use crate::columns::Shared;
+use crate::frame::FrameInput;
+use crate::meet::motion;
+use crate::scalar::{Real, Row4, dot};
+use crate::schedule::Schedule;
+use crate::solver::Solver;
+
+impl<R: Real> Solver<R> {
+    /// Gives back, after the step, part of the speed to what hit something that bounces.
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, end: f64) {
+        // Slower than gravity makes things anew in every step nothing bounces.
+        let slowest = R::from_f64(2.0 * frame.gravity.norm() * schedule.h);
+        let rebound = Bounce { bounce: R::ZERO, slowest, h: R::from_f64(schedule.h) };
+        self.bounce_off_ground(frame, rebound);
+        for cloth in 0..self.cloths.len() {
+            self.bounce_off_colliders(frame, rebound, end, cloth);
+        }
+        self.bounce_off_cloth(schedule, rebound);
+    }
+
+    fn bounce_off_ground(&mut self, frame: &FrameInput, rebound: Bounce<R>) {
+        let Some(ground) = &frame.plane else { return };
+        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        let normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+        for cloth in 0..self.cloths.len() {
+            let Some(terms) = self.ground_terms[cloth].filter(|terms| terms.bounces()) else { continue };
+            for row in self.cloths[cloth].points() {
+                let (sides, hit) = (([row], [], &([R::ONE], [])), self.hit(row as usize));
+                let thickness = terms.thickness_at(&self.maps, sides, R::from_f64(terms.thickness));
+                let rebound = Bounce { bounce: terms.bounce_at(&self.maps, sides), ..rebound };
+                let height = self.heights[row as usize] + dot(normal, hit.displacement);
+                if rebound.bounce > R::ZERO && Bounce::touches(height, thickness) {
+                    self.set_velocity(row as usize, rebound.off(&hit, normal, [R::ZERO; 3]));
+                }
+            }
+        }
+    }
+
+    fn bounce_off_colliders(&mut self, frame: &FrameInput, rebound: Bounce<R>, end: f64, cloth: usize) {
+        for index in 0..self.pairs.len() {
+            let collider = self.pairs[index].collider;
+            if self.pairs[index].cloth != cloth {
+                continue;
+            }
+            let terms = self.terms_of(cloth)[collider].filter(|terms| terms.bounces());
+            let Some(terms) = terms else { continue };
+            for active in 0..self.pairs[index].active.point_face.len() {
+                let Self { state, collider_states, pairs, maps, .. } = self;
+                let pair = pairs[index].point_face[pairs[index].active.point_face[active] as usize];
+                let (h, span) = (rebound.h.to_f64(), pairs[index].span);
+                let view = StepParts { terms, maps, h, time: [end; 2], span };
+                let touch = pair.touch(&view.of(state, &collider_states[collider]), frame.duration);
+                let [own, theirs] =
+                    [terms.bounce[0] * at(&maps.bounce, pair.points, [R::ONE]), terms.bounce[1]];
+                let bounce = if own > theirs { own } else { theirs };
+                if let Some((normal, surface)) = touch.filter(|_| bounce > R::ZERO) {
+                    let row = pair.points[0] as usize;
+                    let rebound = Bounce { bounce, ..rebound };
+                    self.set_velocity(row, rebound.off(&self.hit(row), normal, surface));
+                }
+            }
+        }
+    }
+
+    fn bounce_off_cloth(&mut self, schedule: &Schedule<R>, rebound: Bounce<R>) {
+        let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
+        let Mutual { active, terms, .. } = mutual;
+        if !terms.iter().flatten().any(|terms| terms.bounces()) {
+            return;
+        }
+        let mut velocities = std::mem::take(&mut state.velocity);
+        active.bounce(&motion(state, terms, maps, schedule.h), Shared::new(&mut velocities), rebound, team);
+        state.velocity = velocities;
+    }
+
+    fn hit(&self, row: usize) -> Hit<R> {
+        Hit {
+            predicted: self.state.predicted[row].xyz(),
+            displacement: self.state.displacement[row].xyz(),
+            velocity: self.state.velocity[row].xyz(),
+        }
+    }
+
+    /// Sets the velocity of a point that is not pinned.
+    fn set_velocity(&mut self, row: usize, [x, y, z]: [R; 3]) {
+        if self.state.displacement[row].0[3] > R::ZERO {
+            self.state.velocity[row] = Row4([x, y, z, R::ZERO]);
+        }
+    }
+}

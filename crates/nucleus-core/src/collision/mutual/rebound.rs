@@ -1,0 +1,81 @@
+//! What holds two elements together once they touch, and what throws them apart: stickiness and bounce.
+
+use super::near::{Motion, Near};
+use crate::collision::bounce::{Bounce, Hit};
+use crate::collision::narrow::shortest;
+use crate::collision::stick::Film;
+use crate::columns::Shared;
+use crate::scalar::{Real, Row4, add, scale, sub};
+
+impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
+    /// Holds the two to each other by what sticks; whether anything did.
+    pub fn stick(&self, step: &Motion<'_, R>) -> bool {
+        let Some(terms) = self.terms(step).filter(|terms| terms.sticks()) else { return false };
+        let (now, before) = (self.now(step), self.before(step));
+        let (normal, weights, _) = shortest(before);
+        let thickness = self.thickness_at(step.terms, step.maps, &weights);
+        let film = Film {
+            reach: thickness * R::from_f64(terms.reach),
+            thickness,
+            stickiness: terms.stickiness_at(step.maps, self.sides(&weights)),
+            friction: terms.friction_at(step.maps, self.sides(&weights)),
+        };
+        let [before, now] = [self.line(&before, &weights), self.line(&now, &weights)];
+        let held = film.hold(before, now, normal, step.h);
+        held.inspect(|&held| self.part(step, terms, &weights, held, [R::ZERO; 3])).is_some()
+    }
+
+    /// Gives both sides back part of the speed with which they came together, if they touch at the end of the step. What
+    /// one gains in momentum the other loses. Whether they did.
+    pub fn bounce(&self, step: &Motion<'_, R>, velocities: Shared<'_, Row4<R>>, rebound: Bounce<R>) -> bool {
+        let Some(terms) = self.terms(step).filter(|terms| terms.bounces()) else { return false };
+        let (normal, weights, distance) = shortest(self.now(step));
+        let thickness = self.thickness_at(step.terms, step.maps, &weights);
+        let bounce = terms.bounce_at(step.maps, self.sides(&weights));
+        if bounce <= R::ZERO || !Bounce::touches(distance, thickness) {
+            return false;
+        }
+        #[allow(unsafe_code)]
+        // SAFETY: tasks of a phase share no block, and a contact's points are in its task's blocks.
+        let (predicted, velocity) = (
+            |point: u32| unsafe { step.predicted.get(point) }.xyz(),
+            |point: u32| unsafe { velocities.get(point) },
+        );
+        let hit = Hit {
+            predicted: self.between(&weights, predicted),
+            displacement: self.between(&weights, |point| step.row(point).xyz()),
+            velocity: self.between(&weights, |point| velocity(point).xyz()),
+        };
+        let gained = sub(Bounce { bounce, ..rebound }.off(&hit, normal, [R::ZERO; 3]), hit.velocity);
+        if gained == [R::ZERO; 3] {
+            return false;
+        }
+        let (b, c) = &weights;
+        let ours = (0..N).map(|k| (self.ours[k], b[k], b[k] * terms.mobility[0]));
+        let theirs = (0..M).map(|k| (self.theirs[k], c[k], -(c[k] * terms.mobility[1])));
+        let each = ours
+            .chain(theirs)
+            .map(|(point, weight, mobility)| (point, weight, mobility * step.row(point).0[3]));
+        let larger = |x: R| if x < R::ZERO { -x } else { x };
+        let all: R = each.clone().map(|(_, weight, mobility)| weight * larger(mobility)).sum();
+        if all <= R::TINY {
+            return false;
+        }
+        for (point, _, mobility) in each {
+            let row = velocity(point);
+            let [x, y, z] = add(row.xyz(), scale(gained, mobility / all));
+            // SAFETY: as above.
+            #[allow(unsafe_code)]
+            unsafe {
+                velocities.set(point, Row4([x, y, z, row.0[3]]));
+            }
+        }
+        true
+    }
+
+    /// What a column says of ours less what it says of theirs, at the contact.
+    fn between(&self, (b, c): &([R; N], [R; M]), of: impl Fn(u32) -> [R; 3]) -> [R; 3] {
+        let ours = (0..N).map(|k| scale(of(self.ours[k]), b[k])).fold([R::ZERO; 3], add);
+        (0..M).map(|k| scale(of(self.theirs[k]), c[k])).fold(ours, sub)
+    }
+}
