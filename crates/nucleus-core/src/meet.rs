@@ -25,6 +25,8 @@ use crate::state::State;
 const NEAR_BALL: [f64; 2] = [0.1, 0.02];
 /// The same for a frame.
 const FAR_BALL: [f64; 2] = [0.25, 0.15];
+/// Share of the ball of a frame within which a point that stays in it ends a window.
+const STAYS: f64 = 0.7;
 /// In metres; nothing is foreseen more sharply.
 const LEAST_BALL: f64 = 1e-6;
 /// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
@@ -117,7 +119,7 @@ impl<R: Real> Solver<R> {
         } else if !self.find_who_left(span) {
             return;
         }
-        if self.foresee(frame, span) {
+        if self.foresee(frame, span, is_new) {
             let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
             let now = mutual.window[0];
             search(mutual, cloths, &state.anchor, now, team);
@@ -159,7 +161,7 @@ impl<R: Real> Solver<R> {
 
     /// Writes what is foreseen for the window, for the points that left what was foreseen before; for those
     /// that stray in it from what was foreseen for the frame, that too. Whether there were any.
-    fn foresee(&mut self, frame: &FrameInput, span: Span) -> bool {
+    fn foresee(&mut self, frame: &FrameInput, span: Span, is_new: bool) -> bool {
         let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return false };
         let Mutual { far, near, window, strayed, left, .. } = mutual;
         let ahead = Ahead::new(span, *window, mean_motion(&state.start, &state.displacement));
@@ -181,6 +183,9 @@ impl<R: Real> Solver<R> {
                     #[allow(unsafe_code)]
                     unsafe {
                         let known = (!strayed.get(row)).then(|| far.of(row));
+                        // In the first window of a frame there is none before.
+                        let last = (window[0] > 0.0).then(|| near.of(row).from);
+                        let known = known.filter(|later| !is_new || ahead.stays(later, before, motion, last));
                         if let Some(kept) = known.and_then(|later| ahead.keep(soon, &later, before, motion)) {
                             near.set(row, kept);
                             continue;
@@ -239,6 +244,21 @@ impl<R: Real> Ahead<R> {
         let room = dot(missed, missed).sqrt() * R::from_f64(1.5) + soon;
         let ball = if room > ball { room } else { ball };
         Path { from: sub(before, scale(travel, now)), travel, ball }
+    }
+
+    /// Whether a point that goes on as in this step, or as from its place at the start of the window before, keeps to
+    /// what is foreseen for the frame. Who will leave anyway is best looked at now, with all the others.
+    #[inline(always)]
+    fn stays(&self, later: &Path<R>, before: [R; 3], motion: [R; 3], last: Option<[R; 3]>) -> bool {
+        let length = self.window[1] - self.window[0];
+        let travel = scale(later.travel, length);
+        let off = sub(before, later.at(self.window[0]));
+        let most = later.ball * R::from_f64(STAYS);
+        let leaves = |way: [R; 3]| {
+            let there = add(off, sub(way, travel));
+            dot(there, there) > most * most
+        };
+        !leaves(scale(motion, self.steps[0])) || last.is_some_and(|last| !leaves(sub(before, last)))
     }
 
     /// What is foreseen for the window, given what is foreseen for the frame: `soon`, if that keeps to it. A point that

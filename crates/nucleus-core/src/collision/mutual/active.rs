@@ -1,7 +1,7 @@
 //! The contacts that passes go through: the candidates that can touch within the next few time steps, laid
 //! out in tasks.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, RwLock};
 
 use super::candidate::{Candidate, Kind};
 use super::near::{Meeting, Motion, Near};
@@ -47,7 +47,7 @@ pub struct Active<R> {
     pub point_edge: Contacts<R, 1, 2>,
     /// Points near points.
     pub point_point: Contacts<R, 1, 1>,
-    picked: Vec<Mutex<Picked<R>>>,
+    picked: Vec<RwLock<Picked<R>>>,
 }
 
 impl<R: Real> Clone for Active<R> {
@@ -90,30 +90,33 @@ pub fn pick<R: Real>(
     let Mutual { bodies, terms, near, candidates, active, tangle, left, .. } = mutual;
     let view = View { bodies, terms, cloths, near, start, anchors, tangle, left };
     let chunks = candidates.list.len().div_ceil(PER_TASK);
-    active.picked.resize_with(active.picked.len().max(chunks), Mutex::default);
+    active.picked.resize_with(active.picked.len().max(chunks), RwLock::default);
     let (picked, list) = (&active.picked, &candidates.list);
     team.phase(chunks, |task| {
         // Nobody else has it: a task is done once.
-        let Ok(mut picked) = picked[task].lock() else { return };
+        let Ok(mut picked) = picked[task].write() else { return };
         picked.clear();
         let end = ((task + 1) * PER_TASK).min(list.len());
         list[task * PER_TASK..end].iter().for_each(|candidate| view.pick(candidate, &mut picked));
     });
     let Active { point_face, edge_edge, point_edge, point_point, picked } = active;
-    point_face.keep(left);
-    edge_edge.keep(left);
-    point_edge.keep(left);
-    point_point.keep(left);
-    for picked in picked[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
-        point_face.found.append(&mut picked.point_face);
-        edge_edge.found.append(&mut picked.edge_edge);
-        point_edge.found.append(&mut picked.point_edge);
-        point_point.found.append(&mut picked.point_point);
-    }
-    point_face.lay_out(bodies);
-    edge_edge.lay_out(bodies);
-    point_edge.lay_out(bodies);
-    point_point.lay_out(bodies);
+    let picked = &picked[..chunks];
+    // Two tasks of about the same length; nobody else has what is theirs.
+    let (to_points, to_edges) = (Mutex::new((point_face, point_point)), Mutex::new((edge_edge, point_edge)));
+    team.phase(2, |task| match task {
+        0 => {
+            let Ok(mut lists) = to_points.lock() else { return };
+            let (point_face, point_point) = &mut *lists;
+            point_face.renew(bodies, left, picked, |picked| &picked.point_face);
+            point_point.renew(bodies, left, picked, |picked| &picked.point_point);
+        }
+        _ => {
+            let Ok(mut lists) = to_edges.lock() else { return };
+            let (edge_edge, point_edge) = &mut *lists;
+            edge_edge.renew(bodies, left, picked, |picked| &picked.edge_edge);
+            point_edge.renew(bodies, left, picked, |picked| &picked.point_edge);
+        }
+    });
 }
 
 impl<R> Picked<R> {
@@ -172,6 +175,21 @@ impl<R: Real, const N: usize, const M: usize> Contacts<R, N, M> {
             |near: &Near<R, N, M>| near.ours.iter().chain(&near.theirs).all(|&point| !left[point as usize]);
         self.found.clear();
         self.found.extend(self.list.iter().filter(|near| keeps(near)));
+    }
+
+    /// Takes up what was picked, in the order in which it was, and lays it out.
+    fn renew(
+        &mut self,
+        bodies: &Bodies,
+        left: &[bool],
+        picked: &[RwLock<Picked<R>>],
+        of: impl Fn(&Picked<R>) -> &Vec<Near<R, N, M>>,
+    ) {
+        self.keep(left);
+        for picked in picked.iter().filter_map(|task| task.read().ok()) {
+            self.found.extend_from_slice(of(&picked));
+        }
+        self.lay_out(bodies);
     }
 
     /// Puts what was found in the order of its tasks.
