@@ -6,7 +6,7 @@ use std::io::Cursor;
 use nucleus_cache::{Detail, Kept, Playback, RecordError, Recorder, RunInfo, compare};
 use nucleus_core::{Moment, StepObserver};
 
-use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
+use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared, state_bytes as bytes};
 
 /// A checkpoint at every third frame, and whenever the run ends.
 fn run_info() -> RunInfo {
@@ -33,11 +33,6 @@ fn record<W: std::io::Write + std::io::Seek>(
         recorder.record_checkpoint(&bytes(last))?;
     }
     Ok(())
-}
-
-/// What stands for the state of a solver.
-fn bytes(frame: i32) -> Vec<u8> {
-    frame.to_le_bytes().repeat(100)
 }
 
 fn begin<W: std::io::Write + std::io::Seek>(recorder: &mut Recorder<W>) {
