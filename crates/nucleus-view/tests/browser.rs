@@ -276,6 +276,22 @@ fn contact_colours_the_points_and_counts_them() {
 }
 
 #[test]
+fn a_mesh_that_changes_on_the_way_is_shown_as_it_is_then() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let cache = written(folder.path(), Sample { torn: true, substeps: true, ..Sample::default() });
+    let player = serve(&cache, 0).unwrap();
+    // Straight there, and by way of the other frames.
+    let [before, after, back] = [11, 12, 24].map(|frame| {
+        look_until(&player, chromium, &format!("frame={frame}"), |seen| {
+            seen.page.contains(&format!("data-frame=\"{frame}\""))
+        })
+    });
+    assert!(after.cloth() < 0.7 * before.cloth(), "{} of {}", after.cloth(), before.cloth());
+    assert!(back.cloth() < 0.7 * before.cloth() && back.cloth() > 0.2 * before.cloth(), "{}", back.cloth());
+}
+
+#[test]
 fn the_player_looks_through_the_camera_of_the_scene_until_one_looks_about() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();

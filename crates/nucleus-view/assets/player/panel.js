@@ -41,9 +41,17 @@ export function showObjects(scene, onChange) {
     });
     const swatch = element("i", { className: "swatch" });
     swatch.style.background = css(thing.colour.map((x) => x * 1.3));
-    const count = element("small", { textContent: `${thing.mesh.kind} · ${plain(thing.points)} points` });
-    return element("label", {}, box, swatch, element("span", { textContent: thing.name }), count);
+    thing.count = element("small", {});
+    return element("label", {}, box, swatch, element("span", { textContent: thing.name }), thing.count);
   }));
+  countPoints(scene);
+}
+
+// Says how many points each object has in its present mesh.
+export function countPoints(scene) {
+  for (const { count, mesh, topology } of scene.things) {
+    count.textContent = `${mesh.kind} · ${plain(topology.points)} points`;
+  }
 }
 
 // The report of a frame, and how many points are not finite.

@@ -22,7 +22,7 @@ const times = await page.evaluate(async () => {
   };
   for (let k = 1; k <= 300; k += 1) {
     const state = await timed("fetch", () => cache.state((k * 7919) % cache.frames.length));
-    await timed("update", () => scene.update(state.positions));
+    await timed("update", () => scene.update(state));
     if (k % 10 === 0) {
       await timed("draw", () => scene.draw(camera));
     }
