@@ -58,7 +58,9 @@ pub struct Recorder<W: Write + Seek = File> {
     // Reused for every message.
     values: Vec<[f32; 3]>,
     strain: Vec<f32>,
-    contacts: Vec<Contact>,
+    contacts: Vec<Vec<Contact>>,
+    /// Points that touch and that are pinched at the end of the frame, where that is known.
+    rungs: Option<[usize; 2]>,
     pub(crate) message: Vec<u8>,
 }
 
@@ -157,6 +159,7 @@ impl<W: Write + Seek> Recorder<W> {
             values: Vec::new(),
             strain: Vec::new(),
             contacts: Vec::new(),
+            rungs: None,
             message: Vec::new(),
         };
         recorder.begin(objects)?;
@@ -181,10 +184,12 @@ impl<W: Write + Seek> Recorder<W> {
             return Err(RecordError::FrameOrder { frame, last: self.last_frame });
         }
         self.last_frame = frame;
+        self.rungs = None;
         Ok(FrameRecorder { recorder: self })
     }
 
-    /// Ends the frame with its report, a JSON object to which `frame` is added, and puts it on disk.
+    /// Ends the frame with its report, a JSON object to which `frame` is added, and where contacts are recorded how many
+    /// points are `touching` and `pinched`; and puts it on disk.
     ///
     /// # Errors
     /// When writing failed, now or during the step.
@@ -193,7 +198,8 @@ impl<W: Write + Seek> Recorder<W> {
             return Err(trouble);
         }
         let frame = self.last_frame;
-        let report = report_line(frame, report).map_err(|source| RecordError::Report { frame, source })?;
+        let report =
+            report_line(frame, self.rungs, report).map_err(|source| RecordError::Report { frame, source })?;
         let stamp = Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) };
         self.message.clear();
         self.message.extend_from_slice(report.to_string().as_bytes());
@@ -329,6 +335,13 @@ impl<W: Write + Seek> Recorder<W> {
     /// Writes one message per object that may have changed.
     fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
         let units = self.run.units_per_metre;
+        if self.run.contacts {
+            state.contacts(&mut self.contacts);
+            self.rungs = Some(
+                [Contact::Touching, Contact::Pinched]
+                    .map(|rung| self.contacts.iter().flatten().filter(|&&found| found == rung).count()),
+            );
+        }
         for k in 0..self.tracks.len() {
             let &Track { source, channel, mesh, points, has_moved, .. } = &self.tracks[k];
             match source {
@@ -361,7 +374,7 @@ impl<W: Write + Seek> Recorder<W> {
             self.stream.send(&stamp, channel, &self.message)?;
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
-                self.record_attributes(k, id, &stamp, state)?;
+                self.record_attributes(k, id, &stamp)?;
             }
         }
         self.moments += 1;
@@ -369,27 +382,19 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// Writes what else is recorded of a cloth.
-    fn record_attributes(
-        &mut self,
-        track: usize,
-        cloth: ClothId,
-        stamp: &Stamp,
-        state: &dyn StateView,
-    ) -> Result<(), RecordError> {
+    fn record_attributes(&mut self, track: usize, cloth: ClothId, stamp: &Stamp) -> Result<(), RecordError> {
         let Track { contacts, strain, points, .. } = &self.tracks[track];
         if let Some((channel, _)) = strain {
             points::write_head(stamp, *points, 0, false, &mut self.message);
             shuffle(&self.strain, &mut self.message);
             self.stream.send(stamp, *channel, &self.message)?;
         }
-        if let Some(channel) = contacts {
-            state.contacts(cloth, &mut self.contacts);
-            // A scene in which nothing can touch has nothing to say.
-            if self.contacts.len() == *points {
-                points::write_head(stamp, *points, 0, false, &mut self.message);
-                write_contacts(&self.contacts, &mut self.message);
-                self.stream.send(stamp, *channel, &self.message)?;
-            }
+        let rungs = self.contacts.get(cloth.index()).filter(|rungs| rungs.len() == *points);
+        // A scene in which nothing can touch has nothing to say.
+        if let (Some(channel), Some(rungs)) = (contacts, rungs) {
+            points::write_head(stamp, *points, 0, false, &mut self.message);
+            write_contacts(rungs, &mut self.message);
+            self.stream.send(stamp, *channel, &self.message)?;
         }
         Ok(())
     }
@@ -435,11 +440,19 @@ pub(crate) fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(
 }
 
 /// The report as a JSON object that names its frame.
-fn report_line(frame: i32, report: &impl Serialize) -> Result<Value, serde_json::Error> {
+fn report_line(
+    frame: i32,
+    rungs: Option<[usize; 2]>,
+    report: &impl Serialize,
+) -> Result<Value, serde_json::Error> {
     let mut line = match serde_json::to_value(report)? {
         Value::Object(fields) => fields,
         other => serde_json::Map::from_iter([("report".to_owned(), other)]),
     };
     line.insert("frame".to_owned(), frame.into());
+    if let Some([touching, pinched]) = rungs {
+        line.insert("touching".to_owned(), touching.into());
+        line.insert("pinched".to_owned(), pinched.into());
+    }
     Ok(Value::Object(line))
 }

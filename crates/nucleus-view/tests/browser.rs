@@ -267,6 +267,7 @@ fn contact_colours_the_points_and_counts_them() {
     let seen = look(chromium, &with, "frame=12&contacts");
     let page = seen.page.replace('\n', "");
     assert!(page.contains(" tangled</dt><dd>1</dd>") && page.contains(" pinched</dt><dd>0</dd>"), "{page}");
+    assert!(page.contains("<dt>Pinched</dt><dd class=\"\">0</dd>"), "the report counts them too: {page}");
     let blue = seen.share(|[red, _, blue]| *blue > 120 && i32::from(*blue) > 2 * i32::from(*red));
     assert!(blue > 0.01 && seen.cloth() < 0.01, "{blue} of the screen is blue");
     let without = folder.path().join("without.mcap");

@@ -51,9 +51,9 @@ impl StateView for Falling {
         out.clear();
         out.extend((0..4).map(|k| [0.0, -(self.frame as f32), k as f32].map(|x| x * units as f32)));
     }
-    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
-        *out = vec![Contact::Free, Contact::Touching, Contact::Pinched, Contact::Tangled];
-        out[0] = if self.frame >= SHOVE { Contact::Trapped } else { Contact::Free };
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+        let first = if self.frame >= SHOVE { Contact::Trapped } else { Contact::Free };
+        *out = vec![vec![first, Contact::Touching, Contact::Pinched, Contact::Tangled]];
     }
     fn collider_positions(&self, _: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
         let shoved = if self.frame >= SHOVE { 1.0 } else { 0.0 };

@@ -47,8 +47,8 @@ impl StateView for Torn {
     fn velocities(&self, _: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = vec![[0.0, -1.0, 0.0]; self.points()];
     }
-    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
-        *out = vec![Contact::Pinched; self.points()];
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+        *out = vec![vec![Contact::Pinched; self.points()]];
     }
     fn collider_positions(&self, collider: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
         self.0.collider_positions(collider, units, out);

@@ -13,6 +13,8 @@ const FIGURES = {
   min_cloth_gap: ["Smallest gap among cloths", (x) => x.toFixed(3), (x) => x < 0],
   contacts: ["Contacts", plain],
   pairs: ["Pairs tested", plain],
+  touching: ["Points that touch", plain],
+  pinched: ["Pinched", plain, (x) => x > 0],
   caught: ["Caught and carried back", plain, (x) => x > 0],
   crossed: ["Let go", plain, (x) => x > 0],
   trapped: ["Trapped in colliders", plain, (x) => x > 0],

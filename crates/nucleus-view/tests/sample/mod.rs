@@ -110,10 +110,10 @@ impl StateView for State {
         }
     }
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
-    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
         let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { Contact::Touching } else { Contact::Free };
-        *out = (0..SIDE * SIDE).map(at_hoist).collect();
-        out[0] = Contact::Tangled;
+        *out = vec![(0..SIDE * SIDE).map(at_hoist).collect()];
+        out[0][0] = Contact::Tangled;
     }
     fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = if collider == BALL { sphere().1 } else { cube().1 };
