@@ -1,8 +1,11 @@
 //! Whether other tools read what `nucleus export` writes: Blender, Pixar's USD, VTK, Foxglove's own types, rerun
-//! and Khronos' glTF validator.
+//! and Khronos' glTF validator; and whether films come out where there is an ffmpeg ([`films`]).
 //!
 //! Each export is held against the cache as the `mcap` package of others reads it, point by point.
 
+mod films;
+
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,6 +18,9 @@ use serde_json::Value;
 pub struct Options {
     /// A cache to check the exports of, instead of the sample and a scene of the gallery.
     cache: Vec<PathBuf>,
+    /// Only writes films, by an ffmpeg that is fetched.
+    #[arg(long, conflicts_with = "cache")]
+    films: bool,
 }
 
 /// The scripts; each prints what it has found as one line of JSON.
@@ -49,6 +55,9 @@ const PYTHON: &str = "python3.11";
 pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
     let place = super::target(root).join("interop");
     fs::create_dir_all(&place)?;
+    if options.films {
+        return films::run(root, &place);
+    }
     install(&place)?;
     for (name, text) in SCRIPTS {
         fs::write(place.join(name), text)?;
@@ -69,7 +78,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
         failed += check(&place, &cache, &folder)?;
     }
     ensure!(failed == 0, "{failed} exports are not read as they were recorded");
-    Ok(())
+    films::run(root, &place)
 }
 
 /// The sample, which is odd in every way, and the beginning of a real run.
@@ -143,15 +152,7 @@ fn tell(row: &Value) -> bool {
 
 fn install(place: &Path) -> anyhow::Result<()> {
     for (name, packages) in ENVIRONMENTS {
-        let folder = place.join(name);
-        let stamp = folder.join("installed");
-        if fs::read_to_string(&stamp).is_ok_and(|known| known == packages.join("\n")) {
-            continue;
-        }
-        println!("-- installing {} into {}", packages.join(", "), folder.display());
-        succeed(Command::new(PYTHON).args(["-m", "venv"]).arg(&folder))?;
-        succeed(Command::new(folder.join("bin/python")).args(["-m", "pip", "install", "-q"]).args(packages))?;
-        fs::write(stamp, packages.join("\n"))?;
+        environment(place, name, packages)?;
     }
     let node = place.join("node");
     if !node.join("node_modules/gltf-validator").exists() {
@@ -164,9 +165,27 @@ fn install(place: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Installs packages of Python into a place of their own, if they are not there; gives its Python.
+fn environment(place: &Path, name: &str, packages: &[&str]) -> anyhow::Result<PathBuf> {
+    let folder = place.join(name);
+    let (stamp, python) = (folder.join("installed"), folder.join("bin/python"));
+    if fs::read_to_string(&stamp).is_ok_and(|known| known == packages.join("\n")) {
+        return Ok(python);
+    }
+    println!("-- installing {} into {}", packages.join(", "), folder.display());
+    succeed(Command::new(PYTHON).args(["-m", "venv"]).arg(&folder))?;
+    succeed(Command::new(&python).args(["-m", "pip", "install", "-q"]).args(packages))?;
+    fs::write(stamp, packages.join("\n"))?;
+    Ok(python)
+}
+
 fn cargo(root: &Path, arguments: &[&str]) -> anyhow::Result<()> {
+    cargo_with(root, arguments, &[])
+}
+
+fn cargo_with(root: &Path, arguments: &[&str], variables: &[(&str, &OsStr)]) -> anyhow::Result<()> {
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    succeed(Command::new(program).args(arguments).current_dir(root))
+    succeed(Command::new(program).args(arguments).current_dir(root).envs(variables.iter().copied()))
 }
 
 fn succeed(command: &mut Command) -> anyhow::Result<()> {

@@ -14,11 +14,14 @@ use std::panic::catch_unwind;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use nucleus_cache::{Playback, RunInfo};
+use nucleus_cache::{Detail, Playback, ReadError};
 
 #[path = "../tests/cache/falling.rs"]
 #[allow(dead_code)]
 mod falling;
+#[path = "../tests/cache/torn.rs"]
+#[allow(dead_code)]
+mod torn;
 
 /// Reading a cache of a few thousand bytes takes a millisecond.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -29,8 +32,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let seconds = arguments.next().map_or(Ok(10), |text| text.parse())?;
     let corpus = arguments.next();
-    let all = falling::with_all_channels();
-    let seeds = [seed(&falling::run_info())?, seed(&all)?, falling::whole_run(&all).0];
+    let all = falling::whole_run(&falling::with_all_channels()).0;
+    let torn = torn::recorded(&torn::run_info(Detail::Frames), falling::END);
+    let frames = falling::whole_run(&falling::run_info()).0;
+    let seeds = [unpacked(&frames)?, unpacked(&all)?, all, unpacked(&torn)?, torn];
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut endings: BTreeMap<String, (u64, Vec<u8>)> = BTreeMap::new();
     let (begin, mut runs) = (Instant::now(), 0_u64);
@@ -81,13 +86,15 @@ fn read(bytes: &[u8]) -> String {
     let mut faults = Vec::new();
     for object in 0..cache.objects().len() {
         for moment in (0..cache.moments().len()).take(40) {
-            let positions = cache.positions(object, moment).map(drop);
-            let all = positions
+            let all = object_is_whole(&mut cache, object, moment)
                 .and(cache.velocities(object, moment).map(drop))
                 .and(cache.contacts(object, moment).map(drop))
                 .and(cache.strain(object, moment).map(drop));
             faults.extend(all.err().map(|error| error.to_string()));
         }
+    }
+    for frame in cache.checkpoints() {
+        faults.extend(cache.checkpoint(frame).err().map(|error| format!("checkpoint: {error}")));
     }
     faults.extend(cache.reports().err().map(|error| error.to_string()));
     faults.extend(cache.sizes().err().map(|error| error.to_string()));
@@ -103,6 +110,18 @@ fn read(bytes: &[u8]) -> String {
     plain(&format!("opened; {loss}; {}", faults.first().cloned().unwrap_or_default()))
 }
 
+/// Reads a mesh and its positions; whoever draws relies on it that they fit each other.
+fn object_is_whole(
+    cache: &mut Playback<Cursor<&[u8]>>,
+    object: usize,
+    moment: usize,
+) -> Result<(), ReadError> {
+    let points = cache.positions(object, moment)?.len();
+    let mesh = cache.object_at(object, moment)?;
+    assert!(mesh.rest.len() == points && mesh.faces.corners().iter().all(|&point| (point as usize) < points));
+    Ok(())
+}
+
 /// A message with its numbers and quoted words taken out.
 fn plain(message: &str) -> String {
     let mut quoted = false;
@@ -110,22 +129,23 @@ fn plain(message: &str) -> String {
         quoted ^= c == '`';
         !quoted && !c.is_ascii_digit() && c != '-'
     });
-    kept.collect::<String>().replace(" to ,", "").replace(", ,", "").replace("frames", "frame")
+    // How many frames there are, and which, makes no other way to end.
+    let kept = kept.collect::<String>().replace(',', " ").replace(" to ", " ").replace("frames", "frame");
+    kept.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// A cache whose chunks are not compressed, so that their bytes can be changed.
-fn seed(run: &RunInfo) -> Result<Vec<u8>, Box<dyn Error>> {
-    let (bytes, _) = falling::whole_run(run);
-    let summary = mcap::Summary::read(&bytes)?.ok_or("no summary")?;
+/// The same cache with chunks that are not compressed, so that their bytes can be changed.
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let summary = mcap::Summary::read(bytes)?.ok_or("no summary")?;
     let mut plain = Cursor::new(Vec::new());
     let options =
         mcap::WriteOptions::new().profile("nucleus").library("nucleus 0").compression(None).chunk_size(None);
     let mut writer = options.create(&mut plain)?;
     for index in &summary.metadata_indexes {
-        writer.write_metadata(&mcap::read::metadata(&bytes, index)?)?;
+        writer.write_metadata(&mcap::read::metadata(bytes, index)?)?;
     }
     let mut last = 0;
-    for message in mcap::MessageStream::new(&bytes)? {
+    for message in mcap::MessageStream::new(bytes)? {
         let message = message?;
         if message.log_time != last {
             writer.flush()?;

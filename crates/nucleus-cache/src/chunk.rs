@@ -101,6 +101,12 @@ impl Chunk {
             .map(|(_, data)| data)
     }
 
+    /// The last of several messages of a channel at a time.
+    pub fn last_message(&self, channel: u16, log_time: u64) -> Option<&[u8]> {
+        let at = self.messages().filter(|(head, _)| head.channel_id == channel && head.log_time == log_time);
+        at.last().map(|(_, data)| data)
+    }
+
     /// Checks and unpacks `compressed`; `None` when anything is not as written.
     fn unpack(&mut self) -> Option<(u64, u64)> {
         let (&opcode, body) = self.compressed.split_first()?;

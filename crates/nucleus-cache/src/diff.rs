@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek};
 
+use crate::moment::RecordedMoment;
 use crate::open_error::ReadError;
 use crate::playback::Playback;
 
@@ -16,10 +17,14 @@ pub enum Difference {
         /// Whether it is in the first.
         in_first: bool,
     },
-    /// An object has other faces or another number of points.
+    /// An object has other faces or another number of points, first at this moment.
     Mesh {
         /// Its name.
         name: String,
+        /// The frame.
+        frame: i32,
+        /// The substep, counted from 1; 0 is the initial state.
+        substep: u32,
     },
     /// A moment was recorded in one of them only.
     Moment {
@@ -58,7 +63,7 @@ pub struct PointDifference {
 pub struct Comparison {
     /// Moments that were compared, those that both have.
     pub moments: usize,
-    /// What differs: first in objects and meshes, then in moments, then the first place of each object.
+    /// What differs: first in objects, then in moments, then the first mesh and the first place of each object.
     pub differences: Vec<Difference>,
     /// Root mean square distance over all points and moments, in scene units.
     pub rms: f64,
@@ -84,9 +89,19 @@ pub fn compare<A: Read + Seek, B: Read + Seek>(
     let moments = common_moments(a, b, &mut comparison.differences);
     comparison.moments = moments.len();
     let mut sum = Sum::default();
-    let mut seen = vec![false; objects.len()];
+    let (mut seen, mut seen_mesh) = (vec![false; objects.len()], vec![false; objects.len()]);
     for &(moment_a, moment_b) in &moments {
         for (place, &(object_a, object_b)) in objects.iter().enumerate() {
+            let (one, two) = (a.object_at(object_a, moment_a)?, b.object_at(object_b, moment_b)?);
+            let is_comparable = one.rest.len() == two.rest.len();
+            let is_same = is_comparable && one.faces == two.faces;
+            if !is_same && !std::mem::replace(&mut seen_mesh[place], true) {
+                let (name, RecordedMoment { frame, substep, .. }) = (one.name.clone(), a.moments()[moment_a]);
+                comparison.differences.push(Difference::Mesh { name, frame, substep });
+            }
+            if !is_comparable {
+                continue;
+            }
             let (one, two) = (a.positions(object_a, moment_a)?, b.positions(object_b, moment_b)?);
             let Some(mut found) = first_difference(&one, &two, tolerance, &mut sum) else { continue };
             let moment = a.moments()[moment_a];
@@ -178,15 +193,7 @@ fn common_objects<A: Read + Seek, B: Read + Seek>(
     for (place, object) in a.objects().iter().enumerate() {
         match b.objects().iter().position(|other| other.name == object.name) {
             None => differences.push(Difference::Object { name: object.name.clone(), in_first: true }),
-            Some(other) => {
-                let twin = &b.objects()[other];
-                if twin.faces != object.faces || twin.rest.len() != object.rest.len() {
-                    differences.push(Difference::Mesh { name: object.name.clone() });
-                }
-                if twin.rest.len() == object.rest.len() {
-                    common.push((place, other));
-                }
-            }
+            Some(other) => common.push((place, other)),
         }
     }
     let only_b =

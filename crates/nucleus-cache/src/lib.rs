@@ -6,6 +6,7 @@
 //! | how a frame is found and read back                  | [`Playback`]                        |
 //! | what a killed run or a flipped byte costs           | [`Loss`]                            |
 //! | where two runs differ first                         | [`compare`]                         |
+//! | how an object gets another mesh on the way          | [`FrameRecorder::change_mesh`], [`Playback::object_at`] |
 //! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
 //! | how a run goes on from its cache                    | [`Recorder::resume`]                |
 //! | what is known of the run: scene, frames, units      | [`RunInfo`]                         |
@@ -52,6 +53,7 @@ mod chunk;
 mod contents;
 mod diff;
 mod loss;
+mod mesh;
 mod moment;
 mod object;
 mod open_error;

@@ -26,6 +26,13 @@ pub struct ObjectInfo {
     pub rest: Vec<[f32; 3]>,
 }
 
+impl ObjectInfo {
+    /// Whether every face names points that are there.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.faces.corners().iter().all(|&point| (point as usize) < self.rest.len())
+    }
+}
+
 /// Where the recorder finds an object's positions in the solver's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {

@@ -105,6 +105,14 @@ pub enum ReadError {
         /// How many there are.
         moments: usize,
     },
+    /// The mesh that an object has at this moment was in a frame that is damaged or missing.
+    #[error("the mesh that `{object}` has at frame {frame} is lost with an earlier frame")]
+    MeshLost {
+        /// The object.
+        object: String,
+        /// The frame.
+        frame: i32,
+    },
     /// The object has no positions at or before this moment.
     #[error("`{object}` has no positions at frame {frame}")]
     Nothing {

@@ -12,6 +12,7 @@ use crate::attribute::{self, Attribute};
 use crate::chunk::{Chunk, ChunkFault};
 use crate::contents::Contents;
 use crate::loss::Loss;
+use crate::mesh::Mesh;
 use crate::moment::{self, RecordedMoment};
 use crate::object::ObjectInfo;
 use crate::open_error::{OpenError, ReadError};
@@ -33,7 +34,10 @@ pub struct Playback<R = BufReader<File>> {
     pub(crate) contents: Contents,
     pub(crate) loss: Loss,
     objects: Vec<ObjectInfo>,
-    points_channels: Vec<u16>,
+    pub(crate) points_channels: Vec<u16>,
+    pub(crate) mesh_channels: Vec<u16>,
+    /// Of each object the mesh that was asked for last, if it is not the first.
+    pub(crate) meshes: Vec<Option<Mesh>>,
     moments: Vec<RecordedMoment>,
     pub(crate) chunk: Chunk,
     loaded: Option<usize>,
@@ -93,6 +97,8 @@ impl<R: Read + Seek> Playback<R> {
             loss,
             objects: Vec::new(),
             points_channels: Vec::new(),
+            mesh_channels: Vec::new(),
+            meshes: Vec::new(),
             moments: Vec::new(),
             chunk: Chunk::default(),
             loaded: None,
@@ -108,7 +114,7 @@ impl<R: Read + Seek> Playback<R> {
         &self.run
     }
 
-    /// The objects, in the order of the recording.
+    /// The objects as they begin, in the order of the recording; [`object_at`](Self::object_at) has their meshes later.
     pub fn objects(&self) -> &[ObjectInfo] {
         &self.objects
     }
@@ -170,10 +176,11 @@ impl<R: Read + Seek> Playback<R> {
         Ok(sizes)
     }
 
-    /// Positions of an object at a moment, in scene units. An object that does not move keeps its last ones.
+    /// Positions of an object at a moment, in scene units, as many as its mesh has points then. An object that does not move
+    /// keeps its last ones.
     ///
     /// # Errors
-    /// When there is no such object or moment, or its frame is damaged.
+    /// When there is no such object or moment, or its frame or that of its mesh is damaged.
     pub fn positions(&mut self, object: usize, moment: usize) -> Result<Vec<[f32; 3]>, ReadError> {
         let mut positions = Vec::new();
         self.positions_into(object, moment, &mut positions)?;
@@ -230,16 +237,17 @@ impl<R: Read + Seek> Playback<R> {
         attribute: &Attribute,
     ) -> Result<Option<&[u8]>, ReadError> {
         let (objects, moments) = (self.objects.len(), self.moments.len());
-        let ObjectInfo { name, rest, .. } =
+        let ObjectInfo { name, .. } =
             self.objects.get(object).ok_or(ReadError::NoObject { object, objects })?;
         let RecordedMoment { frame, log_time, .. } =
             *self.moments.get(moment).ok_or(ReadError::NoMoment { moment, moments })?;
         let channel = self.contents.channel(&format!("/{name}/{}", attribute.topic));
         let found = channel.and_then(|channel| Some((channel, self.contents.latest(channel, log_time)?)));
-        let (Some((channel, (time, index))), count) = (found, rest.len()) else { return Ok(None) };
+        let Some((channel, (time, index))) = found else { return Ok(None) };
         if time != log_time {
             return Ok(None); // It is of another moment.
         }
+        let count = self.mesh_at(object, log_time)?.1.rest.len();
         self.load(index)?;
         let message = self.chunk.message(channel, log_time);
         let values = message.and_then(|data| attribute.read(data, count, (frame, log_time)));
@@ -271,9 +279,10 @@ impl<R: Read + Seek> Playback<R> {
     /// # Errors
     /// When the system fails to read.
     pub fn verify(&mut self) -> Result<&Loss, ReadError> {
+        let mut numbers = BTreeMap::new();
         for index in 0..self.contents.chunks.len() {
             match self.load(index) {
-                Ok(()) => {}
+                Ok(()) => self.note_lost_meshes(&mut numbers),
                 Err(ReadError::Damaged { frame }) => self.note_damage(index, frame),
                 Err(error) => return Err(error),
             }
@@ -296,18 +305,22 @@ impl<R: Read + Seek> Playback<R> {
         let channel = *self.points_channels.get(object).ok_or(ReadError::NoObject { object, objects })?;
         let RecordedMoment { frame, log_time, .. } =
             *self.moments.get(moment).ok_or(ReadError::NoMoment { moment, moments })?;
+        let (mesh, has) = self.mesh_at(object, log_time)?;
+        let (count, name) = (has.rest.len(), has.name.clone());
         let Some((log_time, index)) = self.contents.latest(channel, log_time) else {
-            return Err(ReadError::Nothing { object: self.objects[object].name.clone(), frame });
+            return Err(ReadError::Nothing { object: name, frame });
         };
         self.load(index)?;
         let frame = self.run.frame_at(log_time);
         let message = self.chunk.message(channel, log_time).and_then(PointsMessage::read);
-        let (count, stamp) = (self.objects[object].rest.len(), (frame, log_time));
-        message
-            .filter(|points| {
-                points.count() == count && (points.stamp.frame, points.stamp.log_time()) == stamp
-            })
-            .ok_or(ReadError::Damaged { frame })
+        let is_whole =
+            |points: &PointsMessage| (points.stamp.frame, points.stamp.log_time()) == (frame, log_time);
+        let points = message.filter(is_whole).ok_or(ReadError::Damaged { frame })?;
+        match points.mesh == mesh {
+            true if points.count() == count => Ok(points),
+            true => Err(ReadError::Damaged { frame }),
+            false => Err(ReadError::MeshLost { object: name, frame }),
+        }
     }
 
     /// Makes `index` the chunk in memory.
@@ -334,17 +347,21 @@ impl<R: Read + Seek> Playback<R> {
             .channels
             .values()
             .filter(|channel| channel.message_encoding == topology::ENCODING)
-            .filter_map(|channel| Some((channel.id, object_name(&channel.topic)?.to_owned())))
+            .filter_map(|channel| Some((channel.id, topology::object_name(&channel.topic)?.to_owned())))
             .collect();
-        for (channel, name) in topologies {
+        for (mesh_channel, name) in topologies {
             let damaged = || OpenError::Topology { object: format!("`{name}`") };
             let points = self.contents.channel(&format!("/{name}/points")).ok_or_else(damaged)?;
-            let (log_time, index) = self.contents.latest(channel, u64::MAX).ok_or_else(damaged)?;
+            let meshes = self.contents.messages.get(&mesh_channel);
+            let (log_time, index) = *meshes.and_then(|meshes| meshes.first()).ok_or_else(damaged)?;
             self.load(index).map_err(|_| damaged())?;
-            let message = self.chunk.message(channel, log_time);
-            let object = message.and_then(|data| topology::read(&name, data)).ok_or_else(damaged)?;
+            let message = self.chunk.message(mesh_channel, log_time);
+            let found = message.and_then(|data| topology::read(&name, data));
+            let (object, _) = found.filter(|&(_, number)| number == 0).ok_or_else(damaged)?;
             self.objects.push(object);
             self.points_channels.push(points);
+            self.mesh_channels.push(mesh_channel);
+            self.meshes.push(None);
         }
         if self.contents.channels.is_empty() && self.loss.cut_off && self.contents.chunks.is_empty() {
             return Err(OpenError::TooShort);
@@ -370,9 +387,4 @@ fn check_head(file: &mut (impl Read + Seek)) -> Result<String, OpenError> {
         Some((profile, library)) if profile == PROFILE => Ok(library),
         Some((profile, library)) => Err(OpenError::OtherTool { profile, library }),
     }
-}
-
-/// The object a topology channel belongs to.
-fn object_name(topic: &str) -> Option<&str> {
-    topic.strip_prefix('/')?.strip_suffix("/topology")
 }

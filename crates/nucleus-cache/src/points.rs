@@ -9,9 +9,9 @@ pub(crate) const ENCODING: &str = "nucleus.points.v1";
 /// What a stranger needs to read a points message; stored in the file.
 pub(crate) const SCHEMA: &str = "\
 Little-endian. i32 frame, u32 substep (counted from 1; 0 is the initial state), u32 substeps, u32 count,
-u32 flags (bit 0: velocities follow), u32 zero, f64 time (seconds since the start frame). Then positions
-in scene units as four planes of 3 * count bytes: plane k holds byte k of every f32 (0 is the lowest), in
-the order x0 y0 z0 x1 ... With bit 0 set, velocities (scene units per second) follow in the same way.
+u32 flags (bit 0: velocities follow), u32 mesh (how many other meshes the object had before), f64 time (seconds since
+the start frame). Then positions in scene units as four planes of 3 * count bytes: plane k holds byte k of every f32 (0
+is the lowest), in the order x0 y0 z0 x1 ... With bit 0 set, velocities (scene units per second) follow in the same way.
 ";
 
 /// The flag that says that velocities follow.
@@ -53,13 +53,13 @@ impl Stamp {
     }
 }
 
-/// Replaces `out` by the head of a points message for `count` points; positions and velocities follow
+/// Replaces `out` by the head of a points message for `count` points of an object's `mesh`; positions and velocities follow
 /// through [`shuffle`](crate::shuffle::shuffle).
-pub(crate) fn write_head(stamp: &Stamp, count: usize, velocities: bool, out: &mut Vec<u8>) {
+pub(crate) fn write_head(stamp: &Stamp, count: usize, mesh: u32, velocities: bool, out: &mut Vec<u8>) {
     out.clear();
     out.reserve_exact(HEAD + 12 * count * (1 + usize::from(velocities)));
     out.extend_from_slice(&stamp.frame.to_le_bytes());
-    for word in [stamp.substep, stamp.substeps, count as u32, u32::from(velocities) * VELOCITIES, 0] {
+    for word in [stamp.substep, stamp.substeps, count as u32, u32::from(velocities) * VELOCITIES, mesh] {
         out.extend_from_slice(&word.to_le_bytes());
     }
     out.extend_from_slice(&stamp.time.to_le_bytes());
@@ -68,6 +68,8 @@ pub(crate) fn write_head(stamp: &Stamp, count: usize, velocities: bool, out: &mu
 /// A points message, its values still shuffled.
 pub(crate) struct PointsMessage<'a> {
     pub stamp: Stamp,
+    /// How many meshes the object had before the one that these are points of.
+    pub mesh: u32,
     positions: &'a [u8],
     velocities: Option<&'a [u8]>,
 }
@@ -83,7 +85,8 @@ impl<'a> PointsMessage<'a> {
             return None;
         }
         let (positions, velocities) = values.split_at(bytes);
-        Some(Self { stamp, positions, velocities: has_velocities.then_some(velocities) })
+        let mesh = u32::from_le_bytes(head[20..24].try_into().ok()?);
+        Some(Self { stamp, mesh, positions, velocities: has_velocities.then_some(velocities) })
     }
 
     pub fn count(&self) -> usize {
@@ -137,10 +140,10 @@ mod tests {
     fn a_points_message_is_laid_out_as_the_schema_says() {
         let stamp = Stamp { frame: -2, substep: 3, substeps: 4, time: 0.5 };
         let mut bytes = Vec::new();
-        write_head(&stamp, 1, false, &mut bytes);
+        write_head(&stamp, 1, 6, false, &mut bytes);
         shuffle(&[1.0, 0.0, 0.0], &mut bytes);
         assert_eq!(bytes[..4], (-2_i32).to_le_bytes());
-        assert_eq!(bytes[4..24], [3, 0, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(bytes[4..24], [3, 0, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 6, 0, 0, 0]);
         assert_eq!(bytes[24..32], 0.5_f64.to_le_bytes());
         assert_eq!(bytes[32..], [0, 0, 0, 0, 0, 0, 0x80, 0, 0, 0x3f, 0, 0]);
     }

@@ -62,6 +62,18 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
+    /// There is no object whose mesh could change.
+    #[error("there is no object `{name}` whose mesh could change")]
+    NoObject {
+        /// The name.
+        name: String,
+    },
+    /// A face names a point that is not there.
+    #[error("a face of `{object}` names a point that is not there")]
+    BadMesh {
+        /// The object.
+        object: String,
+    },
     /// An object has another number of points than it was announced with.
     #[error("`{object}` has {found} points in the solver but was announced with {expected}")]
     PointCount {

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::attribute::{CONTACTS, STRAIN, write_contacts};
-use crate::object::{ObjectInfo, Source};
+use crate::object::{ObjectInfo, ObjectKind, Source};
 use crate::points::{self, Stamp};
 use crate::record_error::RecordError;
 use crate::run::{Detail, RunInfo};
@@ -54,12 +54,14 @@ pub struct Recorder<W: Write + Seek = File> {
     /// An older cache, to which what is recorded is held.
     pub(crate) witness: Option<Box<Witness>>,
     /// What went wrong inside the step, where it could not be said.
-    trouble: Option<RecordError>,
+    pub(crate) trouble: Option<RecordError>,
     // Reused for every message.
     values: Vec<[f32; 3]>,
     strain: Vec<f32>,
-    contacts: Vec<Contact>,
-    message: Vec<u8>,
+    contacts: Vec<Vec<Contact>>,
+    /// Points that touch and that are pinched at the end of the frame, where that is known.
+    rungs: Option<[usize; 2]>,
+    pub(crate) message: Vec<u8>,
 }
 
 /// An object while it is recorded.
@@ -67,7 +69,11 @@ pub(crate) struct Track {
     pub name: String,
     source: Source,
     pub channel: u16,
-    points: usize,
+    /// Where its meshes go, and how many it had before that which it has.
+    pub mesh_channel: u16,
+    pub mesh: u32,
+    pub kind: ObjectKind,
+    pub points: usize,
     /// The channel of contacts, if they are recorded.
     pub contacts: Option<u16>,
     /// That of strain, and what it is found from.
@@ -153,6 +159,7 @@ impl<W: Write + Seek> Recorder<W> {
             values: Vec::new(),
             strain: Vec::new(),
             contacts: Vec::new(),
+            rungs: None,
             message: Vec::new(),
         };
         recorder.begin(objects)?;
@@ -177,10 +184,12 @@ impl<W: Write + Seek> Recorder<W> {
             return Err(RecordError::FrameOrder { frame, last: self.last_frame });
         }
         self.last_frame = frame;
+        self.rungs = None;
         Ok(FrameRecorder { recorder: self })
     }
 
-    /// Ends the frame with its report, a JSON object to which `frame` is added, and puts it on disk.
+    /// Ends the frame with its report, a JSON object to which `frame` is added, and where contacts are recorded how many
+    /// points are `touching` and `pinched`; and puts it on disk.
     ///
     /// # Errors
     /// When writing failed, now or during the step.
@@ -189,7 +198,8 @@ impl<W: Write + Seek> Recorder<W> {
             return Err(trouble);
         }
         let frame = self.last_frame;
-        let report = report_line(frame, report).map_err(|source| RecordError::Report { frame, source })?;
+        let report =
+            report_line(frame, self.rungs, report).map_err(|source| RecordError::Report { frame, source })?;
         let stamp = Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) };
         self.message.clear();
         self.message.extend_from_slice(report.to_string().as_bytes());
@@ -260,11 +270,10 @@ impl<W: Write + Seek> Recorder<W> {
             )?;
             self.checkpoint_channel = Some(channel);
         }
-        let mut meshes = Vec::with_capacity(objects.len());
         for (source, object) in &objects {
             let (name, points) = (object.name.clone(), object.rest.len());
             let is_cloth = matches!(source, Source::Cloth(_));
-            meshes.push(self.channel(&schemas, &name, "topology", topology::ENCODING)?);
+            let mesh_channel = self.channel(&schemas, &name, "topology", topology::ENCODING)?;
             let channel = self.channel(&schemas, &name, "points", points::ENCODING)?;
             let contacts = match is_cloth && self.run.contacts {
                 true => Some(self.channel(&schemas, &name, CONTACTS.topic, CONTACTS.encoding)?),
@@ -281,17 +290,26 @@ impl<W: Write + Seek> Recorder<W> {
                 name,
                 source: *source,
                 channel,
+                mesh_channel,
+                mesh: 0,
+                kind: object.kind,
                 points,
                 contacts,
                 strain,
                 has_moved: false,
             });
         }
-        for ((_, object), mesh) in objects.into_iter().zip(meshes) {
-            topology::write(object, &mut self.message);
-            self.stream.send(&Stamp::start(self.run.start), mesh, &self.message)?;
+        for (track, (_, object)) in self.tracks.iter().zip(objects) {
+            topology::write(object, 0, &mut self.message);
+            self.stream.send(&Stamp::start(self.run.start), track.mesh_channel, &self.message)?;
         }
         Ok(())
+    }
+
+    /// A moment of the frame that is being recorded.
+    pub(crate) fn stamp(&self, Moment { substep, substeps }: Moment) -> Stamp {
+        let frame = self.last_frame;
+        Stamp { frame, substep, substeps, time: self.run.time(frame, substep, substeps) }
     }
 
     /// A channel of an object.
@@ -317,8 +335,15 @@ impl<W: Write + Seek> Recorder<W> {
     /// Writes one message per object that may have changed.
     fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
         let units = self.run.units_per_metre;
+        if self.run.contacts {
+            state.contacts(&mut self.contacts);
+            self.rungs = Some(
+                [Contact::Touching, Contact::Pinched]
+                    .map(|rung| self.contacts.iter().flatten().filter(|&&found| found == rung).count()),
+            );
+        }
         for k in 0..self.tracks.len() {
-            let &Track { source, channel, points, has_moved, .. } = &self.tracks[k];
+            let &Track { source, channel, mesh, points, has_moved, .. } = &self.tracks[k];
             match source {
                 Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
                     continue;
@@ -337,19 +362,19 @@ impl<W: Write + Seek> Recorder<W> {
                 Source::Cloth(id) if self.run.velocities => Some(id),
                 _ => None,
             };
-            points::write_head(&stamp, points, cloth.is_some(), &mut self.message);
+            points::write_head(&stamp, points, mesh, cloth.is_some(), &mut self.message);
             shuffle(self.values.as_flattened(), &mut self.message);
             if let Some(id) = cloth {
                 state.velocities(id, units, &mut self.values);
                 shuffle(self.values.as_flattened(), &mut self.message);
             }
             if let Some(witness) = &mut self.witness {
-                witness.see(&stamp, &self.tracks[k].name, &self.message);
+                witness.see(&stamp, &self.tracks[k].name, "points", &self.message);
             }
             self.stream.send(&stamp, channel, &self.message)?;
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
-                self.record_attributes(k, id, &stamp, state)?;
+                self.record_attributes(k, id, &stamp)?;
             }
         }
         self.moments += 1;
@@ -357,27 +382,19 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// Writes what else is recorded of a cloth.
-    fn record_attributes(
-        &mut self,
-        track: usize,
-        cloth: ClothId,
-        stamp: &Stamp,
-        state: &dyn StateView,
-    ) -> Result<(), RecordError> {
+    fn record_attributes(&mut self, track: usize, cloth: ClothId, stamp: &Stamp) -> Result<(), RecordError> {
         let Track { contacts, strain, points, .. } = &self.tracks[track];
         if let Some((channel, _)) = strain {
-            points::write_head(stamp, *points, false, &mut self.message);
+            points::write_head(stamp, *points, 0, false, &mut self.message);
             shuffle(&self.strain, &mut self.message);
             self.stream.send(stamp, *channel, &self.message)?;
         }
-        if let Some(channel) = contacts {
-            state.contacts(cloth, &mut self.contacts);
-            // A scene in which nothing can touch has nothing to say.
-            if self.contacts.len() == *points {
-                points::write_head(stamp, *points, false, &mut self.message);
-                write_contacts(&self.contacts, &mut self.message);
-                self.stream.send(stamp, *channel, &self.message)?;
-            }
+        let rungs = self.contacts.get(cloth.index()).filter(|rungs| rungs.len() == *points);
+        // A scene in which nothing can touch has nothing to say.
+        if let (Some(channel), Some(rungs)) = (contacts, rungs) {
+            points::write_head(stamp, *points, 0, false, &mut self.message);
+            write_contacts(rungs, &mut self.message);
+            self.stream.send(stamp, *channel, &self.message)?;
         }
         Ok(())
     }
@@ -385,7 +402,7 @@ impl<W: Write + Seek> Recorder<W> {
 
 /// Records the substeps of one frame. What goes wrong is told by [`Recorder::end_frame`].
 pub struct FrameRecorder<'a, W: Write + Seek = File> {
-    recorder: &'a mut Recorder<W>,
+    pub(crate) recorder: &'a mut Recorder<W>,
 }
 
 impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
@@ -403,11 +420,7 @@ impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
             self.recorder.note_motion(state);
             return;
         }
-        let frame = self.recorder.last_frame;
-        let Moment { substep, substeps } = moment;
-        let stamp =
-            Stamp { frame, substep, substeps, time: self.recorder.run.time(frame, substep, substeps) };
-        self.recorder.trouble = self.recorder.record(stamp, state).err();
+        self.recorder.trouble = self.recorder.record(self.recorder.stamp(moment), state).err();
     }
 }
 
@@ -415,6 +428,9 @@ impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
 pub(crate) fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(), RecordError> {
     if let Some(fault) = run.fault() {
         return Err(RecordError::BadRun { fault });
+    }
+    if let Some((_, object)) = objects.iter().find(|(_, object)| !object.is_sound()) {
+        return Err(RecordError::BadMesh { object: object.name.clone() });
     }
     let mut names = HashSet::new();
     match objects.iter().find(|(_, object)| !names.insert(object.name.as_str())) {
@@ -424,11 +440,19 @@ pub(crate) fn check(run: &RunInfo, objects: &[(Source, ObjectInfo)]) -> Result<(
 }
 
 /// The report as a JSON object that names its frame.
-fn report_line(frame: i32, report: &impl Serialize) -> Result<Value, serde_json::Error> {
+fn report_line(
+    frame: i32,
+    rungs: Option<[usize; 2]>,
+    report: &impl Serialize,
+) -> Result<Value, serde_json::Error> {
     let mut line = match serde_json::to_value(report)? {
         Value::Object(fields) => fields,
         other => serde_json::Map::from_iter([("report".to_owned(), other)]),
     };
     line.insert("frame".to_owned(), frame.into());
+    if let Some([touching, pinched]) = rungs {
+        line.insert("touching".to_owned(), touching.into());
+        line.insert("pinched".to_owned(), pinched.into());
+    }
     Ok(Value::Object(line))
 }

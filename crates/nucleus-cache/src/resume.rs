@@ -118,7 +118,11 @@ impl<W: Write + Seek> Recorder<W> {
         for (header, data) in old.chunk.messages() {
             let Some(channel) = old.contents.channels.get(&header.channel_id) else { continue };
             match channel.message_encoding.as_str() {
-                topology::ENCODING => continue, // sent already
+                topology::ENCODING => {
+                    if !self.follow_mesh(&channel.topic, data) {
+                        continue; // The first, which was sent already.
+                    }
+                }
                 checkpoint::ENCODING => {
                     let Some(found) = checkpoint::read(data) else { continue };
                     for (track, &has_moved) in self.tracks.iter_mut().zip(&found.has_moved) {
@@ -152,6 +156,7 @@ impl<W: Write + Seek> Recorder<W> {
                 let track = self.tracks.iter().find(|track| track.name == name)?;
                 match what {
                     "points" => Some(track.channel),
+                    "topology" => Some(track.mesh_channel),
                     _ if what == CONTACTS.topic => track.contacts,
                     _ if what == STRAIN.topic => track.strain.as_ref().map(|(channel, _)| *channel),
                     _ => None,

@@ -10,11 +10,13 @@ pub(crate) const ENCODING: &str = "nucleus.topology.v1";
 pub(crate) const SCHEMA: &str = "\
 Little-endian. u32 kind (0 cloth, 1 collider, 2 particles), u32 points, u32 faces, u32 corners,
 u32 starts[faces + 1] (first corner of each face, then the number of corners), u32 corners[corners]
-(the point at each corner), f32 rest[3 * points] (x y z of each point at rest, in scene units).
+(the point at each corner), f32 rest[3 * points] (x y z of each point at rest, in scene units). Then, if the object had
+other meshes before, u32 number: how many. It has this mesh from the time of the message on.
 ";
 
-/// Replaces `out` by the topology message of an object. Takes it by value to give its memory back half-way.
-pub(crate) fn write(object: ObjectInfo, out: &mut Vec<u8>) {
+/// Replaces `out` by the topology message of an object that had `number` other meshes before. Takes it by value to give its
+/// memory back half-way.
+pub(crate) fn write(object: ObjectInfo, number: u32, out: &mut Vec<u8>) {
     let ObjectInfo { kind, faces, rest, .. } = object;
     let kind = match kind {
         ObjectKind::Cloth => 0_u32,
@@ -23,7 +25,7 @@ pub(crate) fn write(object: ObjectInfo, out: &mut Vec<u8>) {
     };
     let counts = [kind, rest.len() as u32, faces.len() as u32, faces.corners().len() as u32];
     out.clear();
-    out.reserve_exact(4 * (counts.len() + faces.len() + 1 + faces.corners().len() + 3 * rest.len()));
+    out.reserve_exact(4 * (counts.len() + faces.len() + 1 + faces.corners().len() + 3 * rest.len() + 1));
     let mut put = |x: u32| out.extend_from_slice(&x.to_le_bytes());
     counts.into_iter().for_each(&mut put);
     let mut end = 0;
@@ -35,10 +37,13 @@ pub(crate) fn write(object: ObjectInfo, out: &mut Vec<u8>) {
     faces.corners().iter().copied().for_each(&mut put);
     drop(faces);
     rest.as_flattened().iter().for_each(|x| put(x.to_bits()));
+    if number > 0 {
+        put(number);
+    }
 }
 
-/// Reads a topology message; `None` when it contradicts itself.
-pub(crate) fn read(name: &str, data: &[u8]) -> Option<ObjectInfo> {
+/// Reads a topology message, and how many came before it; `None` when it contradicts itself.
+pub(crate) fn read(name: &str, data: &[u8]) -> Option<(ObjectInfo, u32)> {
     let mut words = data.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("four bytes")));
     let kind = match words.next()? {
         0 => ObjectKind::Cloth,
@@ -47,12 +52,10 @@ pub(crate) fn read(name: &str, data: &[u8]) -> Option<ObjectInfo> {
         _ => return None,
     };
     let [points, faces, corners] = [words.next()? as usize, words.next()? as usize, words.next()? as usize];
-    if data.len() != 4 * (4 + faces + 1 + corners + 3 * points) {
-        return None;
-    }
+    let number = number(data)?;
     let starts: Vec<u32> = words.by_ref().take(faces + 1).collect();
     let corner_points: Vec<u32> = words.by_ref().take(corners).collect();
-    let rest: Vec<f32> = words.map(f32::from_bits).collect();
+    let rest: Vec<f32> = words.take(3 * points).map(f32::from_bits).collect();
     let rest: Vec<[f32; 3]> = rest.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
     if starts.first() != Some(&0) || corner_points.iter().any(|&point| point as usize >= points) {
         return None;
@@ -61,7 +64,27 @@ pub(crate) fn read(name: &str, data: &[u8]) -> Option<ObjectInfo> {
     for pair in starts.windows(2) {
         table.push(corner_points.get(pair[0] as usize..pair[1] as usize)?);
     }
-    (table.corners().len() == corners).then(|| ObjectInfo { name: name.to_owned(), kind, faces: table, rest })
+    if table.corners().len() != corners {
+        return None;
+    }
+    Some((ObjectInfo { name: name.to_owned(), kind, faces: table, rest }, number))
+}
+
+/// How many topology messages came before this one; `None` when it has not the length it states.
+pub(crate) fn number(data: &[u8]) -> Option<u32> {
+    let word = |k: usize| Some(u32::from_le_bytes(data.get(4 * k..4 * k + 4)?.try_into().ok()?));
+    let [points, faces, corners] = [word(1)? as usize, word(2)? as usize, word(3)? as usize];
+    let words = 4 + faces + 1 + corners + 3 * points;
+    match data.len() {
+        length if length == 4 * words => Some(0),
+        length if length == 4 * (words + 1) => word(words).filter(|&number| number > 0),
+        _ => None,
+    }
+}
+
+/// The object a topology channel belongs to.
+pub(crate) fn object_name(topic: &str) -> Option<&str> {
+    topic.strip_prefix('/')?.strip_suffix("/topology")
 }
 
 #[cfg(test)]
@@ -87,10 +110,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_topology_message_gives_the_object_back(object in object()) {
+        fn a_topology_message_gives_the_object_back(object in object(), number in prop_oneof![Just(0), any::<u32>()]) {
             let mut bytes = Vec::new();
-            write(object.clone(), &mut bytes);
-            prop_assert_eq!(read(&object.name, &bytes), Some(object));
+            write(object.clone(), number, &mut bytes);
+            prop_assert_eq!(read(&object.name, &bytes), Some((object, number)));
         }
 
         #[test]
@@ -98,7 +121,7 @@ mod tests {
             // Small counts, so that some messages have a length that fits.
             let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
             let object = read("any", &bytes);
-            let corners = object.iter().flat_map(|object| object.faces.corners().iter().map(move |&c| (c, object)));
+            let corners = object.iter().flat_map(|(object, _)| object.faces.corners().iter().map(move |&c| (c, object)));
             for (corner, object) in corners {
                 prop_assert!((corner as usize) < object.rest.len());
             }
@@ -111,7 +134,7 @@ mod tests {
         faces.push(&[0, 1, 3]);
         let object = ObjectInfo { name: "a".into(), kind: ObjectKind::Cloth, faces, rest: vec![[0.0; 3]; 3] };
         let mut bytes = Vec::new();
-        write(object, &mut bytes);
+        write(object, 0, &mut bytes);
         assert_eq!(read("a", &bytes), None);
     }
 }

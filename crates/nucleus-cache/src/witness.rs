@@ -17,12 +17,12 @@ impl Witness {
     }
 
     /// Looks at a message that is about to be recorded. What the older cache has not, or cannot read, is no difference.
-    pub fn see(&mut self, stamp: &Stamp, object: &str, message: &[u8]) {
+    pub fn see(&mut self, stamp: &Stamp, object: &str, what: &str, message: &[u8]) {
         if stamp.frame > self.until || self.differs.is_some() {
             return;
         }
         let contents = &self.old.contents;
-        let Some(channel) = contents.channel(&format!("/{object}/points")) else { return };
+        let Some(channel) = contents.channel(&format!("/{object}/{what}")) else { return };
         let time = stamp.log_time();
         let Some((_, chunk)) = contents.latest(channel, time).filter(|&(found, _)| found == time) else {
             return;

@@ -56,7 +56,7 @@ impl InitialState {
         let scale = program.units_per_metre() / cache.run().units_per_metre;
         let mut has_velocities = true;
         for cloth in cloths {
-            let object = self.matching(&cache, cloth)?;
+            let object = self.matching(&mut cache, moment, cloth)?;
             let positions = cache.positions(object, moment)?;
             let velocities = match cache.velocities(object, moment)? {
                 Some(velocities) => velocities,
@@ -82,7 +82,7 @@ impl InitialState {
     }
 
     /// The object of the cache that a cloth goes on from: of the same name and the same mesh.
-    fn matching(&self, cache: &Playback, cloth: &Object) -> Result<usize> {
+    fn matching(&self, cache: &mut Playback, moment: usize, cloth: &Object) -> Result<usize> {
         let (name, cache_name) = (&cloth.name, self.cache.display());
         let is_solved = |kind: ObjectKind| kind != ObjectKind::Collider;
         let objects = cache.objects();
@@ -96,13 +96,14 @@ impl InitialState {
                 cache.run().scene_path
             );
         };
-        let (points, recorded) = (cloth.points, objects[found].rest.len());
+        let mesh = cache.object_at(found, moment)?;
+        let (points, recorded) = (cloth.points, mesh.rest.len());
         ensure!(
             points == recorded,
             "`{name}` has {points} points, but {recorded} in `{cache_name}`: its mesh has changed"
         );
         ensure!(
-            cloth.faces == objects[found].faces,
+            cloth.faces == mesh.faces,
             "`{name}` has other faces than in `{cache_name}`: its mesh has changed"
         );
         Ok(found)
@@ -115,6 +116,9 @@ fn guessed(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f3
     let Some(before) = moment.checked_sub(1) else { return Ok(vec![[0.0; 3]; now.len()]) };
     let passed = cache.moments()[moment].time - cache.moments()[before].time;
     let earlier = cache.positions(object, before)?;
+    if earlier.len() != now.len() {
+        return Ok(vec![[0.0; 3]; now.len()]); // It had another mesh.
+    }
     let speed = |(now, before): (&f32, &f32)| ((f64::from(*now) - f64::from(*before)) / passed) as f32;
     let each = now
         .iter()

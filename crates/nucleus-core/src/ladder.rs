@@ -43,13 +43,27 @@ impl Ladder {
 }
 
 impl<R: Real> Solver<R> {
+    /// Replaces `out` by how contact stands at each point of every cloth, in the user's order.
+    pub(crate) fn rungs_of_cloths(&self, out: &mut Vec<Vec<Contact>>) {
+        out.resize_with(self.cloths.len(), Vec::new);
+        out.iter_mut().for_each(Vec::clear);
+        if !self.can_meet() {
+            return;
+        }
+        let rungs = self.rungs();
+        for (model, out) in self.cloths.iter().zip(out) {
+            let first = model.points().start;
+            out.extend(model.order.places().iter().map(|&place| rungs[(first + place) as usize]));
+        }
+    }
+
     /// Whether anything of this scene can touch anything.
-    pub(crate) fn can_meet(&self) -> bool {
+    fn can_meet(&self) -> bool {
         !self.heights.is_empty() || !self.pairs.is_empty() || self.mutual.is_some()
     }
 
     /// How contact stands at each place of the solver.
-    pub(crate) fn rungs(&self) -> Vec<Contact> {
+    fn rungs(&self) -> Vec<Contact> {
         let mut ladder = Ladder(vec![Contact::Free; self.state.anchor.len()]);
         self.on_the_ground(&mut ladder);
         self.pairs.iter().for_each(|list| self.at_collider(list, &mut ladder));

@@ -43,10 +43,9 @@ pub trait StateView {
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Replaces `out` by the velocities of a cloth, in units per second.
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
-    /// Replaces `out` by how contact stands at each point of a cloth; by nothing where no contact can be, and by who does
-    /// not know.
-    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
-        let _ = cloth;
+    /// Replaces `out` by how contact stands at each point, cloth by cloth: of all at once, as what is found of one is half
+    /// of what there is to know of another. A cloth has no row where no contact can be; who does not know gives nothing.
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
         out.clear();
     }
     /// Replaces `out` by the positions of a collider.

@@ -130,13 +130,8 @@ impl<R: Real> StateView for Solver<R> {
         self.column(cloth, out, |row| velocity(row).map(|x| x.to_f64() * units_per_metre));
     }
 
-    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
-        out.clear();
-        if self.can_meet() {
-            let (model, rungs) = (&self.cloths[cloth.index()], self.rungs());
-            let first = model.points().start;
-            out.extend(model.order.places().iter().map(|&place| rungs[(first + place) as usize]));
-        }
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+        self.rungs_of_cloths(out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

@@ -67,12 +67,46 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         Ok(Self { cache, objects, samples, scale: selection.scale })
     }
 
-    /// The objects, in the order of the cache.
+    /// The objects as they begin, in the order of the cache.
     pub fn objects(&self) -> impl ExactSizeIterator<Item = &ObjectInfo> {
         self.objects.iter().map(|&object| &self.cache.objects()[object])
     }
 
-    /// An object by its place in [`objects`](Self::objects).
+    /// An object with the mesh that it has at a sample.
+    ///
+    /// # Errors
+    /// When the frame of its mesh is damaged.
+    pub fn object_at(&mut self, object: usize, sample: usize) -> Result<&ObjectInfo, ExportError> {
+        Ok(self.cache.object_at(self.objects[object], self.samples[sample].moment)?)
+    }
+
+    /// The samples at which an object has another mesh than at the sample before.
+    pub fn mesh_changes(&self, object: usize) -> Vec<usize> {
+        let first = self.samples[0].moment;
+        let changes = self.cache.mesh_changes(self.objects[object]);
+        let sample = |moment: usize| self.samples.iter().position(|sample| sample.moment >= moment);
+        let mut samples: Vec<usize> =
+            changes.into_iter().filter(|&moment| moment > first).filter_map(sample).collect();
+        samples.dedup();
+        samples
+    }
+
+    /// For a format that knows one mesh for all time.
+    ///
+    /// # Errors
+    /// When an object has another at a later sample than at the first.
+    pub(crate) fn refuse_changes(&self, object: usize, format: &'static str) -> Result<(), ExportError> {
+        match self.mesh_changes(object).first() {
+            None => Ok(()),
+            Some(&sample) => Err(ExportError::MeshChanges {
+                object: self.object(object).name.clone(),
+                frame: self.samples[sample].frame,
+                format,
+            }),
+        }
+    }
+
+    /// An object as it begins, by its place in [`objects`](Self::objects).
     pub fn object(&self, object: usize) -> &ObjectInfo {
         &self.cache.objects()[self.objects[object]]
     }

@@ -60,6 +60,19 @@ pub enum ExportError {
         /// How many points.
         points: usize,
     },
+    /// A mesh that changes, in a format that has one for all time.
+    #[error(
+        "`{object}` gets another mesh at frame {frame}, and {format} has one for all time; export the frames before it, or \
+         write obj, ply, vtu, usda or foxglove"
+    )]
+    MeshChanges {
+        /// The object.
+        object: String,
+        /// The frame.
+        frame: i32,
+        /// The format.
+        format: &'static str,
+    },
     /// More than the format can count.
     #[error("{what} is more than {format} can hold; export fewer frames, or write usda")]
     TooLarge {

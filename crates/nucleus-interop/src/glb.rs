@@ -95,6 +95,7 @@ fn describe<R: Read + Seek>(
     let (mut meshes, mut nodes, mut moving) = (Vec::new(), Vec::new(), Vec::new());
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     for object in 0..objects {
+        clip.refuse_changes(object, "glTF")?;
         let moves = clip.moves(object)?;
         meshes.push(describe_mesh(clip, object, moves, &mut document)?);
         nodes.push(json!({ "name": clip.object(object).name, "mesh": object }));
@@ -131,7 +132,7 @@ fn describe_mesh<R: Read + Seek>(
     document: &mut Document,
 ) -> Result<Value, ExportError> {
     let base = clip.positions(object, 0)?;
-    let info = clip.object(object);
+    let info = clip.object_at(object, 0)?;
     let corners = 3 * info.faces.triangles().count();
     let mut primitive = json!({ "mode": if corners > 0 { TRIANGLES } else { POINTS } });
     if corners > 0 {
@@ -164,7 +165,7 @@ fn write_object<R: Read + Seek>(
     file: &mut OutFile,
 ) -> Result<(), ExportError> {
     let base = clip.positions(object, 0)?;
-    write_triangles(clip.object(object), file);
+    write_triangles(clip.object_at(object, 0)?, file);
     file.floats_le(&base);
     if !moves {
         return Ok(());

@@ -5,6 +5,8 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
+use nucleus_cache::ObjectKind;
+
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
 use crate::name;
@@ -31,6 +33,12 @@ pub(crate) fn write<R: Read + Seek>(
 ) -> Result<(), ExportError> {
     let names = name::for_nodes(clip.objects().map(|object| object.name.as_str()));
     let per_frame = ticks(1.0, clip.fps());
+    for object in 0..names.len() {
+        // Of particles the count is told in each file.
+        if clip.objects().nth(object).is_some_and(|object| object.kind != ObjectKind::Particles) {
+            clip.refuse_changes(object, "nCache")?;
+        }
+    }
     for place in 0..clip.samples().len() {
         let sample = clip.samples()[place];
         let tick = ticks(sample.at, clip.fps());

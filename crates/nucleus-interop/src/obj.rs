@@ -37,7 +37,7 @@ pub(crate) fn each_file<R: Read + Seek>(
         for (object, name) in names.iter().enumerate() {
             let positions = clip.positions(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{place}.{end}")))?;
-            write(&mut file, clip.object(object), &positions);
+            write(&mut file, clip.object_at(object, sample)?, &positions);
             output.finish(file)?;
         }
         told((sample + 1) as f64 / clip.samples().len() as f64);

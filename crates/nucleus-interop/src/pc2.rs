@@ -44,10 +44,11 @@ pub(crate) fn point_caches<R: Read + Seek>(
     let names = name::for_files(clip.objects().map(|object| object.name.as_str()));
     let mut files = Vec::with_capacity(names.len());
     for (object, name) in names.iter().enumerate() {
+        clip.refuse_changes(object, if end == "pc2" { "PC2" } else { "MDD" })?;
         // The mesh is that of the first sample, so that it stands where the cache begins.
         let first = clip.positions(object, 0)?;
         let mut mesh = output.file(folder.join(format!("{name}.obj")))?;
-        obj::write_mesh(&mut mesh, clip.object(object), &first);
+        obj::write_mesh(&mut mesh, clip.object_at(object, 0)?, &first);
         output.finish(mesh)?;
         let mut file = output.file(folder.join(format!("{name}.{end}")))?;
         head(clip, first.len(), &mut file);

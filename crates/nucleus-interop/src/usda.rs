@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::ObjectInfo;
+use nucleus_cache::{ObjectInfo, ObjectKind};
 
 use crate::clip::Clip;
 use crate::error::ExportError;
@@ -52,15 +52,12 @@ fn write_object<R: Read + Seek>(
     file: &mut OutFile,
     told: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
+    let changes = !clip.mesh_changes(object).is_empty();
     let info = clip.object(object);
-    let is_mesh = !info.faces.is_empty();
+    let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
     file.text(format!("    def {} \"{name}\"\n    {{\n", if is_mesh { "Mesh" } else { "Points" }));
     file.text(format!("        custom string nucleus:name = {}\n", quoted(&info.name)));
-    if is_mesh {
-        write_faces(info, file)
-    } else {
-        write_identity(info, file)
-    }
+    write_meshes(clip, object, is_mesh, file)?;
     let samples = clip.samples().to_vec();
     let mut extents = String::new();
     file.text("        point3f[] points.timeSamples = {\n");
@@ -82,22 +79,57 @@ fn write_object<R: Read + Seek>(
     Ok(())
 }
 
-fn write_faces(object: &ObjectInfo, file: &mut OutFile) {
+/// Writes what says which points belong together: once, or at each sample at which it changes. USD holds such values until
+/// the next.
+fn write_meshes<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    is_mesh: bool,
+    file: &mut OutFile,
+) -> Result<(), ExportError> {
+    if is_mesh {
+        file.text("        uniform token subdivisionScheme = \"none\"\n");
+        file.text(
+            "        uniform token orientation = \"rightHanded\"\n        uniform bool doubleSided = 1\n",
+        );
+    }
+    let mut samples = vec![0];
+    samples.extend(clip.mesh_changes(object));
+    let mut attributes: Vec<(&str, Vec<String>)> = Vec::new();
+    for &sample in &samples {
+        for (name, values) in mesh_attributes(clip.object_at(object, sample)?, is_mesh) {
+            match attributes.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, all)) => all.push(values),
+                None => attributes.push((name, vec![values])),
+            }
+        }
+    }
+    for (name, values) in attributes {
+        if let [only] = &values[..] {
+            file.text(format!("        {name} = [{only}]\n"));
+            continue;
+        }
+        file.text(format!("        {name}.timeSamples = {{\n"));
+        for (&sample, values) in samples.iter().zip(values) {
+            file.text(format!("            {}: [{values}],\n", clip.samples()[sample].at));
+        }
+        file.text("        }\n");
+    }
+    Ok(())
+}
+
+/// Types and names of the attributes that a mesh has, with their values. Particles keep their numbers, so that other tools
+/// can follow each.
+fn mesh_attributes(object: &ObjectInfo, is_mesh: bool) -> Vec<(&'static str, String)> {
     let list = |numbers: &mut dyn Iterator<Item = u32>| {
         numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
     };
-    file.text("        uniform token subdivisionScheme = \"none\"\n");
-    file.text("        uniform token orientation = \"rightHanded\"\n        uniform bool doubleSided = 1\n");
+    if !is_mesh {
+        return vec![("int64[] ids", list(&mut (0..object.rest.len() as u32)))];
+    }
     let counts = list(&mut object.faces.iter().map(|face| face.len() as u32));
-    file.text(format!("        int[] faceVertexCounts = [{counts}]\n"));
     let corners = list(&mut object.faces.corners().iter().copied());
-    file.text(format!("        int[] faceVertexIndices = [{corners}]\n"));
-}
-
-/// Particles keep their numbers, so that other tools can follow each.
-fn write_identity(object: &ObjectInfo, file: &mut OutFile) {
-    let ids: Vec<String> = (0..object.rest.len()).map(|id| id.to_string()).collect();
-    file.text(format!("        int64[] ids = [{}]\n", ids.join(", ")));
+    vec![("int[] faceVertexCounts", counts), ("int[] faceVertexIndices", corners)]
 }
 
 fn write_velocities<R: Read + Seek>(

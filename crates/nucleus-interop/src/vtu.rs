@@ -25,7 +25,7 @@ pub(crate) fn write<R: Read + Seek>(
             let positions = clip.positions(object, sample)?;
             let velocities = clip.velocities(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{place}.vtu")))?;
-            write_grid(&mut file, clip.object(object), &positions, velocities.as_deref());
+            write_grid(&mut file, clip.object_at(object, sample)?, &positions, velocities.as_deref());
             output.finish(file)?;
         }
         told((sample + 1) as f64 / clip.samples().len() as f64);

@@ -15,12 +15,21 @@ const SHEET: &str = "ns:sheet|1";
 const POINTS: usize = 11;
 
 fn exported(format: Format, selection: Selection) -> (TempDir, PathBuf, Exported) {
+    let (folder, out, exported) = tried(sample::write, format, selection);
+    (folder, out, exported.unwrap())
+}
+
+fn tried(
+    write: impl Fn(&Path),
+    format: Format,
+    selection: Selection,
+) -> (TempDir, PathBuf, Result<Exported, ExportError>) {
     let folder = tempfile::tempdir().unwrap();
     let cache = folder.path().join("sample.mcap");
-    sample::write(&cache);
+    write(&cache);
     let out = folder.path().join("out");
     let request = Request { format, out: out.clone(), selection, force: false };
-    let exported = export(&mut Playback::open(&cache).unwrap(), &request, &mut |_| {}).unwrap();
+    let exported = export(&mut Playback::open(&cache).unwrap(), &request, &mut |_| {});
     (folder, out, exported)
 }
 
@@ -168,6 +177,86 @@ fn every_format_writes_the_same_bytes_twice() {
             assert_eq!(fs::read(one).unwrap(), fs::read(two).unwrap(), "{}", one.display());
         }
     }
+}
+
+fn torn(format: Format, frames: Option<(i32, i32)>) -> (TempDir, PathBuf, Result<Exported, ExportError>) {
+    tried(sample::write_torn, format, Selection { frames, ..Selection::default() })
+}
+
+#[test]
+fn files_of_one_sample_each_have_the_mesh_of_that_sample() {
+    let (_folder, out, exported) = torn(Format::Obj, None);
+    exported.unwrap();
+    for frame in START..=END {
+        let text = fs::read_to_string(out.join(format!("ns_sheet_1.{frame:04}.obj"))).unwrap();
+        let is_torn = frame >= sample::TORN;
+        let points = text.lines().filter(|line| line.starts_with("v ")).count();
+        assert_eq!(points, POINTS + usize::from(is_torn), "frame {frame}");
+        assert_eq!(text.contains("f 2 3 12"), is_torn, "frame {frame}");
+    }
+    for (format, end) in [(Format::Ply, "ply"), (Format::Vtu, "vtu")] {
+        let (_folder, out, exported) = torn(format, None);
+        exported.unwrap();
+        let text = |frame| {
+            String::from_utf8_lossy(&fs::read(out.join(format!("ns_sheet_1.{frame:04}.{end}"))).unwrap())
+                .into_owned()
+        };
+        let counts =
+            |count: usize| [format!("element vertex {count}\n"), format!("NumberOfPoints=\"{count}\"")];
+        let states = |frame, count| counts(count).iter().any(|counted| text(frame).contains(counted));
+        assert!(states(sample::TORN - 1, POINTS) && states(sample::TORN, POINTS + 1), "{end}");
+    }
+}
+
+#[test]
+fn usda_and_foxglove_tell_when_the_mesh_changes() {
+    let (_folder, out, exported) = torn(Format::Usda, None);
+    exported.unwrap();
+    let text = fs::read_to_string(out).unwrap();
+    let times = format!(
+        "{START}: [0, 1, 4, 3, 1, 2, 5, 1, 5, 4, 3, 4, 5, 8, 7, 6],\n            {}: [0, 1, 4, 3, 1, 2, 11,",
+        sample::TORN
+    );
+    assert!(
+        text.contains(&format!("int[] faceVertexIndices.timeSamples = {{\n            {times}")),
+        "{text}"
+    );
+    assert!(text.contains("int[] faceVertexCounts = [5]"), "that of the cart, which stays: {text}");
+    let (_folder, out, exported) = torn(Format::Foxglove, None);
+    exported.unwrap();
+    let bytes = fs::read(out).unwrap();
+    let mut clouds = Vec::new();
+    for message in mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap) {
+        if message.channel.topic == format!("/{SHEET}/points") {
+            clouds.push(message.data.len());
+        }
+    }
+    assert_eq!(clouds[5] - clouds[4], 12, "one point more: {clouds:?}");
+}
+
+#[test]
+fn formats_of_one_mesh_refuse_a_change_by_object_and_frame_and_take_what_lies_on_one_side_of_it() {
+    for (format, name) in [
+        (Format::Pc2, "PC2"),
+        (Format::Mdd, "MDD"),
+        (Format::Glb, "glTF"),
+        (Format::Mc, "nCache"),
+        (Format::Mcx, "nCache"),
+    ] {
+        let (_folder, out, refused) = torn(format, None);
+        let refused = refused.unwrap_err().to_string();
+        let expected =
+            format!("`{SHEET}` gets another mesh at frame {}, and {name} has one for all time", sample::TORN);
+        assert!(refused.contains(&expected), "{refused}");
+        let written = fs::read_dir(&out).map_or(0, Iterator::count);
+        assert_eq!((written, out.is_file()), (0, false), "{name} leaves nothing");
+        for frames in [(START, sample::TORN - 1), (sample::TORN, END)] {
+            torn(format, Some(frames)).2.unwrap();
+        }
+    }
+    let (_folder, out, _) = torn(Format::Pc2, Some((sample::TORN, END)));
+    let text = fs::read_to_string(out.join("ns_sheet_1.obj")).unwrap();
+    assert!(text.contains("f 2 3 12"), "{text}");
 }
 
 #[test]

@@ -267,12 +267,29 @@ fn contact_colours_the_points_and_counts_them() {
     let seen = look(chromium, &with, "frame=12&contacts");
     let page = seen.page.replace('\n', "");
     assert!(page.contains(" tangled</dt><dd>1</dd>") && page.contains(" pinched</dt><dd>0</dd>"), "{page}");
+    assert!(page.contains("<dt>Pinched</dt><dd class=\"\">0</dd>"), "the report counts them too: {page}");
     let blue = seen.share(|[red, _, blue]| *blue > 120 && i32::from(*blue) > 2 * i32::from(*red));
     assert!(blue > 0.01 && seen.cloth() < 0.01, "{blue} of the screen is blue");
     let without = folder.path().join("without.mcap");
     sample::write(&without, Sample::default());
     let seen = look(chromium, &without, "frame=12&contacts");
     assert!(seen.cloth() > 0.03, "where contact was not recorded, colours tell objects apart");
+}
+
+#[test]
+fn a_mesh_that_changes_on_the_way_is_shown_as_it_is_then() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let cache = written(folder.path(), Sample { torn: true, substeps: true, ..Sample::default() });
+    let player = serve(&cache, 0).unwrap();
+    // Straight there, and by way of the other frames.
+    let [before, after, back] = [11, 12, 24].map(|frame| {
+        look_until(&player, chromium, &format!("frame={frame}"), |seen| {
+            seen.page.contains(&format!("data-frame=\"{frame}\""))
+        })
+    });
+    assert!(after.cloth() < 0.7 * before.cloth(), "{} of {}", after.cloth(), before.cloth());
+    assert!(back.cloth() < 0.7 * before.cloth() && back.cloth() > 0.2 * before.cloth(), "{}", back.cloth());
 }
 
 #[test]

@@ -134,3 +134,16 @@ fn a_picture_of_the_sample_is_the_one_that_was_looked_at() {
 }
 
 const GOLDEN: u64 = 0x07e2_645b_9158_7d6b;
+
+#[test]
+fn a_mesh_that_changes_on_the_way_is_drawn_as_it_is_then() {
+    let (_a, mut whole) = recorded(Sample::default());
+    let (_b, mut torn) = recorded(Sample { torn: true, ..Sample::default() });
+    let tear = FRAMES as usize / 2;
+    // The same stage, so that only the mesh tells the two apart.
+    let mut films = [Film::of(&mut whole, 1, small()).unwrap(), Film::of(&mut torn, 1, small()).unwrap()];
+    for place in [0, tear - 2, tear - 1, FRAMES as usize - 1, 0] {
+        let [whole, torn] = films.each_mut().map(|film| film.picture(place).unwrap());
+        assert_eq!(whole == torn, place < tear - 1, "picture {place}");
+    }
+}

@@ -1,5 +1,6 @@
-//! How fast caches are written, read, sought in and played, and what recording costs a run.
+//! How fast caches are written, read, sought in and played, and what recording and checkpoints cost a run.
 
+mod goal;
 mod player;
 mod recording;
 
@@ -10,6 +11,7 @@ use anyhow::{Context, ensure};
 use serde_json::Value;
 
 use super::table::{Table, figure};
+use goal::Goal;
 
 /// What stands above the tables.
 pub const HEAD: &str = "# Caches
@@ -26,23 +28,28 @@ const SHEETS: [(u32, u32, bool); 3] = [(129, 600, false), (129, 60, true), (1000
 /// Frames of 129² points in 10 GB.
 const LARGE: u32 = 67_500;
 
-/// All tables of the page.
+/// What is aimed at: megabytes a second written and read, milliseconds to a frame of a file of 10 GB.
+const WRITE: f64 = 300.0;
+const READ: f64 = 2000.0;
+const SEEK: f64 = 5.0;
+
+/// All tables of the page, first what was aimed at.
 pub fn tables(root: &Path) -> anyhow::Result<String> {
     let folder = crate::target(root).join("caches");
     std::fs::create_dir_all(&folder)?;
-    let tables = [
-        throughput(root, &folder)?,
-        large(root, &folder)?,
-        recording::table()?,
-        player::table(root, &folder)?,
-    ];
-    Ok(tables.iter().map(|table| format!("{table}\n")).collect())
+    let [costs, checkpoint] = recording::tables()?;
+    let (throughput, large) = (throughput(root, &folder)?, large(root, &folder)?);
+    let parts = [throughput, large, costs, checkpoint, player::table(root, &folder)?];
+    let goals: Vec<&Goal> = parts.iter().flat_map(|(_, goals)| goals).collect();
+    let tables = std::iter::once(goal::table(&goals)).chain(parts.iter().map(|(table, _)| table.clone()));
+    Ok(tables.map(|table| format!("{table}\n")).collect())
 }
 
-fn throughput(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let head =
         ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
     let mut table = Table::new("Speed and memory", &head);
+    let mut goals = Vec::new();
     for (side, frames, is_compact) in SHEETS {
         let mut runs = Vec::new();
         for _ in 0..3 {
@@ -57,12 +64,17 @@ fn throughput(root: &Path, folder: &Path) -> anyhow::Result<Table> {
         let keys = ["write_mb_s", "read_mb_s", "packed", "recorder_bytes_per_point", "reader_mb"];
         let cells = [format!("{side}²"), packing.to_owned()];
         table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
+        if !is_compact {
+            goals.push(Goal::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
+            goals.push(Goal::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
+        }
     }
     table.note("Memory is what recorder and reader add to the process at the most, meshes among it: a few frames, however long the run.");
-    Ok(table)
+    table.note("The sheet's mesh is in the file as well: of 60 frames it is a larger share of what is packed than of 600.");
+    Ok((table, goals))
 }
 
-fn large(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let found = example(root, folder, 129, LARGE, false, None)?;
     let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
     let mut row = |name: &str, key: &str| {
@@ -76,7 +88,12 @@ fn large(root: &Path, folder: &Path) -> anyhow::Result<Table> {
         "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process that grew by {} MB.",
         number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
     ));
-    Ok(table)
+    let cold = |k: usize| found["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
+    let goals = vec![
+        Goal::below("seek in 10 GB that the system has forgotten, median ms", SEEK, cold(0)),
+        Goal::below("the same, 99 of 100", SEEK, cold(1)),
+    ];
+    Ok((table, goals))
 }
 
 /// Has a sheet written and read; what the example of the cache crate finds.

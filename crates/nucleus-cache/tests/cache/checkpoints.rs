@@ -6,7 +6,7 @@ use std::io::Cursor;
 use nucleus_cache::{Detail, Kept, Playback, RecordError, Recorder, RunInfo, compare};
 use nucleus_core::{Moment, StepObserver};
 
-use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
+use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared, state_bytes as bytes};
 
 /// A checkpoint at every third frame, and whenever the run ends.
 fn run_info() -> RunInfo {
@@ -33,11 +33,6 @@ fn record<W: std::io::Write + std::io::Seek>(
         recorder.record_checkpoint(&bytes(last))?;
     }
     Ok(())
-}
-
-/// What stands for the state of a solver.
-fn bytes(frame: i32) -> Vec<u8> {
-    frame.to_le_bytes().repeat(100)
 }
 
 fn begin<W: std::io::Write + std::io::Seek>(recorder: &mut Recorder<W>) {
@@ -113,6 +108,26 @@ fn a_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
             assert!(fs::read(&path).unwrap() == whole, "{detail:?}, stopped at {last}");
         }
     }
+}
+
+#[test]
+fn a_damaged_checkpoint_is_no_hindrance_where_a_later_one_is_sound() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.mcap");
+    let mut damaged = whole_run(&run_info(), END);
+    let chunk = mcap::Summary::read(&damaged).unwrap().unwrap().chunk_indexes[5].clone();
+    damaged[(chunk.chunk_start_offset + chunk.chunk_length) as usize - 9] ^= 1;
+    fs::write(&path, &damaged).unwrap();
+    let old = Playback::open_to_resume(&path).unwrap();
+    let kept = Kept { copied: START + 6, compared: END };
+    let mut recorder = Recorder::resume(&path, true, &run_info(), falling::objects(), old, kept).unwrap();
+    record(&mut recorder, START + 6, END).unwrap();
+    recorder.finish().unwrap();
+    let mut cache = read(&fs::read(&path).unwrap());
+    assert!(cache.verify().unwrap().is_none(), "{}", cache.loss());
+    assert_eq!(cache.checkpoints(), [START, START + 6, END], "what is lost stays lost, and nothing else");
+    let mut undamaged = read(&whole_run(&run_info(), END));
+    assert_eq!(compare(&mut cache, &mut undamaged, 0.0).unwrap().differences, []);
 }
 
 #[test]

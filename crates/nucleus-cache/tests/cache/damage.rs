@@ -141,12 +141,20 @@ fn no_cache_of_the_corpus_makes_the_reader_panic() {
         let Ok(mut cache) = open(&bytes) else { continue };
         for object in 0..cache.objects().len() {
             for moment in 0..cache.moments().len() {
-                let _ =
-                    cache.velocities(object, moment).map(drop).and(cache.positions(object, moment).map(drop));
+                let _ = cache.velocities(object, moment).map(drop);
+                let _ = cache.contacts(object, moment).map(drop);
+                let _ = cache.strain(object, moment).map(drop);
+                if let Ok(positions) = cache.positions(object, moment) {
+                    assert_eq!(cache.object_at(object, moment).unwrap().rest.len(), positions.len());
+                }
             }
+        }
+        for frame in cache.checkpoints() {
+            let _ = cache.checkpoint(frame).map(drop);
         }
         cache.verify().unwrap();
         cache.reports().unwrap();
+        cache.sizes().unwrap();
     }
     assert!(seen > 20, "the corpus is there: {seen}");
 }

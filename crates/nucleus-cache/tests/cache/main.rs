@@ -5,6 +5,8 @@ mod compared;
 mod damage;
 mod falling;
 mod full_disk;
+mod meshes;
 mod recovered;
 mod refusals;
 mod round_trip;
+mod torn;

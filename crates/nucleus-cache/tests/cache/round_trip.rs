@@ -93,6 +93,14 @@ fn each_frame_has_its_report() {
 }
 
 #[test]
+fn a_report_counts_the_points_on_each_rung_where_contacts_are_recorded() {
+    for report in open(&falling::with_all_channels()).reports().unwrap() {
+        assert_eq!((&report["touching"], &report["pinched"]), (&1.into(), &1.into()), "{report}");
+    }
+    assert!(open(&falling::run_info()).reports().unwrap()[0].get("touching").is_none());
+}
+
+#[test]
 fn the_same_run_gives_the_same_bytes() {
     let run = falling::with_substeps();
     assert_eq!(falling::whole_run(&run).0, falling::whole_run(&run).0);

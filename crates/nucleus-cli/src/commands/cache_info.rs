@@ -46,15 +46,16 @@ pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<St
         let way = if camera.views.len() > 1 { "moving" } else { "standing still" };
         writeln!(text, "camera {}: {way}", camera.name)?;
     }
-    for object in cache.objects() {
+    for (place, object) in cache.objects().iter().enumerate() {
         let [x, y, z] = size(object, run.units_per_metre).map(figures::number);
         let points = figures::count(object.rest.len(), "point");
         let faces = figures::count(object.faces.len(), "face");
         writeln!(
             text,
-            "object {}: {}, {points}, {faces}, {x} x {y} x {z} m",
+            "object {}: {}, {points}, {faces}, {x} x {y} x {z} m{}",
             object.name,
-            kind(object.kind)
+            kind(object.kind),
+            changes(cache, place)
         )?;
     }
     for (topic, encoding, messages) in cache.channels() {
@@ -71,13 +72,15 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
     let objects: Vec<_> = cache
         .objects()
         .iter()
-        .map(|object| {
+        .enumerate()
+        .map(|(place, object)| {
             json!({
                 "name": object.name,
                 "kind": kind(object.kind),
                 "points": object.rest.len(),
                 "faces": object.faces.len(),
                 "size_metres": size(object, run.units_per_metre),
+                "mesh_changes": cache.mesh_changes(place).iter().map(|&at| cache.moments()[at].frame).collect::<Vec<_>>(),
             })
         })
         .collect();
@@ -148,6 +151,14 @@ fn detail(cache: &Playback) -> String {
 /// Bytes of a channel before they were packed.
 fn channel_bytes(sizes: Option<&Sizes>, topic: &str) -> Option<u64> {
     sizes.map(|sizes| sizes.channels.get(topic).copied().unwrap_or_default())
+}
+
+/// `; its mesh changes 3 times, first in frame 12`; nothing where it never does.
+fn changes(cache: &Playback, object: usize) -> String {
+    let changes = cache.mesh_changes(object);
+    let Some(&first) = changes.first() else { return String::new() };
+    let (times, frame) = (figures::count(changes.len(), "time"), cache.moments()[first].frame);
+    format!("; its mesh changes {times}, first in frame {frame}")
 }
 
 fn kind(kind: ObjectKind) -> &'static str {

@@ -71,8 +71,10 @@ impl Diff {
             Difference::Object { name: object, in_first } => {
                 format!("object `{object}` is in `{}` only", name(in_first))
             }
-            Difference::Mesh { name } => {
-                format!("object `{name}` has other faces or another number of points")
+            Difference::Mesh { name, frame, substep } => {
+                format!(
+                    "object `{name}` has other faces or another number of points at frame {frame} substep {substep}"
+                )
             }
             Difference::Moment { frame, in_first, .. } => {
                 format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
@@ -109,7 +111,9 @@ fn as_json(comparison: &Comparison) -> Value {
         Difference::Object { name, in_first } => {
             json!({ "object": name, "only_in": 1 + u8::from(!in_first) })
         }
-        Difference::Mesh { name } => json!({ "mesh": name }),
+        Difference::Mesh { name, frame, substep } => {
+            json!({ "mesh": name, "frame": frame, "substep": substep })
+        }
         Difference::Moment { frame, substep, in_first } => {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
         }

@@ -146,6 +146,33 @@ fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
 }
 
 #[test]
+fn a_run_of_some_quality_goes_on_at_the_setting_it_had_even_where_the_trade_is_forgotten() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    // The scene's own setting is in every sweep: it is made so dear that another is cheaper, however the clock runs.
+    let path = folder.path().join("drape.ron");
+    let dear = fs::read_to_string(&path).unwrap().replace("subSteps: 2", "subSteps: 2, evaluations: 960");
+    fs::write(&path, dear).unwrap();
+    let sweep = nucleus(folder.path(), &SMALL);
+    assert_eq!(sweep.status.code(), Some(0), "{}", stderr(&sweep));
+    let arguments = ["run", "drape.ron", "--quality", "90%", "--checkpoint", "8", "-o", "x.mcap"];
+    let run = nucleus(folder.path(), &arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+    let plain = nucleus(folder.path(), &["run", "drape.ron", "-o", "plain.mcap"]);
+    assert_eq!(plain.status.code(), Some(0), "{}", stderr(&plain));
+    let diff = nucleus(folder.path(), &["diff", "x.mcap", "plain.mcap"]);
+    assert_eq!(diff.status.code(), Some(1), "the setting is another than the scene's: {}", stdout(&diff));
+
+    fs::remove_dir_all(folder.path().join("kept")).unwrap();
+    for at in ["5", "13", "24"] {
+        let resumed = nucleus(folder.path(), &["resume", "x.mcap", "--at", at]);
+        assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
+        assert!(fs::read(folder.path().join("x.mcap")).unwrap() == whole, "from frame {at}");
+    }
+}
+
+#[test]
 fn what_no_setting_reaches_ends_with_the_nearest_and_exit_code_1() {
     let folder = folder();
     scene(folder.path(), 24, "");

@@ -47,9 +47,15 @@ impl StateView for View<'_> {
         part.velocities(id, self.units(units_per_metre, universe), out);
     }
 
-    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
-        let (part, id, _) = self.cloth(cloth);
-        part.contacts(id, out);
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+        out.clear();
+        let mut own = Vec::new();
+        for (part, universe) in self.parts.iter().zip(self.program.universes()) {
+            part.contacts(&mut own);
+            // Each has its place, also behind one that knows nothing.
+            out.resize(universe.cloths().start as usize, Vec::new());
+            out.append(&mut own);
+        }
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
@@ -82,8 +88,8 @@ impl<R: Real> StateView for Simulation<R> {
         self.view().velocities(cloth, units_per_metre, out);
     }
 
-    fn contacts(&self, cloth: ClothId, out: &mut Vec<Contact>) {
-        self.view().contacts(cloth, out);
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+        self.view().contacts(out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

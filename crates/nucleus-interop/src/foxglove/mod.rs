@@ -43,7 +43,7 @@ pub(crate) fn write<R: Read + Seek>(
         for (object, (mesh, cloud)) in channels.iter().enumerate() {
             let positions = clip.positions(object, sample)?;
             if let Some(mesh) = mesh {
-                topics.send(*mesh, time, &scene_update(clip.object(object), &positions, time))?;
+                topics.send(*mesh, time, &scene_update(clip.object_at(object, sample)?, &positions, time))?;
             }
             topics.send(*cloud, time, &point_cloud(&positions, time))?;
         }

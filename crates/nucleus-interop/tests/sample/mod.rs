@@ -19,8 +19,20 @@ const ROLLS: i32 = 7;
 const SHEET: ClothId = ClothId(0);
 const CART: ColliderId = ColliderId(0);
 
+/// The frame from which on a sheet that tears is torn.
+pub const TORN: i32 = 8;
+
 /// Writes the sample as a cache of substeps.
 pub fn write(path: &Path) {
+    record(path, false);
+}
+
+/// The same, with a sheet that tears: it gets a point more, and other faces.
+pub fn write_torn(path: &Path) {
+    record(path, true);
+}
+
+fn record(path: &Path, tears: bool) {
     let run = RunInfo {
         scene_path: "scenes/\"sample\".ron".to_owned(),
         start: START,
@@ -31,12 +43,17 @@ pub fn write(path: &Path) {
         ..RunInfo::default()
     };
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();
-    recorder.record_start(&State { frame: START, time: 0.0 }).unwrap();
+    recorder.record_start(&State { frame: START, time: 0.0, tears }).unwrap();
     for frame in START + 1..=END {
         let mut observer = recorder.frame(frame).unwrap();
         for substep in 1..=SUBSTEPS {
             let time = (frame - START - 1) as f32 + substep as f32 / SUBSTEPS as f32;
-            observer.substep(Moment { substep, substeps: SUBSTEPS }, &State { frame, time });
+            let moment = Moment { substep, substeps: SUBSTEPS };
+            if tears && (frame, substep) == (TORN, 1) {
+                let rest = torn(positions("ns:sheet|1", 0.0));
+                observer.change_mesh(moment, "ns:sheet|1", torn_faces().iter().copied().collect(), rest);
+            }
+            observer.substep(moment, &State { frame, time, tears });
         }
         recorder.end_frame(&()).unwrap();
     }
@@ -73,6 +90,17 @@ pub fn objects() -> Vec<(Source, ObjectInfo)> {
     ]
 }
 
+/// The faces of the sheet once it is torn: one stands on a point of its own.
+pub fn torn_faces() -> &'static [&'static [u32]] {
+    &[&[0, 1, 4, 3], &[1, 2, 11], &[1, 5, 4], &[3, 4, 5, 8, 7, 6]]
+}
+
+/// The points of the sheet once it is torn: that at the tear is there twice.
+pub fn torn(mut sheet: Vec<[f32; 3]>) -> Vec<[f32; 3]> {
+    sheet.push(sheet[5].map(|x| x + 1.0));
+    sheet
+}
+
 /// Eleven points, of which the last two are in no face.
 fn sheet(time: f32) -> Vec<[f32; 3]> {
     (0..11u8).map(|k| [f32::from(k % 3), 1.0 + 0.1 * (time + f32::from(k)).sin(), f32::from(k / 3)]).collect()
@@ -95,11 +123,15 @@ fn wall() -> Vec<[f32; 3]> {
 struct State {
     frame: i32,
     time: f32,
+    tears: bool,
 }
 
 impl StateView for State {
     fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = positions(if cloth == SHEET { "ns:sheet|1" } else { "dust" }, self.time);
+        if cloth == SHEET && self.tears && self.frame >= TORN {
+            *out = torn(std::mem::take(out));
+        }
     }
     fn velocities(&self, cloth: ClothId, units: f64, out: &mut Vec<[f32; 3]>) {
         self.positions(cloth, units, out);

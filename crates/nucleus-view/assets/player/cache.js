@@ -61,13 +61,18 @@ export class Cache {
   async state(index, moment = Infinity) {
     const { moments, report } = await this.unpack(this.frames[index]);
     const last = Math.min(moment, moments.length - 1);
-    const positions = await Promise.all(this.objects.map((_, k) => this.positionsOf(k, index, last)));
     if (moments.length === 0) {
       throw new Damage();
     }
+    const all = this.objects.map((_, k) => this.objectAt(k, index, last, moments[last].nanoseconds));
+    const [positions, meshes] = [[], []];
+    for (const found of await Promise.all(all)) {
+      positions.push(found.positions);
+      meshes.push(found.mesh);
+    }
     const { frame, substep, substeps, time } = moments[last];
     const contacts = this.objects.map((object) => moments[last].contacts.get(object.contacts) ?? null);
-    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions, contacts };
+    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions, meshes, contacts };
   }
 
   // Unpacks the frames that playing will need next. A damaged one is told of when it is shown.
@@ -80,6 +85,29 @@ export class Cache {
     }
   }
 
+  // The positions of an object at a moment and the mesh that they are of. Each mesh has a number, so that one that is lost
+  // is never taken for another.
+  async objectAt(object, index, moment, nanoseconds) {
+    const { positions, number } = await this.positionsOf(object, index, moment);
+    const mesh = await this.meshAt(this.objects[object], nanoseconds);
+    if (mesh.number !== number || mesh.points * 3 !== positions.length) {
+      throw new Damage();
+    }
+    return { positions, mesh };
+  }
+
+  // The mesh of an object at a time: the last that came before. The first is kept, the others with their frames.
+  async meshAt(object, nanoseconds) {
+    for (const chunk of object.meshChunks.slice(1).reverse()) {
+      const { meshes } = chunk.start <= nanoseconds ? await this.unpack(chunk) : { meshes: [] };
+      const held = meshes.findLast(({ channel, time }) => channel === object.mesh && time <= nanoseconds);
+      if (held) {
+        return held.topology;
+      }
+    }
+    return object.topology;
+  }
+
   // An object that did not move has no message: its last one holds.
   async positionsOf(object, index, moment) {
     const { points } = this.objects[object];
@@ -90,13 +118,13 @@ export class Cache {
       const { moments } = await this.unpack(this.frames[k]);
       const from = k === index ? moment : moments.length - 1;
       for (let m = from; m >= 0; m -= 1) {
-        const positions = moments[m].positions.get(points);
-        if (positions) {
-          return positions;
+        const found = moments[m].positions.get(points);
+        if (found) {
+          return found;
         }
       }
     }
-    return this.objects[object].topology.rest;
+    return { positions: this.objects[object].topology.rest, number: 0 };
   }
 
   unpack(chunk) {
@@ -112,29 +140,34 @@ export class Cache {
     const { messages } = await readChunk(this.source, chunk);
     const moments = new Map(); // by time
     const at = (time) => {
-      const moment = moments.get(time) ?? { positions: new Map(), contacts: new Map() };
+      const moment = moments.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map() };
       moments.set(time, moment);
       return moment;
     };
-    const keep = (map, channel, values) => {
-      map.set(channel, values);
-      this.bytes += values.byteLength;
-      chunk.bytes = (chunk.bytes ?? 0) + values.byteLength;
+    const count = (bytes) => {
+      this.bytes += bytes;
+      chunk.bytes = (chunk.bytes ?? 0) + bytes;
     };
+    const meshes = [];
     let report = null;
     for (const { channel, time, data } of messages) {
       const { topic, encoding } = this.channels.get(channel) ?? {};
       if (encoding === "nucleus.points.v1") {
-        const { positions, ...stamp } = readPoints(data);
-        keep(Object.assign(at(time), stamp).positions, channel, positions);
+        const { positions, number, ...stamp } = readPoints(data);
+        Object.assign(at(time), stamp).positions.set(channel, { positions, number });
+        count(positions.byteLength);
       } else if (encoding === "nucleus.contacts.v1") {
-        keep(at(time).contacts, channel, readContacts(data));
+        at(time).contacts.set(channel, readContacts(data));
+        count(data.length);
+      } else if (encoding === "nucleus.topology.v1" && time > 0) {
+        meshes.push({ channel, time, topology: readTopology(data) });
+        count(data.length);
       } else if (topic === "/report") {
         report = readReport(data);
       }
     }
     this.forget();
-    return { moments: [...moments.values()].filter(({ frame }) => frame !== undefined).sort((a, b) => a.time - b.time), report };
+    return { moments: [...moments.values()].filter(({ frame }) => frame !== undefined).sort((a, b) => a.time - b.time), meshes, report };
   }
 
   forget() {
@@ -151,8 +184,8 @@ export class Cache {
   async readObjects() {
     for (const object of this.objects) {
       try {
-        const chunk = this.chunks.find(({ channels }) => channels.has(object.mesh));
-        const { messages } = await readChunk(this.source, chunk);
+        object.meshChunks = this.chunks.filter(({ channels }) => channels.has(object.mesh));
+        const { messages } = await readChunk(this.source, object.meshChunks[0]);
         object.topology = readTopology(messages.find(({ channel }) => channel === object.mesh).data);
       } catch (error) {
         if (error instanceof Trouble && !(error instanceof Damage)) {

@@ -5,6 +5,7 @@ const MOST = 240;
 
 // What stands behind the lines as bars: the rungs on which contact needed more than a push.
 const TROUBLES = [
+  { key: "pinched", name: "pinched", colour: "#e6761c60" },
   { key: "caught", name: "caught", colour: "#c9a22750" },
   { key: "trapped", name: "trapped", colour: "#b455c870" },
   { key: "tangled", name: "tangled", colour: "#ff6a5a80" },
@@ -15,6 +16,7 @@ const LINES = [
   ["min_gap", (x) => `gap ${x.toPrecision(3)}`],
   ["min_cloth_gap", (x) => `gap among cloths ${x.toPrecision(3)}`],
   ["contacts", (x) => `${x} contacts`],
+  ["touching", (x) => `${x} points touch`],
 ];
 
 export class Curve {

@@ -13,6 +13,8 @@ const FIGURES = {
   min_cloth_gap: ["Smallest gap among cloths", (x) => x.toFixed(3), (x) => x < 0],
   contacts: ["Contacts", plain],
   pairs: ["Pairs tested", plain],
+  touching: ["Points that touch", plain],
+  pinched: ["Pinched", plain, (x) => x > 0],
   caught: ["Caught and carried back", plain, (x) => x > 0],
   crossed: ["Let go", plain, (x) => x > 0],
   trapped: ["Trapped in colliders", plain, (x) => x > 0],
@@ -41,9 +43,17 @@ export function showObjects(scene, onChange) {
     });
     const swatch = element("i", { className: "swatch" });
     swatch.style.background = css(thing.colour.map((x) => x * 1.3));
-    const count = element("small", { textContent: `${thing.mesh.kind} · ${plain(thing.points)} points` });
-    return element("label", {}, box, swatch, element("span", { textContent: thing.name }), count);
+    thing.count = element("small", {});
+    return element("label", {}, box, swatch, element("span", { textContent: thing.name }), thing.count);
   }));
+  countPoints(scene);
+}
+
+// Says how many points each object has in its present mesh.
+export function countPoints(scene) {
+  for (const { count, mesh, topology } of scene.things) {
+    count.textContent = `${mesh.kind} · ${plain(topology.points)} points`;
+  }
 }
 
 // The report of a frame, and how many points are not finite.

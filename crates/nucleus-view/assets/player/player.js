@@ -3,7 +3,7 @@
 import { Cache } from "./cache.js";
 import { Camera } from "./camera.js";
 import { Curve } from "./curve.js";
-import { byId, showFigures, showLegend, showRungs, showMoment, showNotice, showObjects, showState } from "./panel.js";
+import { byId, countPoints, showFigures, showLegend, showRungs, showMoment, showNotice, showObjects, showState } from "./panel.js";
 import { Scene, boxOf } from "./scene.js";
 import { Timeline } from "./timeline.js";
 
@@ -65,9 +65,9 @@ export class Player {
     const { scene, camera } = this;
     const [moving, all] = [[], []];
     for (const frame of frames) {
-      const { positions } = await cache.state(frame).catch(() => ({ positions: null }));
-      if (positions) {
-        scene.update(positions);
+      const state = await cache.state(frame).catch(() => null);
+      if (state) {
+        scene.update(state);
         moving.push(scene.bounds());
         all.push(...scene.things.map(({ mesh }) => mesh.bounds));
       }
@@ -92,9 +92,10 @@ export class Player {
       }
       this.timeline.moments = state.moments;
       this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
-      scene.update(state.positions, twin);
+      scene.update(state, twin);
       this.curve?.mark(index);
       showMoment(cache, state);
+      countPoints(scene);
       showFigures(state.report, scene.lostPoints);
       showRungs(scene, state.contacts);
       this.redraw();
@@ -104,23 +105,24 @@ export class Player {
     }
   }
 
-  // The positions of the other run at the same time, if there is one.
+  // The state of the other run at the same time, if there is one.
   async twinOf(cache, { frame, substep, substeps }) {
     if (!this.other) {
-      return [];
+      return undefined;
     }
     const index = this.other.indexOf(frame);
     const { moments } = await this.other.state(index);
     // The same share of the frame, however finely each was recorded.
     const moment = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * moments) - 1);
-    return (await this.other.state(index, moment)).positions;
+    return this.other.state(index, moment);
   }
 
   // Where everything was a frame ago, for its speed.
   async findSpeed(cache, state) {
     const before = this.scene.look.colour === "speed" && state.index > 0 ? await cache.state(state.index - 1) : null;
     this.scene.things.forEach((thing, k) => {
-      const seconds = before && state.time - before.time;
+      const isSame = before?.meshes[k].number === state.meshes[k].number;
+      const seconds = isSame && state.time - before.time;
       thing.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
       thing.mesh.coloured = null;
     });

@@ -1,10 +1,11 @@
-// The two messages of an object: its mesh, once, and its positions, every frame.
+// The two messages of an object: its mesh, once and whenever it changes, and its positions, every frame.
 
 import { Reader } from "./bytes.js";
 
 export const KINDS = ["cloth", "collider", "particles"];
 
-// A mesh: kind, number of points, faces as `starts` into `corners`, and positions at rest.
+// A mesh: kind, number of points, faces as `starts` into `corners`, positions at rest, and how many other meshes the object
+// had before.
 export function readTopology(data) {
   const reader = new Reader(data);
   const [kind, points, faces, corners] = [reader.u32(), reader.u32(), reader.u32(), reader.u32()];
@@ -14,16 +15,18 @@ export function readTopology(data) {
     starts: words(reader, faces + 1, Uint32Array),
     corners: words(reader, corners, Uint32Array),
     rest: words(reader, 3 * points, Float32Array),
+    number: reader.left >= 4 ? reader.u32() : 0,
   };
 }
 
-// Positions at one moment of a frame.
+// Positions at one moment of a frame, and how many meshes the object had before that which they are of.
 export function readPoints(data) {
   const reader = new Reader(data);
   const [frame, substep, substeps, count] = [reader.i32(), reader.u32(), reader.u32(), reader.u32()];
-  reader.take(8); // flags, zero
+  reader.u32(); // flags
+  const number = reader.u32();
   const time = reader.f64();
-  return { frame, substep, substeps, time, positions: unshuffle(reader.take(12 * count), 3 * count) };
+  return { frame, substep, substeps, time, number, positions: unshuffle(reader.take(12 * count), 3 * count) };
 }
 
 // How contact stands at each point at one moment of a frame, a byte each: see RUNGS in colours.js.

@@ -32,13 +32,13 @@ export class Scene {
     this.things.concat(this.twins).forEach(({ vertices }) => vertices.delete());
     const colours = objectColours(objects);
     const thing = ({ name, topology }, colour) => ({
-      name, points: topology.points, mesh: new Mesh(topology), colour, isShown: true,
+      name, topology, mesh: new Mesh(topology), colour, isShown: true,
       vertices: new VertexArray(this.gl, [3, 3, 1]),
     });
     this.things = objects.map((object, k) => thing(object, colours[k]));
     this.twins = twins.map((object) => thing(object, TWIN));
     for (const one of this.things) {
-      one.twin = this.twins.find(({ name, points }) => name === one.name && points === one.points);
+      one.twin = this.twins.find(({ name }) => name === one.name);
     }
   }
 
@@ -69,10 +69,14 @@ export class Scene {
     this.hasOldShadow = true;
   }
 
-  // Takes the positions of a moment, one array for each object.
-  update(positions, twins = []) {
+  // Takes a moment: of each object the positions, and the mesh that they are of.
+  update({ positions, meshes }, twins = null) {
+    this.things.forEach((thing, k) => takeMesh(thing, meshes[k]));
     this.takePoints(this.things, positions);
-    this.takePoints(this.twins, twins);
+    if (twins) {
+      this.twins.forEach((twin, k) => takeMesh(twin, twins.meshes[k]));
+      this.takePoints(this.twins, twins.positions);
+    }
   }
 
   takePoints(things, positions) {
@@ -186,7 +190,7 @@ export class Scene {
   }
 
   // Finds what the colours of a mesh tell, if that is not known yet.
-  colourMesh({ mesh, vertices, before, twin, contacts }, isColoured) {
+  colourMesh({ mesh, vertices, topology, before, twin, contacts }, isColoured) {
     const { colour } = this.look;
     if (isColoured && mesh.coloured !== colour) {
       mesh.coloured = colour;
@@ -197,7 +201,8 @@ export class Scene {
       } else if (colour === "contacts") {
         mesh.updateRungs(contacts);
       } else {
-        mesh.updateDistance(twin?.mesh.shown, 1);
+        // Points can be told apart only where both runs have as many.
+        mesh.updateDistance(twin?.topology.points === topology.points ? twin.mesh.shown : null, 1);
       }
       vertices.set(STRAINED, mesh.strain);
     } else if (!mesh.hasStrain) {
@@ -260,6 +265,14 @@ export class Scene {
         gl.uniform3fv(place, value);
       }
     }
+  }
+}
+
+// Gives an object another mesh, if it has one now.
+function takeMesh(thing, topology) {
+  if (thing.topology !== topology) {
+    const { shift } = thing.mesh;
+    Object.assign(thing, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
   }
 }
 

@@ -126,7 +126,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// If there is no such moment, or its frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (positions, camera) = (positions(self.cache, moment)?, self.camera_at(moment));
-        Ok(draw(&objects(self.cache, &positions), &camera, &self.style))
+        Ok(draw(&objects(self.cache, moment, &positions)?, &camera, &self.style))
     }
 
     /// Writes all pictures as one animated PNG that plays as fast as the run was.
@@ -147,7 +147,7 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
     let (mut stage, mut all) = (Bounds::default(), Bounds::default());
     for moment in moments {
         let positions = positions(cache, *moment)?;
-        let objects = objects(cache, &positions);
+        let objects = objects(cache, *moment, &positions)?;
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include(object.positions));
     }
@@ -168,9 +168,15 @@ fn positions<R: Read + Seek>(
     objects.map(read).collect()
 }
 
-fn objects<'a, R: Read + Seek>(cache: &'a Playback<R>, positions: &'a [Vec<[f32; 3]>]) -> Vec<Object<'a>> {
-    let objects = cache.objects().iter().zip(positions);
-    objects
+/// Every object as it is at a moment.
+fn objects<'a, R: Read + Seek>(
+    cache: &'a mut Playback<R>,
+    moment: usize,
+    positions: &'a [Vec<[f32; 3]>],
+) -> Result<Vec<Object<'a>>, ViewError> {
+    let objects = cache.objects_at(moment).map_err(|source| ViewError::Read { source })?;
+    let objects = objects.into_iter().zip(positions);
+    Ok(objects
         .map(|(object, positions)| Object {
             name: &object.name,
             kind: match object.kind {
@@ -182,5 +188,5 @@ fn objects<'a, R: Read + Seek>(cache: &'a Playback<R>, positions: &'a [Vec<[f32;
             positions,
             rest: Some(&object.rest),
         })
-        .collect()
+        .collect())
 }

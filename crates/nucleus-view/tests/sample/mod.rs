@@ -33,6 +33,8 @@ pub struct Sample {
     pub contacts: bool,
     /// The scene has a camera that comes near.
     pub camera: bool,
+    /// In the middle of the run the flag loses the faces of its free half.
+    pub torn: bool,
     /// Height of a ground plane.
     pub plane: Option<f64>,
 }
@@ -82,7 +84,11 @@ pub fn step(recorder: &mut Recorder, sample: Sample, frame: i32) {
         let time = (frame - 2) as f32 + substep as f32 / SUBSTEPS as f32;
         let time = if sample.late { time - 1.0 } else { time };
         let broken = sample.broken && frame > FRAMES / 2;
-        watching.substep(Moment { substep, substeps: SUBSTEPS }, &State { time, frame, broken });
+        let moment = Moment { substep, substeps: SUBSTEPS };
+        if sample.torn && (frame, substep) == (FRAMES / 2, 1) {
+            watching.change_mesh(moment, "flag", half_grid(), rest());
+        }
+        watching.substep(moment, &State { time, frame, broken });
     }
     let report = StepReport { max_strain: 0.0123, min_gap: 0.98, contacts: 4321, ..StepReport::default() };
     let report = [("max_strain", report.max_strain), ("min_gap", report.min_gap), ("contacts", 4321.0)];
@@ -104,10 +110,10 @@ impl StateView for State {
         }
     }
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
-    fn contacts(&self, _: ClothId, out: &mut Vec<Contact>) {
+    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
         let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { Contact::Touching } else { Contact::Free };
-        *out = (0..SIDE * SIDE).map(at_hoist).collect();
-        out[0] = Contact::Tangled;
+        *out = vec![(0..SIDE * SIDE).map(at_hoist).collect()];
+        out[0][0] = Contact::Tangled;
     }
     fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = if collider == BALL { sphere().1 } else { cube().1 };
@@ -128,10 +134,19 @@ fn objects() -> Vec<(Source, ObjectInfo)> {
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
     let object = |name: &str, kind, faces, rest| ObjectInfo { name: name.into(), kind, faces, rest };
     vec![
-        (Source::Cloth(ClothId(0)), object("flag", cloth, grid(), sheet(|x, y| [x, y, 0.0]))),
+        (Source::Cloth(ClothId(0)), object("flag", cloth, grid(), rest())),
         (Source::Collider(BALL), object("ball", collider, sphere, at_start)),
         (Source::Collider(ColliderId(1)), object("cube", collider, cube, corners)),
     ]
+}
+
+fn rest() -> Vec<[f32; 3]> {
+    sheet(|x, y| [x, y, 0.0])
+}
+
+/// The faces of the half at the hoist.
+fn half_grid() -> Faces {
+    grid().iter().filter(|face| face[0] % SIDE < SIDE / 2).collect()
 }
 
 fn flag(time: f32) -> Vec<[f32; 3]> {

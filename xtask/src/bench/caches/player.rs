@@ -7,6 +7,7 @@ use std::process::Command;
 use anyhow::{Context, ensure};
 use serde_json::Value;
 
+use super::goal::Goal;
 use super::{Table, example, figure};
 
 /// Frames of 129² points in 2 GB.
@@ -16,12 +17,17 @@ const DRIVER: &str = "puppeteer-core@24";
 /// Where Chromium may be.
 const PLACES: [&str; 3] = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/// The table of the page; says so where there is no browser.
-pub fn table(root: &Path, folder: &Path) -> anyhow::Result<Table> {
+/// A screen of 60 Hz leaves so many milliseconds for a frame.
+const REFRESH: f64 = 1e3 / 60.0;
+/// What is there within so many milliseconds is there at once.
+const AT_ONCE: f64 = 1e3;
+
+/// The table of the page, which says so where there is no browser; and what was aimed at.
+pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median ms", "99 of 100 ms"]);
     let Some(chromium) = PLACES.iter().map(Path::new).find(|path| path.exists()) else {
         table.note("There was no Chromium here.");
-        return Ok(table);
+        return Ok((table, Vec::new()));
     };
     let cache = folder.join("player.mcap");
     example(root, folder, 129, FRAMES, false, Some(&cache))?;
@@ -30,9 +36,10 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<Table> {
     fs::remove_file(cache)?;
     let both = |key: &str| [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
     for (name, key) in [
-        ("fetch and unpack a frame anywhere", "fetch"),
-        ("take it up: normals, bounds, to the graphics", "update"),
-        ("draw it, 1280 x 720, without a graphics card", "draw"),
+        ("the bytes of a frame anywhere, from the server", "fetch"),
+        ("unpack them: zstd, checksum, floats", "unpack"),
+        ("take them up: normals, bounds, to the graphics", "update"),
+        ("draw, 1280 x 720, without a graphics card", "draw"),
     ] {
         table.row([name.to_owned()].into_iter().chain(both(key)));
     }
@@ -42,7 +49,14 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<Table> {
         number("opened"),
         found["browser"].as_str().unwrap_or_default()
     ));
-    Ok(table)
+    let median = |key: &str| found[key][0].as_f64().unwrap_or(f64::NAN);
+    let frame = median("fetch") + median("unpack") + median("update");
+    let opened = found["opened"].as_f64().unwrap_or(f64::NAN);
+    let goals = vec![
+        Goal::below("a cache of 2 GB opens at once in the player, ms", AT_ONCE, opened),
+        Goal::below("scrubbing 129² at 60 Hz: all but drawing, ms a frame", REFRESH, frame),
+    ];
+    Ok((table, goals))
 }
 
 fn install(folder: &Path) -> anyhow::Result<PathBuf> {

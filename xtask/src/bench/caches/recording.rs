@@ -1,15 +1,17 @@
-//! What recording costs a run: the processor time of the recorder beside that of the solver.
+//! What recording costs a run: the processor time of the recorder beside that of the solver, and of checkpoints.
 
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::anyhow;
 use nucleus_cache::{Detail, FrameRecorder, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
 use nucleus_core::{Moment, StateView, StepObserver};
 use nucleus_graph::Simulation;
-use nucleus_graph::compile::{self, Program, compile};
+use nucleus_graph::compile::{self, compile};
 use nucleus_graph::scene::read_scene_text;
 use nucleus_measure::clock::Clock;
 
+use super::goal::Goal;
 use super::{Table, figure};
 
 /// A sheet of 129² points that falls on a ball, slips off and piles up on the floor.
@@ -30,17 +32,24 @@ const WAYS: [(&str, Detail, bool, bool); 3] = [
     ("substeps, with all there is", Detail::Substeps, true, true),
 ];
 
-/// A recorder whose processor time is counted.
-struct Timed<'a> {
-    recorder: FrameRecorder<'a>,
-    spent: &'a mut Duration,
+/// A way to record, and what it has cost so far.
+struct Way {
+    name: &'static str,
+    detail: Detail,
+    recorder: Recorder,
+    spent: Duration,
 }
+
+/// Shows a frame to all recorders and counts the processor time of each.
+struct Timed<'a>(Vec<(FrameRecorder<'a>, &'a mut Duration)>);
 
 impl StepObserver for Timed<'_> {
     fn substep(&mut self, moment: Moment, state: &dyn StateView) {
-        let begin = now();
-        self.recorder.substep(moment, state);
-        *self.spent += now() - begin;
+        for (recorder, spent) in &mut self.0 {
+            let begin = now();
+            recorder.substep(moment, state);
+            **spent += now() - begin;
+        }
     }
 }
 
@@ -48,64 +57,101 @@ fn now() -> Duration {
     Clock::Thread.read().unwrap_or_default()
 }
 
-/// The table of the page.
-pub fn table() -> anyhow::Result<Table> {
-    let text = SCENE;
-    let (scene, _) = read_scene_text(text, "recorded.ron".as_ref()).map_err(|found| anyhow!("{found:?}"))?;
-    let program = compile(&scene).map_err(|found| anyhow!("{found:?}"))?;
-    let head = ["recorded", "solver, ms a frame", "recorder, ms a frame", "more", "kB a frame"];
-    let mut table = Table::new("What recording costs", &head);
-    for (name, detail, contacts, all) in WAYS {
-        let [solver, recorder, bytes] = measure(&program, detail, contacts, all)?;
-        let more = format!("{} %", figure(100.0 * recorder / solver));
-        table.row([
-            name.to_owned(),
-            figure(1e3 * solver),
-            figure(1e3 * recorder),
-            more,
-            figure(1e-3 * bytes),
-        ]);
-    }
-    let [before, measured] = FRAMES;
-    table.note(format!(
-        "A sheet of 129² points that collides with itself, on a ball and the floor, 96 evaluations in 1/24 s; processor \
-         time of one thread over frames {} to {}.",
-        before + 2,
-        1 + before + measured
-    ));
-    Ok(table)
-}
+/// Recording every substep may cost so many hundredths of the solver's time.
+const MOST: f64 = 10.0;
+/// Frames from one checkpoint to the next, as the command has it if nobody says otherwise.
+const PERIOD: f64 = 48.0;
 
-/// Seconds a frame of the solver and of the recorder, and bytes a frame.
-fn measure(program: &Program, detail: Detail, contacts: bool, all: bool) -> anyhow::Result<[f64; 3]> {
-    let mut simulation = Simulation::new(program, 1);
+/// The tables of the page, and what was aimed at. One run is recorded in all ways at once.
+pub fn tables() -> anyhow::Result<[(Table, Vec<Goal>); 2]> {
+    let (scene, _) = read_scene_text(SCENE, "recorded.ron".as_ref()).map_err(|found| anyhow!("{found:?}"))?;
+    let program = compile(&scene).map_err(|found| anyhow!("{found:?}"))?;
+    let mut simulation = Simulation::new(&program, 1);
     for _ in 0..FRAMES[0] {
         simulation.advance(&mut ());
     }
-    let start = 1 + FRAMES[0];
-    let run = RunInfo {
-        start,
-        end: start + FRAMES[1],
-        detail,
-        contacts,
-        strain: all,
-        velocities: all,
-        ..RunInfo::default()
-    };
     let folder = tempfile::tempdir()?;
-    let mut recorder = Recorder::create(folder.path().join("run.mcap"), &run, objects(&simulation))?;
-    recorder.record_start(simulation.state())?;
-    let (mut spent, begin) = (Duration::ZERO, now());
-    for frame in start + 1..=run.end {
-        let report = simulation.advance(&mut Timed { recorder: recorder.frame(frame)?, spent: &mut spent });
+    let mut ways = begin(&simulation, folder.path())?;
+    let start = now();
+    for frame in 1..=FRAMES[1] {
+        let recorders: Result<Vec<_>, _> = ways
+            .iter_mut()
+            .map(|way| way.recorder.frame(1 + FRAMES[0] + frame).map(|recorder| (recorder, &mut way.spent)))
+            .collect();
+        let report = simulation.advance(&mut Timed(recorders?));
         let told = serde_json::json!({ "max_strain": report.report.max_strain });
-        let begin = now();
-        recorder.end_frame(&told)?;
-        spent += now() - begin;
+        for way in &mut ways {
+            let begin = now();
+            way.recorder.end_frame(&told)?;
+            way.spent += now() - begin;
+        }
     }
-    let (whole, bytes) = (now() - begin, recorder.finish()?.bytes);
-    let each = f64::from(FRAMES[1]);
-    Ok([(whole - spent).as_secs_f64() / each, spent.as_secs_f64() / each, bytes as f64 / each])
+    let spent: Duration = ways.iter().map(|way| way.spent).sum();
+    let solver = (now() - start - spent).as_secs_f64() / f64::from(FRAMES[1]);
+    Ok([costs(ways, solver)?, checkpoint(&simulation, solver)?])
+}
+
+/// A recorder for each way, with the start recorded.
+fn begin(simulation: &Simulation, folder: &Path) -> anyhow::Result<Vec<Way>> {
+    let start = 1 + FRAMES[0];
+    let way = |(name, detail, contacts, all): (&'static str, Detail, bool, bool)| {
+        let end = start + FRAMES[1];
+        let run =
+            RunInfo { start, end, detail, contacts, strain: all, velocities: all, ..RunInfo::default() };
+        let mut recorder = Recorder::create(folder.join(name), &run, objects(simulation))?;
+        recorder.record_start(simulation.state())?;
+        Ok(Way { name, detail, recorder, spent: Duration::ZERO })
+    };
+    WAYS.into_iter().map(way).collect()
+}
+
+fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
+    let head = ["recorded", "solver, ms a frame", "recorder, ms a frame", "more", "kB a frame"];
+    let mut table = Table::new("What recording costs", &head);
+    let mut goals = Vec::new();
+    let frames = f64::from(FRAMES[1]);
+    for Way { name, detail, recorder, spent } in ways {
+        let (spent, bytes) = (spent.as_secs_f64() / frames, recorder.finish()?.bytes as f64 / frames);
+        let share = 100.0 * spent / solver;
+        if detail == Detail::Substeps {
+            goals.push(Goal::below(&format!("recording {name}, % of a run of 129²"), MOST, share));
+        }
+        let more = format!("{} %", figure(share));
+        let [solver, spent, bytes] = [1e3 * solver, 1e3 * spent, 1e-3 * bytes].map(figure);
+        table.row([name.to_owned(), solver, spent, more, bytes]);
+    }
+    table.note(format!(
+        "A sheet of 129² points that collides with itself, on a ball and the floor, 96 evaluations in 1/24 s; processor \
+         time of one thread over frames {} to {}.",
+        FRAMES[0] + 2,
+        1 + FRAMES[0] + FRAMES[1]
+    ));
+    Ok((table, goals))
+}
+
+/// What a checkpoint of the same run costs.
+fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
+    let start = 1 + FRAMES[0] + FRAMES[1];
+    let run = RunInfo { start, end: start + 1, checkpoint: 1, ..RunInfo::default() };
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("run.mcap");
+    let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
+    recorder.record_start(simulation.state())?;
+    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|found| found.len());
+    let (before, begin) = (length()?, now());
+    let state = simulation.save();
+    let saved = now() - begin;
+    recorder.record_checkpoint(&state)?;
+    let written = now() - begin - saved;
+    let (packed, each) = (length()? - before, (saved + written).as_secs_f64() / PERIOD);
+    let [saved, written] = [saved, written].map(|time| 1e3 * time.as_secs_f64());
+    let head =
+        ["gathered, ms", "packed and written, ms", "MB", "packed, MB", "ms a frame at one in 48", "more"];
+    let mut table = Table::new("What a checkpoint costs", &head);
+    let figures = [saved, written, 1e-6 * state.len() as f64, 1e-6 * packed as f64, 1e3 * each];
+    table.row(figures.map(figure).into_iter().chain([format!("{} %", figure(100.0 * each / solver))]));
+    table.note(format!("The same sheet after frame {start}; `nucleus resume` goes on from a checkpoint."));
+    Ok((table, Vec::new()))
 }
 
 fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
