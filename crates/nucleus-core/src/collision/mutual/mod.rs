@@ -9,6 +9,7 @@
 //! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`candidate`] |
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
+//! | free points, which can go far in a step | [`swept`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
 //! | meshes that pass through each other: found, and worked apart | [`crossings`], [`tangle`] |
 //!
@@ -27,6 +28,7 @@ mod pieces;
 pub mod search;
 mod sought;
 mod stars;
+mod swept;
 pub mod tangle;
 pub mod tasks;
 pub mod terms;

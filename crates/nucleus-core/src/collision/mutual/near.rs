@@ -3,6 +3,7 @@
 //! It carries a direction along which the two were apart at the start of the time step. As long as they are
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
+use super::swept::{first_touch, passes_beside};
 use crate::collision::friction::{Push, extra, rub};
 use crate::collision::narrow::{Places, across, between_middles, gap_along, shortest, weigh};
 use crate::columns::Shared;
@@ -74,6 +75,8 @@ pub struct Meeting<R> {
     pub friction: R,
     /// Factor on the mobility of each side.
     pub mobility: [R; 2],
+    /// Whether one side is a free point, which can go farther in a step than anything is large.
+    pub is_swept: bool,
 }
 
 /// A contact: `N` points of one element, `M` of the other.
@@ -163,6 +166,13 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             return false;
         }
         let before = self.before(step);
+        if self.meeting.is_swept
+            && let Some(normal) = first_touch(&before, &now, self.kept(step))
+        {
+            self.normal = normal;
+            self.push_back(step, &before, &now);
+            return true;
+        }
         let (normal, (b, c), distance) = shortest(now);
         if distance > R::ZERO && gap_along(normal, &before) > grain(&now) * R::from_f64(AT_START) {
             // Apart along this line at both ends of the step: it is theirs from now on.
@@ -173,13 +183,24 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             self.push(step, (b, c), &before, self.kept(step) - distance);
             return true;
         }
+        if self.meeting.is_swept
+            && let Some(normal) = passes_beside(&before, &now, self.kept(step))
+        {
+            self.normal = normal;
+            return false;
+        }
         // They may have passed. Back to the side that they were on.
-        let (_, (b, c), _) = shortest(before);
+        self.push_back(step, &before, &now);
+        true
+    }
+
+    /// Pushes the two apart along the contact's direction, where they were nearest when the step began.
+    fn push_back(&self, step: &Motion<'_, R>, before: &Places<R, N, M>, now: &Places<R, N, M>) {
+        let (_, (b, c), _) = shortest(*before);
         let depth = self.kept(step) - dot(self.normal, sub(weigh(now.0, b), weigh(now.1, c)));
         if depth > R::ZERO {
-            self.push(step, (b, c), &before, depth);
+            self.push(step, (b, c), before, depth);
         }
-        true
     }
 
     /// Moves both sides by `depth` in all, each by its mobility, with friction.
@@ -326,6 +347,20 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             }
             held[point as usize] = true;
         }
+    }
+
+    /// Whether one side is a free point.
+    pub fn is_swept(&self) -> bool {
+        self.meeting.is_swept
+    }
+
+    /// Where it stands among others: those of free points come first, in the order of their points.
+    pub fn rank(&self) -> (bool, [u32; 4]) {
+        let mut points = [0; 4];
+        if self.is_swept() {
+            points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
+        }
+        (!self.is_swept(), points)
     }
 
     /// The distance that is to be kept, in metres.
