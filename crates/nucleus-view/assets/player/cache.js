@@ -153,7 +153,8 @@ export class Cache {
       try {
         const chunk = this.chunks.find(({ channels }) => channels.has(object.mesh));
         const { messages } = await readChunk(this.source, chunk);
-        object.topology = readTopology(messages.find(({ channel }) => channel === object.mesh).data);
+        const topology = readTopology(messages.find(({ channel }) => channel === object.mesh).data);
+        object.topology = { ...topology, radius: this.run.radii.get(object.name) ?? null };
       } catch (error) {
         if (error instanceof Trouble && !(error instanceof Damage)) {
           throw error;
@@ -191,7 +192,15 @@ function readRun(metadata) {
     scene: scene.get("path") ?? "",
     cameras: readCameras(metadata.get("nucleus.cameras")),
     floor: levelPlane(run.get("ground")),
+    radii: readRadii(run),
   };
+}
+
+// The radius of the particles of each object that has some, by its name.
+function readRadii(run) {
+  const before = "radius of ";
+  const found = [...run].filter(([key, text]) => key.startsWith(before) && Number(text) > 0);
+  return new Map(found.map(([key, text]) => [key.slice(before.length), Number(text)]));
 }
 
 // The height of a plane given as point and normal, if it is level.

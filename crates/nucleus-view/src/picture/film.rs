@@ -181,6 +181,7 @@ fn objects<'a, R: Read + Seek>(cache: &'a Playback<R>, positions: &'a [Vec<[f32;
             faces: &object.faces,
             positions,
             rest: Some(&object.rest),
+            radius: cache.run().radii.get(&object.name).map(|radius| *radius as f32),
         })
         .collect()
 }
