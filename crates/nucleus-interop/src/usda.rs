@@ -57,9 +57,10 @@ fn write_object<R: Read + Seek>(
     file.text(format!("    def {} \"{name}\"\n    {{\n", if is_mesh { "Mesh" } else { "Points" }));
     file.text(format!("        custom string nucleus:name = {}\n", quoted(&info.name)));
     if is_mesh {
-        write_faces(info, file)
+        write_faces(info, file);
     } else {
-        write_identity(info, file)
+        write_identity(info, file);
+        write_widths(clip.radius(object), file);
     }
     let samples = clip.samples().to_vec();
     let mut extents = String::new();
@@ -98,6 +99,16 @@ fn write_faces(object: &ObjectInfo, file: &mut OutFile) {
 fn write_identity(object: &ObjectInfo, file: &mut OutFile) {
     let ids: Vec<String> = (0..object.rest.len()).map(|id| id.to_string()).collect();
     file.text(format!("        int64[] ids = [{}]\n", ids.join(", ")));
+}
+
+/// A width is what is seen of a particle: all of it, twice its radius.
+fn write_widths(radius: Option<f64>, file: &mut OutFile) {
+    if let Some(radius) = radius {
+        let width = (2.0 * radius) as f32;
+        file.text(format!(
+            "        float[] widths = [{width}] (\n            interpolation = \"constant\"\n        )\n"
+        ));
+    }
 }
 
 fn write_velocities<R: Read + Seek>(
