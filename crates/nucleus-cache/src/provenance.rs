@@ -222,6 +222,7 @@ mod tests {
             extra,
             ground,
             contacts: true,
+            radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
             ..RunInfo::default()
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {

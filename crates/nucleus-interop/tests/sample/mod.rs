@@ -28,6 +28,7 @@ pub fn write(path: &Path) {
         units_per_metre: UNITS,
         detail: Detail::Substeps,
         velocities: true,
+        radii: [("dust".to_owned(), 0.25)].into(),
         ..RunInfo::default()
     };
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();
