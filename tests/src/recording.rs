@@ -58,7 +58,8 @@ fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
         let (source, kind) = match object.kind {
             compile::ObjectKind::Cloth(id) => {
                 state.positions(id, units, &mut rest);
-                (Source::Cloth(id), ObjectKind::Cloth)
+                let free = object.faces.is_empty();
+                (Source::Cloth(id), if free { ObjectKind::Particles } else { ObjectKind::Cloth })
             }
             compile::ObjectKind::Collider(id) => {
                 state.collider_positions(id, units, &mut rest);

@@ -26,7 +26,8 @@ pub struct Mesh {
 type Entry = (&'static str, fn() -> Mesh);
 
 /// The meshes by the name of their file.
-const ALL: [Entry; 7] = [
+const ALL: [Entry; 8] = [
+    ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
     ("reef_knot_right", knot::right),
@@ -127,6 +128,19 @@ fn needles() -> Mesh {
         mesh.add(Mesh { points, faces });
     }
     mesh
+}
+
+/// Eight layers of 6 by 6 points, 2.6 apart, every other one over the gaps of the one below: beads that are to be poured.
+fn beads() -> Mesh {
+    let point = |k: usize| {
+        let [column, row, layer] = [k % 6, k / 6 % 6, k / 36];
+        let aside = if layer % 2 == 0 { -0.25 } else { 0.25 };
+        let turn = k as f64;
+        let x = column as f64 - 2.5 + aside + 0.03 * turn.sin();
+        let z = row as f64 - 2.5 + aside + 0.03 * (1.7 * turn).cos();
+        [2.6 * x, 2.6 * layer as f64, 2.6 * z]
+    };
+    Mesh { points: (0..288).map(point).collect(), faces: Vec::new() }
 }
 
 /// Fifty level squares of 20 with 11 by 11 points, 0.5 apart, each turned a little against the one below.

@@ -18,6 +18,8 @@ const RUN: &str = "nucleus.run";
 /// How many cameras there are, so that one that is lost is missed.
 const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
+/// What stands before the name of an object with particles, where their radius is told.
+const RADIUS: &str = "radius of ";
 const CHECKPOINT: &str = "checkpoint";
 const PACKING: &str = "packing";
 const SMALL: &str = "small";
@@ -51,6 +53,7 @@ impl RunInfo {
             run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
         }
         // Only what is not as ever is said.
+        run.extend(self.radii.iter().map(|(name, radius)| (format!("{RADIUS}{name}"), radius.to_string())));
         if self.checkpoint > 0 {
             run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
         }
@@ -105,6 +108,7 @@ impl RunInfo {
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
+            radii: run.radii()?,
             cameras,
             checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
             packing: run.packing(),
@@ -174,6 +178,22 @@ impl Keys {
         }
     }
 
+    /// The radii of particles, which are no keys of anybody else's then.
+    fn radii(&mut self) -> Result<BTreeMap<String, f64>, OpenError> {
+        let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(RADIUS)).cloned().collect();
+        let mut radii = BTreeMap::new();
+        for key in keys {
+            let text = self.0.remove(&key).unwrap_or_default();
+            match text.parse::<f64>() {
+                Ok(radius) if radius >= 0.0 && radius.is_finite() => {
+                    radii.insert(key[RADIUS.len()..].to_owned(), radius)
+                }
+                _ => return Err(OpenError::BadValue { key: "radius of", value: text }),
+            };
+        }
+        Ok(radii)
+    }
+
     /// Six numbers: a point, and the normal.
     fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
         let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
@@ -202,6 +222,7 @@ mod tests {
             extra,
             ground,
             contacts: true,
+            radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
             ..RunInfo::default()
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {

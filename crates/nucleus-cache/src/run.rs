@@ -72,6 +72,8 @@ pub struct RunInfo {
     pub strain: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
+    /// Radius of the particles of each object that has some, by its name, in scene units.
+    pub radii: BTreeMap<String, f64>,
     /// The cameras of the scene; a picture is taken by the first, if nobody says otherwise.
     pub cameras: Vec<Camera>,
     /// Frames from one checkpoint to the next; at 0 there is none.
@@ -99,6 +101,7 @@ impl Default for RunInfo {
             contacts: false,
             strain: false,
             ground: None,
+            radii: BTreeMap::new(),
             cameras: Vec::new(),
             checkpoint: 0,
             packing: Packing::Fast,

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use nucleus_cache::{ObjectKind, Playback};
-use nucleus_graph::attributes::{Attribute, Value, n_base};
+use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle};
 use nucleus_graph::compile::{self, Object, Program, compile};
 use nucleus_graph::graph::Setting;
 use nucleus_graph::scene::{Diagnostic, Scene};
@@ -65,8 +65,12 @@ impl InitialState {
                     guessed(&mut cache, object, moment)?
                 }
             };
-            start(&mut scene, cloth, &n_base::START_POSITIONS.row, &positions, scale)?;
-            start(&mut scene, cloth, &n_base::START_VELOCITIES.row, &velocities, scale)?;
+            let rows = match cloth.radius {
+                None => [&n_base::START_POSITIONS.row, &n_base::START_VELOCITIES.row],
+                Some(_) => [&n_particle::POSITION0.row, &n_particle::VELOCITY0.row],
+            };
+            start(&mut scene, cloth, rows[0], &positions, scale)?;
+            start(&mut scene, cloth, rows[1], &velocities, scale)?;
         }
         if !has_velocities {
             eprintln!(

@@ -60,6 +60,7 @@ pub fn begin(
         strain,
         ground: plane
             .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
+        radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         packing: if manner.compact { Packing::Small } else { Packing::Fast },
         checkpoint: manner.checkpoint,

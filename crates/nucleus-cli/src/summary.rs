@@ -240,8 +240,13 @@ mod tests {
 
     #[test]
     fn what_was_refused_is_named_as_the_scene_names_it() {
-        let object =
-            |name: &str, kind| Object { name: name.to_owned(), kind, points: 3, faces: Faces::default() };
+        let object = |name: &str, kind| Object {
+            name: name.to_owned(),
+            kind,
+            points: 3,
+            faces: Faces::default(),
+            radius: None,
+        };
         let objects = [
             object("silk", ObjectKind::Cloth(ClothId(0))),
             object("ball", ObjectKind::Collider(ColliderId(0))),

@@ -31,6 +31,8 @@ const STAYS: f64 = 0.7;
 const LEAST_BALL: f64 = 1e-6;
 /// Edge lengths that a point is foreseen to go, at most: a line over a longer way would meet all that is on it.
 const FARTHEST: f64 = 2.0;
+/// In metres; a way that nothing goes in a frame, and a number in single precision.
+const ENDLESS: f64 = 1e9;
 
 impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what was found over to it. Before anchors move.
@@ -173,7 +175,9 @@ impl<R: Real> Solver<R> {
                 R::from_f64((of_thickness * thickness).max(of_edge * cloth.edge_length).max(LEAST_BALL))
             };
             let balls = [ball(NEAR_BALL), ball(FAR_BALL)];
-            let farthest = R::from_f64(FARTHEST * cloth.edge_length);
+            // A free point is small on any way: what is near its line is found along it.
+            let is_free = cloth.skin.triangles.is_empty();
+            let farthest = R::from_f64(if is_free { ENDLESS } else { FARTHEST * cloth.edge_length });
             team.phase(cloth.blocks.len(), |block| {
                 for row in cloth.blocks.range(block).filter(|&row| left[row as usize]) {
                     let before = state.start[row as usize].xyz();

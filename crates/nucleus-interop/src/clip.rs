@@ -111,6 +111,11 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         &self.cache.objects()[self.objects[object]]
     }
 
+    /// The radius of an object's particles, scaled; nothing for what has none.
+    pub fn radius(&self, object: usize) -> Option<f64> {
+        self.cache.run().radii.get(&self.object(object).name).map(|radius| radius * self.scale)
+    }
+
     /// The samples in order of time, at least one.
     pub fn samples(&self) -> &[Sample] {
         &self.samples

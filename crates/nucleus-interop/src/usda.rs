@@ -58,6 +58,9 @@ fn write_object<R: Read + Seek>(
     file.text(format!("    def {} \"{name}\"\n    {{\n", if is_mesh { "Mesh" } else { "Points" }));
     file.text(format!("        custom string nucleus:name = {}\n", quoted(&info.name)));
     write_meshes(clip, object, is_mesh, file)?;
+    if !is_mesh {
+        write_widths(clip.radius(object), file);
+    }
     let samples = clip.samples().to_vec();
     let mut extents = String::new();
     file.text("        point3f[] points.timeSamples = {\n");
@@ -130,6 +133,16 @@ fn mesh_attributes(object: &ObjectInfo, is_mesh: bool) -> Vec<(&'static str, Str
     let counts = list(&mut object.faces.iter().map(|face| face.len() as u32));
     let corners = list(&mut object.faces.corners().iter().copied());
     vec![("int[] faceVertexCounts", counts), ("int[] faceVertexIndices", corners)]
+}
+
+/// A width is what is seen of a particle: all of it, twice its radius.
+fn write_widths(radius: Option<f64>, file: &mut OutFile) {
+    if let Some(radius) = radius {
+        let width = (2.0 * radius) as f32;
+        file.text(format!(
+            "        float[] widths = [{width}] (\n            interpolation = \"constant\"\n        )\n"
+        ));
+    }
 }
 
 fn write_velocities<R: Read + Seek>(

@@ -153,6 +153,11 @@ fn usda_states_its_units_and_times_and_keeps_substeps_between_frames() {
     }
     assert!(text.contains("def Mesh \"ns_sheet_1\"") && text.contains("def Points \"dust\""), "{text}");
     assert!(text.contains("vector3f[] velocities.timeSamples"));
+    assert_eq!(
+        text.matches("float[] widths = [0.5]").count(),
+        1,
+        "twice the radius of the dust, and of nothing else"
+    );
 }
 
 #[test]

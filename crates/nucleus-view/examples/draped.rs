@@ -13,9 +13,30 @@ fn main() -> Result<(), ViewError> {
     let ball = sphere(1.0, 0.93);
     let cube = cube([1.9, 0.25, 0.9], 0.25);
     let objects = [
-        Object { name: "cloth", kind: Kind::Cloth, faces: &faces, positions: &draped, rest: Some(&rest) },
-        Object { name: "ball", kind: Kind::Collider, faces: &ball.0, positions: &ball.1, rest: None },
-        Object { name: "cube", kind: Kind::Collider, faces: &cube.0, positions: &cube.1, rest: None },
+        Object {
+            name: "cloth",
+            kind: Kind::Cloth,
+            faces: &faces,
+            positions: &draped,
+            rest: Some(&rest),
+            radius: None,
+        },
+        Object {
+            name: "ball",
+            kind: Kind::Collider,
+            faces: &ball.0,
+            positions: &ball.1,
+            rest: None,
+            radius: None,
+        },
+        Object {
+            name: "cube",
+            kind: Kind::Collider,
+            faces: &cube.0,
+            positions: &cube.1,
+            rest: None,
+            radius: None,
+        },
     ];
     let plain = Style::default();
     let camera = Camera::framing(&Bounds::of_interest(&objects), plain.size);

@@ -26,7 +26,7 @@ fn one_face() -> Faces {
 }
 
 fn object<'a>(kind: Kind, faces: &'a Faces, positions: &'a [[f32; 3]]) -> Object<'a> {
-    Object { name: "thing", kind, faces, positions, rest: None }
+    Object { name: "thing", kind, faces, positions, rest: None, radius: None }
 }
 
 fn brightness(pixel: [u8; 3]) -> u32 {
@@ -61,7 +61,7 @@ proptest! {
         full_scale in wild(),
     ) {
         let faces: Faces = faces.iter().map(Vec::as_slice).collect();
-        let object = Object { name: "wild", kind, faces: &faces, positions: &positions, rest: Some(&rest) };
+        let object = Object { name: "wild", kind, faces: &faces, positions: &positions, rest: Some(&rest), radius: None };
         let style = Style { colouring: Colouring::Strain { full_scale }, wireframe: true, ground, ..small() };
         for camera in [
             Camera { eye, target, field_of_view, ..Camera::default() },

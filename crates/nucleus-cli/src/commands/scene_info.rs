@@ -134,7 +134,10 @@ fn facts(object: &Object, program: &Program, simulation: &Simulation, input: &Fr
     let (kind, stiffness) = match object.kind {
         ObjectKind::Cloth(id) => {
             simulation.state().positions(id, 1.0, &mut positions);
-            ("cloth", Some(ClothStiffness::of(&input.cloths[id.index()], program, input)))
+            match object.radius {
+                Some(_) => ("particles", None),
+                None => ("cloth", Some(ClothStiffness::of(&input.cloths[id.index()], program, input))),
+            }
         }
         ObjectKind::Collider(id) => {
             simulation.state().collider_positions(id, 1.0, &mut positions);

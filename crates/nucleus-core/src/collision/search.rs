@@ -65,7 +65,7 @@ impl<R: Real> Search<'_, R> {
         let mut boxes = std::mem::take(&mut found.boxes);
         for (index, group) in self.cloth.skin.groups().enumerate().filter(|&(index, _)| again[index]) {
             let around = self.bound_group(&group, &mut boxes);
-            let wide = around.size() > WIDEST * self.cloth.edge_length as f32;
+            let wide = !group.triangles.is_empty() && around.size() > WIDEST * self.cloth.edge_length as f32;
             self.unproven.fetch_add(u64::from(wide), Ordering::Relaxed);
             let near = Near { index: index as u32, group: &group, boxes: &boxes, around: &around, wide };
             self.state.tree.query(&around, |triangle| self.meet(&near, triangle, found));

@@ -127,7 +127,11 @@ impl NodeType {
 
     /// Whether this type keeps an attribute from view.
     pub fn keeps_from_view(&'static self, row: &Attribute) -> bool {
-        row.hidden
-            || self.lineage().any(|ancestor| ancestor.hides.iter().any(|names| names.contains(&row.name)))
+        row.hidden || self.has_no_use_for(row)
+    }
+
+    /// Whether this type, or one that it inherits from, has no use for an attribute that it inherits.
+    pub fn has_no_use_for(&'static self, row: &Attribute) -> bool {
+        self.lineage().any(|ancestor| ancestor.hides.iter().any(|names| names.contains(&row.name)))
     }
 }

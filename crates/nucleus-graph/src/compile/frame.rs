@@ -94,7 +94,7 @@ impl Stretch<'_> {
             plane: self.ground_plane(&space),
             layer_range: to.get(nucleus, &nucleus::COLLISION_LAYER_RANGE),
             colliders: self.universe.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
-            cloths: self.universe.cloths.iter().map(|cloth| self.cloth_frame(cloth)).collect(),
+            cloths: self.universe.cloths.iter().map(|cloth| self.active_frame(cloth)).collect(),
             self_collision_iterations: self.self_collision_iterations(),
             pins: self.pins(grips, position),
         }
@@ -123,6 +123,10 @@ impl Stretch<'_> {
             friction: to.get(nucleus, &nucleus::PLANE_FRICTION),
             stickiness: to.get(nucleus, &nucleus::PLANE_STICKINESS),
         })
+    }
+
+    fn active_frame(&self, cloth: &ClothSource) -> ClothFrame {
+        if cloth.is_particles { self.particle_frame(cloth.node) } else { self.cloth_frame(cloth) }
     }
 
     fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {

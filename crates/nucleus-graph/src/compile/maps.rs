@@ -83,6 +83,26 @@ struct Varied {
     factors: Vec<f64>,
 }
 
+impl Scales {
+    /// No map at all.
+    pub(super) const NONE: Self = Self {
+        mass: 1.0,
+        damp: 1.0,
+        stretch: 1.0,
+        compression: 1.0,
+        bend: 1.0,
+        rest_length: 1.0,
+        drag: 1.0,
+        tangential_drag: 1.0,
+        lift: 1.0,
+        thickness: 1.0,
+        friction: 1.0,
+        stickiness: 1.0,
+        bounce: 1.0,
+        collide_strength: 1.0,
+    };
+}
+
 impl Varied {
     const NONE: Self = Self { scale: 1.0, factors: Vec::new() };
 

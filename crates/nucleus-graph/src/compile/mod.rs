@@ -4,6 +4,7 @@
 //! |------------------------------------------------------|------------------|
 //! | what comes out                                       | [`Program`]      |
 //! | how cloth and colliders get their shape and mass     | `objects.rs`     |
+//! | particles                                            | `particles.rs`   |
 //! | which lists a cloth needs                            | `lists.rs`       |
 //! | in which order objects are solved                    | `shaped.rs`      |
 //! | what a frame brings                                  | `frame.rs`       |
@@ -27,6 +28,7 @@ mod geometry;
 mod lists;
 mod maps;
 mod objects;
+mod particles;
 mod pins;
 mod program;
 mod self_collision;

@@ -23,10 +23,12 @@ use super::units::Units;
 /// `resistanceModel: classic`.
 pub(super) const CLASSIC: Choice = Choice(0);
 
-/// Where the frames of a cloth come from.
+/// Where the frames of a cloth, or of particles, come from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ClothSource {
     pub(super) node: NodeId,
+    /// Whether they are particles: cloth of points alone (N1.1-4).
+    pub(super) is_particles: bool,
     /// In scene units.
     pub(super) default_thickness: f64,
     /// Whether its edges limit that.
@@ -55,7 +57,7 @@ pub(super) struct Compiler<'a> {
     /// The graph at the start.
     pub(super) start: Moment<'a>,
     pub(super) whole: Universe,
-    objects: Vec<Object>,
+    pub(super) objects: Vec<Object>,
     mass: f64,
 }
 
@@ -92,10 +94,18 @@ impl<'a> Compiler<'a> {
     /// All objects and constraints; those that are broken, or made from something broken, are left out. What
     /// comes out is only whole if no errors were found.
     pub(super) fn compile(mut self) -> Compiled {
-        for shaped in self.shaped(&nucleus::INPUT_ACTIVE, &n_cloth::N_CLOTH) {
+        let scene = self.scene;
+        let active = self.members(&nucleus::INPUT_ACTIVE, &[&n_cloth::N_CLOTH, &n_particle::N_PARTICLE]);
+        let is_cloth = |id: &NodeId| scene.graph.node(*id).node_type().is_a(&n_cloth::N_CLOTH);
+        let (cloths, particles): (Vec<NodeId>, Vec<NodeId>) = active.into_iter().partition(is_cloth);
+        for shaped in self.shaped(cloths) {
             self.cloth(shaped);
         }
-        for shaped in self.shaped(&nucleus::INPUT_PASSIVE, &n_rigid::N_RIGID) {
+        for shaped in self.placed(particles) {
+            self.particles(shaped);
+        }
+        let passive = self.members(&nucleus::INPUT_PASSIVE, &[&n_rigid::N_RIGID]);
+        for shaped in self.shaped(passive) {
             self.collider(shaped);
         }
         self.whole.pins = self.pins();
@@ -105,23 +115,24 @@ impl<'a> Compiler<'a> {
         (self.whole, self.objects, self.mass)
     }
 
-    /// What is connected to an input of the nucleus, in the order of its elements. Only objects of a type can
+    /// What is connected to an input of the nucleus, in the order of its elements. Only objects of some types can
     /// be solved there.
-    pub(super) fn members(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<NodeId> {
+    fn members(&mut self, input: &Key<Plugged>, wanted: &[&'static NodeType]) -> Vec<NodeId> {
         let graph = &self.scene.graph;
         let mut members = Vec::new();
         for (index, plug) in graph.elements(self.whole.nucleus, input) {
             let (node, node_type) = (graph.node(plug.node), graph.node(plug.node).node_type());
-            if node_type.is_a(wanted) && !members.contains(&plug.node) {
+            let is_wanted = wanted.iter().any(|wanted| node_type.is_a(wanted));
+            if is_wanted && !members.contains(&plug.node) {
                 members.push(plug.node);
-            } else if !node_type.is_a(&n_particle::N_PARTICLE) && !node_type.is_a(wanted) {
+            } else if !is_wanted {
                 let place = self.scene.source.place(node.name());
                 let input = format!("{}.{}[{index}]", graph.node(self.whole.nucleus).name(), input.row.name);
                 let message = format!(
                     "`{}` is of type {} and cannot be solved at `{input}`, which takes {}",
                     node.name(),
                     node_type.name,
-                    wanted.name
+                    wanted.iter().map(|wanted| wanted.name).collect::<Vec<_>>().join(" and ")
                 );
                 self.findings.error(&place, message);
             }
@@ -131,7 +142,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Says so if a connection is missing without which an object is not solved as Maya would.
-    fn check_wired(&mut self, object: NodeId, inputs: &[&str]) {
+    pub(super) fn check_wired(&mut self, object: NodeId, inputs: &[&str]) {
         let graph = &self.scene.graph;
         for input in inputs {
             let fed = graph.arriving(object).any(|wire| wire.to.attribute.name == *input);
@@ -174,7 +185,8 @@ impl<'a> Compiler<'a> {
             }
             Err(error) => return self.refuse(id, mesh, &error),
         }
-        self.whole.cloths.push(ClothSource { node: id, default_thickness, is_dense, scales });
+        let is_particles = false;
+        self.whole.cloths.push(ClothSource { node: id, is_particles, default_thickness, is_dense, scales });
         Some(())
     }
 
@@ -257,7 +269,7 @@ impl<'a> Compiler<'a> {
         (shows && graph.source(mesh, &surface_shape::IN_MESH).is_none()).then_some(mesh)
     }
 
-    fn mass_and_object(
+    pub(super) fn mass_and_object(
         &mut self,
         node: NodeId,
         kind: ObjectKind,
@@ -267,7 +279,7 @@ impl<'a> Compiler<'a> {
     ) {
         self.mass += kilograms;
         let name = self.scene.graph.node(node).name().to_owned();
-        self.objects.push(Object { name, kind, points, faces });
+        self.objects.push(Object { name, kind, points, faces, radius: None });
     }
 
     /// Points of no face are held by nothing: they run, but are seldom meant.
@@ -290,7 +302,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Says what the builder has refused, where it can be mended.
-    fn refuse(&mut self, object: NodeId, mesh: NodeId, error: &BuildError) -> Option<()> {
+    pub(super) fn refuse(&mut self, object: NodeId, mesh: NodeId, error: &BuildError) -> Option<()> {
         let [object, mesh] = [object, mesh].map(|id| self.scene.graph.node(id).name());
         let place = match error {
             BuildError::BadMass { .. } => format!("{object}.pointMass"),

@@ -61,6 +61,8 @@ pub struct Object {
     pub points: usize,
     /// Its faces, which never change.
     pub faces: Faces,
+    /// Radius of each of its particles in scene units; nothing for a mesh.
+    pub radius: Option<f64>,
 }
 
 /// What an object is to the solver.

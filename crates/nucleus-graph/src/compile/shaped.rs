@@ -9,12 +9,11 @@ use std::cmp::Ordering;
 
 use nucleus_core::Surface;
 
-use crate::attributes::{Key, NodeType, Plugged};
 use crate::graph::{Graph, NodeId};
 
 use super::objects::Compiler;
 
-/// An object with its mesh, where it stands at the start; lengths in scene units.
+/// An object with its mesh, where it stands at the start; lengths in scene units. Particles are their own mesh.
 pub(super) struct Shaped {
     pub(super) id: NodeId,
     pub(super) mesh: NodeId,
@@ -22,12 +21,21 @@ pub(super) struct Shaped {
 }
 
 impl Compiler<'_> {
-    /// The objects that are connected to an input of the nucleus and have a mesh, in the order of their solution.
-    pub(super) fn shaped(&mut self, input: &Key<Plugged>, wanted: &'static NodeType) -> Vec<Shaped> {
-        let members = self.members(input, wanted).into_iter();
-        let mut shaped: Vec<Shaped> = members
-            .filter_map(|id| self.world_surface(id).map(|(mesh, surface)| Shaped { id, mesh, surface }))
-            .collect();
+    /// Those of some objects that have a mesh, in the order of their solution.
+    pub(super) fn shaped(&mut self, objects: Vec<NodeId>) -> Vec<Shaped> {
+        let shape = |id| self.world_surface(id).map(|(mesh, surface)| Shaped { id, mesh, surface });
+        let shaped = objects.into_iter().filter_map(shape).collect();
+        self.in_order(shaped)
+    }
+
+    /// Those of some particle nodes that have particles, in the order of their solution.
+    pub(super) fn placed(&mut self, objects: Vec<NodeId>) -> Vec<Shaped> {
+        let place = |id| self.initial_positions(id).map(|surface| Shaped { id, mesh: id, surface });
+        let placed = objects.into_iter().filter_map(place).collect();
+        self.in_order(placed)
+    }
+
+    fn in_order(&self, mut shaped: Vec<Shaped>) -> Vec<Shaped> {
         shaped.sort_by(|a, b| a.compare(b, &self.scene.graph));
         shaped
     }

@@ -6,6 +6,7 @@ use nucleus_core::{FARTHEST, Start};
 
 use crate::attributes::{Key, Painting, Value, n_base};
 use crate::graph::NodeId;
+use crate::mesh::read_obj;
 use crate::paint::read_vectors;
 
 use super::objects::Compiler;
@@ -18,20 +19,30 @@ impl Compiler<'_> {
         Some(Start { positions: positions?, velocities: velocities? })
     }
 
-    fn start_column(
+    /// What a list of vectors holds, wherever it is written; why that cannot be read.
+    pub(super) fn vectors(&self, node: NodeId, key: &Key<Vec<[f64; 3]>>) -> Result<Vec<[f64; 3]>, String> {
+        match self.start.held(node, key) {
+            Some(Value::Vectors(vectors)) => Ok(vectors),
+            Some(Value::Painting(Painting::File(file))) => {
+                let path = self.scene.source.path(&file);
+                if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
+                    let points = read_obj(path).map_err(|error| error.to_string())?.positions;
+                    return Ok(points.into_iter().map(Into::into).collect());
+                }
+                read_vectors(&path).map_err(|error| error.to_string())
+            }
+            _ => Ok(Vec::new()),
+        }
+    }
+
+    pub(super) fn start_column(
         &mut self,
         cloth: NodeId,
         mesh: NodeId,
         points: usize,
         key: &Key<Vec<[f64; 3]>>,
     ) -> Option<Vec<Vector3<f64>>> {
-        let vectors = match self.start.held(cloth, key) {
-            Some(Value::Vectors(vectors)) => Ok(vectors),
-            Some(Value::Painting(Painting::File(file))) => {
-                read_vectors(&self.scene.source.path(&file)).map_err(|error| error.to_string())
-            }
-            _ => Ok(Vec::new()),
-        };
+        let vectors = self.vectors(cloth, key);
         let [name, mesh] = [cloth, mesh].map(|node| self.scene.graph.node(node).name());
         let label = format!("`{}` of `{name}`", key.row.name);
         let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {

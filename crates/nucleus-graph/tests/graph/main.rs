@@ -5,6 +5,7 @@ mod independence;
 mod maps;
 mod materials;
 mod mutations;
+mod particles;
 mod pulling;
 mod scenes;
 mod wiring;

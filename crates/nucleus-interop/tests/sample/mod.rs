@@ -40,6 +40,7 @@ fn record(path: &Path, tears: bool) {
         units_per_metre: UNITS,
         detail: Detail::Substeps,
         velocities: true,
+        radii: [("dust".to_owned(), 0.25)].into(),
         ..RunInfo::default()
     };
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();

@@ -9,7 +9,7 @@ use crate::trade::run::Run;
 pub const ONE_IS_ENOUGH: Experiment = Experiment {
     claim: "N2.4-17",
     says: "Particles that collide only with objects need 1 substep and 1 collision iteration.",
-    scene: "256 points without links (a cloth without resistances, as the solver has no nParticle yet) fall on a ball and the ground.",
+    scene: "256 points without links (a cloth without resistances) fall on a ball and the ground.",
     try_it: || [Reading::Classic, Reading::Physical].map(try_it).to_vec(),
 };
 

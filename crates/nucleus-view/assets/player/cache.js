@@ -96,6 +96,12 @@ export class Cache {
     return { positions, mesh };
   }
 
+  // A mesh, with the radius of its particles: that is said once for a run.
+  topologyOf(channel, data) {
+    const name = this.objects.find(({ mesh }) => mesh === channel)?.name;
+    return { ...readTopology(data), radius: this.run.radii.get(name) ?? null };
+  }
+
   // The mesh of an object at a time: the last that came before. The first is kept, the others with their frames.
   async meshAt(object, nanoseconds) {
     for (const chunk of object.meshChunks.slice(1).reverse()) {
@@ -160,7 +166,7 @@ export class Cache {
         at(time).contacts.set(channel, readContacts(data));
         count(data.length);
       } else if (encoding === "nucleus.topology.v1" && time > 0) {
-        meshes.push({ channel, time, topology: readTopology(data) });
+        meshes.push({ channel, time, topology: this.topologyOf(channel, data) });
         count(data.length);
       } else if (topic === "/report") {
         report = readReport(data);
@@ -186,7 +192,7 @@ export class Cache {
       try {
         object.meshChunks = this.chunks.filter(({ channels }) => channels.has(object.mesh));
         const { messages } = await readChunk(this.source, object.meshChunks[0]);
-        object.topology = readTopology(messages.find(({ channel }) => channel === object.mesh).data);
+        object.topology = this.topologyOf(object.mesh, messages.find(({ channel }) => channel === object.mesh).data);
       } catch (error) {
         if (error instanceof Trouble && !(error instanceof Damage)) {
           throw error;
@@ -224,7 +230,15 @@ function readRun(metadata) {
     scene: scene.get("path") ?? "",
     cameras: readCameras(metadata.get("nucleus.cameras")),
     floor: levelPlane(run.get("ground")),
+    radii: readRadii(run),
   };
+}
+
+// The radius of the particles of each object that has some, by its name.
+function readRadii(run) {
+  const before = "radius of ";
+  const found = [...run].filter(([key, text]) => key.startsWith(before) && Number(text) > 0);
+  return new Map(found.map(([key, text]) => [key.slice(before.length), Number(text)]));
 }
 
 // The height of a plane given as point and normal, if it is level.

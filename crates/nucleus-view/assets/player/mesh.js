@@ -9,6 +9,7 @@ const FARTHEST = 1e9;
 export class Mesh {
   constructor(topology) {
     this.kind = topology.kind;
+    this.radius = topology.radius ?? null; // of particles, where it is known
     const faces = soundFaces(topology);
     // A cloth has a vertex for each point; a collider one for each corner, as sharp edges have two normals.
     const isSharp = this.kind === "collider";

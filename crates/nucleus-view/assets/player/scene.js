@@ -228,7 +228,8 @@ export class Scene {
     const { gl, programs, look } = this;
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
-      this.use(programs.particles, { ...eye, colour, radius: eye.reach * 0.008, pixels });
+      const radius = mesh.radius ?? eye.reach * 0.008;
+      this.use(programs.particles, { ...eye, colour, radius, pixels });
       gl.bindVertexArray(vertices.array);
       gl.drawArrays(gl.POINTS, 0, mesh.count);
       return;

@@ -55,7 +55,7 @@ impl DepthMap {
             });
         }
         for ball in &mesh.balls {
-            self.see_ball(&ball.centre, mesh.ball_radius);
+            self.see_ball(&ball.centre, ball.radius);
         }
     }
 
@@ -172,8 +172,14 @@ mod tests {
     fn map() -> DepthMap {
         let faces = nucleus_core::Faces::from_iter([&[0u32, 1, 2, 3][..]]);
         let positions = [[-1.0, 1.0, 1.0], [1.0, 1.5, 1.0], [1.0, 1.5, -1.0], [-1.0, 1.0, -1.0]];
-        let object =
-            Object { name: "square", kind: Kind::Cloth, faces: &faces, positions: &positions, rest: None };
+        let object = Object {
+            name: "square",
+            kind: Kind::Cloth,
+            faces: &faces,
+            positions: &positions,
+            rest: None,
+            radius: None,
+        };
         let camera =
             Camera { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0, ..Camera::default() };
         let mesh = Mesh::gather(&[object], &Style::default(), &Lens::new(&camera, [64, 64]));

@@ -174,6 +174,7 @@ fn objects<'a, R: Read + Seek>(
     moment: usize,
     positions: &'a [Vec<[f32; 3]>],
 ) -> Result<Vec<Object<'a>>, ViewError> {
+    let radii = cache.run().radii.clone();
     let objects = cache.objects_at(moment).map_err(|source| ViewError::Read { source })?;
     let objects = objects.into_iter().zip(positions);
     Ok(objects
@@ -187,6 +188,7 @@ fn objects<'a, R: Read + Seek>(
             faces: &object.faces,
             positions,
             rest: Some(&object.rest),
+            radius: radii.get(&object.name).map(|radius| *radius as f32),
         })
         .collect())
 }

@@ -27,8 +27,13 @@ pub(super) struct Triangle {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ball {
     pub centre: Vec3,
+    /// In scene units.
+    pub radius: f32,
     pub colour: Vec3,
 }
+
+/// Radius of particles that have none, as a share of the reach of the picture.
+const SMALLEST: f32 = 0.008;
 
 /// Everything that can be drawn.
 #[derive(Debug, Default)]
@@ -36,14 +41,13 @@ pub(super) struct Mesh {
     pub vertices: Vec<Vertex>,
     pub triangles: Vec<Triangle>,
     pub balls: Vec<Ball>,
-    /// Radius of every ball, in scene units.
-    pub ball_radius: f32,
 }
 
 impl Mesh {
     /// Collects what can be drawn of the objects, in their order.
     pub fn gather(objects: &[Object], style: &Style, lens: &Lens) -> Self {
-        let mut mesh = Self { ball_radius: lens.reach() * 0.008, ..Self::default() };
+        let mut mesh = Self::default();
+        let smallest = lens.reach() * SMALLEST;
         let (mut cloths, mut colliders) = (0, 0);
         for object in objects {
             match object.kind {
@@ -56,7 +60,7 @@ impl Mesh {
                     colliders += 1;
                 }
                 Kind::Particles => {
-                    mesh.add_particles(object, cloth_colour(cloths));
+                    mesh.add_particles(object, cloth_colour(cloths), smallest);
                     cloths += 1;
                 }
             }
@@ -118,9 +122,10 @@ impl Mesh {
         }
     }
 
-    fn add_particles(&mut self, object: &Object, colour: Vec3) {
+    fn add_particles(&mut self, object: &Object, colour: Vec3, smallest: f32) {
+        let radius = object.radius.filter(|radius| *radius > 0.0).unwrap_or(smallest);
         let drawable = object.positions.iter().filter(|point| is_drawable(point));
-        self.balls.extend(drawable.map(|point| Ball { centre: Vec3::from(*point), colour }));
+        self.balls.extend(drawable.map(|point| Ball { centre: Vec3::from(*point), radius, colour }));
     }
 
     fn add_fan(&mut self, corners: usize, vertex: impl Fn(usize) -> u32) {

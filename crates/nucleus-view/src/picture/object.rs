@@ -15,6 +15,8 @@ pub struct Object<'a> {
     pub positions: &'a [[f32; 3]],
     /// Its points at rest, as many as `positions`; without them it has no strain to show.
     pub rest: Option<&'a [[f32; 3]]>,
+    /// Radius of its particles, in scene units; without it they are as small as can be seen.
+    pub radius: Option<f32>,
 }
 
 /// The kinds of object that are drawn differently.
@@ -24,7 +26,7 @@ pub enum Kind {
     Cloth,
     /// A collider: grey, with its sharp edges kept sharp.
     Collider,
-    /// Particles: small balls.
+    /// Particles: balls.
     Particles,
 }
 

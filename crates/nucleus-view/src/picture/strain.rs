@@ -61,6 +61,7 @@ mod tests {
             faces: &faces,
             positions: &positions,
             rest: Some(&rest),
+            radius: None,
         };
         let strain = of_points(&object).unwrap();
         assert_eq!(strain[0], 1.0);

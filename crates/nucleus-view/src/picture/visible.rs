@@ -29,7 +29,7 @@ pub(super) fn find(mesh: &Mesh, lens: &Lens) -> Vec<Sample> {
     }
     for (index, ball) in mesh.balls.iter().enumerate() {
         let thing = (mesh.triangles.len() + index) as u32;
-        draw_ball(&mut samples, thing, lens.to_view(&ball.centre), mesh.ball_radius, lens);
+        draw_ball(&mut samples, thing, lens.to_view(&ball.centre), ball.radius, lens);
     }
     samples
 }

@@ -115,6 +115,7 @@ fn objects<'a>(subject: &'a Subject, rest: &'a State, state: &'a State) -> Vec<O
             faces: &object.faces,
             positions,
             rest: Some(rest),
+            radius: object.radius.map(|radius| radius as f32),
         })
         .collect()
 }

@@ -145,6 +145,7 @@ impl<R: Real> View<'_, R> {
             thickness: R::from_f64(thickness),
             reach: R::from_f64(thickness * terms.reach),
             terms: (ours * self.cloths + theirs) as u32,
+            is_swept: self.is_swept(candidate),
         };
         let [a, b, c, d] = candidate.points;
         match candidate.kind {
@@ -152,6 +153,17 @@ impl<R: Real> View<'_, R> {
             Kind::EdgeEdge => picked.edge_edge.extend(self.find(([a, b], [c, d]), meeting)),
             Kind::PointEdge => picked.point_edge.extend(self.find(([a], [b, c]), meeting)),
             Kind::PointPoint => picked.point_point.extend(self.find(([a], [b]), meeting)),
+        }
+    }
+
+    /// Whether the point of a pair is of no face, or one of two points.
+    fn is_swept(&self, candidate: &Candidate) -> bool {
+        let is_free = |point: u32| self.bodies.stars.triangles(point).is_empty();
+        let [first, second] = [candidate.points[0], candidate.points[1]];
+        match candidate.kind {
+            Kind::EdgeEdge => false,
+            Kind::PointPoint => is_free(first) || is_free(second),
+            Kind::PointEdge | Kind::PointFace => is_free(first),
         }
     }
 
@@ -194,6 +206,11 @@ impl<R: Real, const N: usize, const M: usize> Contacts<R, N, M> {
 
     /// Puts what was found in the order of its tasks.
     fn lay_out(&mut self, bodies: &Bodies) {
+        // Cloth meets in the order in which it was found. Free points come together in any order, and much comes of it: they
+        // meet in the order of their numbers, so that what is far away has no say in it.
+        if self.found.iter().any(Near::is_swept) {
+            self.found.sort_by_key(Near::rank);
+        }
         let block = |point: u32| bodies.block[point as usize];
         let blocks = self.found.iter().map(|near| {
             let mut of_points = [block(near.ours[0]); 4];

@@ -10,6 +10,7 @@
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
 //! | what sticks, and what bounces | [`rebound`] |
+//! | free points, which can go far in a step | [`swept`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
 //! | meshes that pass through each other: found, and worked apart | [`crossings`], [`tangle`] |
 //!
@@ -29,6 +30,7 @@ mod rebound;
 pub mod search;
 mod sought;
 mod stars;
+mod swept;
 pub mod tangle;
 pub mod tasks;
 

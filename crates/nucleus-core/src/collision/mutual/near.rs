@@ -3,6 +3,7 @@
 //! It carries a direction along which the two were apart at the start of the time step. As long as they are
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
+use super::swept::{first_touch, passes_beside};
 use crate::collision::friction::{Push, rub};
 use crate::collision::maps::Maps;
 use crate::collision::narrow::{Places, across, between_middles, gap_along, shortest, weigh};
@@ -78,6 +79,8 @@ pub struct Meeting<R> {
     pub reach: R,
     /// The terms of the two cloths, by their place among all.
     pub terms: u32,
+    /// Whether one side is a free point, which can go farther in a step than anything is large.
+    pub is_swept: bool,
 }
 
 /// A contact: `N` points of one element, `M` of the other.
@@ -163,6 +166,11 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         self.thickness_at(step.terms, step.maps, weights) * step.squeeze
     }
 
+    /// The distance to keep where the two are nearest to each other.
+    fn kept_at(&self, step: &Motion<'_, R>, at: &Places<R, N, M>) -> R {
+        self.kept(step, &shortest(*at).1)
+    }
+
     /// The thickness of both where the contact is, in metres.
     #[inline(always)]
     pub fn thickness_at(&self, terms: &[Option<Terms<R>>], maps: &Maps<R>, weights: &([R; N], [R; M])) -> R {
@@ -190,6 +198,13 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             return false;
         }
         let before = self.before(step);
+        if self.meeting.is_swept
+            && let Some(normal) = first_touch(&before, &now, self.kept_at(step, &before))
+        {
+            self.normal = normal;
+            self.push_back(step, &before, &now);
+            return true;
+        }
         let (normal, weights, distance) = shortest(now);
         if distance > R::ZERO && gap_along(normal, &before) > grain(&now) * R::from_f64(AT_START) {
             // Apart along this line at both ends of the step: it is theirs from now on.
@@ -201,14 +216,25 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             self.push(step, &weights, &before, [kept, kept - distance]);
             return true;
         }
-        // They may have passed. Back to the side that they were on.
-        let (_, weights, _) = shortest(before);
-        let kept = self.kept(step, &weights);
-        let depth = kept - dot(self.normal, self.line(&now, &weights));
-        if depth > R::ZERO {
-            self.push(step, &weights, &before, [kept, depth]);
+        if self.meeting.is_swept
+            && let Some(normal) = passes_beside(&before, &now, self.kept_at(step, &before))
+        {
+            self.normal = normal;
+            return false;
         }
+        // They may have passed. Back to the side that they were on.
+        self.push_back(step, &before, &now);
         true
+    }
+
+    /// Pushes the two apart along the contact's direction, where they were nearest when the step began.
+    fn push_back(&self, step: &Motion<'_, R>, before: &Places<R, N, M>, now: &Places<R, N, M>) {
+        let (_, weights, _) = shortest(*before);
+        let kept = self.kept(step, &weights);
+        let depth = kept - dot(self.normal, self.line(now, &weights));
+        if depth > R::ZERO {
+            self.push(step, &weights, before, [kept, depth]);
+        }
     }
 
     /// Moves both sides by `depth` in all, where `kept` is to be kept, each by its mobility, with friction.
@@ -389,6 +415,20 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             }
             held[point as usize] = true;
         }
+    }
+
+    /// Whether one side is a free point.
+    pub fn is_swept(&self) -> bool {
+        self.meeting.is_swept
+    }
+
+    /// Where it stands among others: those of free points come first, in the order of their points.
+    pub fn rank(&self) -> (bool, [u32; 4]) {
+        let mut points = [0; 4];
+        if self.is_swept() {
+            points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
+        }
+        (!self.is_swept(), points)
     }
 
     /// The distance between the two, over the thickness kept between them.

@@ -74,7 +74,9 @@ impl Sought {
         let cloths = [self.cloth, search.bodies.groups[group as usize].cloth as usize];
         let Some(terms) = &search.terms[cloths[0] * search.cloths.len() + cloths[1]] else { return };
         let (skin, elements) = search.elements(group);
-        let rest = (cloths[0] == cloths[1]).then_some(&search.bodies.rest[..]);
+        // Free points have no shape at rest: what lies near at the start is no neighbour.
+        let is_shaped = cloths[0] == cloths[1] && !skin.triangles.is_empty();
+        let rest = is_shaped.then_some(&search.bodies.rest[..]);
         let near = [terms.thickness as f32, terms.reach as f32];
         let mut keep = |kind: Kind, points: [u32; 4]| {
             list.extend(search.seen.candidate(kind, points, near, rest));

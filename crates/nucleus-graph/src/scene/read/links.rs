@@ -177,9 +177,6 @@ impl Joiner<'_> {
         if mesh.is_none() && !is_particles {
             self.check_mesh(id);
         }
-        if is_particles {
-            self.not_solved(id, "particles are");
-        }
         if is_particles && self.is_left_alone(id) {
             return;
         }
@@ -352,7 +349,7 @@ fn check_components(
         let object = component.object.as_str();
         let place = source.place(&format!("{name}.components[{k}]"));
         match links.names.get(object) {
-            Some(&Some(id)) if is_cloth(graph, id) => {}
+            Some(&Some(id)) if is_cloth(graph, id) || is_particles(graph, id) => {}
             // It could not be read, and that has been said.
             Some(None) => {}
             _ if !reported.insert(object) => {}
@@ -370,6 +367,10 @@ fn is_cloth(graph: &Graph, node: NodeId) -> bool {
     graph.node(node).node_type().is_a(&n_cloth::N_CLOTH)
 }
 
+fn is_particles(graph: &Graph, node: NodeId) -> bool {
+    graph.node(node).node_type().is_a(&n_particle::N_PARTICLE)
+}
+
 /// Says that something is not cloth; if it is the mesh of a cloth, that was probably meant.
 fn refuse_object(
     graph: &Graph,
@@ -379,7 +380,8 @@ fn refuse_object(
     findings: &mut Findings,
 ) {
     let (object, found) = (&component.object, graph.node(id).node_type().name);
-    let message = format!("only points of cloth can be held, but `{object}` is of type {found}");
+    let message =
+        format!("only points of cloth and particles can be held, but `{object}` is of type {found}");
     let error = findings.error(place, message);
     let mut fed = graph.targets(id, &surface_shape::WORLD_MESH).map(|plug| plug.node);
     if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {

@@ -262,6 +262,7 @@ impl NodeReader<'_, '_> {
             self.findings.error(&word.span, error.to_string());
         }
         let lacks = match row.effect {
+            Effect::Solved(_) if self.draft.node_type.has_no_use_for(row) => "has no effect on such a node",
             Effect::Solved(_) => return,
             Effect::NotYet => "has no effect yet",
             Effect::Never => "has no effect: nothing uses it, in Maya neither",

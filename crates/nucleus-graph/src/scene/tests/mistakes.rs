@@ -342,7 +342,7 @@ fn pins_hold_points_of_cloth_that_are_there() {
         &pinned("p.vtx[0]"),
         &[(
             "\"p.vtx[0]\"",
-            "only points of cloth can be held, but `p` is of type polyPlane",
+            "only points of cloth and particles can be held, but `p` is of type polyPlane",
             "did you mean `c1.vtx[0]`?",
         )],
     );

@@ -1,0 +1,119 @@
+//! Particles: from a node to what is solved.
+
+use std::fs;
+use std::path::Path;
+
+use nucleus_core::Elements;
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::read_scene_text;
+
+use super::scenes::{after, of_nodes, program};
+
+/// Where the particles of `q` are after some frames, in scene units.
+fn places(program: &Program, frames: usize) -> Vec<[f32; 3]> {
+    after(program, frames, "q").into_iter().map(|place| place.map(f32::from_bits)).collect()
+}
+
+/// Everything that is said of a scene that runs.
+fn warnings(text: &str) -> Vec<String> {
+    let (scene, mut said) = read_scene_text(text, Path::new("test.ron")).expect("it can be read");
+    said.extend(compile(&scene).expect("it runs").warnings().iter().cloned());
+    said.into_iter().map(|said| said.message).collect()
+}
+
+// EVIDENCE: N1.1-4  a particle is an object of the solver like cloth, without a face and without a link
+#[test]
+fn particles_start_where_their_node_says_and_fall() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01),
+        "q": nParticle(position: [(1, 2, 3), (4, 5, 6)], velocity: [(0, 0, 24), (0, 0, 0)], drag: 0)"#;
+    let program = program(&of_nodes(nodes, ""));
+    assert_eq!(places(&program, 0), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    let moved = places(&program, 1);
+    assert!((moved[0][2] - 4.0).abs() < 1e-4 && moved[1][2] == 6.0, "{moved:?}");
+    assert!(moved.iter().zip([2.0, 5.0]).all(|(place, start)| place[1] < start), "{moved:?}");
+    let cloth = &program.model().cloths()[0];
+    assert!(cloth.surface.faces.is_empty() && !cloth.lists.stretch && !cloth.lists.bend);
+}
+
+#[test]
+fn an_initial_position_goes_before_a_position() {
+    let nodes =
+        r#""n": nucleus(), "q": nParticle(position: [(1, 2, 3)], pos0: [(7, 8, 9)], vel0: [(0, 0, 0)])"#;
+    assert_eq!(places(&program(&of_nodes(nodes, "")), 0), [[7.0, 8.0, 9.0]]);
+}
+
+#[test]
+fn particles_can_be_the_points_of_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.obj"), "v 1 2 3\nv 4 5 6\n").expect("written");
+    fs::write(folder.path().join("a.txt"), "1 2 3 # one\n4, 5, 6").expect("written");
+    for file in ["a.obj", "a.txt"] {
+        let text = of_nodes(&format!(r#""n": nucleus(), "q": nParticle(position: file("{file}"))"#), "");
+        let (scene, _) = read_scene_text(&text, &folder.path().join("scene.ron")).expect("it can be read");
+        let program = compile(&scene).unwrap_or_else(|found| panic!("{found:?}"));
+        assert_eq!(places(&program, 0), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{file}");
+    }
+}
+
+// EVIDENCE: N2.3-2  a particle is as thick as its radius says
+#[test]
+fn a_particle_is_as_thick_as_its_radius_and_its_scales_say() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(position: [(0, 0, 0)], radius: 3, collideWidthScale: 0.5,
+        selfCollideWidthScale: 2, collisionFlag: face, pointMass: 0.25)"#;
+    let program = program(&of_nodes(nodes, ""));
+    let frame = &program.first_input().cloths[0];
+    assert!((frame.thickness - 0.015).abs() < 1e-12 && (frame.self_collision.thickness - 0.03).abs() < 1e-12);
+    assert_eq!((frame.elements, frame.self_collision.elements), (Elements::Points, Elements::Points));
+    assert_eq!((frame.drag, frame.tangential_drag, frame.lift), (0.01, 1.0, 0.0));
+    assert_eq!((program.mass(), program.objects()[0].radius), (0.25, Some(3.0)));
+}
+
+#[test]
+fn in_both_readings_of_resistances_a_particle_weighs_the_same() {
+    for model in ["classic", "physical"] {
+        let nodes = format!(
+            r#""n": nucleus(resistanceModel: {model}), "q": nParticle(position: [(0, 0, 0), (1, 0, 0)], pointMass: 3)"#
+        );
+        assert_eq!(program(&of_nodes(&nodes, "")).mass(), 6.0);
+    }
+}
+
+#[test]
+fn what_has_no_effect_on_particles_is_said() {
+    let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
+    assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
+    assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
+    for name in ["damp: 1", "enableSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickiness: 1"] {
+        let said = of(&format!("position: [(0, 0, 0)], {name}"));
+        assert!(said.len() == 1 && said[0].ends_with("has no effect yet"), "{name}: {said:?}");
+    }
+    for name in ["thickness: 1", "startPositions: [(0, 0, 0)]", "restLengthScale: 2"] {
+        let said = of(&format!("position: [(0, 0, 0)], {name}"));
+        assert!(said.len() == 1 && said[0].ends_with("has no effect on such a node"), "{name}: {said:?}");
+    }
+}
+
+#[test]
+fn the_names_of_nodes_do_not_matter_to_particles_and_cloth() {
+    let run = |[sheet, q, r]: [&str; 3]| {
+        let nodes = format!(
+            r#""n": nucleus(evaluations: 24), "p": polyPlane(width: 2, height: 2, subdivisions: (6, 6)),
+               "{sheet}": nCloth(inputMesh: "p"), "{q}": nParticle(position: [(0.1, 0.3, 0), (0.1, 0.8, 0.1)], pointMass: 0.1),
+               "{r}": nParticle(position: [(0.2, 0.5, 0.2)], pointMass: 0.1, radius: 0.1)"#
+        );
+        let program = program(&of_nodes(&nodes, ""));
+        [sheet, q, r].map(|name| after(&program, 12, name))
+    };
+    assert_eq!(run(["a", "b", "c"]), run(["z", "y", "x"]));
+}
+
+// EVIDENCE: N3.1-3  particles can ignore the solver's gravity
+#[test]
+fn particles_that_ignore_gravity_stay_and_those_that_can_be_pinned_are_carried() {
+    let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)], ignoreSolverGravity: true)"#;
+    assert_eq!(places(&program(&of_nodes(nodes, "")), 5), [[0.0; 3]]);
+    let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0), (3, 0, 0)]),
+        "h": dynamicConstraint(components: ["q.vtx[0]"])"#;
+    let held = places(&program(&of_nodes(nodes, "")), 5);
+    assert!(held[0] == [0.0; 3] && held[1][1] < -0.1, "{held:?}");
+}
