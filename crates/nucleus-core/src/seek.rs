@@ -47,15 +47,11 @@ impl<R: Real> Solver<R> {
             self.find_pairs(cloth, schedule, step[0], tally);
         }
         self.windows[cloth] = window;
-        let Self { cloths, colliders, pairs, near, terms, .. } = self;
+        let Self { cloths, colliders, pairs, near, terms, team, .. } = self;
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             if let Some(terms) = &terms[cloth * colliders.len() + list.collider] {
-                list.activate(
-                    near,
-                    window,
-                    R::from_f64(terms.thickness * terms.reach),
-                    &cloths[cloth].blocks,
-                );
+                let reach = R::from_f64(terms.thickness * terms.reach);
+                list.activate(near, window, reach, &cloths[cloth].blocks, team);
             }
         }
     }
@@ -98,7 +94,18 @@ impl<R: Real> Solver<R> {
     /// Finds the pairs of a cloth with every collider, for all points of which something new is foreseen.
     fn find_pairs(&mut self, cloth: usize, schedule: &Schedule<R>, now: f64, tally: &mut Tally) {
         let Self {
-            cloths, colliders, state, collider_states, pairs, far, spans, strayed, terms, maps, ..
+            cloths,
+            colliders,
+            state,
+            collider_states,
+            pairs,
+            far,
+            spans,
+            strayed,
+            terms,
+            maps,
+            team,
+            ..
         } = self;
         let span = spans[cloth];
         let mut freed = Vec::new();
@@ -115,7 +122,7 @@ impl<R: Real> Solver<R> {
             let step = &view.of(state, state_of);
             let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
             let unproven = &tally.unproven;
-            Search { cloth, collider, state: state_of, cover: far, strayed, unproven, step }.run(list);
+            Search { cloth, collider, state: state_of, cover: far, strayed, unproven, step }.run(list, team);
             if terms.traps {
                 list.trapped.begin(cloth.points(), collider, state_of, step);
                 list.trapped.look(collider, state_of, step, |point| freed.push(point));

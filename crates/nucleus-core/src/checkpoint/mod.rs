@@ -132,7 +132,7 @@ kept!([R: Real] PairList<R> {
     columns: [],
     values: [span, point_face, edge_edge, face_point, trapped],
     parts: [],
-    anew: [cloth, collider, by_point, active, searched, boxes],
+    anew: [cloth, collider, by_point, active, searched, again, tasks],
 });
 
 // Contacts are picked anew in the first window of a frame.

@@ -2,16 +2,18 @@
 //! can touch within the next few time steps.
 
 use std::ops::Range;
+use std::sync::Mutex;
 
-use super::collider::Boxes;
 use super::contact::Pair;
 use super::foresee::Cover;
+use super::search::Found;
 use super::trapped::Trapped;
 use crate::model::Blocks;
 use crate::scalar::{Real, Row4};
+use crate::team::Team;
 
 /// The pairs of one cloth and one collider, and the span they hold for.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct PairList<R> {
     /// The cloth, by its index.
     pub cloth: usize,
@@ -31,8 +33,10 @@ pub struct PairList<R> {
     pub active: Active,
     /// Which groups the last search went through.
     pub searched: Vec<bool>,
-    /// Boxes of the group being searched.
-    pub boxes: Boxes,
+    /// The same, by their index.
+    pub again: Vec<u32>,
+    /// What the tasks of a search find.
+    pub tasks: Vec<Mutex<Found<R>>>,
     /// Points of the cloth that are inside the collider.
     pub trapped: Trapped,
 }
@@ -64,7 +68,8 @@ impl<R: Real> PairList<R> {
             by_point: Vec::new(),
             active: Active::default(),
             searched: Vec::new(),
-            boxes: Boxes::default(),
+            again: Vec::new(),
+            tasks: Vec::new(),
             trapped: Trapped::default(),
         }
     }
@@ -94,28 +99,39 @@ impl<R: Real> PairList<R> {
     }
 
     /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
-    pub fn activate(&mut self, cover: &[Cover<R>], window: [f64; 2], thickness: R, blocks: &Blocks) {
+    pub fn activate(
+        &mut self,
+        cover: &[Cover<R>],
+        window: [f64; 2],
+        thickness: R,
+        blocks: &Blocks,
+        team: &Team,
+    ) {
         let Self { span, point_face, edge_edge, face_point, by_point, active, trapped, .. } = self;
         let share = |time: f64| if span[1] > span[0] { (time - span[0]) / (span[1] - span[0]) } else { 0.0 };
         let window = window.map(|time| R::from_f64(share(time)));
         let all = |pairs: usize| 0..pairs as u32;
-        pick(
-            point_face,
-            by_point.iter().map(|&key| key as u32),
-            &mut active.point_face,
-            cover,
-            window,
-            thickness,
-            trapped,
-        );
-        pick(edge_edge, all(edge_edge.len()), &mut active.edge_edge, cover, window, thickness, trapped);
-        pick(face_point, all(face_point.len()), &mut active.face_point, cover, window, thickness, trapped);
-        let place = |end: u32| {
-            active.point_face.partition_point(|&pair| point_face[pair as usize].points[0] < end) as u32
-        };
+        // Two tasks of about the same length; nobody else has what is theirs.
+        let Active { point_face: of_points, edge_edge: of_edges, face_point: of_faces, runs } = active;
+        let (points, elements) = (Mutex::new(&mut *of_points), Mutex::new((of_edges, of_faces)));
+        team.phase(2, |task| match task {
+            0 => {
+                let Ok(mut found) = points.lock() else { return };
+                let order = by_point.iter().map(|&key| key as u32);
+                pick(point_face, order, &mut found, cover, window, thickness, trapped);
+            }
+            _ => {
+                let Ok(mut found) = elements.lock() else { return };
+                let (edges, faces) = &mut *found;
+                pick(edge_edge, all(edge_edge.len()), edges, cover, window, thickness, trapped);
+                pick(face_point, all(face_point.len()), faces, cover, window, thickness, trapped);
+            }
+        });
+        let place =
+            |end: u32| of_points.partition_point(|&pair| point_face[pair as usize].points[0] < end) as u32;
         let run = |block: usize| place(blocks.range(block).start)..place(blocks.range(block).end);
-        active.runs.clear();
-        active.runs.extend((0..blocks.len()).map(run));
+        runs.clear();
+        runs.extend((0..blocks.len()).map(run));
     }
 }
 

@@ -77,12 +77,15 @@ fn prove_all<R: Real, const N: usize, const M: usize>(
     let (pairs, open) = (Shared::new(pairs), AtomicU64::new(0));
     team.phase(active.len().div_ceil(PROOFS_PER_TASK), |task| {
         let end = active.len().min((task + 1) * PROOFS_PER_TASK);
+        let mut open_here = 0;
         for &index in &active[task * PROOFS_PER_TASK..end] {
             // SAFETY: a pair is active once, and proofs move no point.
             #[allow(unsafe_code)]
             let [pair] = (unsafe { pairs.run(index..index + 1) }) else { continue };
-            open.fetch_add(u64::from(!pair.prove(step)), Ordering::Relaxed);
+            open_here += u64::from(!pair.prove(step));
         }
+        // Once a task: threads that count in one place wait for each other.
+        open.fetch_add(open_here, Ordering::Relaxed);
     });
     open.into_inner()
 }

@@ -3,6 +3,7 @@
 //! It runs once per substep, on where each point is and where it is heading, with a margin. All passes of the
 //! substep use its list. Should a point leave what was foreseen for it, its neighbourhood is searched again.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::Vector3;
@@ -15,6 +16,7 @@ use super::skin::Group;
 use super::tree::Aabb;
 use crate::model::{ClothModel, ColliderModel, Outside};
 use crate::scalar::{Real, Row4};
+use crate::team::Team;
 
 /// What is searched: a cloth and a collider, whose boxes are fitted to the span.
 pub struct Search<'a, R> {
@@ -48,40 +50,93 @@ struct Near<'a> {
 /// everything: it collides with its points alone, and is counted.
 const WIDEST: f32 = 256.0;
 
+/// Groups to a task.
+const GROUPS_PER_TASK: usize = 64;
+
+/// What one task finds, and room to find it in.
+#[derive(Debug)]
+pub struct Found<R> {
+    point_face: Vec<Pair<R, 1, 3>>,
+    edge_edge: Vec<Pair<R, 2, 2>>,
+    face_point: Vec<Pair<R, 3, 1>>,
+    /// Points behind a face.
+    suspects: Vec<u32>,
+    /// Boxes of the group being searched.
+    boxes: Boxes,
+}
+
+impl<R> Default for Found<R> {
+    fn default() -> Self {
+        let boxes = Boxes::default();
+        let (point_face, edge_edge, face_point) = (Vec::new(), Vec::new(), Vec::new());
+        Self { point_face, edge_edge, face_point, suspects: Vec::new(), boxes }
+    }
+}
+
+impl<R> Found<R> {
+    fn clear(&mut self) {
+        self.point_face.clear();
+        self.edge_edge.clear();
+        self.face_point.clear();
+        self.suspects.clear();
+    }
+}
+
 impl<R: Real> Search<'_, R> {
     /// Replaces the pairs of those groups of the cloth for which something new is foreseen.
-    pub fn run(&self, found: &mut PairList<R>) {
+    pub fn run(&self, list: &mut PairList<R>, team: &Team) {
         let is_new = |group: &Group| {
             let skin = &self.cloth.skin;
             let corners = skin.triangles[group.triangles.clone()].iter().flatten();
             corners.chain(&skin.points[group.points.clone()]).any(|&point| self.strayed[point as usize])
         };
-        let mut again = std::mem::take(&mut found.searched);
+        let PairList { searched, again, tasks, point_face, edge_edge, face_point, by_point, trapped, .. } =
+            list;
+        searched.clear();
+        searched.extend(self.cloth.skin.groups().map(|group| is_new(&group)));
         again.clear();
-        again.extend(self.cloth.skin.groups().map(|group| is_new(&group)));
-        found.point_face.retain(|pair| !again[pair.group as usize]);
-        found.edge_edge.retain(|pair| !again[pair.group as usize]);
-        found.face_point.retain(|pair| !again[pair.group as usize]);
-        let mut boxes = std::mem::take(&mut found.boxes);
-        for (index, group) in self.cloth.skin.groups().enumerate().filter(|&(index, _)| again[index]) {
-            let around = self.bound_group(&group, &mut boxes);
-            let wide = !group.triangles.is_empty() && around.size() > WIDEST * self.cloth.edge_length as f32;
-            self.unproven.fetch_add(u64::from(wide), Ordering::Relaxed);
-            let near = Near { index: index as u32, group: &group, boxes: &boxes, around: &around, wide };
-            self.state.tree.query(&around, |triangle| self.meet(&near, triangle, found));
+        again.extend((0..).zip(&*searched).filter(|(_, is_new)| **is_new).map(|(group, _)| group));
+        point_face.retain(|pair| !searched[pair.group as usize]);
+        edge_edge.retain(|pair| !searched[pair.group as usize]);
+        face_point.retain(|pair| !searched[pair.group as usize]);
+        let chunks = again.len().div_ceil(GROUPS_PER_TASK);
+        tasks.resize_with(tasks.len().max(chunks), Mutex::default);
+        team.phase(chunks, |task| {
+            // Nobody else has it: a task is done once.
+            let Ok(mut found) = tasks[task].lock() else { return };
+            found.clear();
+            let end = ((task + 1) * GROUPS_PER_TASK).min(again.len());
+            again[task * GROUPS_PER_TASK..end].iter().for_each(|&group| self.around(group, &mut found));
+        });
+        // In the order of the groups, whoever searched them.
+        for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
+            point_face.append(&mut found.point_face);
+            edge_edge.append(&mut found.edge_edge);
+            face_point.append(&mut found.face_point);
+            trapped.suspects.append(&mut found.suspects);
         }
-        (found.searched, found.boxes) = (again, boxes);
-        let PairList { point_face, by_point, .. } = found;
         by_point.clear();
         let key = |(index, pair): (u64, &Pair<R, 1, 3>)| u64::from(pair.points[0]) << 32 | index;
         by_point.extend((0..).zip(point_face.iter()).map(key));
         by_point.sort_unstable();
     }
 
+    /// Everything that a group can touch.
+    fn around(&self, index: u32, found: &mut Found<R>) {
+        let group = self.cloth.skin.group(index as usize);
+        let mut boxes = std::mem::take(&mut found.boxes);
+        let around = self.bound_group(&group, &mut boxes);
+        let wide = !group.triangles.is_empty() && around.size() > WIDEST * self.cloth.edge_length as f32;
+        self.unproven.fetch_add(u64::from(wide), Ordering::Relaxed);
+        let near = Near { index, group: &group, boxes: &boxes, around: &around, wide };
+        self.state.tree.query(&around, |triangle| self.meet(&near, triangle, found));
+        found.boxes = boxes;
+    }
+
     /// Writes the boxes of a group's elements, with the thickness; the box round them all.
     fn bound_group(&self, group: &Group, boxes: &mut Boxes) -> Aabb {
         let skin = &self.cloth.skin;
-        let thickness = self.step.thickness.to_f64() as f32 * (1.0 + 1e-6);
+        let thickness = self.step.reach().to_f64() as f32 * (1.0 + 1e-6);
         let bound = |points: &[u32]| {
             points.iter().map(|&point| self.reach(point)).fold(Aabb::EMPTY, Aabb::union).inflate(thickness)
         };
@@ -97,7 +152,7 @@ impl<R: Real> Search<'_, R> {
     }
 
     /// Every pair of an element of the group and an element owned by one triangle of the collider.
-    fn meet(&self, near: &Near<'_>, triangle: u32, found: &mut PairList<R>) {
+    fn meet(&self, near: &Near<'_>, triangle: u32, found: &mut Found<R>) {
         let (skin, theirs, boxes) = (&self.cloth.skin, &self.collider.skin, &self.state.boxes);
         let Near { index, group, boxes: ours, around, wide } = near;
         let face = &boxes.triangles[triangle as usize];
@@ -110,7 +165,7 @@ impl<R: Real> Search<'_, R> {
             let Some(pair) = self.pair([point], corners, *index) else { continue };
             found.point_face.push(pair);
             if self.collider.outside.is_some() && self.is_behind(point, corners) {
-                found.trapped.suspects.push(point);
+                found.suspects.push(point);
             }
         }
         if *wide {

@@ -71,16 +71,21 @@ impl Skin {
 
     /// All elements in groups of neighbours; free points in groups of their own.
     pub fn groups(&self) -> impl Iterator<Item = Group> + '_ {
-        let triangles = self.triangles.len();
-        let of_triangles =
-            (0..triangles).step_by(GROUP).map(move |k| self.owned_by(k..(k + GROUP).min(triangles)));
         let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
-        let free = (in_faces..self.points.len()).step_by(GROUP);
-        of_triangles.chain(free.map(move |k| Group {
-            triangles: 0..0,
-            edges: 0..0,
-            points: k..(k + GROUP).min(self.points.len()),
-        }))
+        let free = self.points.len() - in_faces;
+        (0..self.triangles.len().div_ceil(GROUP) + free.div_ceil(GROUP)).map(|index| self.group(index))
+    }
+
+    /// One of them, by its place among them.
+    pub fn group(&self, index: usize) -> Group {
+        let triangles = self.triangles.len();
+        let of_triangles = triangles.div_ceil(GROUP);
+        if index < of_triangles {
+            return self.owned_by(index * GROUP..((index + 1) * GROUP).min(triangles));
+        }
+        let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
+        let from = in_faces + (index - of_triangles) * GROUP;
+        Group { triangles: 0..0, edges: 0..0, points: from..(from + GROUP).min(self.points.len()) }
     }
 
     fn owned_by(&self, triangles: Range<usize>) -> Group {

@@ -83,7 +83,9 @@ fn what_has_no_effect_on_particles_is_said() {
     let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
-    for name in ["damp: 1", "enableSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickiness: 1"] {
+    for name in
+        ["damp: 1", "enableSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickinessRandomize: 1"]
+    {
         let said = of(&format!("position: [(0, 0, 0)], {name}"));
         assert!(said.len() == 1 && said[0].ends_with("has no effect yet"), "{name}: {said:?}");
     }
