@@ -39,13 +39,8 @@ impl<R: Real> Solver<R> {
     pub(crate) fn begin_meeting(&mut self, frame: &FrameInput) {
         let Some(mutual) = &mut self.mutual else { return };
         let (cloths, thickest) = (&frame.cloths, &self.maps.thickest);
-        let terms = (0..cloths.len()).flat_map(|a| {
-            cloths.iter().enumerate().map(move |(b, other)| match a == b {
-                true => Terms::with_itself(other, thickest[a]),
-                false => Terms::between([&cloths[a], other], [thickest[a], thickest[b]], frame.layer_range),
-            })
-        });
-        let terms: Vec<Option<Terms<R>>> = terms.collect();
+        let terms: Vec<Option<Terms<R>>> =
+            (0..cloths.len()).flat_map(|cloth| terms_of(cloth, frame, thickest)).collect();
         if !Terms::find_alike(&terms, &mutual.terms) {
             mutual.strayed.fill(true);
         }
@@ -63,6 +58,11 @@ impl<R: Real> Solver<R> {
             mutual.active = Active::default(); // what nothing looks after any more holds nothing
         }
         mutual.window = [0.0; 2];
+    }
+
+    /// How a cloth meets itself and every other cloth that it meets.
+    pub(crate) fn mutual_terms(&self, frame: &FrameInput, cloth: usize) -> Vec<Terms<R>> {
+        terms_of(cloth, frame, &self.maps.thickest).flatten().collect()
     }
 
     /// Pushes apart all that is too near, once; `squeeze` is the share of every thickness that is kept.
@@ -205,6 +205,19 @@ impl<R: Real> Solver<R> {
         }
         any.into_inner()
     }
+}
+
+/// How a cloth meets each cloth, itself among them.
+fn terms_of<'a, R: Real>(
+    cloth: usize,
+    frame: &'a FrameInput,
+    thickest: &'a [f64],
+) -> impl Iterator<Item = Option<Terms<R>>> + 'a {
+    let own = &frame.cloths[cloth];
+    frame.cloths.iter().enumerate().map(move |(at, other)| match at == cloth {
+        true => Terms::with_itself(other, thickest[cloth]),
+        false => Terms::between([own, other], [thickest[cloth], thickest[at]], frame.layer_range),
+    })
 }
 
 /// What foreseeing goes by.

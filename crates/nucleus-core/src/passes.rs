@@ -1,8 +1,9 @@
 //! The program that a scene compiles to: its passes, how long their lists are, and how often they run.
 
 use crate::air::Breeze;
+use crate::collision::terms::Terms;
 use crate::constraints::damp::Damping;
-use crate::frame::{ClothFrame, FrameInput};
+use crate::frame::{ClothFrame, FrameInput, PushOut};
 use crate::model::ClothModel;
 use crate::scalar::Real;
 use crate::schedule::{Effect, Round, Schedule};
@@ -11,9 +12,9 @@ use crate::solver::Solver;
 /// One list of rows, or one pass over all points, and what a frame spends on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassCost {
-    /// The pass, named after what it does: `predict`, `stretch`, `bend`, `collide` ...
+    /// The pass, named after what it does: `predict`, `stretch`, `bend`, `collide`, `meet` ...
     pub name: &'static str,
-    /// Rows in its list; for `collide`, what can touch (pairs are found as they arise).
+    /// Rows in its list; for `collide` and `meet`, what can touch (pairs are found as they arise).
     pub rows: usize,
     /// Visits of the whole list in a frame.
     pub sweeps: f64,
@@ -50,27 +51,74 @@ impl<R: Real> Solver<R> {
         let damped = self.cloths.iter().zip(&frame.cloths).filter(damped);
         let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
         passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
-        let collisions = schedule.rounds.iter().filter(|round| **round == Round::Collide);
-        let count = (collisions.count() * steps as usize) as f64;
-        let touching = self
-            .pairs
-            .iter()
-            .filter(|list| frame.cloths[list.cloth].collide && frame.colliders[list.collider].collide);
-        let elements = |cloth: usize| {
-            let skin = &self.cloths[cloth].skin;
-            skin.points.len() + skin.edges.len() + skin.triangles.len()
-        };
-        passes.push(PassCost {
-            name: "collide",
-            rows: touching.map(|list| elements(list.cloth)).sum(),
-            sweeps: count,
-        });
-        let grounded = if frame.plane.is_some() { points } else { 0 };
-        passes.push(PassCost { name: "ground", rows: grounded, sweeps: count });
+        passes.extend(self.contact_passes(frame, &schedule));
         let factors: usize = self.cloths.iter().map(ClothModel::factors).sum::<usize>() + self.maps.len();
         passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
         passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
         passes
+    }
+
+    /// What is spent on contact: with colliders, among what moves, with the ground, and on what contact does besides.
+    fn contact_passes(&self, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 6] {
+        let steps = f64::from(schedule.substeps * schedule.steps);
+        let rounds =
+            |wanted: Round| schedule.rounds.iter().filter(|round| **round == wanted).count() as f64 * steps;
+        let (cloths, thickest) = (&frame.cloths, &self.maps.thickest);
+        let at_colliders = |cloth: usize| {
+            let with = |collider| Terms::<R>::with_collider(&cloths[cloth], collider, thickest[cloth]);
+            frame.colliders.iter().filter_map(with).collect::<Vec<_>>()
+        };
+        let on_ground = |cloth: usize| {
+            let with = |ground| Terms::<R>::with_ground(&cloths[cloth], ground, thickest[cloth]);
+            frame.plane.as_ref().and_then(with)
+        };
+        let each_other = |cloth: usize| match self.mutual {
+            Some(_) => self.mutual_terms(frame, cloth),
+            None => Vec::new(),
+        };
+        let elements = |cloth: usize| {
+            let skin = &self.cloths[cloth].skin;
+            skin.points.len() + skin.edges.len() + skin.triangles.len()
+        };
+        let points = |cloth: usize| self.cloths[cloth].points().len();
+        let all = 0..cloths.len();
+        let with_any = |does: fn(&Terms<R>) -> bool| -> usize {
+            let of = |cloth: &usize| {
+                let mut terms = at_colliders(*cloth);
+                terms.extend(on_ground(*cloth));
+                terms.extend(each_other(*cloth));
+                terms.iter().any(does)
+            };
+            all.clone().filter(of).map(points).sum()
+        };
+        let pushed_out = |push_out: &PushOut| push_out.share != 0.0;
+        let pushers = cloths.iter().map(|cloth| &cloth.push_out);
+        let pushes = pushers.chain(frame.colliders.iter().map(|collider| &collider.push_out)).any(pushed_out);
+        let collide = rounds(Round::Collide);
+        [
+            PassCost {
+                name: "collide",
+                rows: all.clone().map(|cloth| elements(cloth) * at_colliders(cloth).len()).sum(),
+                sweeps: collide,
+            },
+            PassCost {
+                name: "meet",
+                rows: all.clone().filter(|&cloth| !each_other(cloth).is_empty()).map(elements).sum(),
+                sweeps: rounds(Round::MeetEachOther),
+            },
+            PassCost {
+                name: "ground",
+                rows: all.clone().filter(|&cloth| on_ground(cloth).is_some()).map(points).sum(),
+                sweeps: collide,
+            },
+            PassCost { name: "stick", rows: with_any(Terms::sticks), sweeps: collide },
+            PassCost { name: "bounce", rows: with_any(Terms::bounces), sweeps: steps },
+            PassCost {
+                name: "push out",
+                rows: if pushes { all.map(points).sum() } else { 0 },
+                sweeps: f64::from(schedule.substeps),
+            },
+        ]
     }
 
     /// All sweeps of one effect. Where cloths differ in their counts, the mean over rows.

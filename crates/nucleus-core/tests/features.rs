@@ -88,6 +88,27 @@ fn a_list_whose_attribute_is_nought_in_a_frame_is_not_swept_in_it() {
 }
 
 #[test]
+fn what_contact_does_besides_is_a_pass_only_where_something_does_it() {
+    let mut frame = bare();
+    frame.cloths[0].collide = true;
+    let names = |lists: ClothLists, frame: &FrameInput| -> Vec<&str> {
+        passes(lists, frame).into_iter().map(|(name, _)| name).collect()
+    };
+    let alone = ClothLists { self_collision: true, ..ClothLists::NONE };
+    assert_eq!(names(alone, &frame), ["predict"]);
+    frame.cloths[0].self_collision.on = true;
+    assert_eq!(names(alone, &frame), ["predict", "meet"]);
+    frame.cloths[0].stickiness = 0.5;
+    assert_eq!(names(alone, &frame), ["predict", "meet", "stick"]);
+    frame.cloths[0].bounce = 0.5;
+    assert_eq!(names(alone, &frame), ["predict", "meet", "stick", "bounce"]);
+    frame.cloths[0].collide_strength = 0.0;
+    assert_eq!(names(alone, &frame), ["predict"]);
+    frame.cloths[0].push_out.share = 1.0;
+    assert_eq!(names(alone, &frame), ["predict", "push out"]);
+}
+
+#[test]
 fn collision_is_there_only_where_both_sides_collide() {
     let mut frame = bare();
     frame.colliders = vec![ColliderFrame { collide: true, ..ColliderFrame::default() }];
