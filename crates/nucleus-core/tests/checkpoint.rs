@@ -5,10 +5,10 @@ mod scenes;
 use std::sync::OnceLock;
 
 use nucleus_core::{
-    Collider, FrameInput, GroundPlane, ModelBuilder, RestoreError, SelfCollision, Solver, sealed, unsealed,
+    Collider, FrameInput, ModelBuilder, RestoreError, SelfCollision, Solver, sealed, unsealed,
 };
 use proptest::prelude::*;
-use scenes::{Vec3, frame, grid, physical, sphere, still};
+use scenes::{Vec3, frame, grid, ground, physical, sphere, still};
 
 /// A cloth with self-collision that falls on a ball and the ground.
 fn scene() -> (ModelBuilder, FrameInput) {
@@ -18,8 +18,7 @@ fn scene() -> (ModelBuilder, FrameInput) {
     builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
     let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
     let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };
-    let plane =
-        GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 0.1, stickiness: 0.0 };
+    let plane = ground(0.1);
     let collider = nucleus_core::ColliderFrame { collide: true, thickness: 0.01, ..Default::default() };
     let input = FrameInput {
         plane: Some(plane),

@@ -7,7 +7,7 @@ use nucleus_core::{
     GroundPlane, Mass, ModelBuilder, PointFactors, PushOut, ResistanceModel, SelfCollision, Solver, Start,
     StateView, Surface,
 };
-use scenes::{LINKS, Vec3, cuboid, frame, grid, physical, pins, still};
+use scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, pins, still};
 
 const FIRST: ClothId = ClothId(0);
 const SECOND: ClothId = ClothId(1);
@@ -84,6 +84,7 @@ fn two_beads_that_meet_head_on_bounce_as_newton_says() {
     }
 }
 
+// EVIDENCE: N1.1-1  beads act on cloth and cloth on beads
 #[test]
 fn a_bead_that_bounces_on_a_free_sheet_gives_it_the_momentum_it_loses() {
     let sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
@@ -172,8 +173,7 @@ fn the_ground_holds_what_sticks_to_it() {
     let jump = |stickiness: f64| {
         let bead = moving(beads(vec![Vec3::y() * THICKNESS]), 1.0, Vec3::new(1.0, 2.0, 0.0));
         let mut solver = solver(vec![bead], Vec::new());
-        let plane =
-            GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction: 1.0, stickiness };
+        let plane = GroundPlane { stickiness, ..ground(1.0) };
         let input = FrameInput { plane: Some(plane), ..weightless(vec![bead_settings()]) };
         solver.step(&input, &mut ());
         solver.point(FIRST, 0)
@@ -286,6 +286,7 @@ fn points_stay_in_a_collider_that_checks_no_trapped_ones() {
     assert!(stays(true) > 0.5, "{}", stays(true));
 }
 
+// EVIDENCE: N2.3-2  contact is at the thickness, point by point
 #[test]
 fn the_thickness_of_each_point_counts() {
     let sheet = grid(9, 9, Vec3::x(), Vec3::z());
@@ -308,14 +309,8 @@ fn the_thickness_of_each_point_counts() {
     };
     let on_the_plane = {
         let mut solver = solver(vec![cloth], Vec::new());
-        let plane = GroundPlane {
-            origin: Vec3::zeros(),
-            normal: Vec3::y(),
-            bounce: 0.0,
-            friction: 0.1,
-            stickiness: 0.0,
-        };
-        let input = FrameInput { cloths: vec![settings], plane: Some(plane), ..frame(3, physical(96.0)) };
+        let input =
+            FrameInput { cloths: vec![settings], plane: Some(ground(0.1)), ..frame(3, physical(96.0)) };
         (0..48).for_each(|_| {
             solver.step(&input, &mut ());
         });

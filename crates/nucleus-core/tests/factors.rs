@@ -6,7 +6,7 @@ use nucleus_core::{
     BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
     Mass, ModelBuilder, Pin, PointFactors, PointId, ResistanceModel, Solver, Start, StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, physical, pins, still};
+use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 const SIDE: u32 = 9;
@@ -297,8 +297,7 @@ fn slid(floor: Floor, factor: f64) -> f64 {
     match floor {
         Floor::Plane => {
             let origin = Vec3::y() * 0.005;
-            input.plane =
-                Some(GroundPlane { origin, normal: Vec3::y(), bounce: 0.0, friction: 0.1, stickiness: 0.0 });
+            input.plane = Some(GroundPlane { origin, ..ground(0.1) });
         }
         Floor::Collider => {
             builder.collider(Collider { surface: wide }).expect("a good mesh");

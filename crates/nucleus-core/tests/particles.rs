@@ -4,9 +4,9 @@ mod scenes;
 
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput,
-    GroundPlane, Mass, ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
+    Mass, ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, physical, pins, sphere, still};
+use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 
 const BEADS: ClothId = ClothId(0);
 const CLASSIC: ResistanceModel = ResistanceModel::Classic;
@@ -53,16 +53,6 @@ fn velocities(solver: &impl StateView, cloth: ClothId) -> Vec<Vec3> {
 fn nearest(points: &[Vec3]) -> f64 {
     let pairs = (0..points.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
     pairs.map(|(a, b)| (points[a] - points[b]).norm()).fold(f64::INFINITY, f64::min)
-}
-
-fn floor() -> Option<GroundPlane> {
-    Some(GroundPlane {
-        origin: Vec3::zeros(),
-        normal: Vec3::y(),
-        bounce: 0.0,
-        friction: 0.3,
-        stickiness: 0.0,
-    })
 }
 
 /// Beads in layers of `side` by `side`, one above the other, none quite over the one below.
@@ -233,7 +223,7 @@ fn a_heap_of_particles_comes_to_rest_and_none_is_in_another() {
     let places = layers(8, 4, 0.021);
     let mut solver = Solver::<f32>::new(built([beads(&places, &[], 0.005)]), 1);
     let cloths = vec![ClothFrame { friction: 0.3, ..balls(radius) }];
-    let input = FrameInput { plane: floor(), cloths, ..frame(3, physical(96.0)) };
+    let input = FrameInput { plane: Some(ground(0.3)), cloths, ..frame(3, physical(96.0)) };
     let mut energy = f64::INFINITY;
     for step in 0..120 {
         energy = solver.step(&input, &mut ()).kinetic_energy;

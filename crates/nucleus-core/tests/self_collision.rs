@@ -3,10 +3,10 @@
 mod scenes;
 
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, GroundPlane, Mass, ModelBuilder,
-    ResistanceModel, SelfCollision, Solver, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, ResistanceModel,
+    SelfCollision, Solver, Surface,
 };
-use scenes::{Vec3, frame, grid, physical, still};
+use scenes::{Vec3, frame, grid, ground, physical, still};
 
 const LISTS: ClothLists = ClothLists { stretch: true, bend: true, self_collision: true, ..ClothLists::NONE };
 
@@ -53,16 +53,6 @@ fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
     (0..points).map(|k| solver.point(ClothId(cloth), k)).collect()
 }
 
-fn floor() -> Option<GroundPlane> {
-    Some(GroundPlane {
-        origin: Vec3::zeros(),
-        normal: Vec3::y(),
-        bounce: 0.0,
-        friction: 0.3,
-        stickiness: 0.0,
-    })
-}
-
 // EVIDENCE: N2.3-3  cloth against itself, in point and face and edge and edge
 #[test]
 fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
@@ -83,7 +73,7 @@ fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
             self_collision: full_surface(0.005),
             ..still()
         };
-        let input = FrameInput { plane: floor(), cloths: vec![cloth], ..frame(3, resistance) };
+        let input = FrameInput { plane: Some(ground(0.3)), cloths: vec![cloth], ..frame(3, resistance) };
         let mut solver = Solver::<f32>::new(builder, 1);
         let mut contacts = 0;
         for step in 0..frames {

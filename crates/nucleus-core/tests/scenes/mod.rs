@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Faces, FrameInput, Mass,
-    ModelBuilder, Pin, PointId, ResistanceModel, Surface,
+    COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Faces, FrameInput,
+    GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Surface,
 };
 
 pub type Vec3 = Vector3<f64>;
@@ -75,6 +75,11 @@ pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
         colliders: Vec::new(),
         pins: Vec::new(),
     }
+}
+
+/// The ground at height nought.
+pub fn ground(friction: f64) -> GroundPlane {
+    GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction, stickiness: 0.0 }
 }
 
 /// A cloth without damping, drag or bending, as stiff against compression as against stretch.
