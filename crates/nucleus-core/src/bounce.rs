@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use crate::collide::StepParts;
 use crate::collision::bounce::{Bounce, Hit};
-use crate::collision::maps::at;
 use crate::collision::mutual::Mutual;
 use crate::columns::Shared;
 use crate::frame::FrameInput;
@@ -58,9 +57,7 @@ impl<R: Real> Solver<R> {
                 let (h, span) = (rebound.h.to_f64(), pairs[index].span);
                 let view = StepParts { terms, maps, h, time: [end; 2], span };
                 let touch = pair.touch(&view.of(state, &collider_states[collider]), frame.duration);
-                let [own, theirs] =
-                    [terms.bounce[0] * at(&maps.bounce, pair.points, [R::ONE]), terms.bounce[1]];
-                let bounce = if own > theirs { own } else { theirs };
+                let bounce = terms.bounce_at(maps, (pair.points, [], &([R::ONE], [])));
                 if let Some((normal, surface)) = touch.filter(|_| bounce > R::ZERO) {
                     let row = pair.points[0] as usize;
                     let rebound = Bounce { bounce, ..rebound };

@@ -12,7 +12,7 @@
 //! | attributes that differ from point to point | `factors.rs`, `constraints/shares.rs` |
 //! | gravity and inertia; drag, lift and wind | `predict.rs`, `air.rs` |
 //! | how lists are laid out in blocks and colours | `model/rows.rs` |
-//! | how contact is found and proven | `collision/`, `collide.rs`, `seek.rs`, `meet.rs` |
+//! | how contact is found and proven | `collision/`, `collide.rs`, `broad_phase.rs`, `meet.rs` |
 //! | what sticks, bounces, is pushed out | `collision/stick.rs`, `bounce.rs`, `push_out.rs` |
 //! | how contact is seen to stand at each point | `ladder.rs` |
 //! | how a run goes on from where it was saved | `checkpoint/` |
@@ -25,6 +25,7 @@
 
 mod air;
 mod bounce;
+mod broad_phase;
 mod builder;
 mod checkpoint;
 mod collide;
@@ -50,7 +51,6 @@ mod report;
 mod resistance;
 mod scalar;
 mod schedule;
-mod seek;
 mod settle;
 mod solver;
 mod state;

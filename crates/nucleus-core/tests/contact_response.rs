@@ -139,7 +139,7 @@ fn the_more_it_sticks_the_later_it_comes_off() {
 
 #[test]
 fn how_fast_it_comes_off_hardly_depends_on_the_evaluations() {
-    // Until it leaves the film its speed is at most g T (1 - s) / s, and all of that is slow.
+    // Within reach of the ceiling it sinks at a speed that it soon has, g T (1 - s) / s, whatever the steps are.
     let heights = [48.0, 192.0, 768.0].map(|evaluations| hanging([0.9, 0.0], 2, physical(evaluations)));
     let way = heights[2] + THICKNESS;
     assert!(
@@ -343,4 +343,44 @@ fn cloth_on_cloth_rests_at_the_thickness_of_the_points_that_touch() {
         let height = solver.point(SECOND, bead).y;
         assert!((height - 0.002 - factor * THICKNESS).abs() < 1e-5, "{height} of {factor}");
     }
+}
+
+/// Two beads that differ in a map, and where they are after some frames at a box that reaches up to 0 and down to -0.2.
+fn two_at_a_box(factors: PointFactors, settings: ClothFrame, start: [f64; 2], gravity: f64) -> [f64; 2] {
+    let slab = cuboid(Vec3::new(-1.0, -0.2, -1.0), Vec3::new(1.0, 0.0, 1.0));
+    let [y, speed] = start;
+    let positions = vec![Vec3::new(-0.31, y, 0.11), Vec3::new(0.33, y, 0.17)];
+    let cloth = Cloth { factors, ..moving(beads(positions), 0.1, Vec3::y() * speed) };
+    let mut solver = solver(vec![cloth], vec![slab]);
+    let slab = ColliderFrame { collide: true, ..ColliderFrame::default() };
+    let input = FrameInput {
+        gravity: Vec3::y() * gravity,
+        cloths: vec![settings],
+        colliders: vec![slab],
+        ..frame(3, physical(96.0))
+    };
+    (0..12).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    [0, 1].map(|point| solver.point(FIRST, point).y)
+}
+
+#[test]
+fn stickiness_bounce_and_collide_strength_of_each_point_count() {
+    let map = || vec![0.0, 1.0];
+    let sticky = ClothFrame { stickiness: 1.0, ..bead_settings() };
+    let factors = PointFactors { stickiness: map(), ..PointFactors::default() };
+    let [falls, hangs] = two_at_a_box(factors, sticky, [-0.2 - THICKNESS, 0.0], -9.81);
+    assert!(falls < -1.0 && (hangs + 0.2 + THICKNESS).abs() < 1e-4, "{falls} and {hangs}");
+
+    let elastic = ClothFrame { bounce: 1.0, ..bead_settings() };
+    let factors = PointFactors { bounce: map(), ..PointFactors::default() };
+    let [stays, returns] = two_at_a_box(factors, elastic, [0.25, -1.0], 0.0);
+    // Down for 0.24 s, up for the rest of the half second.
+    assert!((stays - THICKNESS).abs() < 1e-4, "{stays}");
+    assert!((returns - THICKNESS - 0.26).abs() < 0.01, "{returns}");
+
+    let factors = PointFactors { collide_strength: map(), ..PointFactors::default() };
+    let [passes, stops] = two_at_a_box(factors, bead_settings(), [0.25, -1.0], 0.0);
+    assert!((passes + 0.25).abs() < 1e-6 && (stops - THICKNESS).abs() < 1e-4, "{passes} and {stops}");
 }

@@ -95,30 +95,34 @@ fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
     assert!((0..81).all(|k| solver.point(ClothId(0), k).norm() > 0.3 * INSCRIBED), "a point is inside");
 }
 
-/// Two sheets that cut each other at a slant, in empty space; the second turned over where `flipped`. The report of each
-/// frame.
-fn crossed(flipped: bool) -> Vec<StepReport> {
+/// The reports of two cloths of the same `crossover_push`, in empty space.
+fn two_in_empty_space(surfaces: [nucleus_core::Surface; 2], crossover_push: f64) -> Vec<StepReport> {
+    let mut builder = nucleus_core::ModelBuilder::new();
+    for surface in surfaces {
+        let mass = nucleus_core::Mass::PerArea(0.2);
+        builder.cloth(nucleus_core::Cloth::new(surface, mass, LINKS)).expect("a good mesh");
+    }
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let cloth = ClothFrame { thickness: 0.004, damp: 1.0, bend_resistance: 0.1, crossover_push, ..still() };
+    let input = FrameInput { gravity: Vec3::zeros(), cloths: vec![cloth; 2], ..frame(3, physical(96.0)) };
+    (0..48).map(|_| solver.step(&input, &mut ())).collect()
+}
+
+/// Two sheets that cut each other at a slant; the second turned over where `flipped`.
+fn at_a_slant(flipped: bool) -> Vec<StepReport> {
     let level = grid(13, 13, Vec3::x(), Vec3::z());
     let turn =
         nalgebra::Rotation3::from_euler_angles(0.15, 0.4, if flipped { std::f64::consts::PI } else { 0.0 });
     let middle = Vec3::new(0.5, 0.0, 0.5);
     let mut slant = level.clone();
     slant.positions.iter_mut().for_each(|p| *p = turn * (*p - middle) + middle + Vec3::y() * 0.01);
-    let mut builder = nucleus_core::ModelBuilder::new();
-    for surface in [level, slant] {
-        let mass = nucleus_core::Mass::PerArea(0.2);
-        builder.cloth(nucleus_core::Cloth::new(surface, mass, LINKS)).expect("a good mesh");
-    }
-    let mut solver = Solver::<f32>::new(builder, 1);
-    let cloth = ClothFrame { thickness: 0.004, damp: 1.0, bend_resistance: 0.1, ..still() };
-    let input = FrameInput { gravity: Vec3::zeros(), cloths: vec![cloth; 2], ..frame(3, physical(96.0)) };
-    (0..48).map(|_| solver.step(&input, &mut ())).collect()
+    two_in_empty_space([level, slant], 0.0)
 }
 
 #[test]
 fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face() {
     for flipped in [false, true] {
-        let reports = crossed(flipped);
+        let reports = at_a_slant(flipped);
         assert!(reports[0].tangled > 20, "{:?}", reports[0]);
         let last = reports.last().expect("frames");
         assert_eq!((last.tangled, last.crossed), (0, 0), "flipped {flipped}: {last:?}");
@@ -126,4 +130,18 @@ fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face(
         assert!(reports.iter().all(|report| report.finite && report.kinetic_energy < 0.2 * 2.0 * 0.5 * 0.5));
         assert!(last.max_strain < 0.05, "flipped {flipped}: {last:?}");
     }
+}
+
+#[test]
+fn crossover_push_works_sheets_apart_sooner() {
+    // A strip stands in a level sheet, four and a half of its edges deep.
+    let apart_after = |push: f64| {
+        let level = grid(13, 13, Vec3::x(), Vec3::z());
+        let mut strip = grid(4, 13, Vec3::x() * 0.25, Vec3::y());
+        strip.positions.iter_mut().for_each(|p| *p += Vec3::new(0.39, -4.5 / 12.0, 0.46));
+        let reports = two_in_empty_space([level, strip], push);
+        reports.iter().position(|report| report.tangled == 0).expect("they come apart")
+    };
+    let [alone, pushed] = [0.0, 0.5].map(apart_after);
+    assert!(2 * pushed < alone, "after {pushed} frames, {alone} without");
 }

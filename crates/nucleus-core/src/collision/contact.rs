@@ -6,7 +6,8 @@
 //! below its chord). Where the pair's own plane proves nothing any more, others are tried; where none does,
 //! the cloth would pass, and is pushed back to its side by the plane that held at the start of the step.
 
-mod rebound;
+mod bounce;
+mod stick;
 
 use nalgebra::Vector3;
 
@@ -130,6 +131,11 @@ impl<R: Real> Step<'_, R> {
     #[inline]
     fn cloth_at_start<const N: usize>(&self, points: [u32; N]) -> [Point; N] {
         std::array::from_fn(|k| self.place(points[k], self.start(points[k])))
+    }
+
+    /// Whether a collision of a point is carried out in full.
+    pub fn is_full(&self, point: u32) -> bool {
+        self.terms.strength_at(self.maps, ([point], [], &([R::ONE], []))) >= R::ONE
     }
 
     /// Where a point is at the start of the step, in metres.
@@ -364,6 +370,9 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
                 return Outcome::Tangled;
             };
+            if gap < 0.0 && self.may_pass(step) {
+                return Outcome::Apart; // It is on the other side from now on.
+            }
             if gap < 0.0 {
                 self.turn_to(normal, at_start, step);
                 self.carry(step, R::from_f64(thickness - gap));

@@ -12,7 +12,9 @@
 //! | cloth against itself and other cloth | [`mutual`] |
 //! | points inside a collider, and how they are led out | [`trapped`] |
 //! | the ground plane | [`plane`] |
+//! | stickiness | [`stick`] |
 //! | bounce, once velocities are known | [`bounce`] |
+//! | on which terms two objects meet, and maps of them | [`terms`], [`maps`] |
 //! | one collision pass | [`resolve`] |
 
 pub mod bounce;

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::friction::{Push, rub};
 use super::maps::Maps;
-use super::stick::Film;
+use super::stick::Adhesion;
 use super::terms::{Sides, Terms};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
@@ -67,7 +67,7 @@ impl<R: Real> Ground<'_, R> {
             let start = self.start[point as usize].xyz();
             let gap = self.height[point as usize] + dot(self.normal, start);
             let sides: Sides<'_, R, 1, 0> = ([point], [], &([R::ONE], []));
-            let film = Film {
+            let adhesion = Adhesion {
                 reach: self.kept(point) * R::from_f64(self.terms.reach),
                 thickness: self.kept(point),
                 stickiness: self.terms.stickiness_at(self.maps, sides),
@@ -75,7 +75,7 @@ impl<R: Real> Ground<'_, R> {
             };
             let before = self.normal.map(|n| n * gap);
             let now = std::array::from_fn(|axis| before[axis] + row.0[axis] - start[axis]);
-            let held = film.hold(before, now, self.normal, self.h).unwrap_or([R::ZERO; 3]);
+            let held = adhesion.hold(before, now, self.normal, self.h).unwrap_or([R::ZERO; 3]);
             (0..3).for_each(|axis| row.0[axis] += held[axis]);
         }
     }

@@ -164,20 +164,11 @@ pub fn stick<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) {
     let pairs = &*point_face;
     team.phase(active.runs.len(), |block| {
         let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];
-        let pairs = || run.iter().map(|&pair| &pairs[pair as usize]);
-        let mut nearest: Option<(&Pair<R, 1, 3>, R)> = None;
-        for pair in pairs() {
-            let gap = pair.gap(step);
-            match nearest {
-                Some((other, least)) if other.points == pair.points && least <= gap => {}
-                Some((other, _)) if other.points == pair.points => nearest = Some((pair, gap)),
-                before => {
-                    before.into_iter().for_each(|(before, _)| before.stick(step));
-                    nearest = Some((pair, gap));
-                }
-            }
+        for of_point in run.chunk_by(|&a, &b| pairs[a as usize].points == pairs[b as usize].points) {
+            let gaps = of_point.iter().map(|&pair| (pairs[pair as usize].gap(step), pair));
+            let nearest = gaps.reduce(|least, next| if next.0 < least.0 { next } else { least });
+            nearest.into_iter().for_each(|(_, pair)| pairs[pair as usize].stick(step));
         }
-        nearest.into_iter().for_each(|(last, _)| last.stick(step));
     });
 }
 

@@ -9,12 +9,12 @@ use crate::scalar::{Real, add, dot, scale, sub};
 
 /// The time in seconds in which a stickiness takes away its share of a speed: Maya's default substep.
 const PERIOD: f64 = COUNT_PERIOD / 3.0;
-/// Thicknesses up to which the film reaches.
+/// Thicknesses up to which it reaches.
 pub const REACH: f64 = 1.5;
 
 /// What holds two sides together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Film<R> {
+pub struct Adhesion<R> {
     /// The distance in metres up to which it reaches when a step begins.
     pub reach: R,
     /// The distance in metres that is nobody's to take away: contact keeps it.
@@ -25,7 +25,7 @@ pub struct Film<R> {
     pub friction: R,
 }
 
-impl<R: Real> Film<R> {
+impl<R: Real> Adhesion<R> {
     /// The correction, in metres, to the way that one side has gone from the other in a step of length `h`: `before` and
     /// `now` lead from one contact point to the other, `normal` is the direction between them.
     #[inline]
@@ -54,11 +54,12 @@ fn share<R: Real>(grip: R, h: R) -> R {
 mod tests {
     use super::*;
 
-    const FILM: Film<f64> = Film { reach: 0.015, thickness: 0.01, stickiness: 0.5, friction: 0.4 };
+    const ADHESION: Adhesion<f64> =
+        Adhesion { reach: 0.015, thickness: 0.01, stickiness: 0.5, friction: 0.4 };
 
     #[test]
     fn stickiness_takes_its_share_of_the_parting_in_a_default_substep() {
-        let held = FILM.hold([0.0, 0.01, 0.0], [0.0, 0.03, 0.0], [0.0, 1.0, 0.0], PERIOD);
+        let held = ADHESION.hold([0.0, 0.01, 0.0], [0.0, 0.03, 0.0], [0.0, 1.0, 0.0], PERIOD);
         assert!((held.expect("it holds")[1] + 0.01).abs() < 1e-15);
     }
 
@@ -72,14 +73,14 @@ mod tests {
 
     #[test]
     fn at_a_sum_of_one_nothing_parts_and_nothing_slides() {
-        let film = Film { stickiness: 1.0, friction: 1.0, ..FILM };
-        let held = film.hold([0.0, 0.01, 0.0], [0.002, 0.02, 0.0], [0.0, 1.0, 0.0], 1e-4);
+        let full = Adhesion { stickiness: 1.0, friction: 1.0, ..ADHESION };
+        let held = full.hold([0.0, 0.01, 0.0], [0.002, 0.02, 0.0], [0.0, 1.0, 0.0], 1e-4);
         assert_eq!(held, Some([-0.002, -0.01, 0.0]));
     }
 
     #[test]
     fn what_comes_nearer_is_not_pulled() {
-        let held = FILM.hold([0.0, 0.014, 0.0], [0.0, 0.012, 0.0], [0.0, 1.0, 0.0], PERIOD);
+        let held = ADHESION.hold([0.0, 0.014, 0.0], [0.0, 0.012, 0.0], [0.0, 1.0, 0.0], PERIOD);
         assert_eq!(held, Some([-0.0; 3]));
     }
 }

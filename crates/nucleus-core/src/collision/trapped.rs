@@ -76,7 +76,7 @@ impl Trapped {
         suspects.sort_unstable();
         suspects.dedup();
         let before = std::mem::take(points);
-        for point in suspects.drain(..) {
+        for point in suspects.drain(..).filter(|&point| step.is_full(point)) {
             let place = step.place_at_start(point);
             if is_inside(place, collider, state, step.time[0]) {
                 points.extend(nearest_face(place, collider, state, step.time[0]).map(|face| (point, face)));

@@ -9,7 +9,7 @@
 //! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`candidate`] |
 //! | which of these can touch within the next few time steps | [`active`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
-//! | what sticks, and what bounces | [`rebound`] |
+//! | what sticks, and what bounces | [`stick`], [`bounce`] |
 //! | free points, which can go far in a step | [`swept`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
 //! | meshes that pass through each other: found, and worked apart | [`crossings`], [`tangle`] |
@@ -20,16 +20,17 @@
 
 pub mod active;
 pub mod bodies;
+mod bounce;
 pub mod candidate;
 pub mod crossings;
 mod local;
 pub mod near;
 pub mod paths;
 mod pieces;
-mod rebound;
 pub mod search;
 mod sought;
 mod stars;
+mod stick;
 mod swept;
 pub mod tangle;
 pub mod tasks;

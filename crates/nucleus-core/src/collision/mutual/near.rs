@@ -222,6 +222,13 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             self.normal = normal;
             return false;
         }
+        if self.may_pass(step) {
+            // They are on the other side from now on.
+            self.normal = normal;
+            let kept = self.kept(step, &weights);
+            self.push(step, &weights, &before, [kept, larger(kept - distance, R::ZERO)]);
+            return true;
+        }
         // They may have passed. Back to the side that they were on.
         self.push_back(step, &before, &now);
         true

@@ -1,20 +1,10 @@
-//! What holds a cloth to a collider once they touch, and what throws it off: stickiness and bounce.
+//! Stickiness of cloth on a collider.
 
 use super::{Pair, Step};
-use crate::collision::bounce::Bounce;
-use crate::collision::stick::Film;
+use crate::collision::stick::Adhesion;
 use crate::scalar::Real;
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
-    /// The plane's normal, the collider's velocity at the contact in m/s, and whether the two touch at the end
-    /// of the step.
-    pub fn touch(&self, step: &Step<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
-        let moved = self.points.map(|point| step.moved(point).xyz());
-        let (gap, _) = self.gaps(moved, step.share(step.time[1]));
-        let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
-        Bounce::touches(gap, step.kept(self.points, self.weights)).then_some((self.normal, velocity))
-    }
-
     /// The gap at the end of the step.
     pub fn gap(&self, step: &Step<'_, R>) -> R {
         self.gaps(self.points.map(|point| step.moved(point).xyz()), step.share(step.time[1])).0
@@ -23,7 +13,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     /// Holds the cloth's element to the surface by what sticks.
     pub fn stick(&self, step: &Step<'_, R>) {
         let sides = &(self.weights, []);
-        let film = Film {
+        let adhesion = Adhesion {
             reach: step.reach(),
             thickness: step.kept(self.points, self.weights),
             stickiness: step.terms.stickiness_at(step.maps, self.sides(sides)),
@@ -37,7 +27,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let now = std::array::from_fn(|axis| {
             before[axis] + to[axis] - from[axis] - self.surface_motion[axis] * passed
         });
-        let Some(held) = film.hold(before, now, self.normal, step.h) else { return };
+        let Some(held) = adhesion.hold(before, now, self.normal, step.h) else { return };
         let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
         if mobility > R::ZERO {
             for (k, mut row) in rows.into_iter().enumerate() {

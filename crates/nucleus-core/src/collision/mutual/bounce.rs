@@ -1,30 +1,12 @@
-//! What holds two elements together once they touch, and what throws them apart: stickiness and bounce.
+//! Bounce between two elements that can both be moved.
 
 use super::near::{Motion, Near};
 use crate::collision::bounce::{Bounce, Hit};
 use crate::collision::narrow::shortest;
-use crate::collision::stick::Film;
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add, scale, sub};
 
 impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
-    /// Holds the two to each other by what sticks; whether anything did.
-    pub fn stick(&self, step: &Motion<'_, R>) -> bool {
-        let Some(terms) = self.terms(step).filter(|terms| terms.sticks()) else { return false };
-        let (now, before) = (self.now(step), self.before(step));
-        let (normal, weights, _) = shortest(before);
-        let thickness = self.thickness_at(step.terms, step.maps, &weights);
-        let film = Film {
-            reach: thickness * R::from_f64(terms.reach),
-            thickness,
-            stickiness: terms.stickiness_at(step.maps, self.sides(&weights)),
-            friction: terms.friction_at(step.maps, self.sides(&weights)),
-        };
-        let [before, now] = [self.line(&before, &weights), self.line(&now, &weights)];
-        let held = film.hold(before, now, normal, step.h);
-        held.inspect(|&held| self.part(step, terms, &weights, held, [R::ZERO; 3])).is_some()
-    }
-
     /// Gives both sides back part of the speed with which they came together, if they touch at the end of the step. What
     /// one gains in momentum the other loses. Whether they did.
     pub fn bounce(&self, step: &Motion<'_, R>, velocities: Shared<'_, Row4<R>>, rebound: Bounce<R>) -> bool {

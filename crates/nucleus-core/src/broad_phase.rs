@@ -1,4 +1,4 @@
-//! Which pairs of a cloth and a collider can touch in a time step: foreseen, found, and watched.
+//! Broad phase of cloth and colliders: which pairs can touch in a time step, foreseen, found, and watched.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
