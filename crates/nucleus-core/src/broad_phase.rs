@@ -121,8 +121,7 @@ impl<R: Real> Solver<R> {
             let view = StepParts { terms, maps, h: schedule.h, time: [now; 2], span };
             let step = &view.of(state, state_of);
             let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
-            let unproven = &tally.unproven;
-            Search { cloth, collider, state: state_of, cover: far, strayed, unproven, step }.run(list, team);
+            Search { cloth, collider, state: state_of, cover: far, strayed, step }.run(list, team);
             if terms.traps {
                 list.trapped.begin(cloth.points(), collider, state_of, step);
                 list.trapped.look(collider, state_of, step, |point| freed.push(point));

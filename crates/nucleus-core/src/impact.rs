@@ -1,21 +1,35 @@
-//! Impact: a collider that goes farther in a time step than the cloth's faces are wide would leap over them.
-//! While it is about to meet cloth, time steps are split so that it does not.
+//! Impact: a collider that goes farther in a time step than the cloth's faces are wide would leap over them, and one
+//! that takes cloth along faster than its links pull the rest of it after would stretch it beyond measure.
+//! While it is about to meet cloth, time steps are split so that it does neither.
 
 use nalgebra::Vector3;
 
 use crate::collision::collider::ColliderState;
+use crate::frame::FrameInput;
 use crate::scalar::Real;
 use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
 
 /// Edge lengths of a cloth that a collider may go in a time step.
 const LEAP: f64 = 1.0;
-/// Parts of a time step, at most.
+/// Edge lengths that it has to go in a time step to tear at a cloth.
+const TUG: f64 = 1.0 / 64.0;
+/// Strain of a link from which on it is torn at. A sweep pulls a point by so much of its distance; what a step in parts
+/// can hold grows with the square of their number.
+const TORN: f64 = 0.25;
+/// Parts of a time step, at most: for a leap, and for what is torn at.
 const MOST_PARTS: f64 = 256.0;
+const MOST_PULLS: f64 = 16.0;
 
 impl<R: Real> Solver<R> {
     /// Into how many parts a time step is to be split.
-    pub(crate) fn parts(&self, schedule: &Schedule<R>, span: Span, fastest: &[f64]) -> u32 {
+    pub(crate) fn parts(
+        &self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        span: Span,
+        fastest: &[f64],
+    ) -> u32 {
         let mut parts = 1.0f64;
         for (at, collider) in self.collider_states.iter().enumerate() {
             let leap = collider.way * (span.to - span.from);
@@ -24,15 +38,25 @@ impl<R: Real> Solver<R> {
             }
             for (index, cloth) in self.cloths.iter().enumerate() {
                 let Some(terms) = &self.terms_of(index)[at] else { continue };
-                let wanted = leap / (LEAP * cloth.edge_length);
+                let edges = leap / cloth.edge_length;
                 let room = terms.thickness + fastest[index] * schedule.h;
                 // A cloth without edges is points, which nothing can leap over.
-                if wanted.is_finite() && wanted > parts && self.is_near(index, collider, span, room) {
-                    parts = wanted;
+                if edges.is_finite() && edges > TUG && self.is_near(index, collider, span, room) {
+                    let pulls = (self.largest_strain(index, frame.cloths[index].rest_length_scale) / TORN)
+                        .min(MOST_PULLS);
+                    parts = parts.max(edges / LEAP).max(pulls);
                 }
             }
         }
         parts.ceil().min(MOST_PARTS) as u32
+    }
+
+    /// The largest strain of any link of a cloth.
+    fn largest_strain(&self, cloth: usize, rest_scale: f64) -> f64 {
+        let rest_scale = R::from_f64(rest_scale);
+        let groups = self.cloths[cloth].stretch.groups().iter();
+        let strains = groups.flat_map(|group| group.strain(&self.state.displacement, rest_scale));
+        strains.fold(R::ZERO, |most, strain| if strain > most { strain } else { most }).to_f64()
     }
 
     /// Whether a collider comes near a cloth in a time step, by the boxes round them.

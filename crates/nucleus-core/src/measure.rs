@@ -39,7 +39,6 @@ impl<R: Real> Solver<R> {
             crossed: tally.crossed.load(Relaxed),
             trapped: self.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
             tangled: self.mutual.as_ref().map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
-            unproven: tally.unproven.load(Relaxed),
             kinetic_energy,
             finite,
             ..StepReport::default()

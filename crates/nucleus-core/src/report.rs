@@ -33,9 +33,6 @@ pub struct StepReport {
     pub trapped: u64,
     /// Edges of cloth that go through faces of cloth at the end of the frame, and are being worked apart.
     pub tangled: u64,
-    /// Small neighbourhoods of cloth that motion or stretch had spread so wide that only their points were
-    /// kept out of colliders, not their edges and faces; over all runs of the broad phase.
-    pub unproven: u64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -59,7 +56,6 @@ impl Default for StepReport {
             crossed: 0,
             trapped: 0,
             tangled: 0,
-            unproven: 0,
             kinetic_energy: 0.0,
             finite: true,
             refused: Refusals::default(),

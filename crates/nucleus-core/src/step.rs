@@ -62,7 +62,7 @@ impl<R: Real> Solver<R> {
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
                 let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(&schedule, span, &fastest);
+                let parts = self.parts(frame, &schedule, span, &fastest);
                 if parts == 1 {
                     let now = Step { schedule: &schedule, index: step, span, direction };
                     self.advance(frame, &now, &fastest, &mut tally, watch);

@@ -3,10 +3,12 @@
 mod scenes;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, Moment, ResistanceModel,
-    Solver, StateView, StepObserver, Surface,
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, Moment, Pin, PointId,
+    ResistanceModel, Solver, StateView, StepObserver, Surface,
 };
-use scenes::{INSCRIBED, LINKS, Vec3, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still};
+use scenes::{
+    INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
+};
 
 const CLOTH: ClothId = ClothId(0);
 
@@ -166,6 +168,48 @@ fn a_fast_ball_never_gets_through_a_hanging_sheet() {
             assert!(watch.passed_plane);
         }
     }
+}
+
+// EVIDENCE: N2.3-4  a collision is the meeting of thickened elements in space and time
+#[test]
+fn cloth_that_is_stretched_a_thousandfold_holds_a_box_all_the_same() {
+    // Four small faces are pulled to metres; then a box much smaller than any of them goes down on one.
+    let sheet = grid(3, 3, Vec3::x() * 0.01, Vec3::z() * 0.01);
+    let held = pins(&sheet, 0..9);
+    let mut builder = one_cloth(sheet, LINKS);
+    let block = cuboid(Vec3::new(1.9, 0.3, 1.9), Vec3::new(2.1, 0.5, 2.1));
+    builder.collider(Collider { surface: block.clone() }).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let wide = |pin: &Pin, by: f64| Vec3::new(pin.start.x * by, 0.0, pin.start.z * by);
+    for step in 0..24 {
+        let [drop, further] = [step, step + 1].map(|k| 0.05 * f64::from(k));
+        let lowered = |by: f64| block.positions.iter().map(|p| p - Vec3::y() * by).collect::<Vec<_>>();
+        let block = ColliderFrame {
+            start: lowered(drop),
+            end: lowered(further),
+            collide: true,
+            ..Default::default()
+        };
+        // In the first frame all are pulled wide; then the innermost corner of the face under it is let go.
+        let pins = held.iter().map(|pin| {
+            let [start, end] = if step == 0 { [1.0, 1000.0] } else { [1000.0; 2] }.map(|by| wide(pin, by));
+            Pin { start, end, ..*pin }
+        });
+        let pins = pins.filter(|pin| step == 0 || pin.point != PointId(4)).collect();
+        let cloths = vec![ClothFrame { thickness: 0.003, stretch_resistance: 0.01, ..still() }];
+        let input = FrameInput {
+            gravity: Vec3::zeros(),
+            colliders: vec![block],
+            cloths,
+            pins,
+            ..frame(3, physical(24.0))
+        };
+        let report = solver.step(&input, &mut ());
+        assert!(report.finite && report.crossed == 0, "frame {step}: {report:?}");
+    }
+    // The box is under where the sheet was; so is what it rests on.
+    let middle = solver.point(CLOTH, 4);
+    assert!(middle.y < -0.9, "{middle}");
 }
 
 // EVIDENCE: N2.2-4  the last pass of a step is collision: nothing is left inside

@@ -260,7 +260,6 @@ fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
         broad_phases: a.broad_phases + b.broad_phases,
         caught: a.caught + b.caught,
         crossed: a.crossed + b.crossed,
-        unproven: a.unproven + b.unproven,
         trapped: if in_a_row { b.trapped } else { a.trapped + b.trapped },
         tangled: if in_a_row { b.tangled } else { a.tangled + b.tangled },
         kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },

@@ -22,8 +22,6 @@ pub struct Tally {
     pub caught: AtomicU64,
     /// Pairs for which no plane held.
     pub crossed: AtomicU64,
-    /// Groups that were too far spread for edges and faces to be proven.
-    pub unproven: AtomicU64,
     /// Pairs found by the broad phase.
     pub pairs: AtomicU64,
     /// Runs of the broad phase.

@@ -4,7 +4,6 @@
 //! substep use its list. Should a point leave what was foreseen for it, its neighbourhood is searched again.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::Vector3;
 
@@ -30,8 +29,6 @@ pub struct Search<'a, R> {
     pub cover: &'a [Cover<R>],
     /// Whether that is new, by point.
     pub strayed: &'a [bool],
-    /// Counts groups that are too wide.
-    pub unproven: &'a AtomicU64,
     /// Where both are.
     pub step: &'a Step<'a, R>,
 }
@@ -42,13 +39,7 @@ struct Near<'a> {
     group: &'a Group,
     boxes: &'a Boxes,
     around: &'a Aabb,
-    /// Too wide for its edges and faces to be looked at: it would meet everything.
-    wide: bool,
 }
-
-/// A group of triangles is an edge or two wide at rest. One that stretch has made wider than this many would meet
-/// everything: it collides with its points alone, and is counted.
-const WIDEST: f32 = 256.0;
 
 /// Groups to a task.
 const GROUPS_PER_TASK: usize = 64;
@@ -126,9 +117,7 @@ impl<R: Real> Search<'_, R> {
         let group = self.cloth.skin.group(index as usize);
         let mut boxes = std::mem::take(&mut found.boxes);
         let around = self.bound_group(&group, &mut boxes);
-        let wide = !group.triangles.is_empty() && around.size() > WIDEST * self.cloth.edge_length as f32;
-        self.unproven.fetch_add(u64::from(wide), Ordering::Relaxed);
-        let near = Near { index, group: &group, boxes: &boxes, around: &around, wide };
+        let near = Near { index, group: &group, boxes: &boxes, around: &around };
         self.state.tree.query(&around, |triangle| self.meet(&near, triangle, found));
         found.boxes = boxes;
     }
@@ -154,7 +143,7 @@ impl<R: Real> Search<'_, R> {
     /// Every pair of an element of the group and an element owned by one triangle of the collider.
     fn meet(&self, near: &Near<'_>, triangle: u32, found: &mut Found<R>) {
         let (skin, theirs, boxes) = (&self.cloth.skin, &self.collider.skin, &self.state.boxes);
-        let Near { index, group, boxes: ours, around, wide } = near;
+        let Near { index, group, boxes: ours, around } = near;
         let face = &boxes.triangles[triangle as usize];
         if !face.meets(around) {
             return;
@@ -167,9 +156,6 @@ impl<R: Real> Search<'_, R> {
             if self.collider.outside.is_some() && self.is_behind(point, corners) {
                 found.suspects.push(point);
             }
-        }
-        if *wide {
-            return;
         }
         let owned = theirs.owned(triangle as usize);
         for edge in owned.edges.filter(|&edge| boxes.edges[edge].meets(around)) {

@@ -66,12 +66,6 @@ impl Aabb {
             high: std::array::from_fn(|k| self.high[k] + margin[k]),
         }
     }
-
-    /// The longest side.
-    pub fn size(&self) -> f32 {
-        (0..3).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max)
-    }
-
     /// Whether something that moves from one box to another, each of its points along a straight line, may
     /// meet something else that does. Boxes that are apart on one side all the time cannot.
     #[inline(always)]

@@ -323,7 +323,6 @@ impl Outcome {
             (course.sum(|seen| seen.report.refused.count), "inputs refused"),
             (course.sum(|seen| seen.report.caught), "caught on the far side"),
             (course.sum(|seen| seen.report.crossed), "crossed"),
-            (course.sum(|seen| seen.report.unproven), "unproven"),
         ];
         let words = counts.iter().filter(|(count, _)| *count > 0);
         self.reported.extend(words.map(|(count, what)| format!("{count} {what}")));
