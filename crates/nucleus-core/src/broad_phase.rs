@@ -2,16 +2,18 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use nalgebra::Vector3;
+
 use crate::collide::StepParts;
 use crate::collision::collider::ColliderState;
-use crate::collision::foresee::{foresee, is_foreseen, is_within};
+use crate::collision::foresee::{Foreseen, foresee, gone, is_foreseen, is_within};
 use crate::collision::pairs::PairList;
 use crate::collision::resolve::Tally;
 use crate::collision::search::Search;
 use crate::collision::terms::{LEAST_THICKNESS, Terms};
 use crate::columns::Shared;
 use crate::frame::{ColliderFrame, FrameInput};
-use crate::scalar::{Real, dot};
+use crate::scalar::{Real, dot, sub};
 use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
 
@@ -35,7 +37,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         let step = [times.from, times.to];
-        if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth) {
+        if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth, step[1]) {
             return;
         }
         if step[1] > self.spans[cloth][1] + 1e-9 {
@@ -43,15 +45,16 @@ impl<R: Real> Solver<R> {
         }
         let rest = [step[0], self.spans[cloth][1].min(self.horizon(frame, cloth, times))];
         let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW)];
-        if self.foresee_points(frame, cloth, schedule, [window, rest]) {
+        if self.foresee_points(frame, cloth, schedule, step, [window, rest]) {
             self.find_pairs(cloth, schedule, step[0], tally);
         }
         self.windows[cloth] = window;
-        let Self { cloths, colliders, pairs, near, terms, team, .. } = self;
+        let Self { cloths, colliders, pairs, near, drifts, terms, team, .. } = self;
+        let foreseen = Foreseen { cover: near, drift: drifts[cloth] };
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             if let Some(terms) = &terms[cloth * colliders.len() + list.collider] {
                 let reach = R::from_f64(terms.thickness * terms.reach);
-                list.activate(near, window, reach, &cloths[cloth].blocks, team);
+                list.activate(&foreseen, window, reach, &cloths[cloth].blocks, team);
             }
         }
     }
@@ -63,11 +66,23 @@ impl<R: Real> Solver<R> {
         let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
         if colliders.any(|(collider, _)| collider.moves) {
             self.spans[cloth] = [times.from, self.horizon(frame, cloth, times)];
+            self.drifts[cloth] = self.drift(cloth).map(R::from_f64);
             let points = self.cloths[cloth].points();
             self.strayed[points.start as usize..points.end as usize].fill(true);
         } else {
             self.spans[cloth] = [0.0, 1.0];
+            self.drifts[cloth] = [R::ZERO; 3];
         }
+    }
+
+    /// The drift of the fastest collider that a cloth meets, in metres in a frame: what it takes along stays where it is
+    /// for one who goes with it, and whom that one sees moving has room on its way.
+    fn drift(&self, cloth: usize) -> [f64; 3] {
+        let met = self.collider_states.iter().zip(self.terms_of(cloth)).filter(|(_, terms)| terms.is_some());
+        let fastest = met
+            .map(|(collider, _)| collider.drift)
+            .reduce(|most, drift| if drift.norm_squared() > most.norm_squared() { drift } else { most });
+        fastest.unwrap_or_default().into()
     }
 
     /// How far ahead is foreseen: to the end of the substep, or as long as nothing goes farther than a few
@@ -101,6 +116,7 @@ impl<R: Real> Solver<R> {
             pairs,
             far,
             spans,
+            drifts,
             strayed,
             terms,
             maps,
@@ -108,6 +124,7 @@ impl<R: Real> Solver<R> {
             ..
         } = self;
         let span = spans[cloth];
+        let foreseen = Foreseen { cover: far, drift: drifts[cloth] };
         let mut freed = Vec::new();
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let collider = list.collider;
@@ -121,7 +138,9 @@ impl<R: Real> Solver<R> {
             let view = StepParts { terms, maps, h: schedule.h, time: [now; 2], span };
             let step = &view.of(state, state_of);
             let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
-            Search { cloth, collider, state: state_of, cover: far, strayed, step }.run(list, team);
+            let shifts =
+                span.map(|time| Vector3::from(foreseen.gone(time).map(R::to_f64)) - state_of.origin(time));
+            Search { cloth, collider, state: state_of, foreseen, strayed, step, shifts }.run(list, team);
             if terms.traps {
                 list.trapped.begin(cloth.points(), collider, state_of, step);
                 list.trapped.look(collider, state_of, step, |point| freed.push(point));
@@ -144,9 +163,11 @@ impl<R: Real> Solver<R> {
         frame: &FrameInput,
         cloth: usize,
         schedule: &Schedule<R>,
+        step: [f64; 2],
         [window, rest]: [[f64; 2]; 2],
     ) -> bool {
-        let Self { cloths, state, near, far, strayed, team, .. } = self;
+        let Self { cloths, state, near, far, drifts, strayed, team, .. } = self;
+        let [gone_before, gone_now] = step.map(|time| gone(drifts[cloth], time));
         let thickness = frame.cloths[cloth].thickness.max(LEAST_THICKNESS);
         let most = R::from_f64(cloths[cloth].edge_length);
         let reach = |time: [f64; 2], stray: f64| {
@@ -160,8 +181,8 @@ impl<R: Real> Solver<R> {
         let blocks = &cloths[cloth].blocks;
         team.phase(blocks.len(), |block| {
             for row in blocks.range(block) {
-                let start = state.start[row as usize].xyz();
-                let now = state.displacement[row as usize].xyz();
+                let start = sub(state.start[row as usize].xyz(), gone_before);
+                let now = sub(state.displacement[row as usize].xyz(), gone_now);
                 let cover = foresee(start, now, soon.0, soon.1);
                 // SAFETY: blocks do not overlap.
                 #[allow(unsafe_code)]
@@ -178,10 +199,12 @@ impl<R: Real> Solver<R> {
         any.into_inner()
     }
 
-    /// Whether a point of the cloth is not where it was foreseen to be.
-    fn has_strayed(&self, cloth: usize) -> bool {
-        let foreseen =
-            |row: u32| is_foreseen(&self.near[row as usize], self.state.displacement[row as usize].xyz());
+    /// Whether a point of the cloth is not where it was foreseen to be at a time of the frame.
+    fn has_strayed(&self, cloth: usize, now: f64) -> bool {
+        let gone = gone(self.drifts[cloth], now);
+        let foreseen = |row: u32| {
+            is_foreseen(&self.near[row as usize], self.state.displacement[row as usize].xyz(), gone)
+        };
         let strayed = AtomicBool::new(false);
         let blocks = &self.cloths[cloth].blocks;
         self.team.phase(blocks.len(), |block| {

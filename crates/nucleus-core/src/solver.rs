@@ -28,6 +28,8 @@ pub struct Solver<R: Real = f32> {
     /// the frame.
     pub(crate) spans: Vec<[f64; 2]>,
     pub(crate) windows: Vec<[f64; 2]>,
+    /// How far one goes in a frame to whom what is foreseen for each cloth is said, in metres.
+    pub(crate) drifts: Vec<[R; 3]>,
     /// What is foreseen for each point in the window and in the span; empty where the scene has no collider.
     pub(crate) near: Vec<Cover<R>>,
     pub(crate) far: Vec<Cover<R>>,
@@ -74,6 +76,7 @@ impl<R: Real> Solver<R> {
         let mut solver = Self {
             spans: vec![[0.0; 2]; models.len()],
             windows: vec![[0.0; 2]; models.len()],
+            drifts: vec![[R::ZERO; 3]; models.len()],
             near: vec![[Row4::ZERO; 2]; covered],
             far: vec![[Row4::ZERO; 2]; covered],
             strayed: vec![true; covered],

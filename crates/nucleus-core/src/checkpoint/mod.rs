@@ -118,7 +118,7 @@ kept!([R: Real] Solver<R> {
     columns: [far, strayed],
     values: [terms, ground_terms, touches],
     parts: [state, collider_states, mutual],
-    anew: [cloths, colliders, pairs, spans, windows, near, maps, heights, up, team],
+    anew: [cloths, colliders, pairs, spans, windows, drifts, near, maps, heights, up, team],
 });
 
 kept!([R: Real] State<R> {

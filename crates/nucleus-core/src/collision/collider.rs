@@ -18,12 +18,12 @@ pub struct ColliderState {
     pub moves: bool,
     /// The farthest that any point goes in this frame, in metres.
     pub way: f64,
+    /// How far its points go in this frame on the mean, in metres.
+    pub drift: Vector3<f64>,
     /// Low and high corner of the box round it at the start and at the end of the frame.
     corners: [[Vector3<f64>; 2]; 2],
     /// The time of the frame that the solver has come to, as a share of it.
     pub now: f64,
-    /// What the boxes are relative to.
-    pub origin: Vector3<f64>,
     /// A box per triangle, per edge and per point of the skin.
     pub boxes: Boxes,
     /// Boxes over triangles.
@@ -36,7 +36,7 @@ kept!([] ColliderState {
     columns: [start, end],
     values: [now],
     parts: [],
-    anew: [moves, way, corners, origin, boxes, tree, fitted],
+    anew: [moves, way, drift, corners, boxes, tree, fitted],
 });
 
 /// The boxes of an object's elements.
@@ -60,9 +60,9 @@ impl ColliderState {
             end: model.positions.clone(),
             moves: false,
             way: 0.0,
+            drift: Vector3::zeros(),
             corners: [corners(&model.positions); 2],
             now: 0.0,
-            origin: model.positions.first().copied().unwrap_or_default(),
             boxes: Boxes::default(),
             tree: Tree::new(&centres),
             fitted: None,
@@ -83,6 +83,8 @@ impl ColliderState {
             self.moves = self.start != self.end;
             let ways = self.start.iter().zip(&self.end).map(|(start, end)| (end - start).norm());
             self.way = ways.fold(0.0, f64::max);
+            let sum: Vector3<f64> = self.start.iter().zip(&self.end).map(|(start, end)| end - start).sum();
+            self.drift = sum / self.start.len().max(1) as f64;
             self.corners = [corners(&self.start), corners(&self.end)];
         }
     }
@@ -93,22 +95,26 @@ impl ColliderState {
         [0, 1].map(|corner| start[corner] + (end[corner] - start[corner]) * time)
     }
 
+    /// What the boxes are relative to at a time of the frame, in metres.
+    pub fn origin(&self, time: f64) -> Vector3<f64> {
+        self.start.first().copied().unwrap_or_default() + self.drift * time
+    }
+
     /// Where a point is at a time of the frame, in metres.
     pub fn point(&self, point: u32, time: f64) -> Vector3<f64> {
         let [start, end] = [self.start[point as usize], self.end[point as usize]];
         start + (end - start) * time
     }
 
-    /// Sets the boxes for a span of the frame; those of a collider at rest hold on.
+    /// Sets the boxes for a span of the frame, as seen by one who goes with it; those of a collider at rest hold on.
     pub fn fit(&mut self, model: &ColliderModel, span: [f64; 2]) {
         if self.fitted == Some(span) || (self.fitted.is_some() && !self.moves) {
             return;
         }
-        self.origin = self.start.first().copied().unwrap_or_default();
         let mut boxes = std::mem::take(&mut self.boxes);
         let bound = |points: &[u32]| {
             let path =
-                points.iter().flat_map(|&point| span.map(|time| self.point(point, time) - self.origin));
+                points.iter().flat_map(|&point| span.map(|time| self.point(point, time) - self.origin(time)));
             Aabb::of(path)
         };
         let skin = &model.skin;

@@ -11,7 +11,7 @@ mod stick;
 
 use nalgebra::Vector3;
 
-use super::foresee::{Cover, spread};
+use super::foresee::{Foreseen, spread};
 use super::friction::{Push, rub};
 use super::maps::Maps;
 use super::narrow;
@@ -172,11 +172,11 @@ impl<R: Real> Step<'_, R> {
         Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
     }
 
-    /// How far a point of the collider goes in the span.
+    /// How far a point of the collider goes in the span, beside the drift of so many metres in a frame.
     #[inline]
-    fn way(&self, point: u32) -> f64 {
+    fn way(&self, point: u32, drift: [R; 3]) -> f64 {
         let [start, end] = self.collider.map(|points| points[point as usize]);
-        (end - start).norm() * (self.span[1] - self.span[0])
+        (end - start - Point::from(drift.map(R::to_f64))).norm() * (self.span[1] - self.span[0])
     }
 
     #[allow(unsafe_code)]
@@ -220,15 +220,14 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         collider_points: [u32; M],
         group: u32,
         step: &Step<'_, R>,
-        cover: &[Cover<R>],
+        foreseen: &Foreseen<'_, R>,
     ) -> Option<Self> {
         let (x, q) = (step.cloth_at_start(points), step.surface(collider_points)[0]);
         let (b, c) = closest(x, q);
         let line = weigh(x, b) - weigh(q, c);
         // Neither side can come nearer than its longest way allows.
-        let ours =
-            points.map(|point| spread(&cover[point as usize]).to_f64()).into_iter().fold(0.0, f64::max);
-        let theirs = collider_points.map(|q| step.way(q)).into_iter().fold(0.0, f64::max);
+        let ours = points.map(|point| spread(&foreseen.of(point)).to_f64()).into_iter().fold(0.0, f64::max);
+        let theirs = collider_points.map(|q| step.way(q, foreseen.drift)).into_iter().fold(0.0, f64::max);
         let reach = step.reach();
         if line.norm() > reach.to_f64() + ours + theirs {
             return None;
@@ -247,7 +246,8 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             found_at: zero,
         };
         pair.turn_to(normal, (b, c), step);
-        let gap = pair.least_gap([R::ZERO, R::ONE], |point| cover[point as usize]);
+        let ends = [(R::ZERO, step.span[0]), (R::ONE, step.span[1])];
+        let gap = pair.least_gap(ends.map(|(share, time)| (share, foreseen.gone(time))), foreseen);
         (gap < reach).then_some(pair)
     }
 
@@ -258,17 +258,18 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         self.weights.iter().all(|&weight| weight > amid) && normal.dot(&outward) < 0.0
     }
 
-    /// The smallest gap of the pair's plane over a box of possible displacements per cloth point, over a
-    /// window given as shares of the span: where it is above the thickness the pair cannot touch.
+    /// The smallest gap of the pair's plane over all that is foreseen for the cloth's points, over a window given by
+    /// shares of the span and how far the drift has gone then: where it is above the thickness the pair cannot touch.
     #[inline(always)]
-    pub fn least_gap(&self, window: [R; 2], boxes: impl Fn(u32) -> [Row4<R>; 2]) -> R {
+    pub fn least_gap(&self, window: [(R, [R; 3]); 2], foreseen: &Foreseen<'_, R>) -> R {
+        let window = window.map(|(share, gone)| (share, dot(self.normal, gone)));
         let mut least = R::from_f64(f64::from(f32::MAX));
         for k in 0..N {
-            let [low, high] = boxes(self.points[k]);
+            let [low, high] = foreseen.of(self.points[k]);
             let corner = |axis: usize| if self.normal[axis] > R::ZERO { low.0[axis] } else { high.0[axis] };
             let reach = dot(self.normal, [corner(0), corner(1), corner(2)]);
-            for share in window {
-                let gap = reach - self.plane_at(k, share);
+            for (share, gone) in window {
+                let gap = reach + gone - self.plane_at(k, share);
                 least = if gap < least { gap } else { least };
             }
         }

@@ -1,9 +1,39 @@
 //! Where each point is foreseen to be for a while: as long as it stays there, the pairs found for it hold.
 
-use crate::scalar::{Real, Row4, dot};
+use crate::scalar::{Real, Row4, dot, scale, sub};
 
-/// Where a point is foreseen to stay: low and high corner of its displacement.
+/// Where a point is foreseen to stay: low and high corner of its displacement, as seen by one who goes with the drift.
 pub type Cover<R> = [Row4<R>; 2];
+
+/// What is foreseen for the points of a cloth, seen by one who goes with the collider that it meets: what that takes
+/// along stays where it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Foreseen<'a, R> {
+    /// Of every point.
+    pub cover: &'a [Cover<R>],
+    /// How far that one goes in a frame, in metres.
+    pub drift: [R; 3],
+}
+
+impl<R: Real> Foreseen<'_, R> {
+    /// One point's.
+    #[inline(always)]
+    pub fn of(&self, point: u32) -> Cover<R> {
+        self.cover[point as usize]
+    }
+
+    /// How far the drift has gone at a time of the frame, given as a share of it.
+    #[inline(always)]
+    pub fn gone(&self, time: f64) -> [R; 3] {
+        gone(self.drift, time)
+    }
+}
+
+/// How far a drift has gone at a time of the frame, given as a share of it.
+#[inline(always)]
+pub fn gone<R: Real>(drift: [R; 3], time: f64) -> [R; 3] {
+    scale(drift, R::from_f64(time))
+}
 
 /// Share of a point's expected motion that is added as margin all round.
 const MARGIN: f64 = 0.25;
@@ -38,8 +68,9 @@ pub fn is_within<R: Real>(inner: &Cover<R>, outer: &Cover<R>) -> bool {
     (0..3).all(|axis| outer[0].0[axis] <= inner[0].0[axis] && inner[1].0[axis] <= outer[1].0[axis])
 }
 
-/// Whether a point is where it was foreseen to be.
-pub fn is_foreseen<R: Real>([low, high]: &Cover<R>, now: [R; 3]) -> bool {
+/// Whether a point is where it was foreseen to be, when the drift has gone so far.
+pub fn is_foreseen<R: Real>([low, high]: &Cover<R>, now: [R; 3], gone: [R; 3]) -> bool {
+    let now = sub(now, gone);
     (0..3).all(|axis| low.0[axis] <= now[axis] && now[axis] <= high.0[axis])
 }
 

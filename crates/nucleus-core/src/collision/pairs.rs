@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 use super::contact::Pair;
-use super::foresee::Cover;
+use super::foresee::Foreseen;
 use super::search::Found;
 use super::trapped::Trapped;
 use crate::model::Blocks;
@@ -101,7 +101,7 @@ impl<R: Real> PairList<R> {
     /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
     pub fn activate(
         &mut self,
-        cover: &[Cover<R>],
+        foreseen: &Foreseen<'_, R>,
         window: [f64; 2],
         thickness: R,
         blocks: &Blocks,
@@ -109,7 +109,7 @@ impl<R: Real> PairList<R> {
     ) {
         let Self { span, point_face, edge_edge, face_point, by_point, active, trapped, .. } = self;
         let share = |time: f64| if span[1] > span[0] { (time - span[0]) / (span[1] - span[0]) } else { 0.0 };
-        let window = window.map(|time| R::from_f64(share(time)));
+        let window = window.map(|time| (R::from_f64(share(time)), foreseen.gone(time)));
         let all = |pairs: usize| 0..pairs as u32;
         // Two tasks of about the same length; nobody else has what is theirs.
         let Active { point_face: of_points, edge_edge: of_edges, face_point: of_faces, runs } = active;
@@ -118,13 +118,13 @@ impl<R: Real> PairList<R> {
             0 => {
                 let Ok(mut found) = points.lock() else { return };
                 let order = by_point.iter().map(|&key| key as u32);
-                pick(point_face, order, &mut found, cover, window, thickness, trapped);
+                pick(point_face, order, &mut found, foreseen, window, thickness, trapped);
             }
             _ => {
                 let Ok(mut found) = elements.lock() else { return };
                 let (edges, faces) = &mut *found;
-                pick(edge_edge, all(edge_edge.len()), edges, cover, window, thickness, trapped);
-                pick(face_point, all(face_point.len()), faces, cover, window, thickness, trapped);
+                pick(edge_edge, all(edge_edge.len()), edges, foreseen, window, thickness, trapped);
+                pick(face_point, all(face_point.len()), faces, foreseen, window, thickness, trapped);
             }
         });
         let place =
@@ -139,8 +139,8 @@ fn pick<R: Real, const N: usize, const M: usize>(
     pairs: &[Pair<R, N, M>],
     order: impl Iterator<Item = u32>,
     active: &mut Vec<u32>,
-    cover: &[Cover<R>],
-    window: [R; 2],
+    foreseen: &Foreseen<'_, R>,
+    window: [(R, [R; 3]); 2],
     thickness: R,
     trapped: &Trapped,
 ) {
@@ -148,8 +148,6 @@ fn pick<R: Real, const N: usize, const M: usize>(
     let is_held = |pair: &Pair<R, N, M>| {
         trapped.points.is_empty() || !pair.points.iter().any(|&point| trapped.holds(point))
     };
-    let near = |pair: &Pair<R, N, M>| {
-        pair.least_gap(window, |point| cover[point as usize]) < thickness && is_held(pair)
-    };
+    let near = |pair: &Pair<R, N, M>| pair.least_gap(window, foreseen) < thickness && is_held(pair);
     active.extend(order.filter(|&pair| near(&pairs[pair as usize])));
 }

@@ -9,12 +9,12 @@ use nalgebra::Vector3;
 
 use super::collider::{Boxes, ColliderState};
 use super::contact::{Pair, Step};
-use super::foresee::Cover;
+use super::foresee::Foreseen;
 use super::pairs::PairList;
 use super::skin::Group;
 use super::tree::Aabb;
 use crate::model::{ClothModel, ColliderModel, Outside};
-use crate::scalar::{Real, Row4};
+use crate::scalar::Real;
 use crate::team::Team;
 
 /// What is searched: a cloth and a collider, whose boxes are fitted to the span.
@@ -26,11 +26,13 @@ pub struct Search<'a, R> {
     /// Its motion.
     pub state: &'a ColliderState,
     /// What is foreseen for the cloth's points.
-    pub cover: &'a [Cover<R>],
+    pub foreseen: Foreseen<'a, R>,
     /// Whether that is new, by point.
     pub strayed: &'a [bool],
     /// Where both are.
     pub step: &'a Step<'a, R>,
+    /// From where the one sees it to whom something is foreseen to where the collider does, at both ends of the span.
+    pub shifts: [Vector3<f64>; 2],
 }
 
 /// A group of the cloth's elements with its boxes.
@@ -203,14 +205,15 @@ impl<R: Real> Search<'_, R> {
         theirs: [u32; M],
         group: u32,
     ) -> Option<Pair<R, N, M>> {
-        Pair::find(ours, theirs, group, self.step, self.cover)
+        Pair::find(ours, theirs, group, self.step, &self.foreseen)
     }
 
-    /// The box round all that is foreseen for a point of the cloth.
+    /// The box round all that is foreseen for a point of the cloth, as the collider sees it.
     fn reach(&self, point: u32) -> Aabb {
-        let anchor = Vector3::from(self.step.anchors[point as usize]) - self.state.origin;
-        let corner = |row: Row4<R>| anchor + Vector3::from(row.xyz().map(R::to_f64));
-        let [low, high] = self.cover[point as usize];
-        Aabb::new(corner(low), corner(high))
+        let anchor = Vector3::from(self.step.anchors[point as usize]);
+        let [low, high] =
+            self.foreseen.of(point).map(|corner| anchor + Vector3::from(corner.xyz().map(R::to_f64)));
+        let [from, to] = self.shifts.map(|shift| Aabb::new(low + shift, high + shift));
+        from.union(to)
     }
 }

@@ -110,7 +110,7 @@ impl Trapped {
 /// times. A ray along an edge meets one of its two faces, by the rule that an edge belongs to one side.
 fn is_inside(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> bool {
     let mut crossings = 0;
-    let from = place - state.origin;
+    let from = place - state.origin(time);
     let ray = Aabb::new(from, from + Point::x() * FAR);
     state.tree.query(&ray, |face| {
         let corners = collider.skin.triangles[face as usize].map(|point| state.point(point, time) - place);
@@ -143,7 +143,7 @@ fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, t
         let weights = closest_on_triangle(place.into(), corners.map(Into::into));
         (0..3).map(|k| corners[k] * weights[k]).sum::<Point>() - place
     };
-    let from = place - state.origin;
+    let from = place - state.origin(time);
     let size = state.bounds(time)[1] - state.bounds(time)[0];
     // Boxes that grow until one meets a face that is no farther than it reaches.
     let mut reach = size.norm() / 64.0;
