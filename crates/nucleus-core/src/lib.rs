@@ -16,6 +16,7 @@
 //! | what sticks, bounces, is pushed out | `collision/stick.rs`, `bounce.rs`, `push_out.rs` |
 //! | how contact is seen to stand at each point | `ladder.rs` |
 //! | how a run goes on from where it was saved | `checkpoint/` |
+//! | why the solver is compiled here alone | `compiled.rs` |
 //! | how threads share the work | `team.rs`, `columns.rs` |
 //!
 //! **Invariant:** this crate knows no nodes, no files and no clock. Same input, same bits, on any number of
@@ -31,6 +32,7 @@ mod checkpoint;
 mod collide;
 mod collision;
 mod columns;
+mod compiled;
 mod constraints;
 mod factors;
 mod frame;

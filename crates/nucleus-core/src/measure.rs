@@ -75,6 +75,10 @@ impl<R: Real> Solver<R> {
     /// The energy in joules that stretch, shear and bending hold, were they as stiff as `frame` says and the cloth as
     /// it is now; nothing in Classic, where a resistance is no stiffness.
     pub fn elastic_energy(&self, frame: &FrameInput) -> f64 {
+        R::elastic_energy(self, frame)
+    }
+
+    pub(crate) fn held_energy(&self, frame: &FrameInput) -> f64 {
         let ResistanceModel::Physical { .. } = frame.resistance else { return 0.0 };
         let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
             let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);

@@ -30,6 +30,10 @@ impl PassCost {
 impl<R: Real> Solver<R> {
     /// The passes a frame consists of. What a scene does not use is not there.
     pub fn passes(&self, frame: &FrameInput) -> Vec<PassCost> {
+        R::passes(self, frame)
+    }
+
+    pub(crate) fn list_passes(&self, frame: &FrameInput) -> Vec<PassCost> {
         let schedule = Schedule::<R>::new(frame);
         let steps = schedule.substeps * schedule.steps;
         let points: usize = self.cloths.iter().map(|cloth| cloth.points().len()).sum();

@@ -56,6 +56,10 @@ impl<R: Real> Solver<R> {
     /// Builds lists, trees and state. `threads` is the number of cores to use; it never changes a bit of
     /// the result.
     pub fn new(builder: ModelBuilder, threads: usize) -> Self {
+        R::build(builder, threads)
+    }
+
+    pub(crate) fn build(builder: ModelBuilder, threads: usize) -> Self {
         let ModelBuilder { cloths, colliders } = builder;
         let collides = !colliders.is_empty();
         let meets = cloths.len() > 1 || cloths.iter().any(|cloth| cloth.lists.self_collision);
@@ -134,7 +138,7 @@ impl<R: Real> StateView for Solver<R> {
     }
 
     fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
-        self.rungs_of_cloths(out);
+        R::rungs(self, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

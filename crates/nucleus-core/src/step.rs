@@ -31,6 +31,10 @@ impl<R: Real> Solver<R> {
     ///
     /// `frame` has one entry per cloth and per collider.
     pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
+        R::step(self, frame, watch)
+    }
+
+    pub(crate) fn take_step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
         let (frame, refused) = self.usable(frame);
         let report = match refused.first {
             Some(Refused::Duration) => self.pass_over(watch),

@@ -38,6 +38,10 @@ const KIND: [u8; 8] = *b"solver 1";
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
     pub fn save(&self) -> Vec<u8> {
+        R::save(self)
+    }
+
+    pub(crate) fn bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         (R::SIZE as u8).put(&mut bytes);
         self.fingerprint().put(&mut bytes);
@@ -80,7 +84,11 @@ impl<R: Real> Solver<R> {
     /// # Errors
     /// When the bytes are damaged, of another version, or of another model.
     pub fn restored(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
-        let mut solver = Self::new(builder, threads);
+        R::restore(builder, threads, bytes)
+    }
+
+    pub(crate) fn restore(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
+        let mut solver = Self::build(builder, threads);
         let mut from = Reader::new(unsealed(KIND, bytes)?);
         let scalar = u8::take(&mut from).ok_or(RestoreError::Damaged)?;
         if usize::from(scalar) != R::SIZE {

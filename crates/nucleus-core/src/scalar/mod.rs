@@ -12,6 +12,7 @@ use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::checkpoint::Item;
+use crate::compiled::Compiled;
 
 pub use lanes::{Lanes, Quad};
 pub use vector::{add, cross, scale, sub, unit};
@@ -34,6 +35,7 @@ pub trait Real:
     + SubAssign
     + Sum
     + Item
+    + Compiled
     + 'static
 {
     /// Four of them.
