@@ -4,6 +4,7 @@
 //! |--------------------------------------------------|---------------|
 //! | what is simulated                                | [`workload`]  |
 //! | how error is measured                            | [`accuracy`]  |
+//! | where the ball is                                | [`ball`]      |
 //! | how time is measured, and stages                 | [`nucleus_measure::clock`] |
 //! | one run                                          | [`trial`]     |
 //! | which settings are run                           | [`trade`]     |
@@ -20,6 +21,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 mod accuracy;
+mod ball;
 pub mod caches;
 mod contact;
 mod contest;

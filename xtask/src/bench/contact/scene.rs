@@ -12,8 +12,9 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
 use super::Workload;
+use crate::bench::ball::Ball;
 use crate::bench::mesh::{self, Cells};
-use crate::bench::workload::{BALL, DENSITY, GRAVITY};
+use crate::bench::workload::{DENSITY, GRAVITY};
 
 /// What is set for a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,14 +108,11 @@ pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> an
 
 /// What the sheets meet and what holds them.
 fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
-    // The ball of W4 is smaller and flies.
-    let (centre, radius, keys) = match workload {
-        Workload::Shot => (Vector3::new(0.5, -0.5, 0.0), 0.15, "translateZ: keys([(1, -2), (25, 8)])"),
-        _ => (Vector3::from(BALL.0), BALL.1, "translateZ: 0"),
-    };
-    fs::write(folder.join("ball.obj"), obj(&mesh::sphere(radius, centre)))?;
+    let ball = workload.ball();
+    fs::write(folder.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
+    let way = flight(&ball, workload.frames());
     let mut nodes = format!(
-        r#""ballMesh": mesh(file: "ball.obj", {keys}),
+        r#""ballMesh": mesh(file: "ball.obj"{way}),
         "ball": nRigid(inputMesh: "ballMesh", thickness: 0.0025, friction: 0.25),"#
     );
     if workload == Workload::Shot {
@@ -127,6 +125,15 @@ fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
     Ok(nodes)
 }
 
+/// How a ball that flies is animated over so many frames; a ball that rests is not.
+fn flight(ball: &Ball, frames: u32) -> String {
+    if ball.flight == [0.0; 3] {
+        return String::new();
+    }
+    let [x, y, z] = ball.flight.map(|way| way * f64::from(frames));
+    format!(", translate: keys([(1, (0, 0, 0), linear), ({}, ({x}, {y}, {z}), linear)])", frames + 1)
+}
+
 fn obj(surface: &Surface) -> String {
     let mut text = String::new();
     for place in &surface.positions {
@@ -137,4 +144,34 @@ fn obj(surface: &Surface) -> String {
         text += &format!("f {}\n", corners.join(" "));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::ColliderId;
+    use nucleus_graph::Simulation;
+
+    use super::*;
+
+    /// The middle of the poles of the ball of a run, in metres.
+    fn centre(run: &Simulation<f32>) -> Vector3<f64> {
+        let mut places = Vec::new();
+        run.state().collider_positions(ColliderId(0), 1.0, &mut places);
+        let pole = |place: &[f32; 3]| Vector3::from(place.map(f64::from));
+        (pole(&places[0]) + pole(&places[places.len() - 1])) / 2.0
+    }
+
+    #[test]
+    fn the_ball_that_errors_are_measured_against_is_the_one_that_flies() {
+        for workload in [Workload::Folds, Workload::Shot] {
+            let setting = Setting { evaluations: 6, self_collide: false };
+            let program = program(workload, 5, setting, Place::new().unwrap()).unwrap();
+            let mut run = Simulation::<f32>::new(&program, 1);
+            for frame in 1..=workload.frames().min(24) {
+                run.advance(&mut ());
+                let off = (centre(&run) - workload.ball().centre(f64::from(frame))).norm();
+                assert!(off < 1e-5, "{workload:?}, frame {frame}: {off} m off");
+            }
+        }
+    }
 }
