@@ -11,6 +11,7 @@
 //! | what other solvers need                          | [`peers`]     |
 //! | what counts as being ahead of them               | [`contest`]   |
 //! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
+//! | a scene run on the clock                         | [`timed`]     |
 //! | the cost of a link; a million points; threads    | [`growth`]    |
 //! | what each feature costs                          | [`features`]  |
 //! | how fast caches are                              | [`caches`]    |
@@ -28,11 +29,14 @@ mod contest;
 mod csv;
 pub mod features;
 mod growth;
+mod memory;
 mod mesh;
 mod page;
 mod peers;
 mod report;
+mod stages;
 mod table;
+mod timed;
 mod trade;
 mod trial;
 mod workload;
@@ -119,7 +123,7 @@ impl Part {
             Self::W3 => contact::run(contact::Workload::Folds, sizes, threads, report),
             Self::W4 => contact::run(contact::Workload::Shot, sizes, threads, report),
             Self::W8 => contact::run(contact::Workload::Layers, sizes, threads, report),
-            Self::SelfCollision => contact::cost(report),
+            Self::SelfCollision => contact::cost::run(report),
             Self::Hang => {
                 growth::sag(*repeat, report)?;
                 growth::link_cost(sizes, *repeat, report)

@@ -1,7 +1,7 @@
 //! The workloads as scenes: what is timed is what an artist would run. Metres.
 
 use std::fmt::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, fs, io, process};
 
@@ -78,38 +78,65 @@ fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
 /// When a mesh cannot be written or the scene is refused.
 pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> anyhow::Result<Program> {
     let sheets = if workload == Workload::Layers { 5 } else { 1 };
-    let mut nodes = String::new();
-    for k in 0..sheets {
-        fs::write(place.0.join(format!("sheet{k}.obj")), obj(&sheet(workload, n, k)))?;
-        let Setting { self_collide, .. } = setting;
-        write!(
-            nodes,
-            r#""mesh{k}": mesh(file: "sheet{k}.obj"),
-            "sheet{k}": nCloth(inputMesh: "mesh{k}", pointMass: {DENSITY}, stretchResistance: 20,
-                compressionResistance: 20, bendResistance: 0, stretchDamp: 0.1, drag: 0, lift: 0,
-                thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
-        )?;
-    }
-    nodes += &others(workload, n, &place.0)?;
-    let (frames, evaluations) = (workload.frames() + 1, setting.evaluations);
-    let plane = workload != Workload::Shot;
-    let text = format!(
-        r#"Scene(time: (start: 1, end: {frames}, fps: 24), nodes: {{
-            "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
-            {nodes}
-        }})"#
-    );
-    let found = read_scene_text(&text, &place.0.join("workload.ron")).and_then(|(scene, _)| compile(&scene));
-    match found {
-        Ok(program) => Ok(program),
-        Err(mistakes) => bail!("{} is refused: {mistakes:?}", workload.name()),
+    let draft = Draft {
+        frames: workload.frames(),
+        plane: workload != Workload::Shot,
+        sheets: (0..sheets).map(|k| sheet(workload, n, k)).collect(),
+        others: others(workload, n, &place)?,
+    };
+    draft.program(setting, &place)
+}
+
+/// A scene that is yet to be written.
+pub struct Draft {
+    pub frames: u32,
+    /// Whether there is a ground at height 0.
+    pub plane: bool,
+    /// The cloths, as they start.
+    pub sheets: Vec<Surface>,
+    /// What they meet and what holds them, as nodes.
+    pub others: String,
+}
+
+impl Draft {
+    /// Writes the scene and compiles it; both sides of a contact together keep 5 mm.
+    ///
+    /// # Errors
+    /// When a mesh cannot be written or the scene is refused.
+    pub fn program(&self, setting: Setting, place: &Place) -> anyhow::Result<Program> {
+        let Setting { evaluations, self_collide } = setting;
+        let mut nodes = String::new();
+        for (k, sheet) in self.sheets.iter().enumerate() {
+            fs::write(place.0.join(format!("sheet{k}.obj")), obj(sheet))?;
+            write!(
+                nodes,
+                r#""mesh{k}": mesh(file: "sheet{k}.obj"),
+                "sheet{k}": nCloth(inputMesh: "mesh{k}", pointMass: {DENSITY}, stretchResistance: 20,
+                    compressionResistance: 20, bendResistance: 0, stretchDamp: 0.1, drag: 0, lift: 0,
+                    thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
+            )?;
+        }
+        let Self { frames, plane, others, .. } = self;
+        let text = format!(
+            r#"Scene(time: (start: 1, end: {}, fps: 24), nodes: {{
+                "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
+                {nodes}
+                {others}
+            }})"#,
+            frames + 1
+        );
+        let file = place.0.join("workload.ron");
+        match read_scene_text(&text, &file).and_then(|(scene, _)| compile(&scene)) {
+            Ok(program) => Ok(program),
+            Err(mistakes) => bail!("a scene of the bench is refused: {mistakes:?}"),
+        }
     }
 }
 
 /// What the sheets meet and what holds them.
-fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
+fn others(workload: Workload, n: u32, place: &Place) -> anyhow::Result<String> {
     let ball = workload.ball();
-    fs::write(folder.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
+    fs::write(place.0.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
     let way = flight(&ball, workload.frames());
     let mut nodes = format!(
         r#""ballMesh": mesh(file: "ball.obj"{way}),
