@@ -117,7 +117,9 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
         part.run(options, &mut report)?;
         options.keep(&report)?;
     }
-    print!("\n{}", report.verdict_table());
+    if !report.verdicts.is_empty() {
+        print!("\n{}", report.verdict_table());
+    }
     Ok(())
 }
 
