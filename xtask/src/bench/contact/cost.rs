@@ -94,7 +94,7 @@ fn growth_table(runs: &[(f64, Timed)]) -> Table {
         "ns per n log n",
         "to the first",
         "searches",
-        "pairs a point",
+        "pairs a point, a search",
         "pushes a point",
         "MB",
         "hash",
@@ -109,7 +109,7 @@ fn growth_table(runs: &[(f64, Timed)]) -> Table {
             each,
             each / nanoseconds(&runs[0]),
             run.searches,
-            run.pairs / points,
+            run.pairs / run.searches / points,
             run.contacts / points,
             run.megabytes(),
         ];

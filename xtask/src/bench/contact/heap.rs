@@ -113,7 +113,7 @@ mod tests {
         let run = |n: u32| {
             let setting = Setting { evaluations: 12, self_collide: true };
             let run = Timed::run(&program(n, setting, &Place::new().unwrap()).unwrap(), 1, Some(3), |_| {});
-            [run.pairs, run.contacts].map(|count| count / sheet(n).positions.len() as f64)
+            [run.pairs / run.searches, run.contacts].map(|count| count / sheet(n).positions.len() as f64)
         };
         let [small, large] = [run(65), run(129)];
         for (small, large) in small.into_iter().zip(large) {
