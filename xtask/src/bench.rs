@@ -4,12 +4,15 @@
 //! |--------------------------------------------------|---------------|
 //! | what is simulated                                | [`workload`]  |
 //! | how error is measured                            | [`accuracy`]  |
+//! | where the ball is                                | [`ball`]      |
 //! | how time is measured, and stages                 | [`nucleus_measure::clock`] |
 //! | one run                                          | [`trial`]     |
 //! | which settings are run                           | [`trade`]     |
 //! | what other solvers need                          | [`peers`]     |
 //! | what counts as being ahead of them               | [`contest`]   |
 //! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
+//! | scenes of contact as they are                    | [`gallery`]   |
+//! | a scene run on the clock                         | [`timed`]     |
 //! | the cost of a link; a million points; threads    | [`growth`]    |
 //! | what each feature costs                          | [`features`]  |
 //! | how fast caches are                              | [`caches`]    |
@@ -20,17 +23,22 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 mod accuracy;
+mod ball;
 pub mod caches;
 mod contact;
 mod contest;
 mod csv;
 pub mod features;
+mod gallery;
 mod growth;
+mod memory;
 mod mesh;
 mod page;
 mod peers;
 mod report;
+mod stages;
 mod table;
+mod timed;
 mod trade;
 mod trial;
 mod workload;
@@ -52,6 +60,9 @@ pub struct Options {
     /// Parts to run [default: all]
     #[arg(long, value_delimiter = ',')]
     only: Vec<Part>,
+    /// Scenes for the part of that name [default: all in scenes/collision]
+    #[arg(long, value_delimiter = ',', value_name = "FILE")]
+    scenes: Vec<PathBuf>,
     /// Runs of everything; the one of the median time counts
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=99))]
     repeat: u32,
@@ -79,6 +90,8 @@ enum Part {
     /// What self-collision costs, up to 250,000 points
     #[value(name = "self")]
     SelfCollision,
+    /// Scenes of contact as they are, by stage, on every number of threads
+    Scenes,
     /// A sheet hangs: its sag, and the cost of a link
     Hang,
     /// The same on more threads
@@ -104,20 +117,23 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
         part.run(options, &mut report)?;
         options.keep(&report)?;
     }
-    print!("\n{}", report.verdict_table());
+    if !report.verdicts.is_empty() {
+        print!("\n{}", report.verdict_table());
+    }
     Ok(())
 }
 
 impl Part {
     fn run(self, options: &Options, report: &mut Report) -> anyhow::Result<()> {
-        let Options { sizes, threads, repeat, .. } = options;
+        let Options { sizes, threads, repeat, scenes, .. } = options;
         match self {
             Self::W1 => trade::run(Workload::Swing, sizes, *repeat, report),
             Self::W2 => trade::run(Workload::Drape, sizes, *repeat, report),
             Self::W3 => contact::run(contact::Workload::Folds, sizes, threads, report),
             Self::W4 => contact::run(contact::Workload::Shot, sizes, threads, report),
             Self::W8 => contact::run(contact::Workload::Layers, sizes, threads, report),
-            Self::SelfCollision => contact::cost(report),
+            Self::SelfCollision => contact::cost::run(report),
+            Self::Scenes => gallery::run(scenes, threads, report),
             Self::Hang => {
                 growth::sag(*repeat, report)?;
                 growth::link_cost(sizes, *repeat, report)

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 use nucleus_core::{COUNT_PERIOD, ClothId, StateView, Surface};
 
+use super::ball::Ball;
 use super::mesh;
-use super::workload::{BALL, GRAVITY};
+use super::workload::GRAVITY;
 
 /// The frames of a second.
 const SECOND: usize = 24;
@@ -18,11 +19,13 @@ pub struct Accuracy {
     pub stretch: f64,
     /// Largest strain at the last frame.
     pub max: f64,
+    /// Largest strain at the worst frame.
+    pub worst_max: f64,
     /// How deep the lowest point ever came below height 0, in metres.
     pub sag: f64,
     /// Change of kinetic and potential energy from the first frame to the end of the first second, in J/kg.
     pub energy: f64,
-    /// How deep a point is inside the ball at the last frame, in metres.
+    /// How deep a point is inside the ball at the last frame, in metres; nought where there is none.
     pub depth: f64,
     /// The same at the worst frame.
     pub worst_depth: f64,
@@ -35,6 +38,7 @@ pub struct Meter {
     edges: Vec<([u32; 2], f64)>,
     points: Vec<Vector3<f64>>,
     before: Vec<Vector3<f64>>,
+    ball: Option<Ball>,
     lower_middle: usize,
     strains: f64,
     frames: usize,
@@ -44,13 +48,14 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// For a sheet of `n` by `n` points that starts at rest.
-    pub fn new(sheet: &Surface, n: u32) -> Self {
+    /// For a sheet of `n` by `n` points that starts at rest, and the ball that it meets.
+    pub fn new(sheet: &Surface, n: u32, ball: Option<Ball>) -> Self {
         let points = sheet.positions.clone();
         let last = Accuracy {
             strain: 0.0,
             stretch: 0.0,
             max: 0.0,
+            worst_max: 0.0,
             sag: 0.0,
             energy: 0.0,
             depth: 0.0,
@@ -62,6 +67,7 @@ impl Meter {
             before: points.clone(),
             lower_middle: (n * n - n / 2 - 1) as usize,
             points,
+            ball,
             strains: 0.0,
             frames: 0,
             energies: Vec::new(),
@@ -79,10 +85,8 @@ impl Meter {
         self.measure_strain();
         self.measure_energy();
         let lowest = self.points.iter().fold(0.0, |most, point| f64::max(most, -point.y));
-        let (centre, radius) = BALL;
-        let depth = |point: &Vector3<f64>| radius - (point - Vector3::from(centre)).norm();
         self.last.sag = self.last.sag.max(lowest);
-        self.last.depth = self.points.iter().map(depth).fold(0.0, f64::max);
+        self.last.depth = self.depth();
         self.last.worst_depth = self.last.worst_depth.max(self.last.depth);
         self.lower_edges.push(self.points[self.lower_middle].y);
     }
@@ -99,6 +103,12 @@ impl Meter {
         }
     }
 
+    /// Of the deepest point, in the ball where it is now.
+    fn depth(&self) -> f64 {
+        let Some(ball) = self.ball else { return 0.0 };
+        self.points.iter().map(|point| ball.depth(self.frames as f64, point)).fold(0.0, f64::max)
+    }
+
     fn measure_strain(&mut self) {
         let (mut squares, mut positive, mut max) = (0.0, 0.0, f64::NEG_INFINITY);
         for &([a, b], rest) in &self.edges {
@@ -113,6 +123,7 @@ impl Meter {
         self.strains += root_mean(squares) + lost;
         self.frames += 1;
         (self.last.stretch, self.last.max) = (root_mean(positive) + lost, max + lost);
+        self.last.worst_max = self.last.worst_max.max(self.last.max);
     }
 
     /// Kinetic energy from the way of the frame, potential energy in its middle.
@@ -130,6 +141,7 @@ impl Meter {
 mod tests {
     use super::*;
     use crate::bench::mesh::Cells;
+    use crate::bench::workload::BALL;
 
     /// A cloth whose points are where a function puts them.
     struct Placed<F>(F);
@@ -153,7 +165,7 @@ mod tests {
     #[test]
     fn a_sheet_blown_up_by_a_tenth_is_strained_by_a_tenth_everywhere() {
         let sheet = level(5);
-        let mut meter = Meter::new(&sheet, 5);
+        let mut meter = Meter::new(&sheet, 5, None);
         meter.frame(&Placed(|point| sheet.positions[point] * 1.1));
         let found = meter.finish();
         for strain in [found.strain, found.stretch, found.max] {
@@ -164,7 +176,7 @@ mod tests {
     #[test]
     fn free_fall_keeps_its_energy() {
         let sheet = level(3);
-        let mut meter = Meter::new(&sheet, 3);
+        let mut meter = Meter::new(&sheet, 3, None);
         for frame in 1..=SECOND {
             let time = frame as f64 * COUNT_PERIOD;
             meter.frame(&Placed(|point| {
@@ -180,7 +192,7 @@ mod tests {
     #[test]
     fn one_lost_point_makes_every_strain_endless() {
         let sheet = level(3);
-        let mut meter = Meter::new(&sheet, 3);
+        let mut meter = Meter::new(&sheet, 3, None);
         meter.frame(&Placed(
             |point| if point == 4 { Vector3::repeat(f64::NAN) } else { sheet.positions[point] },
         ));
@@ -189,12 +201,45 @@ mod tests {
     }
 
     #[test]
+    fn the_worst_stretch_is_that_of_the_worst_frame() {
+        let sheet = level(3);
+        let mut meter = Meter::new(&sheet, 3, None);
+        for blown_up in [1.1, 1.5, 1.2] {
+            meter.frame(&Placed(|point| sheet.positions[point] * blown_up));
+        }
+        let found = meter.finish();
+        assert!((found.max - 0.2).abs() < 1e-12 && (found.worst_max - 0.5).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
     fn a_point_at_the_centre_of_the_ball_is_a_radius_deep() {
         let sheet = level(3);
-        let mut meter = Meter::new(&sheet, 3);
-        meter.frame(&Placed(|_| BALL.0.into()));
+        let mut meter = Meter::new(&sheet, 3, Some(BALL));
+        meter.frame(&Placed(|_| BALL.start.into()));
         meter.frame(&Placed(|_| Vector3::repeat(5.0)));
         let found = meter.finish();
-        assert_eq!((found.depth, found.worst_depth), (0.0, BALL.1));
+        assert_eq!((found.depth, found.worst_depth), (0.0, BALL.radius));
+    }
+
+    #[test]
+    fn a_ball_that_flies_is_met_where_it_is_at_the_end_of_the_frame() {
+        let sheet = level(3);
+        let ball = Ball { radius: 0.5, start: [0.0, 0.0, -2.0], flight: [0.0, 0.0, 1.0] };
+        let mut meter = Meter::new(&sheet, 3, Some(ball));
+        let mut depths = Vec::new();
+        for _ in 0..3 {
+            meter.frame(&Placed(|_| Vector3::zeros()));
+            depths.push(meter.last.depth);
+        }
+        assert_eq!(depths, [0.0, 0.5, 0.0]);
+        assert_eq!(meter.finish().worst_depth, 0.5);
+    }
+
+    #[test]
+    fn without_a_ball_nothing_is_deep() {
+        let sheet = level(3);
+        let mut meter = Meter::new(&sheet, 3, None);
+        meter.frame(&Placed(|_| BALL.start.into()));
+        assert_eq!(meter.finish().worst_depth, 0.0);
     }
 }

@@ -92,6 +92,7 @@ mod tests {
             strain: percent / 100.0,
             stretch: percent / 100.0,
             max: 0.0,
+            worst_max: 0.0,
             sag: 1.0,
             energy: 0.0,
             depth: depth / 1e3,

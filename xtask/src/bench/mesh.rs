@@ -20,11 +20,16 @@ pub fn sheet(n: u32, cells: Cells, origin: Vector3<f64>, u: Vector3<f64>, v: Vec
     let at = |k: u32| f64::from(k) / f64::from(n - 1);
     let place = |row| (0..n).map(move |column| origin + u * at(column) + v * at(row));
     let positions = (0..n).flat_map(place).collect();
-    let quads = (n as usize - 1).pow(2);
+    Surface { positions, faces: faces([n, n], cells) }
+}
+
+/// The faces of a sheet of so many columns and rows of points, which come row by row.
+pub fn faces([columns, rows]: [u32; 2], cells: Cells) -> Faces {
+    let quads = (columns as usize - 1) * (rows as usize - 1);
     let mut faces = Faces::with_capacity(2 * quads, 6 * quads);
-    for (row, column) in (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| (row, column))) {
-        let a = row * n + column;
-        let (b, c, d) = (a + 1, a + n, a + n + 1);
+    for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
+        let a = row * columns + column;
+        let (b, c, d) = (a + 1, a + columns, a + columns + 1);
         match cells {
             Cells::Quads => faces.push(&[a, c, d, b]),
             Cells::Triangles if (row + column).is_multiple_of(2) => {
@@ -33,7 +38,7 @@ pub fn sheet(n: u32, cells: Cells, origin: Vector3<f64>, u: Vector3<f64>, v: Vec
             Cells::Triangles => [[a, c, d], [a, d, b]].iter().for_each(|face| faces.push(face)),
         }
     }
-    Surface { positions, faces }
+    faces
 }
 
 /// A sphere of triangles, 64 round and 32 down, its points on the sphere itself.

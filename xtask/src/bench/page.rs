@@ -30,7 +30,8 @@ pub fn write(path: &Path, report: &Report) -> anyhow::Result<()> {
 /// Targets first, as they are what most readers come for.
 fn figures(report: &Report) -> String {
     let mut text = report.machine.join("\n") + "\n";
-    for table in [report.verdict_table()].iter().chain(&report.tables) {
+    let targets = report.verdict_table();
+    for table in [&targets].into_iter().filter(|table| !table.rows.is_empty()).chain(&report.tables) {
         text.extend(["\n", &table.to_string()]);
     }
     text
@@ -62,6 +63,14 @@ mod tests {
         let once = put(&page, "new\n").unwrap();
         assert_eq!(once, format!("above\n{BEGIN}\nnew\n\n{END}below\n"));
         assert_eq!(put(&once, "new\n").unwrap(), once);
+    }
+
+    #[test]
+    fn targets_are_shown_where_there_are_any() {
+        let mut report = Report::default();
+        assert!(!figures(&report).contains("Targets"));
+        report.judge("more", "less".to_owned(), false);
+        assert!(figures(&report).contains("Targets"));
     }
 
     #[test]

@@ -86,7 +86,7 @@ impl Trial {
     /// When the solver refuses the scene.
     pub fn run_once(&self) -> anyhow::Result<Outcome> {
         let Scene { sheet, builder, frame } = self.workload.scene(self.size, &self.setting)?;
-        let mut meter = Meter::new(&sheet, self.size);
+        let mut meter = Meter::new(&sheet, self.size, self.workload.ball());
         let (build, mut solver) = Spent::on(|| Solver::<f32>::new(builder, self.threads as usize));
         let mut stages = StageClock::default();
         let mut frames = Vec::with_capacity(self.frames as usize);

@@ -8,10 +8,11 @@ use nucleus_core::{
     GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Surface,
 };
 
+use super::ball::Ball;
 use super::mesh::{self, Cells};
 
-/// The ball that W2 falls on: its centre and its radius in metres.
-pub const BALL: ([f64; 3], f64) = ([0.0, 0.5, 0.0], 0.35);
+/// The ball that W2 falls on.
+pub const BALL: Ball = Ball { radius: 0.35, start: [0.0, 0.5, 0.0], flight: [0.0; 3] };
 
 /// Mass of all cloth in kg/m².
 pub const DENSITY: f64 = 0.2;
@@ -84,6 +85,11 @@ impl Workload {
         }
     }
 
+    /// What the sheet falls on.
+    pub fn ball(self) -> Option<Ball> {
+        (self == Self::Drape).then_some(BALL)
+    }
+
     /// The scene with `n` by `n` points of cloth.
     ///
     /// # Errors
@@ -106,8 +112,7 @@ impl Workload {
         };
         frame.pins = held.into_iter().map(|point| pin(&sheet, point)).collect();
         if self == Self::Drape {
-            let (centre, radius) = BALL;
-            builder.collider(Collider { surface: mesh::sphere(radius, centre.into()) })?;
+            builder.collider(Collider { surface: mesh::sphere(BALL.radius, BALL.start.into()) })?;
             set_ball_and_ground(&mut frame);
         }
         Ok(Scene { sheet, builder, frame })

@@ -1,7 +1,7 @@
 //! The workloads as scenes: what is timed is what an artist would run. Metres.
 
 use std::fmt::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, fs, io, process};
 
@@ -12,8 +12,9 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
 use super::Workload;
+use crate::bench::ball::Ball;
 use crate::bench::mesh::{self, Cells};
-use crate::bench::workload::{BALL, DENSITY, GRAVITY};
+use crate::bench::workload::{DENSITY, GRAVITY};
 
 /// What is set for a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,44 +78,68 @@ fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
 /// When a mesh cannot be written or the scene is refused.
 pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> anyhow::Result<Program> {
     let sheets = if workload == Workload::Layers { 5 } else { 1 };
-    let mut nodes = String::new();
-    for k in 0..sheets {
-        fs::write(place.0.join(format!("sheet{k}.obj")), obj(&sheet(workload, n, k)))?;
-        let Setting { self_collide, .. } = setting;
-        write!(
-            nodes,
-            r#""mesh{k}": mesh(file: "sheet{k}.obj"),
-            "sheet{k}": nCloth(inputMesh: "mesh{k}", pointMass: {DENSITY}, stretchResistance: 20,
-                compressionResistance: 20, bendResistance: 0, stretchDamp: 0.1, drag: 0, lift: 0,
-                thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
-        )?;
-    }
-    nodes += &others(workload, n, &place.0)?;
-    let (frames, evaluations) = (workload.frames() + 1, setting.evaluations);
-    let plane = workload != Workload::Shot;
-    let text = format!(
-        r#"Scene(time: (start: 1, end: {frames}, fps: 24), nodes: {{
-            "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
-            {nodes}
-        }})"#
-    );
-    let found = read_scene_text(&text, &place.0.join("workload.ron")).and_then(|(scene, _)| compile(&scene));
-    match found {
-        Ok(program) => Ok(program),
-        Err(mistakes) => bail!("{} is refused: {mistakes:?}", workload.name()),
+    let draft = Draft {
+        frames: workload.frames(),
+        plane: workload != Workload::Shot,
+        sheets: (0..sheets).map(|k| sheet(workload, n, k)).collect(),
+        others: others(workload, n, &place)?,
+    };
+    draft.program(setting, &place)
+}
+
+/// A scene that is yet to be written.
+pub struct Draft {
+    pub frames: u32,
+    /// Whether there is a ground at height 0.
+    pub plane: bool,
+    /// The cloths, as they start.
+    pub sheets: Vec<Surface>,
+    /// What they meet and what holds them, as nodes.
+    pub others: String,
+}
+
+impl Draft {
+    /// Writes the scene and compiles it; both sides of a contact together keep 5 mm.
+    ///
+    /// # Errors
+    /// When a mesh cannot be written or the scene is refused.
+    pub fn program(&self, setting: Setting, place: &Place) -> anyhow::Result<Program> {
+        let Setting { evaluations, self_collide } = setting;
+        let mut nodes = String::new();
+        for (k, sheet) in self.sheets.iter().enumerate() {
+            fs::write(place.0.join(format!("sheet{k}.obj")), obj(sheet))?;
+            write!(
+                nodes,
+                r#""mesh{k}": mesh(file: "sheet{k}.obj"),
+                "sheet{k}": nCloth(inputMesh: "mesh{k}", pointMass: {DENSITY}, stretchResistance: 20,
+                    compressionResistance: 20, bendResistance: 0, stretchDamp: 0.1, drag: 0, lift: 0,
+                    thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
+            )?;
+        }
+        let Self { frames, plane, others, .. } = self;
+        let text = format!(
+            r#"Scene(time: (start: 1, end: {}, fps: 24), nodes: {{
+                "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
+                {nodes}
+                {others}
+            }})"#,
+            frames + 1
+        );
+        let file = place.0.join("workload.ron");
+        match read_scene_text(&text, &file).and_then(|(scene, _)| compile(&scene)) {
+            Ok(program) => Ok(program),
+            Err(mistakes) => bail!("a scene of the bench is refused: {mistakes:?}"),
+        }
     }
 }
 
 /// What the sheets meet and what holds them.
-fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
-    // The ball of W4 is smaller and flies.
-    let (centre, radius, keys) = match workload {
-        Workload::Shot => (Vector3::new(0.5, -0.5, 0.0), 0.15, "translateZ: keys([(1, -2), (25, 8)])"),
-        _ => (Vector3::from(BALL.0), BALL.1, "translateZ: 0"),
-    };
-    fs::write(folder.join("ball.obj"), obj(&mesh::sphere(radius, centre)))?;
+fn others(workload: Workload, n: u32, place: &Place) -> anyhow::Result<String> {
+    let ball = workload.ball();
+    fs::write(place.0.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
+    let way = flight(&ball, workload.frames());
     let mut nodes = format!(
-        r#""ballMesh": mesh(file: "ball.obj", {keys}),
+        r#""ballMesh": mesh(file: "ball.obj"{way}),
         "ball": nRigid(inputMesh: "ballMesh", thickness: 0.0025, friction: 0.25),"#
     );
     if workload == Workload::Shot {
@@ -127,6 +152,15 @@ fn others(workload: Workload, n: u32, folder: &Path) -> anyhow::Result<String> {
     Ok(nodes)
 }
 
+/// How a ball that flies is animated over so many frames; a ball that rests is not.
+fn flight(ball: &Ball, frames: u32) -> String {
+    if ball.flight == [0.0; 3] {
+        return String::new();
+    }
+    let [x, y, z] = ball.flight.map(|way| way * f64::from(frames));
+    format!(", translate: keys([(1, (0, 0, 0), linear), ({}, ({x}, {y}, {z}), linear)])", frames + 1)
+}
+
 fn obj(surface: &Surface) -> String {
     let mut text = String::new();
     for place in &surface.positions {
@@ -137,4 +171,34 @@ fn obj(surface: &Surface) -> String {
         text += &format!("f {}\n", corners.join(" "));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::ColliderId;
+    use nucleus_graph::Simulation;
+
+    use super::*;
+
+    /// The middle of the poles of the ball of a run, in metres.
+    fn centre(run: &Simulation<f32>) -> Vector3<f64> {
+        let mut places = Vec::new();
+        run.state().collider_positions(ColliderId(0), 1.0, &mut places);
+        let pole = |place: &[f32; 3]| Vector3::from(place.map(f64::from));
+        (pole(&places[0]) + pole(&places[places.len() - 1])) / 2.0
+    }
+
+    #[test]
+    fn the_ball_that_errors_are_measured_against_is_the_one_that_flies() {
+        for workload in [Workload::Folds, Workload::Shot] {
+            let setting = Setting { evaluations: 6, self_collide: false };
+            let program = program(workload, 5, setting, Place::new().unwrap()).unwrap();
+            let mut run = Simulation::<f32>::new(&program, 1);
+            for frame in 1..=workload.frames().min(24) {
+                run.advance(&mut ());
+                let off = (centre(&run) - workload.ball().centre(f64::from(frame))).norm();
+                assert!(off < 1e-5, "{workload:?}, frame {frame}: {off} m off");
+            }
+        }
+    }
 }

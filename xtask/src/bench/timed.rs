@@ -1,0 +1,108 @@
+//! A scene run on the clock, as an artist would run it.
+
+use nucleus_core::StateView;
+use nucleus_graph::Simulation;
+use nucleus_graph::compile::Program;
+
+use super::memory;
+use nucleus_measure::clock::{STAGES, Spent, StageClock};
+
+/// What came of it; what is not said to be otherwise is of a frame in the mean.
+#[derive(Debug, Clone)]
+pub struct Timed {
+    pub threads: u32,
+    /// Frames that were run.
+    pub frames: u32,
+    /// Seconds in the stepping calls.
+    pub spent: Spent,
+    /// The share of each of [`STAGES`] in the time.
+    pub shares: [f64; STAGES.len()],
+    /// Runs of the broad phase.
+    pub searches: f64,
+    /// Pairs that could touch, over all runs of the broad phase.
+    pub pairs: f64,
+    /// The same in the frame that had most.
+    pub most_pairs: u64,
+    /// Contacts that pushed, over all passes.
+    pub contacts: f64,
+    /// The most memory that the process held, in bytes; nothing where the system does not tell.
+    pub memory: Option<u64>,
+    /// All bits of the state after the last frame.
+    pub hash: u64,
+}
+
+impl Timed {
+    /// Runs a scene, the first `frames` of it or all, and shows the state after each to `seen`.
+    pub fn run(
+        program: &Program,
+        threads: u32,
+        frames: Option<u32>,
+        mut seen: impl FnMut(&dyn StateView),
+    ) -> Self {
+        memory::forget();
+        let mut run = Simulation::<f32>::new(program, threads as usize);
+        let mut stages = StageClock::default();
+        let mut all = Self::begun(threads);
+        while frames.map_or(!run.is_done(), |frames| all.frames < frames) {
+            let (spent, account) = Spent::on(|| {
+                let account = run.advance(&mut stages).report;
+                stages.stop();
+                account
+            });
+            all.frames += 1;
+            all.spent.wall += spent.wall;
+            all.spent.processor += spent.processor;
+            all.searches += f64::from(account.broad_phases);
+            all.pairs += account.pairs as f64;
+            all.most_pairs = all.most_pairs.max(account.pairs);
+            all.contacts += account.contacts as f64;
+            seen(run.state());
+        }
+        let hash = state_hash(&run);
+        Self { shares: stages.shares(), memory: memory::most(), hash, ..all.in_the_mean() }
+    }
+
+    /// Milliseconds: of the processor with one thread, on the wall with more.
+    pub fn ms(&self) -> f64 {
+        1e3 * if self.threads == 1 { self.spent.processor } else { self.spent.wall }
+    }
+
+    /// The most memory that the process held, in megabytes.
+    pub fn megabytes(&self) -> f64 {
+        self.memory.map_or(f64::NAN, |bytes| bytes as f64 / 1e6)
+    }
+
+    /// Nothing run yet.
+    fn begun(threads: u32) -> Self {
+        Self {
+            threads,
+            frames: 0,
+            spent: Spent::default(),
+            shares: Default::default(),
+            searches: 0.0,
+            pairs: 0.0,
+            most_pairs: 0,
+            contacts: 0.0,
+            memory: None,
+            hash: 0,
+        }
+    }
+
+    fn in_the_mean(self) -> Self {
+        let mean = |all: f64| all / f64::from(self.frames.max(1));
+        Self {
+            spent: Spent { wall: mean(self.spent.wall), processor: mean(self.spent.processor) },
+            searches: mean(self.searches),
+            pairs: mean(self.pairs),
+            contacts: mean(self.contacts),
+            ..self
+        }
+    }
+}
+
+/// All bits of the state of a run, of all its nuclei.
+pub fn state_hash(run: &Simulation<f32>) -> u64 {
+    let mut solvers = run.solvers().map(|solver| solver.state_hash());
+    let first = solvers.next().unwrap_or_default();
+    solvers.fold(first, |all, one| all.rotate_left(1) ^ one)
+}
