@@ -19,7 +19,7 @@ const TUG: f64 = 1.0 / 64.0;
 const TORN: f64 = 0.25;
 /// Parts of a time step, at most: for a leap, and for what is torn at.
 const MOST_PARTS: f64 = 256.0;
-const MOST_PULLS: f64 = 16.0;
+const MOST_PULLS: f64 = 8.0;
 
 impl<R: Real> Solver<R> {
     /// Into how many parts a time step is to be split.

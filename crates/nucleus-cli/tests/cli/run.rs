@@ -102,9 +102,12 @@ fn what_an_audit_finds_is_trouble_and_is_named() {
     let output = nucleus(folder.path(), &["run", "drape.ron", "--audit", "--json"]);
     let last =
         stdout(&output).lines().last().map(|line| serde_json::from_str::<Value>(line).unwrap()).unwrap();
-    // Every time step of four frames is looked at: 96 evaluations in each.
+    // Every time step of four frames is looked at: 96 evaluations in each, and up to eight parts of those in which the
+    // ball tears at the sheet.
     let audit = &last["summary"]["audit"];
-    assert_eq!((output.status.code(), &audit["steps"]), (Some(1), &Value::from(384)), "{audit}");
+    let steps = audit["steps"].as_u64().expect("a count");
+    assert!(steps > 384 && steps <= 8 * 384, "{audit}");
+    assert_eq!(output.status.code(), Some(1), "{audit}");
     let first = audit["first"].as_str().expect("there is a first");
     assert!(
         first.starts_with("frame ") && first.contains("cloth1.vtx[") && first.contains("rigid1.vtx["),
