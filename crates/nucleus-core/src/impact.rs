@@ -14,8 +14,8 @@ use crate::solver::Solver;
 const LEAP: f64 = 1.0;
 /// Edge lengths that it has to go in a time step to tear at a cloth.
 const TUG: f64 = 1.0 / 64.0;
-/// Strain of a link from which on it is torn at. A sweep pulls a point by so much of its distance; what a step in parts
-/// can hold grows with the square of their number.
+/// Strain of a link from which on it is torn at. A sweep makes a link no stiffer than m / 2h², however stiff the cloth
+/// is: what it can hold grows with the square of the parts.
 const TORN: f64 = 0.25;
 /// Parts of a time step, at most: for a leap, and for what is torn at.
 const MOST_PARTS: f64 = 256.0;
