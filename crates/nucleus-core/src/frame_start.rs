@@ -18,6 +18,9 @@ impl<R: Real> Solver<R> {
             self.hold(pin, frame.duration);
         }
         self.anchor_rows();
+        if let Some(mutual) = &mut self.mutual {
+            mutual.active.follow(&self.state.anchor);
+        }
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);
         }
@@ -46,8 +49,10 @@ impl<R: Real> Solver<R> {
         let row = self.cloths[pin.cloth.index()].place(pin.point.index()) as usize;
         let start: [f64; 3] = pin.start.into();
         // Put somewhere else, it is foreseen nowhere.
-        if self.state.anchor[row] != start && !self.strayed.is_empty() {
-            self.strayed[row] = true;
+        if self.state.anchor[row] != start {
+            let strayed = [Some(&mut self.strayed), self.mutual.as_mut().map(|mutual| &mut mutual.strayed)];
+            let of_row = strayed.into_iter().flatten().filter_map(|strayed| strayed.get_mut(row));
+            of_row.for_each(|strayed| *strayed = true);
         }
         self.state.anchor[row] = start;
         self.state.displacement[row].0[3] = R::ZERO;

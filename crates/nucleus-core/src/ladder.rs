@@ -122,10 +122,10 @@ impl<R: Real> Solver<R> {
         let Some(mutual) = self.mutual.as_ref().filter(|mutual| mutual.is_on()) else { return };
         let active = &mutual.active;
         let terms = &mutual.terms[..];
-        active.point_face.list.iter().for_each(|near| self.meets(near, terms, ladder));
-        active.edge_edge.list.iter().for_each(|near| self.meets(near, terms, ladder));
-        active.point_edge.list.iter().for_each(|near| self.meets(near, terms, ladder));
-        active.point_point.list.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.point_face.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.edge_edge.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.point_edge.iter().for_each(|near| self.meets(near, terms, ladder));
+        active.point_point.iter().for_each(|near| self.meets(near, terms, ladder));
         for crossing in &mutual.tangle.crossings {
             let corners = crossing.edge.iter().chain(&crossing.face);
             corners.for_each(|&point| ladder.climb(point, Contact::Tangled));

@@ -174,7 +174,7 @@ impl<R: Real> Solver<R> {
 
     fn limited(&self) -> u64 {
         let Some(mutual) = &self.mutual else { return 0 };
-        mutual.candidates.list.iter().filter(|candidate| candidate.limited).count() as u64
+        mutual.active.limited()
     }
 
     /// The smallest distance to a collider or the plane, over the thickness.

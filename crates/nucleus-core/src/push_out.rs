@@ -5,8 +5,9 @@
 
 use nalgebra::Vector3;
 
+use crate::collision::aabb::Aabb;
 use crate::collision::narrow::closest_on_triangle;
-use crate::collision::tree::{Aabb, Tree};
+use crate::collision::tree::Tree;
 use crate::frame::{FrameInput, PushOut};
 use crate::scalar::Real;
 use crate::solver::Solver;
@@ -68,7 +69,7 @@ impl<R: Real> Solver<R> {
         if is_moved {
             self.windows.fill([0.0; 2]);
             if let Some(mutual) = &mut self.mutual {
-                mutual.window = [0.0; 2];
+                mutual.span = [0.0; 2];
                 mutual.tangle.is_suspected = true;
             }
         }

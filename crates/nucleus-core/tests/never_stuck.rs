@@ -105,7 +105,7 @@ fn two_in_empty_space(surfaces: [nucleus_core::Surface; 2], crossover_push: f64)
     let mut solver = Solver::<f32>::new(builder, 1);
     let cloth = ClothFrame { thickness: 0.004, damp: 1.0, bend_resistance: 0.1, crossover_push, ..still() };
     let input = FrameInput { gravity: Vec3::zeros(), cloths: vec![cloth; 2], ..frame(3, physical(96.0)) };
-    (0..48).map(|_| solver.step(&input, &mut ())).collect()
+    (0..96).map(|_| solver.step(&input, &mut ())).collect()
 }
 
 /// Two sheets that cut each other at a slant; the second turned over where `flipped`.

@@ -3,6 +3,7 @@
 
 use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
+use crate::collision::search::GROUP;
 use crate::model::{ClothModel, ColliderModel};
 use crate::scalar::Real;
 use crate::solver::Solver;
@@ -20,7 +21,7 @@ impl<R: Real> Solver<R> {
 }
 
 fn pairs_fit<R: Real>(list: &PairList<R>, cloth: &ClothModel<R>, collider: &ColliderModel) -> bool {
-    let (groups, points) = (cloth.skin.groups().count(), cloth.points());
+    let (groups, points) = (cloth.skin.groups(GROUP).count(), cloth.points());
     let is_ours = |ours: &[u32]| ours.iter().all(|point| points.contains(point));
     let is_theirs = |theirs: &[u32]| theirs.iter().all(|&point| (point as usize) < collider.positions.len());
     let fits = |group: u32, ours: &[u32], theirs: &[u32]| {
@@ -35,7 +36,7 @@ fn pairs_fit<R: Real>(list: &PairList<R>, cloth: &ClothModel<R>, collider: &Coll
 }
 
 fn mutual_fits<R: Real>(mutual: &Mutual<R>, cloths: &[ClothModel<R>]) -> bool {
-    let Mutual { terms, candidates, tangle, bodies, .. } = mutual;
+    let Mutual { terms, tangle, bodies, active, .. } = mutual;
     let rows = mutual.strayed.len();
     // Stand-ins are between the points of one cloth and those of the next.
     let mut is_point = vec![false; rows];
@@ -44,7 +45,10 @@ fn mutual_fits<R: Real>(mutual: &Mutual<R>, cloths: &[ClothModel<R>]) -> bool {
         points.iter().all(|&point| is_point.get(point as usize).is_some_and(|&is_point| is_point))
     };
     (terms.is_empty() || terms.len() == cloths.len() * cloths.len())
-        && candidates.list.iter().all(|candidate| are_points(&candidate.points))
+        && active.point_face.iter().all(|near| near.fits(are_points, terms.len()))
+        && active.edge_edge.iter().all(|near| near.fits(are_points, terms.len()))
+        && active.point_edge.iter().all(|near| near.fits(are_points, terms.len()))
+        && active.point_point.iter().all(|near| near.fits(are_points, terms.len()))
         && tangle.crossings.iter().all(|crossing| {
             are_points(&crossing.edge) && are_points(&crossing.wings) && are_points(&crossing.face)
         })

@@ -143,12 +143,11 @@ kept!([R: Real] PairList<R> {
     anew: [cloth, collider, by_point, active, searched, again, tasks],
 });
 
-// Contacts are picked anew in the first window of a frame.
 kept!([R: Real] Mutual<R> {
-    columns: [strayed],
-    values: [terms],
-    parts: [bodies, far, candidates, tangle],
-    anew: [near, window, left, active, held],
+    columns: [strayed, begun],
+    values: [terms, span],
+    parts: [bodies, paths, active, tangle],
+    anew: [room, held],
 });
 
 impl<R: Real> PairList<R> {

@@ -2,7 +2,6 @@
 
 use super::item::{Item, Reader, item};
 use super::kept::kept;
-use crate::collision::mutual::candidate::{Candidate, Kind};
 use crate::collision::mutual::paths::Paths;
 use crate::collision::mutual::tangle::{Crossing, Remedy};
 use crate::collision::terms::Terms;
@@ -26,8 +25,6 @@ item!([R: Real] Terms<R> {
     strength: [R; 2], untangling: f64, traps: bool, mobility: [R; 2], elements: [Elements; 2], edges: bool,
 });
 
-item!([] Candidate { kind: Kind, points: [u32; 4], thickness: f32, limited: bool });
-
 item!([] Crossing { edge: [u32; 2], wings: [u32; 2], face: [u32; 3], remedy: Remedy });
 
 /// Names as numbers. A name that is added comes last.
@@ -50,7 +47,6 @@ macro_rules! names {
 }
 
 names!(Elements { Elements::Points = 0, Elements::Edges = 1, Elements::Faces = 2 });
-names!(Kind { Kind::PointPoint = 0, Kind::PointEdge = 1, Kind::PointFace = 2, Kind::EdgeEdge = 3 });
 
 impl Item for Remedy {
     const SIZE: usize = 1;

@@ -3,7 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::tree::{Aabb, Tree};
+use super::aabb::Aabb;
+use super::tree::Tree;
 use crate::checkpoint::kept;
 use crate::model::ColliderModel;
 

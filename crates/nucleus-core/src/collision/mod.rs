@@ -3,7 +3,7 @@
 //! | Stage | Read |
 //! |---|---|
 //! | where each point is foreseen to be | [`foresee`] |
-//! | a collider's motion, and boxes over it through a span of time | [`collider`], [`tree`] |
+//! | a collider's motion, and boxes over it through a span of time | [`collider`], [`tree`], [`aabb`] |
 //! | elements of one object, in groups | [`skin`] |
 //! | broad phase: which elements can touch in this span | [`search`], [`pairs`] |
 //! | narrow phase: how close two elements are | [`narrow`] |
@@ -17,6 +17,7 @@
 //! | on which terms two objects meet, and maps of them | [`terms`], [`maps`] |
 //! | one collision pass | [`resolve`] |
 
+pub mod aabb;
 pub mod bounce;
 pub mod collider;
 pub mod contact;

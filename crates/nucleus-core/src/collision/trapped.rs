@@ -6,10 +6,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::aabb::Aabb;
 use super::collider::ColliderState;
 use super::contact::Step;
 use super::narrow::closest_on_triangle;
-use super::tree::Aabb;
 use crate::checkpoint::item;
 use crate::model::ColliderModel;
 use crate::scalar::Real;

@@ -1,95 +1,13 @@
-//! The bounding tree of a collider: boxes over its triangles through space and time.
+//! The bounding tree of an object: boxes over its elements through space and time.
 //!
-//! Built once, by sorting the triangles along a Morton curve, four to a leaf; a moving collider is only
+//! Built once, by halving the triangles across their longest side, four to a leaf; a moving collider is only
 //! refitted. Nodes stand in heap order: the children of node k are 2k + 1 and 2k + 2.
 
 use nalgebra::Vector3;
 
-use crate::checkpoint::{item, kept};
-use crate::model::Order;
-
-/// An axis-aligned box in metres, relative to some origin. In single precision, rounded outwards; the fourth
-/// number is always nought, so that a box is two aligned loads.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C, align(16))]
-pub struct Aabb {
-    low: [f32; 4],
-    high: [f32; 4],
-}
-
-impl Aabb {
-    /// The box that holds nothing and meets nothing.
-    pub const EMPTY: Self = Self {
-        low: [f32::INFINITY, f32::INFINITY, f32::INFINITY, 0.0],
-        high: [f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY, 0.0],
-    };
-
-    /// A box by its corners, rounded outwards.
-    pub fn new(low: Vector3<f64>, high: Vector3<f64>) -> Self {
-        let down = |x: f64| (x - x.abs() * 1e-7) as f32;
-        let up = |x: f64| (x + x.abs() * 1e-7) as f32;
-        Self {
-            low: [down(low.x), down(low.y), down(low.z), 0.0],
-            high: [up(high.x), up(high.y), up(high.z), 0.0],
-        }
-    }
-
-    /// The smallest box round some points, rounded outwards.
-    pub fn of(points: impl Iterator<Item = Vector3<f64>>) -> Self {
-        points.map(|point| Self::new(point, point)).fold(Self::EMPTY, Self::union)
-    }
-
-    /// The box round a ball.
-    #[inline(always)]
-    pub fn ball(centre: [f32; 3], radius: f32) -> Self {
-        let [x, y, z] = centre;
-        let low = [x - radius, y - radius, z - radius, 0.0];
-        Self { low, high: [x + radius, y + radius, z + radius, 0.0] }
-    }
-
-    /// The smallest box round two.
-    #[inline(always)]
-    pub fn union(self, other: Self) -> Self {
-        let low =
-            std::array::from_fn(|k| if other.low[k] < self.low[k] { other.low[k] } else { self.low[k] });
-        let high =
-            std::array::from_fn(|k| if other.high[k] > self.high[k] { other.high[k] } else { self.high[k] });
-        Self { low, high }
-    }
-
-    /// The box with `margin` added on every side.
-    #[inline(always)]
-    pub fn inflate(self, margin: f32) -> Self {
-        let margin = [margin, margin, margin, 0.0];
-        Self {
-            low: std::array::from_fn(|k| self.low[k] - margin[k]),
-            high: std::array::from_fn(|k| self.high[k] + margin[k]),
-        }
-    }
-    /// Whether something that moves from one box to another, each of its points along a straight line, may
-    /// meet something else that does. Boxes that are apart on one side all the time cannot.
-    #[inline(always)]
-    pub fn may_meet(ours: &[Self; 2], theirs: &[Self; 2]) -> bool {
-        // All four numbers, though the last says nothing: four are compared at once.
-        let mut apart = [false; 4];
-        for (k, apart) in apart.iter_mut().enumerate() {
-            let above = (ours[0].low[k] > theirs[0].high[k]) & (ours[1].low[k] > theirs[1].high[k]);
-            let below = (ours[0].high[k] < theirs[0].low[k]) & (ours[1].high[k] < theirs[1].low[k]);
-            *apart = above | below;
-        }
-        apart == [false; 4]
-    }
-
-    /// Whether two boxes have a point in common.
-    #[inline(always)]
-    pub fn meets(&self, other: &Self) -> bool {
-        let mut overlaps = [false; 4];
-        for (k, overlaps) in overlaps.iter_mut().enumerate() {
-            *overlaps = (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k]);
-        }
-        overlaps == [true; 4]
-    }
-}
+use super::aabb::Aabb;
+use crate::checkpoint::kept;
+use crate::model::by_halves;
 
 /// Triangles to a leaf.
 const LEAF: usize = 4;
@@ -104,15 +22,12 @@ pub struct Tree {
     leaves: usize,
 }
 
-item!([] Aabb { low: [f32; 4], high: [f32; 4] });
-
 kept!([] Tree { columns: [triangles], values: [], parts: [], anew: [nodes, leaves] });
 
 impl Tree {
     /// A tree over triangles with these centres. The boxes are empty until [`Tree::refit`].
     pub fn new(centres: &[Vector3<f64>]) -> Self {
-        let order = Order::morton(centres);
-        let triangles: Vec<u32> = (0..order.len()).map(|place| order.user(place) as u32).collect();
+        let triangles = by_halves(centres, LEAF);
         let leaves = triangles.len().div_ceil(LEAF).next_power_of_two();
         Self { triangles, nodes: vec![Aabb::EMPTY; 2 * leaves - 1], leaves }
     }

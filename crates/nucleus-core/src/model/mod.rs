@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-pub use order::Order;
+pub use order::{Order, by_halves};
 pub use outside::Outside;
 pub use rows::{Blocks, Part, Row, RowList};
 pub use shares::{Factors, Shares};
@@ -20,7 +20,7 @@ pub use topology::{
 
 use crate::air::AirFactors;
 use crate::builder::{Cloth, Collider, Mass};
-use crate::collision::skin::Skin;
+use crate::collision::skin::{Skin, by_place};
 use crate::constraints::hinge::{self, HingeGroup};
 use crate::constraints::shear;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
@@ -115,7 +115,9 @@ impl<R: Real> ClothModel<R> {
             model.triangles = triangles_by_block(surface, place, &model.blocks);
         }
         if collides {
-            let triangles = surface.faces.triangles().map(|t| t.map(place)).collect();
+            let triangles: Vec<_> = surface.faces.triangles().collect();
+            let place_at = |point: u32| surface.positions[point as usize];
+            let triangles = by_place(&triangles, place_at).into_iter().map(|t| t.map(place)).collect();
             model.skin = Skin::new(triangles, model.points());
             model.edge_length = mean_length(surface);
         }
@@ -158,7 +160,8 @@ pub struct ColliderModel {
 impl ColliderModel {
     /// Compiles a collider.
     pub fn new(collider: Collider) -> Self {
-        let triangles = collider.surface.faces.triangles().collect();
+        let triangles: Vec<_> = collider.surface.faces.triangles().collect();
+        let triangles = by_place(&triangles, |point| collider.surface.positions[point as usize]);
         let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
         let outside = Outside::of(&skin);
         Self { positions: collider.surface.positions, skin, outside }

@@ -30,11 +30,6 @@ impl Order {
         Self { user, place }
     }
 
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.user.len()
-    }
-
     /// The user's point at a place of the solver.
     pub fn user(&self, place: usize) -> usize {
         self.user[place] as usize
@@ -49,6 +44,40 @@ impl Order {
     pub fn places(&self) -> &[u32] {
         &self.place
     }
+}
+
+/// Things in leaves of so many, by where they are: halved across the longest side again and again, so that each leaf, and
+/// each half of any, lies together. The lower half is as large as a full tree of leaves; what is over is in the upper one.
+pub fn by_halves(centres: &[Vector3<f64>], leaf: usize) -> Vec<u32> {
+    let zero = centres.first().copied().unwrap_or_default();
+    let (low, high) = centres.iter().fold((zero, zero), |(low, high), p| (low.inf(p), high.sup(p)));
+    let scale = STEPS / (high - low).max().max(f64::MIN_POSITIVE);
+    // In steps, so that places a rounding apart count as one wherever the whole lies.
+    let cells: Vec<[i64; 3]> =
+        centres.iter().map(|p| ((p - low) * scale).map(|x| x.round() as i64).into()).collect();
+    let mut order: Vec<u32> = (0..centres.len() as u32).collect();
+    halve(&mut order, &cells, leaf);
+    order
+}
+
+/// Steps along the longest side of the bounding box that places are told apart by when they are halved.
+const STEPS: f64 = 1e6;
+
+fn halve(order: &mut [u32], cells: &[[i64; 3]], leaf: usize) {
+    if order.len() <= leaf {
+        return order.sort_unstable();
+    }
+    let half = leaf * order.len().div_ceil(leaf).next_power_of_two() / 2;
+    let cell = |at: u32| cells[at as usize];
+    let side = |axis: usize| {
+        let along = || order.iter().map(|&at| cell(at)[axis]);
+        along().max().unwrap_or(0) - along().min().unwrap_or(0)
+    };
+    let axis = (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest });
+    order.select_nth_unstable_by_key(half, |&at| (cell(at)[axis], at));
+    let (lower, upper) = order.split_at_mut(half);
+    halve(lower, cells, leaf);
+    halve(upper, cells, leaf);
 }
 
 /// Cells along the longest side of the bounding box.
@@ -76,6 +105,21 @@ mod tests {
         ) {
             let order = Order::morton(&points.iter().map(|&p| p.into()).collect::<Vec<_>>());
             prop_assert!((0..points.len()).all(|point| order.user(order.place(point) as usize) == point));
+        }
+    }
+
+    #[test]
+    fn the_leaves_of_a_grid_that_is_halved_are_squares() {
+        let grid: Vec<_> =
+            (0..32 * 32).map(|k| Vector3::new(f64::from(k % 32), 0.0, f64::from(k / 32))).collect();
+        let order = by_halves(&grid, 16);
+        let mut all = order.clone();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..32 * 32), "each is there once");
+        for leaf in order.chunks(16) {
+            let places = || leaf.iter().map(|&at| grid[at as usize]);
+            let (low, high) = (places().reduce(|a, b| a.inf(&b)), places().reduce(|a, b| a.sup(&b)));
+            assert_eq!(high.zip(low).map(|(high, low)| high - low), Some(Vector3::new(3.0, 0.0, 3.0)));
         }
     }
 

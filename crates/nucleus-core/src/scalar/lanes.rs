@@ -18,6 +18,12 @@ pub trait Lanes<R>:
     fn sqrt(self) -> Self;
     /// Lane by lane: `above` where `self` is above nought, else `below`.
     fn choose_by_sign(self, above: Self, below: Self) -> Self;
+    /// The lesser of each two.
+    fn least(self, other: Self) -> Self;
+    /// The larger of each two.
+    fn most(self, other: Self) -> Self;
+    /// A bit for each that is above nought.
+    fn above_zero(self) -> u32;
     /// Rows to columns.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
     /// The last of the four, four times.
@@ -89,6 +95,18 @@ impl<R: Real> Lanes<R> for Quad<R> {
     fn choose_by_sign(self, above: Self, below: Self) -> Self {
         let pick = |k: usize| if self.0[k] > R::ZERO { above.0[k] } else { below.0[k] };
         Self([pick(0), pick(1), pick(2), pick(3)])
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn above_zero(self) -> u32 {
+        (0..4).map(|k| u32::from(self.0[k] > R::ZERO) << k).sum()
     }
     #[inline(always)]
     fn transpose(rows: [Self; 4]) -> [Self; 4] {

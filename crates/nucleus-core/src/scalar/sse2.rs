@@ -5,9 +5,9 @@
 #![allow(unsafe_code)]
 
 use std::arch::x86_64::{
-    __m128, _mm_add_ps, _mm_and_ps, _mm_andnot_ps, _mm_cmpgt_ps, _mm_div_ps, _mm_loadu_ps, _mm_movehl_ps,
-    _mm_movelh_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps, _mm_setzero_ps, _mm_shuffle_ps, _mm_sqrt_ps,
-    _mm_storeu_ps, _mm_sub_ps, _mm_unpackhi_ps, _mm_unpacklo_ps,
+    __m128, _mm_add_ps, _mm_and_ps, _mm_andnot_ps, _mm_cmpgt_ps, _mm_div_ps, _mm_loadu_ps, _mm_max_ps,
+    _mm_min_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps,
+    _mm_setzero_ps, _mm_shuffle_ps, _mm_sqrt_ps, _mm_storeu_ps, _mm_sub_ps, _mm_unpackhi_ps, _mm_unpacklo_ps,
 };
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -67,6 +67,19 @@ impl Lanes<f32> for F32x4 {
         })
     }
     #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        Self(unsafe { _mm_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        Self(unsafe { _mm_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn above_zero(self) -> u32 {
+        // Four bits.
+        unsafe { _mm_movemask_ps(_mm_cmpgt_ps(self.0, _mm_setzero_ps())) as u32 }
+    }
+    #[inline(always)]
     fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
         unsafe {
             let (ab_low, ab_high) = (_mm_unpacklo_ps(a.0, b.0), _mm_unpackhi_ps(a.0, b.0));
@@ -109,6 +122,9 @@ mod tests {
             prop_assert!(same(F32x4::from_array(positive).sqrt(), Quad(positive).sqrt()));
             prop_assert!(same(ra.choose_by_sign(rb, ra), qa.choose_by_sign(qb, qa)));
             prop_assert!(same(ra.splat_last(), qa.splat_last()));
+            prop_assert!(same(ra.least(rb), qa.least(qb)));
+            prop_assert!(same(ra.most(rb), qa.most(qb)));
+            prop_assert_eq!(ra.above_zero(), qa.above_zero());
             let rows = [a, b, c, d];
             let r = F32x4::transpose(rows.map(F32x4::from_array));
             let q = Quad::transpose(rows.map(Quad));

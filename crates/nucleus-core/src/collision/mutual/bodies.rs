@@ -2,13 +2,17 @@
 
 use nalgebra::Vector3;
 
-use super::local::Boxes;
-use super::stars::Stars;
+use super::lists::Lists;
+use super::seen::Seen;
 use crate::checkpoint::kept;
+use crate::collision::aabb::{Aabb, Boxes};
 use crate::collision::skin::Group;
-use crate::collision::tree::{Aabb, Tree};
+use crate::collision::tree::Tree;
 use crate::model::ClothModel;
 use crate::scalar::Real;
+
+/// Triangles to a group.
+const GROUP: usize = 8;
 
 /// A group of elements and the cloth it belongs to.
 #[derive(Debug, Clone)]
@@ -28,8 +32,10 @@ pub struct Bodies {
     pub tree: Option<Tree>,
     /// Boxes round each group at the start and at the end of what is foreseen.
     pub around: Vec<Boxes>,
-    /// The elements of each point.
-    pub stars: Stars,
+    /// The groups that have an element of each point; none for rows that are no point.
+    pub of_point: Lists,
+    /// Whether each point is of no face.
+    pub is_free: Vec<bool>,
     /// The points of each group's elements, and where they end in that column.
     pub points: Vec<u32>,
     ends: Vec<u32>,
@@ -49,7 +55,7 @@ kept!([] Bodies {
     columns: [around, rest],
     values: [],
     parts: [tree],
-    anew: [groups, points, ends, block, cloth, edge_length, blocks, stars],
+    anew: [groups, points, ends, block, cloth, edge_length, blocks, of_point, is_free],
 });
 
 impl Bodies {
@@ -60,11 +66,13 @@ impl Bodies {
             block: vec![0; rows],
             cloth: vec![0; rows],
             rest: vec![[0.0; 3]; rows],
-            stars: Stars::new(cloths, rows),
+            is_free: vec![true; rows],
             ..Self::default()
         };
         for (cloth, model) in (0..).zip(cloths) {
-            all.groups.extend(model.skin.groups().map(|group| Body { cloth, group }));
+            all.groups.extend(model.skin.groups(GROUP).map(|group| Body { cloth, group }));
+            let corners = model.skin.triangles.iter().flatten();
+            corners.for_each(|&corner| all.is_free[corner as usize] = false);
             let points = model.points();
             all.cloth[points.start as usize..points.end as usize].fill(cloth);
             for block in 0..model.blocks.len() {
@@ -83,6 +91,19 @@ impl Bodies {
     pub fn points_of(&self, group: usize) -> &[u32] {
         let from = group.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.points[from as usize..self.ends[group] as usize]
+    }
+
+    /// Writes the groups that have an element of some points, in their order.
+    pub fn groups_of(&self, points: impl Iterator<Item = u32>, groups: &mut Vec<u32>) {
+        groups.clear();
+        points.for_each(|point| groups.extend(self.of_point.of(point)));
+        groups.sort_unstable();
+        groups.dedup();
+    }
+
+    /// Sets what is round a group.
+    pub fn look(&mut self, group: u32, seen: &Seen, margin: f32) {
+        self.around[group as usize] = seen.bound(self.points_of(group as usize), margin);
     }
 
     /// Fits the tree to what is round the groups.
@@ -125,6 +146,10 @@ impl Bodies {
             self.points.truncate(kept);
             self.ends.push(kept as u32);
         }
+        let groups = 0..self.groups.len();
+        let pairs =
+            groups.flat_map(|group| self.points_of(group).iter().map(move |&point| (point, group as u32)));
+        self.of_point = Lists::new(anchors.len(), pairs);
         let centre = |group: usize| {
             let points = self.points_of(group);
             let sum: Vector3<f64> = points.iter().map(|&point| Vector3::from(anchors[point as usize])).sum();

@@ -1,11 +1,8 @@
-//! A small group of elements as a search sees it: boxes round what is foreseen for each.
+//! A group of elements as a search sees it: boxes round what is foreseen for each, side by side.
 
 use super::search::Search;
-use crate::collision::tree::Aabb;
+use crate::collision::aabb::{Aabb, Boxes, Four};
 use crate::scalar::Real;
-
-/// Boxes round something at the start and at the end of what is foreseen.
-pub type Boxes = [Aabb; 2];
 
 /// A group of elements.
 #[derive(Debug, Default)]
@@ -13,24 +10,57 @@ pub struct Local {
     /// Which; none where this is room for one.
     group: Option<u32>,
     /// Round its points.
-    pub points: Vec<Boxes>,
+    pub points: Row,
     /// Round its edges.
-    pub edges: Vec<Boxes>,
+    pub edges: Row,
     /// Round its triangles.
-    pub triangles: Vec<Boxes>,
+    pub triangles: Row,
+    /// Whether something new is foreseen for all points of its elements.
+    pub is_all_new: bool,
+}
+
+/// Boxes on their ways, by four.
+#[derive(Debug, Default)]
+pub struct Row {
+    fours: Vec<Four>,
+}
+
+impl Row {
+    /// Puts the boxes of other things in place of all.
+    pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> Boxes) {
+        let four = |things: &[T]| {
+            let mut four = [[Aabb::EMPTY; 2]; 4];
+            four.iter_mut().zip(things).for_each(|(place, thing)| *place = boxes(thing));
+            Four::of(&four)
+        };
+        self.fours.clear();
+        self.fours.extend(things.chunks(4).map(four));
+    }
+
+    /// Calls `found` with the place of each that something in these boxes may meet.
+    #[inline(always)]
+    pub fn met_by(&self, boxes: &Boxes, mut found: impl FnMut(usize)) {
+        for (four, all) in self.fours.iter().enumerate() {
+            let mut met = all.met_by(boxes);
+            while met != 0 {
+                found(4 * four + met.trailing_zeros() as usize);
+                met &= met - 1;
+            }
+        }
+    }
 }
 
 impl Local {
     /// Looks at a group.
     fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) {
         let (skin, elements) = search.elements(group);
-        let bound = |element: &[u32]| search.bound(element.iter().copied());
-        let Self { group: which, points, edges, triangles } = self;
-        *which = Some(group);
-        [&mut *points, &mut *edges, &mut *triangles].into_iter().for_each(Vec::clear);
-        triangles.extend(skin.triangles[elements.triangles.clone()].iter().map(|corners| bound(corners)));
-        edges.extend(skin.edges[elements.edges.clone()].iter().map(|ends| bound(ends)));
-        points.extend(skin.points[elements.points.clone()].iter().map(|&point| bound(&[point])));
+        let points = &skin.points[elements.points.clone()];
+        self.group = Some(group);
+        self.triangles.fill(&skin.triangles[elements.triangles.clone()], |corners| search.bound(corners));
+        self.edges.fill(&skin.edges[elements.edges.clone()], |ends| search.bound(ends));
+        self.points.fill(points, |&point| search.bound(&[point]));
+        self.is_all_new =
+            search.bodies.points_of(group as usize).iter().all(|&point| search.is_new(&[point]));
     }
 }
 

@@ -4,10 +4,9 @@
 //! |---|---|
 //! | who meets whom, at which thickness and friction | [`terms`](super::terms) |
 //! | the elements of all cloths in one tree | [`bodies`] |
-//! | which elements have a point | [`stars`] |
-//! | where each point is foreseen to go | [`paths`] |
-//! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`candidate`] |
-//! | which of these can touch within the next few time steps | [`active`] |
+//! | where each point is foreseen to go | [`paths`], [`ahead`] |
+//! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`local`], [`seen`], [`ways`] |
+//! | the contacts that were found, by kind and by task | [`active`], [`contacts`] |
 //! | one contact: pushed apart, with friction, and proven | [`near`] |
 //! | what sticks, and what bounces | [`stick`], [`bounce`] |
 //! | free points, which can go far in a step | [`swept`] |
@@ -19,31 +18,34 @@
 //! ends of the step, nothing passed in between.
 
 pub mod active;
+pub mod ahead;
 pub mod bodies;
 mod bounce;
-pub mod candidate;
+pub mod contacts;
 pub mod crossings;
+mod lists;
 mod local;
 pub mod near;
 pub mod paths;
 mod pieces;
 pub mod search;
+mod seen;
 mod sought;
-mod stars;
 mod stick;
 mod swept;
 pub mod tangle;
 pub mod tasks;
+mod ways;
 
 use active::Active;
 use bodies::Bodies;
 use paths::Paths;
-use search::Candidates;
+use search::Room;
 use tangle::Tangle;
 
 use crate::collision::terms::Terms;
 use crate::model::ClothModel;
-use crate::scalar::Real;
+use crate::scalar::{Real, Row4};
 
 /// Everything that contact among cloths keeps; empty where a scene has none.
 pub struct Mutual<R> {
@@ -51,20 +53,18 @@ pub struct Mutual<R> {
     pub bodies: Bodies,
     /// Who meets whom in this frame, by cloth and cloth.
     pub terms: Vec<Option<Terms<R>>>,
-    /// Where each point is foreseen to go in the frame, and in the next few time steps.
-    pub far: Paths<R>,
-    /// The latter.
-    pub near: Paths<R>,
-    /// Start and end of the next few time steps, as shares of the frame.
-    pub window: [f64; 2],
-    /// Points that do not keep to what was foreseen for them in the frame.
+    /// Where each point is foreseen to go in the span.
+    pub paths: Paths<R>,
+    /// Displacements as the span began.
+    pub begun: Vec<Row4<R>>,
+    /// Start and end of a few time steps, as shares of the frame.
+    pub span: [f64; 2],
+    /// Points that do not keep to what was foreseen for them.
     pub strayed: Vec<bool>,
-    /// The same for the window.
-    pub left: Vec<bool>,
-    /// Pairs that can touch in the frame.
-    pub candidates: Candidates,
-    /// Those of them that can touch in the window.
+    /// All that can touch in the span.
     pub active: Active<R>,
+    /// Where that is searched for.
+    pub room: Room<R>,
     /// Points that go nowhere in this step, or where something carries them; set where nothing else helps.
     pub held: Vec<bool>,
     /// Elements that pass through each other.
@@ -78,13 +78,12 @@ impl<R: Real> Mutual<R> {
         Self {
             bodies: Bodies::new(cloths, anchors),
             terms: Vec::new(),
-            far: Paths::new(rows),
-            near: Paths::new(rows),
-            window: [0.0; 2],
+            paths: Paths::new(rows),
+            begun: vec![Row4::ZERO; rows],
+            span: [1.0, 0.0],
             strayed: vec![true; rows],
-            left: vec![true; rows],
-            candidates: Candidates::default(),
             active: Active::default(),
+            room: Room::default(),
             held: Vec::new(),
             tangle: Tangle::new(rows),
         }

@@ -4,9 +4,11 @@
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
 use super::swept::{first_touch, passes_beside};
+use super::ways::Points;
+use crate::checkpoint::{Item, Reader, item};
 use crate::collision::friction::{Push, rub};
 use crate::collision::maps::Maps;
-use crate::collision::narrow::{Places, across, between_middles, gap_along, shortest, weigh};
+use crate::collision::narrow::{Places, across, gap_along, shortest, weigh};
 use crate::collision::terms::{Sides, Terms};
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add, dot, scale, sub, unit};
@@ -75,10 +77,10 @@ impl<R: Real> Motion<'_, R> {
 pub struct Meeting<R> {
     /// The distance to keep, in metres; the most that maps make of it.
     pub thickness: R,
-    /// The distance in metres up to which anything acts.
-    pub reach: R,
     /// The terms of the two cloths, by their place among all.
     pub terms: u32,
+    /// Whether the distance is less than the cloth's, because the two are neighbours at rest.
+    pub limited: bool,
     /// Whether one side is a free point, which can go farther in a step than anything is large.
     pub is_swept: bool,
 }
@@ -97,39 +99,38 @@ pub struct Near<R, const N: usize, const M: usize> {
     meeting: Meeting<R>,
 }
 
+item!([R: Real] Meeting<R> { thickness: R, terms: u32, limited: bool, is_swept: bool });
+
+impl<R: Real, const N: usize, const M: usize> Item for Near<R, N, M> {
+    const SIZE: usize = <Points<N, M>>::SIZE + <[R; 3]>::SIZE + Meeting::<R>::SIZE;
+    fn put(&self, out: &mut Vec<u8>) {
+        // Places are those of the next frame's anchors.
+        let Self { ours, theirs, places: _, normal, meeting } = self;
+        (*ours, *theirs).put(out);
+        normal.put(out);
+        meeting.put(out);
+    }
+    fn take(from: &mut Reader<'_>) -> Option<Self> {
+        let (ours, theirs) = Item::take(from)?;
+        let places = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
+        Some(Self { ours, theirs, places, normal: Item::take(from)?, meeting: Item::take(from)? })
+    }
+}
+
 impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
-    /// A contact along the shortest line between the two at the start of a time step; nothing if they cannot
-    /// touch in the window that it is in. `from` and `to` are displacements that are foreseen at the start and the end of
-    /// that, with the radius they hold in; `start` is where the points truly are when the step begins.
+    /// A contact along the shortest line between the two at the start of a time step, of which `start` has the
+    /// displacements.
     #[inline]
-    pub fn find(
-        (ours, theirs): ([u32; N], [u32; M]),
+    pub fn new(
+        (ours, theirs): Points<N, M>,
         meeting: Meeting<R>,
         anchors: &[[f64; 3]],
-        start: impl Fn(u32) -> [R; 3],
-        from: impl Fn(u32) -> Row4<R>,
-        to: impl Fn(u32) -> [R; 3],
-    ) -> Option<Self> {
-        let origin = anchors[ours[0] as usize];
-        let place = |point: u32| {
-            let anchor = anchors[point as usize];
-            std::array::from_fn(|axis| R::from_f64(anchor[axis] - origin[axis]))
-        };
-        let places = (ours.map(place), theirs.map(place));
+        start: &[Row4<R>],
+    ) -> Self {
+        let places = places((ours, theirs), anchors);
         let mut near = Self { ours, theirs, places, normal: [R::ZERO; 3], meeting };
-        let (before, after) = (near.at(|point| from(point).xyz()), near.at(to));
-        let ball = |points: &[u32]| points.iter().map(|&point| from(point).0[3]).fold(R::ZERO, larger);
-        let stray = ball(&ours) + ball(&theirs);
-        // Most are far apart already along the line between their middles, which costs less to see.
-        let line = between_middles(&before);
-        let far = (meeting.reach + stray) * dot(line, line).sqrt();
-        if gap_along(line, &before) >= far && gap_along(line, &after) >= far {
-            return None;
-        }
-        near.normal = shortest(near.at(start)).0;
-        let (first, last) = (near.gap(&before), near.gap(&after));
-        let least = if last < first { last } else { first };
-        (least - stray < meeting.reach).then_some(near)
+        near.normal = shortest(near.at(|point| start[point as usize].xyz())).0;
+        near
     }
 
     #[inline(always)]
@@ -151,7 +152,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     /// The terms of the two cloths.
     #[inline(always)]
     pub(super) fn terms<'a>(&self, step: &Motion<'a, R>) -> Option<&'a Terms<R>> {
-        step.terms[self.meeting.terms as usize].as_ref()
+        step.terms.get(self.meeting.terms as usize)?.as_ref()
     }
 
     /// The points of the two, with how near each of them is.
@@ -429,13 +430,40 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         self.meeting.is_swept
     }
 
-    /// Where it stands among others: those of free points come first, in the order of their points.
-    pub fn rank(&self) -> (bool, [u32; 4]) {
-        let mut points = [0; 4];
-        if self.is_swept() {
-            points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
-        }
-        (!self.is_swept(), points)
+    /// Its points, first ours, then theirs; what is left over repeats the first.
+    pub fn points(&self) -> [u32; 4] {
+        let mut points = [self.ours[0]; 4];
+        points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
+        points
+    }
+
+    /// Reckons from anchors where they are now.
+    pub fn follow(&mut self, anchors: &[[f64; 3]]) {
+        self.places = places((self.ours, self.theirs), anchors);
+    }
+
+    /// Whether the distance that is kept is less than the cloth's, because the two are neighbours at rest.
+    pub fn is_limited(&self) -> bool {
+        self.meeting.limited
+    }
+
+    /// Lets it act no more.
+    pub fn switch_off(&mut self) {
+        // Nothing is that near, and there are no terms on which to meet.
+        self.meeting.thickness = -R::ONE / R::TINY;
+        self.meeting.terms = u32::MAX;
+    }
+
+    /// Whether it is between points that there are, on terms that there are.
+    pub fn fits(&self, are_points: impl Fn(&[u32]) -> bool, terms: usize) -> bool {
+        are_points(&self.ours)
+            && are_points(&self.theirs)
+            && (self.is_off() || (self.meeting.terms as usize) < terms)
+    }
+
+    /// Whether it acts no more.
+    pub fn is_off(&self) -> bool {
+        self.meeting.terms == u32::MAX
     }
 
     /// The distance between the two, over the thickness kept between them.
@@ -443,6 +471,20 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         let (_, weights, distance) = shortest(self.now(step));
         distance / self.kept(step, &weights)
     }
+}
+
+/// Where the anchors of some points are, in metres from the first of ours.
+#[inline(always)]
+fn places<R: Real, const N: usize, const M: usize>(
+    (ours, theirs): Points<N, M>,
+    anchors: &[[f64; 3]],
+) -> Places<R, N, M> {
+    let origin = anchors[ours[0] as usize];
+    let place = |point: u32| {
+        let anchor = anchors[point as usize];
+        std::array::from_fn(|axis| R::from_f64(anchor[axis] - origin[axis]))
+    };
+    (ours.map(place), theirs.map(place))
 }
 
 /// What a gap may be off by, by rounding, in metres: places are reckoned from anchors, so it goes by how far the points

@@ -34,12 +34,11 @@ impl<R: Real> Path<R> {
         add(self.from, scale(self.travel, share))
     }
 
-    /// Whether a ball round a place lies within this path's ball.
+    /// Whether a place lies within the ball.
     #[inline(always)]
-    pub fn holds(&self, share: R, place: [R; 3], ball: R) -> bool {
+    pub fn holds(&self, share: R, place: [R; 3]) -> bool {
         let away = sub(place, self.at(share));
-        let room = self.ball - ball;
-        room >= R::ZERO && dot(away, away) <= room * room
+        dot(away, away) <= self.ball * self.ball
     }
 }
 
@@ -56,19 +55,18 @@ impl<R: Real> Paths<R> {
         Path { from: from.xyz(), travel: self.travel[point as usize].xyz(), ball: from.0[3] }
     }
 
-    /// Lends the columns to the tasks of a phase.
-    pub fn shared(&mut self) -> SharedPaths<'_, R> {
-        SharedPaths { from: Shared::new(&mut self.from), travel: Shared::new(&mut self.travel) }
-    }
-
-    /// Follows anchors into a new frame: what was foreseen for the end of the last is foreseen for all of this
-    /// one.
+    /// Follows anchors into a new frame: what was foreseen for the end of the last is foreseen from now on.
     pub fn move_anchors(&mut self, moved: &[Row4<R>]) {
         for ((from, travel), moved) in self.from.iter_mut().zip(&mut self.travel).zip(moved) {
             let [x, y, z] = sub(add(from.xyz(), travel.xyz()), moved.xyz());
             *from = Row4([x, y, z, from.0[3]]);
             *travel = Row4::ZERO;
         }
+    }
+
+    /// Lends the columns to the tasks of a phase.
+    pub fn shared(&mut self) -> SharedPaths<'_, R> {
+        SharedPaths { from: Shared::new(&mut self.from), travel: Shared::new(&mut self.travel) }
     }
 }
 

@@ -1,121 +1,132 @@
-//! Broad phase among cloths: finds the pairs of elements that can touch while every point keeps to what is
-//! foreseen for it in the frame. Where points stray, only the pairs of their elements are looked for again.
+//! Broad phase among cloths: finds the pairs of elements that can touch while every point keeps to what is foreseen for it
+//! in a span. Where points stray, only the pairs of their elements are looked for again.
 
-use std::sync::Mutex;
+use std::sync::RwLock;
 
 use super::Mutual;
+use super::active::Found;
 use super::bodies::Bodies;
-use super::candidate::{Candidate, Seen};
-use super::local::{Boxes, Locals};
+use super::crossings::find_crossings;
+use super::local::Locals;
+use super::seen::Seen;
 use super::sought::Sought;
-use crate::checkpoint::kept;
+use super::tangle::Tangle;
+use crate::collision::aabb::{Aabb, Boxes};
 use crate::collision::skin::{Group, Skin};
 use crate::collision::terms::Terms;
-use crate::collision::tree::Aabb;
 use crate::model::ClothModel;
-use crate::scalar::Real;
+use crate::scalar::{Real, Row4};
 use crate::team::Team;
 
-/// All candidates, and room to find them in.
-#[derive(Debug, Default)]
-pub struct Candidates {
-    /// The candidates.
-    pub list: Vec<Candidate>,
-    again: Vec<u32>,
-    tasks: Vec<Mutex<Found>>,
+/// Room to search in.
+#[derive(Debug)]
+pub struct Room<R> {
     seen: Seen,
-}
-
-kept!([] Candidates { columns: [], values: [list], parts: [seen], anew: [again, tasks] });
-
-impl Clone for Candidates {
-    /// A copy of what was found; the room is made anew.
-    fn clone(&self) -> Self {
-        Self { list: self.list.clone(), ..Self::default() }
-    }
-}
-
-impl Candidates {
-    /// Anchors move: what was foreseen from where they were is to be looked at anew.
-    pub fn forget_places(&mut self) {
-        self.seen.forget();
-    }
+    /// The groups that something new is foreseen for.
+    groups: Vec<u32>,
+    tasks: Vec<RwLock<Task<R>>>,
 }
 
 /// What one task finds, and what it looks at on the way.
-#[derive(Debug, Default)]
-struct Found {
-    list: Vec<Candidate>,
+#[derive(Debug)]
+pub(super) struct Task<R> {
+    pub(super) found: Found<R>,
     sought: Sought,
     locals: Locals,
 }
 
-/// Points per task.
-const POINTS_PER_TASK: usize = 64;
+impl<R> Default for Task<R> {
+    fn default() -> Self {
+        Self { found: Found::default(), sought: Sought::default(), locals: Locals::default() }
+    }
+}
+
+impl<R> Default for Room<R> {
+    fn default() -> Self {
+        Self { seen: Seen::default(), groups: Vec::new(), tasks: Vec::new() }
+    }
+}
+
+/// When and where is searched.
+#[derive(Clone, Copy)]
+pub struct Look<'a, R> {
+    /// The cloths.
+    pub cloths: &'a [ClothModel<R>],
+    /// Anchors in metres.
+    pub anchors: &'a [[f64; 3]],
+    /// Displacements at the start and at the end of the time step.
+    pub moved: [&'a [Row4<R>]; 2],
+    /// The start of the time step, as a share of the span.
+    pub begun: f64,
+}
+
+/// Groups per task.
+const PER_TASK: usize = 64;
 
 /// All that a search looks at.
 pub(super) struct Search<'a, R> {
     pub(super) bodies: &'a Bodies,
-    pub(super) cloths: &'a [ClothModel<R>],
     pub(super) terms: &'a [Option<Terms<R>>],
-    pub(super) strayed: &'a [bool],
     pub(super) seen: &'a Seen,
+    pub(super) tangle: &'a Tangle,
+    pub(super) look: Look<'a, R>,
+    strayed: &'a [bool],
     /// Half of the largest distance that is kept.
     margin: f32,
 }
 
-/// Finds the candidates of all elements that have a strayed point. `now` is when the window began, as a share of the
-/// frame: all of its searches look from there, so that what is known of points that did not stray is of the same time.
-pub fn search<R: Real>(
-    mutual: &mut Mutual<R>,
-    cloths: &[ClothModel<R>],
-    anchors: &[[f64; 3]],
-    now: f64,
-    team: &Team,
-) {
-    let Mutual { bodies, terms, far, strayed, candidates, .. } = mutual;
-    let Candidates { list, again, tasks, seen } = candidates;
-    let widest = terms.iter().flatten().map(|terms| terms.thickness * terms.reach).fold(0.0, f64::max) as f32;
-    let margin = widest * 0.5 * (1.0 + 1e-5);
-    let is_changed = |points: &[u32]| points.iter().any(|&point| strayed[point as usize]);
-    let is_all_new = seen.look(anchors, far, strayed, now);
-    for group in 0..bodies.groups.len() {
-        let points = bodies.points_of(group);
-        if is_all_new || is_changed(points) {
-            bodies.around[group] = seen.bound(points.iter().copied(), margin);
-        }
+/// Finds the contacts of all elements that have a point that strayed from what was foreseen for it; of all, as a span begins.
+pub fn search<R: Real>(mutual: &mut Mutual<R>, look: Look<'_, R>, is_late: bool, team: &Team) {
+    let widest = mutual.terms.iter().flatten().map(|terms| terms.thickness * terms.reach).fold(0.0, f64::max);
+    let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
+    mutual.look_ahead(look.anchors, margin, is_late);
+    if !is_late && mutual.tangle.may_be_there() {
+        find_crossings(mutual, look.cloths, look.anchors, look.moved[1]);
     }
-    bodies.refit();
-    list.retain(|candidate| !is_changed(&candidate.points));
-    again.clear();
-    let strays = (0..).zip(&*strayed).filter(|(_, strayed)| **strayed).map(|(row, _)| row);
-    again.extend(strays.filter(|&row| bodies.stars.has(row)));
-    let chunks = again.len().div_ceil(POINTS_PER_TASK);
-    tasks.resize_with(tasks.len().max(chunks), Mutex::default);
-    let view = Search { bodies, cloths, terms, strayed, seen, margin };
+    let Mutual { bodies, terms, strayed, room, active, tangle, .. } = mutual;
+    let Room { seen, groups, tasks } = room;
+    let chunks = groups.len().div_ceil(PER_TASK);
+    tasks.resize_with(tasks.len().max(chunks), RwLock::default);
+    let view = Search { bodies, terms, seen, tangle, look, strayed, margin };
     team.phase(chunks, |task| {
         // Nobody else has it: a task is done once.
-        let Ok(mut found) = tasks[task].lock() else { return };
-        found.list.clear();
-        found.locals.forget();
-        let end = ((task + 1) * POINTS_PER_TASK).min(again.len());
-        again[task * POINTS_PER_TASK..end].iter().for_each(|&point| view.around(point, &mut found));
+        let Ok(mut room) = tasks[task].write() else { return };
+        room.found.clear();
+        room.locals.forget();
+        let end = ((task + 1) * PER_TASK).min(groups.len());
+        groups[task * PER_TASK..end].iter().for_each(|&group| view.around(group, &mut room));
     });
-    for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
-        list.append(&mut found.list);
-    }
+    active.renew(&tasks[..chunks], strayed, is_late, (&bodies.block, bodies.blocks), team);
     strayed.fill(false);
 }
 
+impl<R: Real> Mutual<R> {
+    /// Sees where points go, and what is round the groups that have them: those that strayed, or all as a span begins.
+    fn look_ahead(&mut self, anchors: &[[f64; 3]], margin: f32, is_late: bool) {
+        let Self { bodies, strayed, room, paths, .. } = self;
+        let Room { seen, groups, .. } = room;
+        let strays = (0..).zip(&*strayed).filter(|(_, strayed)| **strayed).map(|(point, _)| point);
+        bodies.groups_of(strays.clone(), groups);
+        if is_late {
+            seen.look(anchors, paths, strays);
+            groups.iter().for_each(|&group| bodies.look(group, seen, margin));
+        } else {
+            seen.look(anchors, paths, 0..anchors.len() as u32);
+            (0..bodies.groups.len() as u32).for_each(|group| bodies.look(group, seen, margin));
+        }
+        bodies.refit();
+    }
+}
+
 impl<R: Real> Search<'_, R> {
-    /// Everything that meets what is new about a point.
-    fn around(&self, point: u32, found: &mut Found) {
+    /// Everything that meets what is new about a group.
+    fn around(&self, group: u32, task: &mut Task<R>) {
         let Some(tree) = &self.bodies.tree else { return };
-        let Found { list, sought, locals } = found;
-        sought.look(self, point);
-        tree.query(&sought.all[0].union(sought.all[1]), |group| {
-            if Aabb::may_meet(&sought.all, &self.bodies.around[group as usize]) {
-                sought.meet(self, group, locals.of(self, group), list);
+        let Task { found, sought, locals } = task;
+        let all = sought.look(self, group);
+        tree.query(&all[0].union(all[1]), |other| {
+            if Aabb::may_meet(&all, &self.bodies.around[other as usize]) {
+                sought.meet(self, other, locals.of(self, other), found);
             }
         });
     }
@@ -123,12 +134,18 @@ impl<R: Real> Search<'_, R> {
     /// A group's elements, and the skin that they are of.
     pub(super) fn elements(&self, group: u32) -> (&Skin, &Group) {
         let body = &self.bodies.groups[group as usize];
-        (&self.cloths[body.cloth as usize].skin, &body.group)
+        (&self.look.cloths[body.cloth as usize].skin, &body.group)
     }
 
     /// The boxes round all that is foreseen for some points, with half of the largest distance that is kept.
     #[inline(always)]
-    pub(super) fn bound(&self, points: impl Iterator<Item = u32>) -> Boxes {
+    pub(super) fn bound(&self, points: &[u32]) -> Boxes {
         self.seen.bound(points, self.margin)
+    }
+
+    /// Whether something new is foreseen for any of these points.
+    #[inline(always)]
+    pub(super) fn is_new(&self, points: &[u32]) -> bool {
+        points.iter().any(|&point| self.strayed[point as usize])
     }
 }

@@ -1,189 +1,252 @@
-//! What pairs are sought for: a point that strayed, and the elements that it is the first strayed point of.
+//! What pairs are sought for: the elements of a group that something new is foreseen for.
 
-use super::candidate::{Candidate, Kind};
-use super::local::{Boxes, Local};
+use super::active::Found;
+use super::local::{Local, Row};
+use super::near::{Meeting, Near};
 use super::search::Search;
-use crate::collision::tree::Aabb;
+use super::ways::Points;
+use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::terms::Terms;
 use crate::frame::Elements;
 use crate::scalar::Real;
 
-/// A point and elements of it that pairs are sought for.
-#[derive(Debug)]
+/// The elements of a group that pairs are sought for.
+#[derive(Debug, Default)]
 pub struct Sought {
-    point: u32,
     cloth: usize,
-    /// Round all of them.
-    pub all: Boxes,
-    round_point: Boxes,
-    /// Their number in the skin, their ends, and what is round them.
-    edges: Vec<(u32, [u32; 2], Boxes)>,
-    triangles: Vec<([u32; 3], Boxes)>,
-    /// Whether the point is of no face.
+    points: Those<u32>,
+    /// With their number in the skin.
+    edges: Those<(u32, [u32; 2])>,
+    triangles: Those<[u32; 3]>,
+    /// Whether the points are of no face.
     is_free: bool,
 }
 
-impl Default for Sought {
+/// Elements, and boxes round them.
+#[derive(Debug)]
+struct Those<T> {
+    list: Vec<T>,
+    boxes: Vec<Boxes>,
+    row: Row,
+}
+
+impl<T> Default for Those<T> {
     fn default() -> Self {
-        let nothing = [Aabb::EMPTY; 2];
-        let (edges, triangles) = (Vec::new(), Vec::new());
-        Self { point: 0, cloth: 0, all: nothing, round_point: nothing, edges, triangles, is_free: false }
+        Self { list: Vec::new(), boxes: Vec::new(), row: Row::default() }
+    }
+}
+
+impl<T> Those<T> {
+    fn look(&mut self, all: impl Iterator<Item = T>, bound: impl Fn(&T) -> Boxes) {
+        let Self { list, boxes, row } = self;
+        list.clear();
+        list.extend(all);
+        boxes.clear();
+        boxes.extend(list.iter().map(bound));
+        row.fill(boxes, |one| *one);
+    }
+
+    /// Calls `found` with each that something in these boxes may meet.
+    #[inline(always)]
+    fn met_by(&self, around: &Boxes, mut found: impl FnMut(&T, &Boxes)) {
+        self.row.met_by(around, |at| found(&self.list[at], &self.boxes[at]));
     }
 }
 
 impl Sought {
-    /// Looks at a point.
-    pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, point: u32) {
-        let stars = &search.bodies.stars;
-        self.point = point;
-        self.cloth = search.bodies.cloth[point as usize] as usize;
-        self.is_free = stars.triangles(point).is_empty();
-        self.round_point = search.bound([point].into_iter());
-        self.all = self.round_point;
-        self.edges.clear();
-        self.triangles.clear();
-        let skin = &search.cloths[self.cloth].skin;
-        let is_first =
-            |points: &[u32]| points.iter().all(|&other| other >= point || !search.strayed[other as usize]);
-        for &edge in stars.edges(point) {
-            let ends = skin.edges[edge as usize];
-            if is_first(&ends) {
-                self.edges.push((edge, ends, search.bound(ends.into_iter())));
-            }
-        }
-        for &triangle in stars.triangles(point) {
-            let corners = skin.triangles[triangle as usize];
-            if is_first(&corners) {
-                self.triangles.push((corners, search.bound(corners.into_iter())));
-            }
-        }
-        let edges = self.edges.iter().map(|(_, _, boxes)| boxes);
-        for boxes in edges.chain(self.triangles.iter().map(|(_, boxes)| boxes)) {
-            self.all = [0, 1].map(|end| self.all[end].union(boxes[end]));
-        }
+    /// Looks at a group; the boxes round all that is sought for.
+    pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) -> Boxes {
+        let (skin, elements) = search.elements(group);
+        self.cloth = search.bodies.groups[group as usize].cloth as usize;
+        self.is_free = elements.triangles.is_empty();
+        let points = skin.points[elements.points.clone()].iter().copied();
+        self.points.look(points.filter(|&point| search.is_new(&[point])), |&point| search.bound(&[point]));
+        let edges = (elements.edges.start as u32..).zip(skin.edges[elements.edges.clone()].iter().copied());
+        self.edges.look(edges.filter(|(_, ends)| search.is_new(ends)), |(_, ends)| search.bound(ends));
+        let triangles = skin.triangles[elements.triangles.clone()].iter().copied();
+        self.triangles.look(triangles.filter(|face| search.is_new(face)), |face| search.bound(face));
+        let all = self.points.boxes.iter().chain(&self.edges.boxes).chain(&self.triangles.boxes);
+        all.fold([Aabb::EMPTY; 2], |[start, end], boxes| [start.union(boxes[0]), end.union(boxes[1])])
     }
 
-    /// All pairs with the elements of a group. What is new on both sides is found once: from the point where a point
+    /// All contacts with the elements of a group. What is new on both sides is found once: from the point where a point
     /// meets an edge or a face, and else from what comes first.
     pub(super) fn meet<R: Real>(
         &self,
         search: &Search<'_, R>,
         group: u32,
         local: &Local,
-        list: &mut Vec<Candidate>,
+        found: &mut Found<R>,
     ) {
         let cloths = [self.cloth, search.bodies.groups[group as usize].cloth as usize];
-        let Some(terms) = &search.terms[cloths[0] * search.cloths.len() + cloths[1]] else { return };
+        let Some(pair) = Pair::new(search, cloths) else { return };
         let (skin, elements) = search.elements(group);
-        // Free points have no shape at rest: what lies near at the start is no neighbour.
-        let is_shaped = cloths[0] == cloths[1] && !skin.triangles.is_empty();
-        let rest = is_shaped.then_some(&search.bodies.rest[..]);
-        let near = [terms.thickness as f32, terms.reach as f32];
-        let mut keep = |kind: Kind, points: [u32; 4]| {
-            list.extend(search.seen.candidate(kind, points, near, rest));
+        let there = There {
+            points: &skin.points[elements.points.clone()],
+            edges: &skin.edges[elements.edges.clone()],
+            triangles: &skin.triangles[elements.triangles.clone()],
+            first_edge: (cloths[1], elements.edges.start),
+            around: &search.bodies.around[group as usize],
+            local,
         };
         // What has no face is points, whatever its cloth's are.
         let reach = |is_free: bool, elements: Elements| if is_free { Elements::Points } else { elements };
-        let ours = reach(self.is_free, terms.elements[0]);
-        let theirs = reach(elements.triangles.is_empty(), terms.elements[1]);
-        let points = || skin.points[elements.points.clone()].iter().copied().zip(&local.points);
-        let triangles = skin.triangles[elements.triangles.clone()].iter().zip(&local.triangles);
-        let edges = skin.edges[elements.edges.clone()].iter().zip(&local.edges);
+        let ours = reach(self.is_free, pair.terms.elements[0]);
+        let theirs = reach(there.triangles.is_empty(), pair.terms.elements[1]);
+        let Found { point_face, edge_edge, point_edge, point_point } = found;
         match theirs {
             Elements::Points if ours == Elements::Points => {
-                let counts = |q: u32| q != self.point && (self.point < q || !search.strayed[q as usize]);
-                self.point_meets_points(points().filter(|&(q, _)| counts(q)), &mut keep);
+                self.points_meet_points(&there, &pair, point_point)
             }
             Elements::Points => {}
-            Elements::Edges => self.point_meets(edges.clone(), &mut keep),
-            Elements::Faces => self.point_meets(triangles, &mut keep),
+            Elements::Edges => self.points_meet(&there, (there.edges, &local.edges), &pair, point_edge),
+            Elements::Faces => {
+                self.points_meet(&there, (there.triangles, &local.triangles), &pair, point_face)
+            }
         }
-        let known =
-            points().filter(|&(q, there)| !search.strayed[q as usize] && Aabb::may_meet(&self.all, there));
         match ours {
             Elements::Points => {}
-            Elements::Edges => {
-                meet_points(|| self.edges.iter().map(|(_, ends, boxes)| (ends, boxes)), known, &mut keep)
-            }
-            Elements::Faces => meet_points(
-                || self.triangles.iter().map(|(corners, boxes)| (corners, boxes)),
-                known,
-                &mut keep,
-            ),
+            Elements::Edges => there.points_are_met(&self.edges, |(_, ends)| *ends, &pair, point_edge),
+            Elements::Faces => there.points_are_met(&self.triangles, |face| *face, &pair, point_face),
         }
-        if terms.edges {
-            let is_new = |ends: &[u32; 2]| ends.iter().any(|&point| search.strayed[point as usize]);
-            let numbered = (elements.edges.start as u32..).zip(edges);
-            let near = numbered.filter(|(_, (_, there))| Aabb::may_meet(&self.all, there));
-            // Up to which of our edges the pair counts.
-            let bounded = near.map(|(edge, (ends, there))| match is_new(ends) {
-                true => ((cloths[1], edge), ends, there),
-                false => ((usize::MAX, 0), ends, there),
-            });
-            self.edges_meet_edges(bounded, &mut keep);
+        if pair.terms.edges {
+            self.edges_meet_edges(&there, &pair, edge_edge);
         }
     }
 
-    fn point_meets_points<'a>(
+    fn points_meet_points<R: Real>(
         &self,
-        theirs: impl Iterator<Item = (u32, &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
+        there: &There<'_>,
+        pair: &Pair<'_, R>,
+        found: &mut Vec<Near<R, 1, 1>>,
     ) {
-        for (q, _) in theirs.filter(|(_, there)| Aabb::may_meet(&self.round_point, there)) {
-            let (p, q) = (self.point.min(q), self.point.max(q));
-            keep(Kind::PointPoint, [p, q, p, p]);
-        }
-    }
-
-    /// The point against edges or faces.
-    fn point_meets<'a, const N: usize>(
-        &self,
-        theirs: impl Iterator<Item = (&'a [u32; N], &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
-    ) {
-        for (element, there) in theirs {
-            if !element.contains(&self.point) && Aabb::may_meet(&self.round_point, there) {
-                let (kind, points) = pair(self.point, element);
-                keep(kind, points);
-            }
-        }
-    }
-
-    /// Theirs come with the number, by cloth and edge, below which ours count.
-    fn edges_meet_edges<'a>(
-        &self,
-        theirs: impl Iterator<Item = ((usize, u32), &'a [u32; 2], &'a Boxes)>,
-        keep: &mut impl FnMut(Kind, [u32; 4]),
-    ) {
-        for (below, &[c, d], there) in theirs {
-            for &(edge, [a, b], ref here) in &self.edges {
-                let joined = a == c || a == d || b == c || b == d;
-                if !joined && (self.cloth, edge) < below && Aabb::may_meet(here, there) {
-                    keep(Kind::EdgeEdge, [a, b, c, d]);
+        self.points.met_by(there.around, |&p, here| {
+            there.local.points.met_by(here, |at| {
+                let q = there.points[at];
+                let (low, high) = (p.min(q), p.max(q));
+                if q != p && (p == low || !pair.search.is_new(&[q])) {
+                    found.extend(pair.contact(([low], [high])));
                 }
-            }
+            });
+        });
+    }
+
+    /// Our points against their edges or faces.
+    fn points_meet<R: Real, const N: usize>(
+        &self,
+        there: &There<'_>,
+        (elements, boxes): (&[[u32; N]], &Row),
+        pair: &Pair<'_, R>,
+        found: &mut Vec<Near<R, 1, N>>,
+    ) {
+        self.points.met_by(there.around, |p, here| {
+            boxes.met_by(here, |at| {
+                if !elements[at].contains(p) {
+                    found.extend(pair.contact(([*p], elements[at])));
+                }
+            });
+        });
+    }
+
+    fn edges_meet_edges<R: Real>(
+        &self,
+        there: &There<'_>,
+        pair: &Pair<'_, R>,
+        found: &mut Vec<Near<R, 2, 2>>,
+    ) {
+        let (cloth, first) = there.first_edge;
+        let is_new = |ends: &[u32]| there.local.is_all_new || pair.search.is_new(ends);
+        let last = self.edges.list.last().map_or((0, 0), |&(edge, _)| (self.cloth, edge as usize));
+        if there.local.is_all_new && last >= (cloth, first + there.edges.len()) {
+            return; // every pair is found from theirs
         }
+        self.edges.met_by(there.around, |&(edge, [a, b]), here| {
+            there.local.edges.met_by(here, |at| {
+                let [c, d] = there.edges[at];
+                let is_joined = a == c || a == d || b == c || b == d;
+                if !is_joined && ((self.cloth, edge as usize) < (cloth, first + at) || !is_new(&[c, d])) {
+                    found.extend(pair.contact(([a, b], [c, d])));
+                }
+            });
+        });
     }
 }
 
-/// Edges or faces of ours against points of theirs.
-fn meet_points<'a, 'b, const N: usize, I: Iterator<Item = (&'b [u32; N], &'b Boxes)>>(
-    ours: impl Fn() -> I,
-    theirs: impl Iterator<Item = (u32, &'a Boxes)>,
-    keep: &mut impl FnMut(Kind, [u32; 4]),
-) {
-    for (q, there) in theirs {
-        for (element, here) in ours() {
-            if !element.contains(&q) && Aabb::may_meet(here, there) {
-                let (kind, points) = pair(q, element);
-                keep(kind, points);
-            }
+/// A group that is met.
+struct There<'a> {
+    points: &'a [u32],
+    edges: &'a [[u32; 2]],
+    triangles: &'a [[u32; 3]],
+    /// Its cloth, and the number of its first edge in the skin.
+    first_edge: (usize, usize),
+    /// Round all of it.
+    around: &'a Boxes,
+    local: &'a Local,
+}
+
+impl There<'_> {
+    /// Edges or faces of ours against those of its points that nothing new is foreseen for.
+    fn points_are_met<R: Real, T, const N: usize>(
+        &self,
+        ours: &Those<T>,
+        element: impl Fn(&T) -> [u32; N],
+        pair: &Pair<'_, R>,
+        found: &mut Vec<Near<R, 1, N>>,
+    ) {
+        if self.local.is_all_new {
+            return;
         }
+        ours.met_by(self.around, |ours, here| {
+            self.local.points.met_by(here, |at| {
+                let (q, element) = (self.points[at], element(ours));
+                if !pair.search.is_new(&[q]) && !element.contains(&q) {
+                    found.extend(pair.contact(([q], element)));
+                }
+            });
+        });
     }
 }
 
-/// A point against an edge, or a face.
-fn pair<const N: usize>(point: u32, element: &[u32; N]) -> (Kind, [u32; 4]) {
-    let mut points = [point; 4];
-    points[1..=N].copy_from_slice(element);
-    (if N == 2 { Kind::PointEdge } else { Kind::PointFace }, points)
+/// Two cloths, or one and itself, and how they meet.
+struct Pair<'a, R> {
+    search: &'a Search<'a, R>,
+    terms: &'a Terms<R>,
+    /// The thickness in metres, and its share up to which anything acts.
+    near: [f32; 2],
+    /// The shape at rest, where elements can be neighbours in it.
+    rest: Option<&'a [[f32; 3]]>,
+}
+
+impl<'a, R: Real> Pair<'a, R> {
+    /// Nothing where the two do not meet.
+    fn new(search: &'a Search<'a, R>, cloths: [usize; 2]) -> Option<Self> {
+        let terms = search.terms[cloths[0] * search.look.cloths.len() + cloths[1]].as_ref()?;
+        // Free points have no shape at rest: what lies near at the start is no neighbour.
+        let is_shaped = cloths[0] == cloths[1] && !search.look.cloths[cloths[0]].skin.triangles.is_empty();
+        Some(Self {
+            search,
+            terms,
+            near: [terms.thickness as f32, terms.reach as f32],
+            rest: is_shaped.then_some(&search.bodies.rest[..]),
+        })
+    }
+
+    /// A contact, if the two can touch.
+    #[inline]
+    fn contact<const N: usize, const M: usize>(&self, points: Points<N, M>) -> Option<Near<R, N, M>> {
+        let Search { seen, look, tangle, bodies, .. } = self.search;
+        let kept = seen.kept(points, look.begun as f32, self.near, self.rest)?;
+        let [ours, theirs] = [points.0[0], points.1[0]].map(|point| bodies.cloth[point as usize]);
+        if tangle.lets_pass(&points.0, &points.1, [ours, theirs]) {
+            return None;
+        }
+        let is_free = |point: u32| bodies.is_free[point as usize];
+        let meeting = Meeting {
+            thickness: R::from_f64(f64::from(kept.thickness)),
+            terms: ours * look.cloths.len() as u32 + theirs,
+            limited: kept.limited,
+            is_swept: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
+        };
+        Some(Near::new(points, meeting, look.anchors, look.moved[0]))
+    }
 }

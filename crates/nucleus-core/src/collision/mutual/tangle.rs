@@ -7,7 +7,6 @@
 //! shorter (Volino and Magnenat-Thalmann 2006, *Resolving surface collisions through intersection contour minimization*).
 //! Round the curve nothing is kept apart: contacts would hold the tangle as it is.
 
-use super::candidate::{Candidate, Kind};
 use super::near::Motion;
 use crate::checkpoint::kept;
 use crate::scalar::{Real, Row4, add, cross, dot, scale, sub, unit};
@@ -95,12 +94,16 @@ impl Tangle {
         !self.crossings.is_empty()
     }
 
+    /// Whether any is known, or to be looked for.
+    pub fn may_be_there(&self) -> bool {
+        self.is_suspected || self.is_there()
+    }
+
     /// Whether a pair of elements of two cloths is let alone, because both are near where these pass through each other.
     #[inline(always)]
-    pub fn lets_pass(&self, candidate: &Candidate, cloths: [u32; 2]) -> bool {
+    pub fn lets_pass(&self, ours: &[u32], theirs: &[u32], cloths: [u32; 2]) -> bool {
         let is_near = |points: &[u32]| points.iter().any(|&point| self.points[point as usize]);
         let [low, high] = [cloths[0].min(cloths[1]), cloths[0].max(cloths[1])];
-        let (ours, theirs) = candidate.points.split_at(if candidate.kind == Kind::EdgeEdge { 2 } else { 1 });
         self.is_there() && self.pairs.contains(&[low, high]) && is_near(ours) && is_near(theirs)
     }
 

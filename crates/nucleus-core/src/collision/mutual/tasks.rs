@@ -26,6 +26,13 @@ pub struct Tasks {
 const SPREAD: u64 = u64::MAX;
 
 impl Tasks {
+    /// No tasks.
+    pub fn clear(&mut self) {
+        self.order.clear();
+        self.runs.clear();
+        self.phases.clear();
+    }
+
     /// Lays out contacts, each given by the blocks of its points, of which there are `blocks`.
     pub fn lay_out(&mut self, contacts: impl Iterator<Item = [u32; 4]>, blocks: u32) {
         self.order.clear();

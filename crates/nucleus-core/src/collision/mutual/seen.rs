@@ -1,0 +1,80 @@
+//! Where all points are foreseen to be in a span of time, as a search sees it.
+
+use super::paths::Paths;
+use super::ways::{Points, Ways};
+use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::narrow::shortest;
+use crate::scalar::Real;
+
+/// Share of their distance at rest that neighbours keep: a cloth thicker than its faces must still bend.
+const OF_REST_DISTANCE: f32 = 0.5;
+
+/// Ways of all points, and what is round them.
+#[derive(Debug, Default)]
+pub struct Seen {
+    ways: Ways,
+    /// Boxes round the balls at both ends.
+    balls: Vec<Boxes>,
+}
+
+/// A distance to keep, in metres.
+pub struct Kept {
+    /// The distance.
+    pub thickness: f32,
+    /// Whether that is less than the cloth's, because the two are neighbours at rest.
+    pub limited: bool,
+}
+
+impl Seen {
+    /// Looks at some points.
+    pub fn look<R: Real>(
+        &mut self,
+        anchors: &[[f64; 3]],
+        paths: &Paths<R>,
+        points: impl Iterator<Item = u32>,
+    ) {
+        let Some(origin) = anchors.first() else { return };
+        self.ways.resize(anchors.len());
+        self.balls.resize(anchors.len(), [Aabb::EMPTY; 2]);
+        for point in points {
+            let at = point as usize;
+            let anchor = std::array::from_fn(|axis| anchors[at][axis] - origin[axis]);
+            let balls = self.ways.set(at, &paths.of(point), anchor);
+            self.balls[at] = balls.map(|(centre, radius)| Aabb::ball(centre, radius));
+        }
+    }
+
+    /// The boxes round some points, with a margin, at both ends of what is foreseen.
+    #[inline(always)]
+    pub fn bound(&self, points: &[u32], margin: f32) -> Boxes {
+        let [mut start, mut end] = [Aabb::EMPTY; 2];
+        for &point in points {
+            let [here, there] = &self.balls[point as usize];
+            (start, end) = (start.union(*here), end.union(*there));
+        }
+        [start.inflate(margin), end.inflate(margin)]
+    }
+
+    /// What two elements are to keep of a thickness, if they can come nearer to each other than `reach` times that, from a
+    /// share of the span on. `rest` is the shape at rest, for elements of one cloth.
+    #[inline(always)]
+    pub fn kept<const N: usize, const M: usize>(
+        &self,
+        points: Points<N, M>,
+        share: f32,
+        [thickness, reach]: [f32; 2],
+        rest: Option<&[[f32; 3]]>,
+    ) -> Option<Kept> {
+        let least = self.ways.least_distance(points, share, thickness * reach);
+        if least >= thickness * reach {
+            return None;
+        }
+        let (ours, theirs) = points;
+        let resting = |rest: &[[f32; 3]]| {
+            (ours.map(|point| rest[point as usize]), theirs.map(|point| rest[point as usize]))
+        };
+        let at_rest = rest.map_or(f32::INFINITY, |rest| shortest(resting(rest)).2);
+        let kept = thickness.min(at_rest * OF_REST_DISTANCE);
+        (least < kept * reach).then_some(Kept { thickness: kept, limited: kept < thickness })
+    }
+}
