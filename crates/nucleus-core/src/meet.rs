@@ -128,10 +128,15 @@ impl<R: Real> Solver<R> {
             }
         }
         self.foresee(frame, now, since, is_late);
-        let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
+        let Self { mutual: Some(mutual), cloths, state, maps, team, .. } = self else { return };
         let begun = (now.from - mutual.span[0]) / (mutual.span[1] - mutual.span[0]);
         let moved = [&state.start[..], &state.displacement[..]];
-        search(mutual, Look { cloths, anchors: &state.anchor, moved, begun }, is_late, team);
+        search(
+            mutual,
+            Look { cloths, anchors: &state.anchor, moved, begun, strength: &maps.strength },
+            is_late,
+            team,
+        );
         *tally.pairs.get_mut() += mutual.active.len();
         *tally.broad_phases.get_mut() += 1;
     }
@@ -167,10 +172,12 @@ impl<R: Real> Solver<R> {
     fn foresee(&mut self, frame: &FrameInput, now: Span, since: f64, is_late: bool) {
         let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
         let Mutual { paths, begun, span, strayed, .. } = mutual;
-        let ahead = Ahead::new(now, *span, mean_motion(&state.start, &state.displacement));
         let of_last = R::from_f64((now.to - now.from) / (now.from - since).max(now.to - now.from));
         let (paths, strayed) = (paths.shared(), Shared::new(strayed));
         for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
+            let rows = cloth.points().start as usize..cloth.points().end as usize;
+            let common = mean_motion(&state.start[rows.clone()], &state.displacement[rows]);
+            let ahead = Ahead::new(now, *span, common);
             let thickness = settings.thickness.max(settings.self_collision.thickness);
             let [of_thickness, of_edge] = BALL;
             let ball = (of_thickness * thickness).max(of_edge * cloth.edge_length).max(LEAST_BALL);

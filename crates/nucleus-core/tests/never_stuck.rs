@@ -95,12 +95,19 @@ fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
     assert!((0..81).all(|k| solver.point(ClothId(0), k).norm() > 0.3 * INSCRIBED), "a point is inside");
 }
 
-/// The reports of two cloths of the same `crossover_push`, in empty space.
-fn two_in_empty_space(surfaces: [nucleus_core::Surface; 2], crossover_push: f64) -> Vec<StepReport> {
+/// The reports of two cloths of the same `crossover_push`, in empty space; the first has a map of its collide strength.
+fn two_in_empty_space(
+    surfaces: [nucleus_core::Surface; 2],
+    crossover_push: f64,
+    strength: &[f64],
+) -> Vec<StepReport> {
     let mut builder = nucleus_core::ModelBuilder::new();
-    for surface in surfaces {
+    for (surface, strength) in surfaces.into_iter().zip([strength, &[]]) {
         let mass = nucleus_core::Mass::PerArea(0.2);
-        builder.cloth(nucleus_core::Cloth::new(surface, mass, LINKS)).expect("a good mesh");
+        let factors =
+            nucleus_core::PointFactors { collide_strength: strength.to_vec(), ..Default::default() };
+        let cloth = nucleus_core::Cloth { factors, ..nucleus_core::Cloth::new(surface, mass, LINKS) };
+        builder.cloth(cloth).expect("a good mesh");
     }
     let mut solver = Solver::<f32>::new(builder, 1);
     let cloth = ClothFrame { thickness: 0.004, damp: 1.0, bend_resistance: 0.1, crossover_push, ..still() };
@@ -109,20 +116,20 @@ fn two_in_empty_space(surfaces: [nucleus_core::Surface; 2], crossover_push: f64)
 }
 
 /// Two sheets that cut each other at a slant; the second turned over where `flipped`.
-fn at_a_slant(flipped: bool) -> Vec<StepReport> {
+fn at_a_slant(flipped: bool, strength: &[f64]) -> Vec<StepReport> {
     let level = grid(13, 13, Vec3::x(), Vec3::z());
     let turn =
         nalgebra::Rotation3::from_euler_angles(0.15, 0.4, if flipped { std::f64::consts::PI } else { 0.0 });
     let middle = Vec3::new(0.5, 0.0, 0.5);
     let mut slant = level.clone();
     slant.positions.iter_mut().for_each(|p| *p = turn * (*p - middle) + middle + Vec3::y() * 0.01);
-    two_in_empty_space([level, slant], 0.0)
+    two_in_empty_space([level, slant], 0.0, strength)
 }
 
 #[test]
 fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face() {
     for flipped in [false, true] {
-        let reports = at_a_slant(flipped);
+        let reports = at_a_slant(flipped, &[]);
         assert!(reports[0].tangled > 20, "{:?}", reports[0]);
         let last = reports.last().expect("frames");
         assert_eq!((last.tangled, last.crossed), (0, 0), "flipped {flipped}: {last:?}");
@@ -133,13 +140,23 @@ fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face(
 }
 
 #[test]
+fn points_that_a_map_lets_pass_are_no_tangle() {
+    let tangled = |strength: f64| {
+        let reports = at_a_slant(false, &[strength; 169]);
+        [reports[0].tangled, reports[0].crossed]
+    };
+    assert_eq!([0.0, 0.5].map(tangled), [[0; 2]; 2]);
+    assert!(tangled(1.0)[0] > 20, "{:?}", tangled(1.0));
+}
+
+#[test]
 fn crossover_push_works_sheets_apart_sooner() {
     // A strip stands in a level sheet, four and a half of its edges deep.
     let apart_after = |push: f64| {
         let level = grid(13, 13, Vec3::x(), Vec3::z());
         let mut strip = grid(4, 13, Vec3::x() * 0.25, Vec3::y());
         strip.positions.iter_mut().for_each(|p| *p += Vec3::new(0.39, -4.5 / 12.0, 0.46));
-        let reports = two_in_empty_space([level, strip], push);
+        let reports = two_in_empty_space([level, strip], push, &[]);
         reports.iter().position(|report| report.tangled == 0).expect("they come apart")
     };
     let [alone, pushed] = [0.0, 0.5].map(apart_after);

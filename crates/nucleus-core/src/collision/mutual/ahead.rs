@@ -13,7 +13,7 @@ pub struct Ahead<R> {
     begun: R,
     /// Steps in the span.
     steps: R,
-    /// The motion of all points in a step, in the mean.
+    /// The motion of all points of the cloth in a step, in the mean.
     common: [R; 3],
 }
 
@@ -45,7 +45,7 @@ impl<R: Real> Ahead<R> {
     }
 }
 
-/// The mean motion of all points in a step: what they have in common brings none nearer to another.
+/// The mean motion of some points in a step: what they have in common brings none of them nearer to another.
 pub fn mean_motion<R: Real>(start: &[Row4<R>], now: &[Row4<R>]) -> [R; 3] {
     let mut sum = [0.0f64; 3];
     for (start, now) in start.iter().zip(now) {

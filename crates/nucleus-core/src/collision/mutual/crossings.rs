@@ -3,23 +3,20 @@
 use super::Mutual;
 use super::bodies::Bodies;
 use super::pieces::Pieces;
+use super::search::Look;
 use super::tangle::{Crossing, Remedy, Tangle, Wing, goes_through};
 use crate::collision::terms::Terms;
 use crate::model::ClothModel;
 use crate::scalar::{Real, Row4, add, cross, dot, scale, sub};
 
 /// Looks for all that passes through each other where the points are now. Good while the boxes of the last search hold.
-pub fn find_crossings<R: Real>(
-    mutual: &mut Mutual<R>,
-    cloths: &[ClothModel<R>],
-    anchors: &[[f64; 3]],
-    moved: &[Row4<R>],
-) {
+pub fn find_crossings<R: Real>(mutual: &mut Mutual<R>, look: &Look<'_, R>) {
     let Mutual { bodies, terms, tangle, .. } = mutual;
     tangle.is_suspected = false;
     tangle.crossings.clear();
     let Some(tree) = &bodies.tree else { return };
-    let view = View { bodies, terms, cloths, anchors, moved };
+    let Look { cloths, anchors, moved: [_, moved], strength, .. } = *look;
+    let view = View { bodies, terms, cloths, anchors, moved, strength };
     for group in 0..bodies.groups.len() as u32 {
         tree.query(&bodies.swept(group), |other| view.cross(group, other, &mut tangle.crossings));
     }
@@ -39,6 +36,7 @@ struct View<'a, R> {
     cloths: &'a [ClothModel<R>],
     anchors: &'a [[f64; 3]],
     moved: &'a [Row4<R>],
+    strength: &'a [R],
 }
 
 impl<R: Real> View<'_, R> {
@@ -51,8 +49,13 @@ impl<R: Real> View<'_, R> {
             return;
         }
         let place = |point: u32| self.place(point);
-        for &edge in &self.cloths[ours.cloth as usize].skin.edges[ours.group.edges.clone()] {
-            for &face in &self.cloths[theirs.cloth as usize].skin.triangles[theirs.group.triangles.clone()] {
+        let holds = |points: &[u32]| {
+            self.strength.is_empty() || points.iter().all(|&p| self.strength[p as usize] >= R::ONE)
+        };
+        let edges = &self.cloths[ours.cloth as usize].skin.edges[ours.group.edges.clone()];
+        let faces = &self.cloths[theirs.cloth as usize].skin.triangles[theirs.group.triangles.clone()];
+        for &edge in edges.iter().filter(|edge| holds(*edge)) {
+            for &face in faces.iter().filter(|face| holds(*face)) {
                 let is_joined = face.iter().any(|point| edge.contains(point));
                 if !is_joined && goes_through(edge.map(place), face.map(place)) {
                     found.push(Crossing { edge, wings: [edge[0]; 2], face, remedy: Remedy::Wait });

@@ -58,6 +58,8 @@ pub struct Look<'a, R> {
     pub moved: [&'a [Row4<R>]; 2],
     /// The start of the time step, as a share of the span.
     pub begun: f64,
+    /// A factor on the collide strength of each point; none where no cloth has a map of it.
+    pub strength: &'a [R],
 }
 
 /// Groups per task.
@@ -81,7 +83,7 @@ pub fn search<R: Real>(mutual: &mut Mutual<R>, look: Look<'_, R>, is_late: bool,
     let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
     mutual.look_ahead(look.anchors, margin, is_late);
     if !is_late && mutual.tangle.may_be_there() {
-        find_crossings(mutual, look.cloths, look.anchors, look.moved[1]);
+        find_crossings(mutual, &look);
     }
     let Mutual { bodies, terms, strayed, room, active, tangle, .. } = mutual;
     let Room { seen, groups, tasks } = room;
