@@ -7,7 +7,9 @@
 //! | where each point is foreseen to go | [`paths`], [`ahead`] |
 //! | broad phase: which elements can touch while the points keep to that | [`search`], [`sought`], [`local`], [`seen`], [`ways`] |
 //! | the contacts that were found, by kind and by task | [`active`], [`contacts`] |
-//! | one contact: pushed apart, with friction, and proven | [`near`] |
+//! | one contact | [`near`] |
+//! | how it pushes its elements apart, with friction | [`push`] |
+//! | the proof that they did not pass, and what is done where there is none | [`proof`] |
 //! | what sticks, and what bounces | [`stick`], [`bounce`] |
 //! | free points, which can go far in a step | [`swept`] |
 //! | which contacts may be worked on side by side | [`tasks`] |
@@ -28,6 +30,8 @@ mod local;
 pub mod near;
 pub mod paths;
 mod pieces;
+mod proof;
+mod push;
 pub mod search;
 mod seen;
 mod sought;
