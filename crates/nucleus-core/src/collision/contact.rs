@@ -7,17 +7,20 @@
 //! the cloth would pass, and is pushed back to its side by the plane that held at the start of the step.
 
 mod bounce;
+mod proof;
+mod push;
+mod step;
 mod stick;
+
+pub use step::Step;
 
 use nalgebra::Vector3;
 
+use proof::best_plane;
+
 use super::foresee::{Foreseen, spread};
-use super::friction::{Push, rub};
-use super::maps::Maps;
 use super::narrow;
-use super::terms::{Sides, Terms};
 use crate::checkpoint::item;
-use crate::columns::Shared;
 use crate::scalar::{Real, Row4, dot};
 
 type Point = Vector3<f64>;
@@ -25,9 +28,6 @@ type Point = Vector3<f64>;
 /// Parts in a million of the thickness that count as touching: without it a contact at rest would push
 /// for ever at its last bit.
 const TOUCH: f64 = 1e-6;
-/// Least mobility of an element, in that of its most mobile point: no point moves farther than 1 / this times
-/// the depth of a contact.
-const LEAST_ARM: f64 = 0.25;
 /// A contact's plane is good for motion along it up to this share of the thickness: round an edge or a corner
 /// it is then off by less than 1e-5 of the thickness, and on a face not at all.
 const PLANE_REACH: f64 = 1.0 / 256.0;
@@ -69,146 +69,6 @@ pub enum Outcome {
     Caught,
     /// No plane holds: the two are tangled, and are left alone.
     Tangled,
-}
-
-/// All that resolving a pair needs to know of the step.
-pub struct Step<'a, R> {
-    /// Displacements from the anchors, with the inverse mass.
-    pub displacement: Shared<'a, Row4<R>>,
-    /// Where the points would be had nothing held them; less the start of the step, this is velocity.
-    pub predicted: Shared<'a, Row4<R>>,
-    /// Displacements at the start of the step.
-    pub start: &'a [Row4<R>],
-    /// Anchors in metres.
-    pub anchors: &'a [[f64; 3]],
-    /// The collider's points at the start and at the end of the frame.
-    pub collider: [&'a [Point]; 2],
-    /// Start and end of the step, as shares of the frame.
-    pub time: [f64; 2],
-    /// The span the pairs were found for, as shares of the frame.
-    pub span: [f64; 2],
-    /// Length of the step in seconds.
-    pub h: R,
-    /// The distance to keep, in metres; the most that maps make of it.
-    pub thickness: R,
-    /// The share of every thickness that is kept: less than one where there is no room for all of it.
-    pub squeeze: R,
-    /// How the two meet.
-    pub terms: Terms<R>,
-    /// What the cloth's points bring into a contact beyond their cloth.
-    pub maps: &'a Maps<R>,
-}
-
-impl<R: Real> Step<'_, R> {
-    /// The same where only a share of every thickness is kept.
-    pub fn squeezed(self, share: f64) -> Self {
-        let share = R::from_f64(share);
-        Self { thickness: self.thickness * share, squeeze: self.squeeze * share, ..self }
-    }
-
-    /// The distance in metres up to which anything acts.
-    pub fn reach(&self) -> R {
-        R::from_f64(self.terms.thickness * self.terms.reach)
-    }
-
-    /// The distance to keep where a contact is.
-    #[inline(always)]
-    fn kept<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
-        if self.maps.thickness.is_empty() {
-            return self.thickness;
-        }
-        let most = R::from_f64(self.terms.thickness);
-        self.terms.thickness_at(self.maps, (points, [], &(weights, [])), most) * self.squeeze
-    }
-
-    /// The cloth's points at the start and at the end of the step.
-    #[inline]
-    fn cloth<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
-        let end = std::array::from_fn(|k| self.place(points[k], self.moved(points[k]).xyz()));
-        [self.cloth_at_start(points), end]
-    }
-
-    #[inline]
-    fn cloth_at_start<const N: usize>(&self, points: [u32; N]) -> [Point; N] {
-        std::array::from_fn(|k| self.place(points[k], self.start(points[k])))
-    }
-
-    /// Whether a collision of a point is carried out in full.
-    pub fn is_full(&self, point: u32) -> bool {
-        self.terms.strength_at(self.maps, ([point], [], &([R::ONE], []))) >= R::ONE
-    }
-
-    /// Where a point is at the start of the step, in metres.
-    pub fn place_at_start(&self, point: u32) -> Point {
-        self.place(point, self.start(point))
-    }
-
-    /// Where a point is at the end of the step, in metres.
-    pub fn place_at_end(&self, point: u32) -> Point {
-        self.place(point, self.moved(point).xyz())
-    }
-
-    /// Pushes a point, unless it is pinned; `led` is the part of it that is not to become velocity.
-    #[allow(unsafe_code)]
-    pub fn push(&self, point: u32, push: Point, led: Point) {
-        let mut row = self.moved(point);
-        if row.0[3] <= R::ZERO {
-            return;
-        }
-        // SAFETY: as for `moved`.
-        unsafe {
-            let mut predicted = self.predicted.get(point);
-            for axis in 0..3 {
-                row.0[axis] += R::from_f64(push[axis]);
-                predicted.0[axis] += R::from_f64(led[axis]);
-            }
-            self.displacement.set(point, row);
-            self.predicted.set(point, predicted);
-        }
-    }
-
-    #[inline(always)]
-    fn place(&self, point: u32, [x, y, z]: [R; 3]) -> Point {
-        Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
-    }
-
-    /// How far a point of the collider goes in the span, beside the drift of so many metres in a frame.
-    #[inline]
-    fn way(&self, point: u32, drift: [R; 3]) -> f64 {
-        let [start, end] = self.collider.map(|points| points[point as usize]);
-        (end - start - Point::from(drift.map(R::to_f64))).norm() * (self.span[1] - self.span[0])
-    }
-
-    #[allow(unsafe_code)]
-    #[inline(always)]
-    fn moved(&self, point: u32) -> Row4<R> {
-        // SAFETY: the phase hands every task points of its own.
-        unsafe { self.displacement.get(point) }
-    }
-
-    #[inline(always)]
-    fn start(&self, point: u32) -> [R; 3] {
-        self.start[point as usize].xyz()
-    }
-
-    /// The collider's points at the start and at the end of the step.
-    #[inline]
-    pub fn surface<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
-        std::array::from_fn(|end| std::array::from_fn(|k| self.surface_point(points[k], self.time[end])))
-    }
-
-    /// A point of the collider at a time of the frame.
-    #[inline]
-    fn surface_point(&self, point: u32, time: f64) -> Point {
-        let [start, end] = self.collider.map(|points| points[point as usize]);
-        start + (end - start) * time
-    }
-
-    /// A time as a share of the span the pairs were found for.
-    fn share(&self, time: f64) -> R {
-        let [from, to] = self.span;
-        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
-    }
 }
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
@@ -411,150 +271,6 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let time = R::from_f64(step.time[1]);
         self.found_at = std::array::from_fn(|axis| contact[axis] - self.surface_motion[axis] * time);
     }
-
-    /// Moves the cloth's points by `depth` along the plane's normal at the contact, with friction.
-    /// `before` is how much of that was missing when the step began.
-    fn push(&self, step: &Step<'_, R>, depth: R, before: R) {
-        let rows = self.points.map(|point| step.moved(point));
-        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
-        // Beside a pinned point the arm is short, and what is free would be flung.
-        let least = rows.iter().fold(R::ZERO, |most, row| if row.0[3] > most { row.0[3] } else { most });
-        let least = least * R::from_f64(LEAST_ARM);
-        let mobility = if mobility < least { least } else { mobility };
-        if mobility <= R::ZERO {
-            return;
-        }
-        let mut push = Push::new(depth, before, step.h);
-        if step.terms.is_weak(step.maps) {
-            push = push.times(step.terms.strength_at(step.maps, self.sides(&(self.weights, []))));
-        }
-        let along = self.normal.map(|n| n * push.length());
-        let rub = self.friction(step, rows, along, push.pressed);
-        for k in 0..N {
-            let mobile = rows[k].0[3] * self.weights[k] / mobility;
-            let mut row = rows[k];
-            for axis in 0..3 {
-                row.0[axis] += mobile * (along[axis] + rub[axis]);
-            }
-            self.write(step, self.points[k], row, self.normal.map(|n| n * push.led * mobile));
-        }
-    }
-
-    /// The points of the cloth's element, with how near each of them is; of the collider's there is nothing to tell.
-    fn sides<'a>(&self, weights: &'a ([R; N], [R; 0])) -> Sides<'a, R, N, 0> {
-        (self.points, [], weights)
-    }
-
-    /// Moves all of the cloth's element along the plane's normal: no point of it is behind the plane then.
-    fn carry(&self, step: &Step<'_, R>, depth: R) {
-        for point in self.points {
-            let mut row = step.moved(point);
-            if row.0[3] > R::ZERO {
-                for axis in 0..3 {
-                    row.0[axis] += self.normal[axis] * depth;
-                }
-                self.write(step, point, row, [R::ZERO; 3]);
-            }
-        }
-    }
-
-    /// Whether it is certain that the two did not pass each other in this step; takes up another plane if that
-    /// proves it. What was not apart when the step began has nothing to lose.
-    #[inline]
-    pub fn prove(&mut self, step: &Step<'_, R>) -> bool {
-        let moved = self.points.map(|point| step.moved(point).xyz());
-        let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
-        // What lies within rounding of the plane is looked at in double precision.
-        let grain = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
-        let (_, at_end) = self.gaps(moved, step.share(step.time[1]));
-        // The plane may be of the end of a pass in this step, and good for nothing at its start.
-        let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0]));
-        (at_end > grain && at_start > grain) || self.may_pass(step) || self.prove_otherwise(step)
-    }
-
-    /// Whether the scene lets the two pass through each other: a collision that is carried out in part is none that holds.
-    #[cold]
-    fn may_pass(&self, step: &Step<'_, R>) -> bool {
-        let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
-        let all = step.terms.strength.iter().any(|&side| side < R::ONE);
-        step.terms.is_weak(step.maps) && (all || of_points(&step.maps.strength))
-    }
-
-    #[cold]
-    fn prove_otherwise(&mut self, step: &Step<'_, R>) -> bool {
-        let (cloth, surface) = (step.cloth(self.points), step.surface(self.collider_points));
-        let ([x0, x1], [q0, q1]) = (cloth, surface);
-        let at_start = closest(x0, q0);
-        let line = |x, q, (b, c)| weigh(x, b) - weigh(q, c);
-        let directions =
-            [line(x0, q0, at_start), across(x1, q1), across(x0, q0), line(x1, q1, closest(x1, q1))];
-        match best_plane(directions, cloth, surface) {
-            Some((gap, normal)) if gap > 0.0 => self.turn_to(normal, at_start, step),
-            Some(_) => return false,
-            None => {}
-        }
-        true
-    }
-
-    /// Takes the cloth's element along with the surface, as it was at the start of the step.
-    pub fn ride(&self, step: &Step<'_, R>) {
-        let passed = R::from_f64(step.time[1] - step.time[0]);
-        for point in self.points {
-            let mut row = step.moved(point);
-            if row.0[3] > R::ZERO {
-                let start = step.start(point);
-                for axis in 0..3 {
-                    row.0[axis] = start[axis] + self.surface_motion[axis] * passed;
-                }
-                self.write(step, point, row, [R::ZERO; 3]);
-            }
-        }
-    }
-
-    /// The correction along the surface, against the motion over it within the step.
-    fn friction(&self, step: &Step<'_, R>, rows: [Row4<R>; N], along: [R; 3], pressed: R) -> [R; 3] {
-        let slip_limit = step.terms.friction_at(step.maps, self.sides(&(self.weights, []))) * pressed;
-        if slip_limit <= R::ZERO {
-            return [R::ZERO; 3];
-        }
-        let start = self.contact(self.points.map(|point| step.start(point)));
-        let now = self.contact(rows.map(|row| row.xyz()));
-        let passed = R::from_f64(step.time[1] - step.time[0]);
-        let motion: [R; 3] = std::array::from_fn(|axis| {
-            now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * passed
-        });
-        rub(motion, self.normal, slip_limit)
-    }
-
-    #[allow(unsafe_code)]
-    #[inline(always)]
-    fn write(&self, step: &Step<'_, R>, point: u32, row: Row4<R>, led: [R; 3]) {
-        // SAFETY: the phase hands every task points of its own.
-        unsafe {
-            step.displacement.set(point, row);
-            let mut predicted = step.predicted.get(point);
-            for axis in 0..3 {
-                predicted.0[axis] += led[axis];
-            }
-            step.predicted.set(point, predicted);
-        }
-    }
-}
-
-/// Among some directions, each taken both ways, the one that separates the two at the start of the step
-/// and leaves the largest gap at its end.
-fn best_plane<const N: usize, const M: usize>(
-    directions: [Point; 4],
-    [x0, x1]: [[Point; N]; 2],
-    [q0, q1]: [[Point; M]; 2],
-) -> Option<(f64, Point)> {
-    let gap = |n: Point, x: &[Point], q: &[Point]| {
-        let least = x.iter().map(|x| n.dot(x)).fold(f64::INFINITY, f64::min);
-        least - q.iter().map(|q| n.dot(q)).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let units = directions.into_iter().filter_map(|direction| direction.try_normalize(1e-12));
-    let planes = units.flat_map(|n| [n, -n]).filter(|&n| gap(n, &x0, &q0) > 0.0);
-    planes.map(|n| (gap(n, &x1, &q1), n)).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The closest points of two elements, as weights.

@@ -1,0 +1,61 @@
+//! The proof that cloth and collider did not pass each other in a step.
+
+use super::step::Step;
+use super::{Pair, Point, across, closest, weigh};
+use crate::scalar::Real;
+
+impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
+    /// Whether it is certain that the two did not pass each other in this step; takes up another plane if that
+    /// proves it. What was not apart when the step began has nothing to lose.
+    #[inline]
+    pub fn prove(&mut self, step: &Step<'_, R>) -> bool {
+        let moved = self.points.map(|point| step.moved(point).xyz());
+        let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
+        // What lies within rounding of the plane is looked at in double precision.
+        let grain = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
+        let (_, at_end) = self.gaps(moved, step.share(step.time[1]));
+        // The plane may be of the end of a pass in this step, and good for nothing at its start.
+        let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0]));
+        (at_end > grain && at_start > grain) || self.may_pass(step) || self.prove_otherwise(step)
+    }
+
+    /// Whether the scene lets the two pass through each other: a collision that is carried out in part is none that holds.
+    #[cold]
+    pub(super) fn may_pass(&self, step: &Step<'_, R>) -> bool {
+        let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
+        let all = step.terms.strength.iter().any(|&side| side < R::ONE);
+        step.terms.is_weak(step.maps) && (all || of_points(&step.maps.strength))
+    }
+
+    #[cold]
+    fn prove_otherwise(&mut self, step: &Step<'_, R>) -> bool {
+        let (cloth, surface) = (step.cloth(self.points), step.surface(self.collider_points));
+        let ([x0, x1], [q0, q1]) = (cloth, surface);
+        let at_start = closest(x0, q0);
+        let line = |x, q, (b, c)| weigh(x, b) - weigh(q, c);
+        let directions =
+            [line(x0, q0, at_start), across(x1, q1), across(x0, q0), line(x1, q1, closest(x1, q1))];
+        match best_plane(directions, cloth, surface) {
+            Some((gap, normal)) if gap > 0.0 => self.turn_to(normal, at_start, step),
+            Some(_) => return false,
+            None => {}
+        }
+        true
+    }
+}
+
+/// Among some directions, each taken both ways, the one that separates the two at the start of the step
+/// and leaves the largest gap at its end.
+pub(super) fn best_plane<const N: usize, const M: usize>(
+    directions: [Point; 4],
+    [x0, x1]: [[Point; N]; 2],
+    [q0, q1]: [[Point; M]; 2],
+) -> Option<(f64, Point)> {
+    let gap = |n: Point, x: &[Point], q: &[Point]| {
+        let least = x.iter().map(|x| n.dot(x)).fold(f64::INFINITY, f64::min);
+        least - q.iter().map(|q| n.dot(q)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let units = directions.into_iter().filter_map(|direction| direction.try_normalize(1e-12));
+    let planes = units.flat_map(|n| [n, -n]).filter(|&n| gap(n, &x0, &q0) > 0.0);
+    planes.map(|n| (gap(n, &x1, &q1), n)).max_by(|a, b| a.0.total_cmp(&b.0))
+}
