@@ -33,7 +33,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// What the bytes are; counted up whenever their layout changes.
-const KIND: [u8; 8] = *b"solver 1";
+const KIND: [u8; 8] = *b"solver 2";
 
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
@@ -144,7 +144,7 @@ kept!([R: Real] PairList<R> {
 });
 
 kept!([R: Real] Mutual<R> {
-    columns: [strayed, begun],
+    columns: [strayed, began_at],
     values: [terms, span],
     parts: [bodies, paths, active, tangle],
     anew: [room, held],

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::lists::Lists;
 use super::seen::Seen;
 use crate::checkpoint::kept;
-use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::aabb::{Aabb, SweptBox};
 use crate::collision::skin::Group;
 use crate::collision::tree::Tree;
 use crate::model::ClothModel;
@@ -31,7 +31,7 @@ pub struct Bodies {
     /// Boxes over groups.
     pub tree: Option<Tree>,
     /// Boxes round each group at the start and at the end of what is foreseen.
-    pub around: Vec<Boxes>,
+    pub around: Vec<SweptBox>,
     /// The groups that have an element of each point; none for rows that are no point.
     pub of_point: Lists,
     /// Whether each point is of no face.
@@ -52,10 +52,10 @@ pub struct Bodies {
 }
 
 kept!([] Bodies {
-    columns: [around, rest],
+    columns: [rest],
     values: [],
     parts: [tree],
-    anew: [groups, points, ends, block, cloth, edge_length, blocks, of_point, is_free],
+    anew: [groups, around, points, ends, block, cloth, edge_length, blocks, of_point, is_free],
 });
 
 impl Bodies {
