@@ -50,9 +50,7 @@ impl<R: Real> Solver<R> {
         let start: [f64; 3] = pin.start.into();
         // Put somewhere else, it is foreseen nowhere.
         if self.state.anchor[row] != start {
-            let strayed = [Some(&mut self.strayed), self.mutual.as_mut().map(|mutual| &mut mutual.strayed)];
-            let of_row = strayed.into_iter().flatten().filter_map(|strayed| strayed.get_mut(row));
-            of_row.for_each(|strayed| *strayed = true);
+            self.foresee_anew(row);
         }
         self.state.anchor[row] = start;
         self.state.displacement[row].0[3] = R::ZERO;

@@ -59,12 +59,7 @@ impl<R: Real> Solver<R> {
             (0..3).for_each(|axis| moved.0[axis] += R::from_f64(way[axis]));
             self.state.displacement[row as usize] = moved;
             is_moved = true;
-            if let Some(strayed) = self.strayed.get_mut(row as usize) {
-                *strayed = true;
-            }
-            if let Some(mutual) = &mut self.mutual {
-                mutual.strayed[row as usize] = true;
-            }
+            self.foresee_anew(row as usize);
         }
         if is_moved {
             self.windows.fill([0.0; 2]);

@@ -92,7 +92,7 @@ impl Aabb {
 item!([] Aabb { low: [f32; 4], high: [f32; 4] });
 
 /// A box at the start and at the end of a straight way.
-pub type Boxes = [Aabb; 2];
+pub type SweptBox = [Aabb; 2];
 
 type Lanes = <f32 as Real>::Lanes;
 
@@ -107,7 +107,7 @@ pub struct Four {
 impl Four {
     /// Four boxes.
     #[inline(always)]
-    pub fn of([a, b, c, d]: &[Boxes; 4]) -> Self {
+    pub fn of([a, b, c, d]: &[SweptBox; 4]) -> Self {
         let axes = |a: [f32; 4], b: [f32; 4], c: [f32; 4], d: [f32; 4]| {
             let [x, y, z, _] = Lanes::transpose([a, b, c, d].map(Lanes::from_array));
             [x.to_array(), y.to_array(), z.to_array()]
@@ -121,7 +121,7 @@ impl Four {
     /// Which of the four something may meet that moves from one box to another, as [`Aabb::may_meet`] says; a bit for
     /// each.
     #[inline(always)]
-    pub fn met_by(&self, ours: &Boxes) -> u32 {
+    pub fn met_by(&self, ours: &SweptBox) -> u32 {
         let mut gap = Lanes::splat(f32::NEG_INFINITY);
         for axis in 0..3 {
             let [low, high] = [ours.map(|one| one.low[axis]), ours.map(|one| one.high[axis])];
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn ways() -> impl Strategy<Value = Boxes> {
+    fn ways() -> impl Strategy<Value = SweptBox> {
         let corner = || proptest::array::uniform3(-2.0..2.0f64).prop_map(Vector3::from);
         let one = (corner(), corner()).prop_map(|(a, b)| Aabb::new(a.inf(&b), a.sup(&b)));
         proptest::array::uniform2(one)

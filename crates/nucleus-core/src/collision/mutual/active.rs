@@ -73,6 +73,29 @@ impl<R> Found<R> {
     }
 }
 
+/// What a search found, and whose contacts it replaces.
+struct Renewal<'a, R> {
+    tasks: &'a [RwLock<Task<R>>],
+    strayed: &'a [bool],
+    is_late: bool,
+    blocks: Blocks<'a>,
+}
+
+impl<R: Real> Renewal<'_, R> {
+    /// Renews the contacts of a kind, in the order of the tasks.
+    fn renew<const N: usize, const M: usize>(
+        &self,
+        contacts: &mut Contacts<R, N, M>,
+        of: impl Fn(&Found<R>) -> &[Near<R, N, M>],
+    ) {
+        contacts.begin(self.strayed, self.is_late);
+        for task in self.tasks.iter().filter_map(|task| task.read().ok()) {
+            contacts.take(of(&task.found));
+        }
+        contacts.lay_out(self.is_late, self.blocks);
+    }
+}
+
 impl<R: Real> Active<R> {
     /// Reckons from anchors where they are now.
     pub fn follow(&mut self, anchors: &[[f64; 3]]) {
@@ -95,30 +118,17 @@ impl<R: Real> Active<R> {
         // Two tasks of about the same length; nobody else has what is theirs.
         let of_points = Mutex::new((point_face, point_point));
         let of_edges = Mutex::new((edge_edge, point_edge));
+        let of = Renewal { tasks, strayed, is_late, blocks };
         team.phase(2, |half| match half {
             0 => {
                 let Ok(mut lists) = of_points.lock() else { return };
-                let (point_face, point_point) = &mut *lists;
-                point_face.begin(strayed, is_late);
-                point_point.begin(strayed, is_late);
-                for task in tasks.iter().filter_map(|task| task.read().ok()) {
-                    point_face.take(&task.found.point_face);
-                    point_point.take(&task.found.point_point);
-                }
-                point_face.lay_out(is_late, blocks);
-                point_point.lay_out(is_late, blocks);
+                of.renew(lists.0, |found| &found.point_face);
+                of.renew(lists.1, |found| &found.point_point);
             }
             _ => {
                 let Ok(mut lists) = of_edges.lock() else { return };
-                let (edge_edge, point_edge) = &mut *lists;
-                edge_edge.begin(strayed, is_late);
-                point_edge.begin(strayed, is_late);
-                for task in tasks.iter().filter_map(|task| task.read().ok()) {
-                    edge_edge.take(&task.found.edge_edge);
-                    point_edge.take(&task.found.point_edge);
-                }
-                edge_edge.lay_out(is_late, blocks);
-                point_edge.lay_out(is_late, blocks);
+                of.renew(lists.0, |found| &found.edge_edge);
+                of.renew(lists.1, |found| &found.point_edge);
             }
         });
     }

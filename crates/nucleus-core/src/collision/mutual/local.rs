@@ -1,7 +1,7 @@
 //! A group of elements as a search sees it: boxes round what is foreseen for each, side by side.
 
 use super::search::Search;
-use crate::collision::aabb::{Aabb, Boxes, Four};
+use crate::collision::aabb::{Aabb, Four, SweptBox};
 use crate::scalar::Real;
 
 /// A group of elements.
@@ -10,24 +10,24 @@ pub struct Local {
     /// Which; none where this is room for one.
     group: Option<u32>,
     /// Round its points.
-    pub points: Row,
+    pub points: Fours,
     /// Round its edges.
-    pub edges: Row,
+    pub edges: Fours,
     /// Round its triangles.
-    pub triangles: Row,
+    pub triangles: Fours,
     /// Whether something new is foreseen for all points of its elements.
     pub is_all_new: bool,
 }
 
-/// Boxes on their ways, by four.
+/// Swept boxes, by four.
 #[derive(Debug, Default)]
-pub struct Row {
+pub struct Fours {
     fours: Vec<Four>,
 }
 
-impl Row {
+impl Fours {
     /// Puts the boxes of other things in place of all.
-    pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> Boxes) {
+    pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> SweptBox) {
         let four = |things: &[T]| {
             let mut four = [[Aabb::EMPTY; 2]; 4];
             four.iter_mut().zip(things).for_each(|(place, thing)| *place = boxes(thing));
@@ -39,7 +39,7 @@ impl Row {
 
     /// Calls `found` with the place of each that something in these boxes may meet.
     #[inline(always)]
-    pub fn met_by(&self, boxes: &Boxes, mut found: impl FnMut(usize)) {
+    pub fn met_by(&self, boxes: &SweptBox, mut found: impl FnMut(usize)) {
         for (four, all) in self.fours.iter().enumerate() {
             let mut met = all.met_by(boxes);
             while met != 0 {

@@ -60,7 +60,7 @@ pub struct Mutual<R> {
     /// Where each point is foreseen to go in the span.
     pub paths: Paths<R>,
     /// Displacements as the span began.
-    pub begun: Vec<Row4<R>>,
+    pub began_at: Vec<Row4<R>>,
     /// Start and end of a few time steps, as shares of the frame.
     pub span: [f64; 2],
     /// Points that do not keep to what was foreseen for them.
@@ -83,8 +83,8 @@ impl<R: Real> Mutual<R> {
             bodies: Bodies::new(cloths, anchors),
             terms: Vec::new(),
             paths: Paths::new(rows),
-            begun: vec![Row4::ZERO; rows],
-            span: [1.0, 0.0],
+            began_at: vec![Row4::ZERO; rows],
+            span: [1.0, 0.0], // as a frame that nothing was foreseen in leaves it
             strayed: vec![true; rows],
             active: Active::default(),
             room: Room::default(),

@@ -11,7 +11,7 @@ use super::local::Locals;
 use super::seen::Seen;
 use super::sought::Sought;
 use super::tangle::Tangle;
-use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::aabb::{Aabb, SweptBox};
 use crate::collision::skin::{Group, Skin};
 use crate::collision::terms::Terms;
 use crate::model::ClothModel;
@@ -92,11 +92,11 @@ pub fn search<R: Real>(mutual: &mut Mutual<R>, look: Look<'_, R>, is_late: bool,
     let view = Search { bodies, terms, seen, tangle, look, strayed, margin };
     team.phase(chunks, |task| {
         // Nobody else has it: a task is done once.
-        let Ok(mut room) = tasks[task].write() else { return };
-        room.found.clear();
-        room.locals.forget();
+        let Ok(mut own) = tasks[task].write() else { return };
+        own.found.clear();
+        own.locals.forget();
         let end = ((task + 1) * PER_TASK).min(groups.len());
-        groups[task * PER_TASK..end].iter().for_each(|&group| view.around(group, &mut room));
+        groups[task * PER_TASK..end].iter().for_each(|&group| view.around(group, &mut own));
     });
     active.renew(&tasks[..chunks], strayed, is_late, (&bodies.block, bodies.blocks), team);
     strayed.fill(false);
@@ -141,7 +141,7 @@ impl<R: Real> Search<'_, R> {
 
     /// The boxes round all that is foreseen for some points, with half of the largest distance that is kept.
     #[inline(always)]
-    pub(super) fn bound(&self, points: &[u32]) -> Boxes {
+    pub(super) fn bound(&self, points: &[u32]) -> SweptBox {
         self.seen.bound(points, self.margin)
     }
 

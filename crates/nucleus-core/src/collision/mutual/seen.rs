@@ -2,7 +2,7 @@
 
 use super::paths::Paths;
 use super::ways::{Points, Ways};
-use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::aabb::{Aabb, SweptBox};
 use crate::collision::narrow::shortest;
 use crate::scalar::Real;
 
@@ -14,7 +14,7 @@ const OF_REST_DISTANCE: f32 = 0.5;
 pub struct Seen {
     ways: Ways,
     /// Boxes round the balls at both ends.
-    balls: Vec<Boxes>,
+    balls: Vec<SweptBox>,
 }
 
 /// A distance to keep, in metres.
@@ -46,7 +46,7 @@ impl Seen {
 
     /// The boxes round some points, with a margin, at both ends of what is foreseen.
     #[inline(always)]
-    pub fn bound(&self, points: &[u32], margin: f32) -> Boxes {
+    pub fn bound(&self, points: &[u32], margin: f32) -> SweptBox {
         let [mut start, mut end] = [Aabb::EMPTY; 2];
         for &point in points {
             let [here, there] = &self.balls[point as usize];

@@ -1,11 +1,11 @@
 //! What pairs are sought for: the elements of a group that something new is foreseen for.
 
 use super::active::Found;
-use super::local::{Local, Row};
+use super::local::{Fours, Local};
 use super::near::{Meeting, Near};
 use super::search::Search;
 use super::ways::Points;
-use crate::collision::aabb::{Aabb, Boxes};
+use crate::collision::aabb::{Aabb, SweptBox};
 use crate::collision::terms::Terms;
 use crate::frame::Elements;
 use crate::scalar::Real;
@@ -26,18 +26,18 @@ pub struct Sought {
 #[derive(Debug)]
 struct Those<T> {
     list: Vec<T>,
-    boxes: Vec<Boxes>,
-    row: Row,
+    boxes: Vec<SweptBox>,
+    row: Fours,
 }
 
 impl<T> Default for Those<T> {
     fn default() -> Self {
-        Self { list: Vec::new(), boxes: Vec::new(), row: Row::default() }
+        Self { list: Vec::new(), boxes: Vec::new(), row: Fours::default() }
     }
 }
 
 impl<T> Those<T> {
-    fn look(&mut self, all: impl Iterator<Item = T>, bound: impl Fn(&T) -> Boxes) {
+    fn look(&mut self, all: impl Iterator<Item = T>, bound: impl Fn(&T) -> SweptBox) {
         let Self { list, boxes, row } = self;
         list.clear();
         list.extend(all);
@@ -48,14 +48,14 @@ impl<T> Those<T> {
 
     /// Calls `found` with each that something in these boxes may meet.
     #[inline(always)]
-    fn met_by(&self, around: &Boxes, mut found: impl FnMut(&T, &Boxes)) {
+    fn met_by(&self, around: &SweptBox, mut found: impl FnMut(&T, &SweptBox)) {
         self.row.met_by(around, |at| found(&self.list[at], &self.boxes[at]));
     }
 }
 
 impl Sought {
     /// Looks at a group; the boxes round all that is sought for.
-    pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) -> Boxes {
+    pub(super) fn look<R: Real>(&mut self, search: &Search<'_, R>, group: u32) -> SweptBox {
         let (skin, elements) = search.elements(group);
         self.cloth = search.bodies.groups[group as usize].cloth as usize;
         self.is_free = elements.triangles.is_empty();
@@ -135,7 +135,7 @@ impl Sought {
     fn points_meet<R: Real, const N: usize>(
         &self,
         there: &There<'_>,
-        (elements, boxes): (&[[u32; N]], &Row),
+        (elements, boxes): (&[[u32; N]], &Fours),
         pair: &Pair<'_, R>,
         found: &mut Vec<Near<R, 1, N>>,
     ) {
@@ -180,7 +180,7 @@ struct There<'a> {
     /// Its cloth, and the number of its first edge in the skin.
     first_edge: (usize, usize),
     /// Round all of it.
-    around: &'a Boxes,
+    around: &'a SweptBox,
     local: &'a Local,
 }
 

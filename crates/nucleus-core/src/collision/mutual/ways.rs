@@ -56,7 +56,7 @@ impl Ways {
         };
         let mut start = ([[0.0; 3]; N], [[0.0; 3]; M]);
         let (mut end, mut strays) = (start, [0.0f32; 2]);
-        // Loops are made registers of; maps are calls.
+        // Loops, because maps over these arrays are not inlined.
         for k in 0..N {
             let stray;
             (start.0[k], end.0[k], stray) = both(ours[k]);
