@@ -102,9 +102,9 @@ fn tube() -> Mesh {
     Mesh::rows((0..61).map(row).collect(), true)
 }
 
-/// An open cone with a spout: 60 wide above, 10 wide below.
+/// An open cone with a spout: 80 wide above, 20 wide below.
 fn funnel() -> Mesh {
-    let outline = [(30.0, 60.0), (20.0, 45.0), (10.0, 30.0), (5.0, 22.5), (5.0, 12.0), (5.0, 0.0)];
+    let outline = [(40.0, 60.0), (28.0, 45.0), (16.0, 30.0), (10.0, 22.5), (10.0, 12.0), (10.0, 0.0)];
     Mesh::rows(outline.iter().map(|&(radius, height)| ring(48, radius, height)).collect(), true)
 }
 
