@@ -8,7 +8,7 @@ use crate::collision::mutual::Mutual;
 use crate::columns::Shared;
 use crate::frame::FrameInput;
 use crate::meet::motion;
-use crate::scalar::{Real, Row4, dot};
+use crate::scalar::{Real, Row4, add, dot};
 use crate::schedule::Schedule;
 use crate::solver::Solver;
 
@@ -80,7 +80,7 @@ impl<R: Real> Solver<R> {
 
     fn hit(&self, row: usize) -> Hit<R> {
         Hit {
-            predicted: self.state.predicted[row].xyz(),
+            predicted: add(self.state.predicted[row].xyz(), self.state.led[row].xyz()),
             displacement: self.state.displacement[row].xyz(),
             velocity: self.state.velocity[row].xyz(),
         }

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
 use crate::collision::maps::Maps;
+use crate::collision::mover::Mover;
 use crate::collision::pairs::PairList;
 use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, hold_back, prove, release, resolve, stick};
 use crate::collision::terms::Terms;
-use crate::columns::Shared;
 use crate::frame::FrameInput;
 use crate::observe::{Stage, StepObserver};
 use crate::scalar::Real;
@@ -182,14 +182,13 @@ impl<R: Real> Solver<R> {
         let Some(ground) = &frame.plane else { return };
         let Self { cloths, state, heights, ground_terms, maps, team, .. } = self;
         let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
-        let displacement = Shared::new(&mut state.displacement);
-        let predicted = Shared::new(&mut state.predicted);
+        let State { displacement, predicted, led, start, .. } = state;
+        let mover = Mover::new([displacement, predicted, led]);
         for (cloth, terms) in cloths.iter().zip(ground_terms) {
             let Some(terms) = *terms else { continue };
             let ground = Ground {
-                displacement,
-                predicted,
-                start: &state.start,
+                mover,
+                start,
                 height: heights,
                 normal: [normal.x, normal.y, normal.z].map(R::from_f64),
                 squeeze: R::from_f64(squeeze),
@@ -213,11 +212,11 @@ pub(crate) struct StepParts<'a, R> {
 
 impl<R: Real> StepParts<'_, R> {
     pub(crate) fn of<'s>(&'s self, state: &'s mut State<R>, collider: &'s ColliderState) -> Step<'s, R> {
+        let State { displacement, predicted, led, start, anchor, .. } = state;
         Step {
-            displacement: Shared::new(&mut state.displacement),
-            predicted: Shared::new(&mut state.predicted),
-            start: &state.start,
-            anchors: &state.anchor,
+            mover: Mover::new([displacement, predicted, led]),
+            start,
+            anchors: anchor,
             collider: [&collider.start, &collider.end],
             time: self.time,
             span: self.span,

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::collision::maps::Maps;
+use crate::collision::mover::Mover;
 use crate::collision::mutual::Mutual;
 use crate::collision::mutual::active::Active;
 use crate::collision::mutual::ahead::{Ahead, mean_motion};
@@ -252,10 +253,10 @@ pub(crate) fn motion<'a, R: Real>(
     maps: &'a Maps<R>,
     h: f64,
 ) -> Motion<'a, R> {
+    let State { displacement, predicted, led, start, .. } = state;
     Motion {
-        displacement: Shared::new(&mut state.displacement),
-        predicted: Shared::new(&mut state.predicted),
-        start: &state.start,
+        mover: Mover::new([displacement, predicted, led]),
+        start,
         terms,
         maps,
         h: R::from_f64(h),

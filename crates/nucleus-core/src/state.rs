@@ -19,6 +19,9 @@ pub struct State<R> {
     pub velocity: Vec<Row4<R>>,
     /// Displacement at the start of the time step; empty where nothing can be met.
     pub start: Vec<Row4<R>>,
+    /// How far colliders led the point in the time step, in metres: a motion without velocity. Empty where nothing can be
+    /// met.
+    pub led: Vec<Row4<R>>,
     /// Displacement before anything held the point. Written by predict, read by velocity.
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
@@ -37,6 +40,7 @@ impl<R: Real> State<R> {
             displacement: vec![Row4::ZERO; rows],
             velocity: vec![Row4::ZERO; rows],
             start: Vec::new(),
+            led: Vec::new(),
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             inverse_mass: vec![R::ZERO; rows],

@@ -13,9 +13,10 @@ use crate::predict::{self, Columns, Drive, gravity_kick};
 use crate::refuse::Refused;
 use crate::relax;
 use crate::report::StepReport;
-use crate::scalar::Real;
+use crate::scalar::{Real, Row4};
 use crate::schedule::{Direction, Round, Schedule, Span};
 use crate::solver::Solver;
+use crate::state::State;
 use crate::velocity;
 
 /// A time step: what is done in it, which it is, and when.
@@ -128,7 +129,10 @@ impl<R: Real> Solver<R> {
     /// Keeps the places that points have before a time step moves them, where they can meet anything.
     fn keep_start(&mut self, frame: &FrameInput) {
         if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
-            self.state.start.clone_from(&self.state.displacement);
+            let State { start, led, displacement, .. } = &mut self.state;
+            start.clone_from(displacement);
+            led.clear();
+            led.resize(start.len(), Row4::ZERO);
         }
     }
 
@@ -197,13 +201,18 @@ impl<R: Real> Solver<R> {
         let Self { cloths, state, team, .. } = self;
         let (displacement, predicted) =
             (Shared::new(&mut state.displacement), Shared::new(&mut state.predicted));
-        let velocity = Shared::new(&mut state.velocity);
+        let (led, velocity) = (&state.led[..], Shared::new(&mut state.velocity));
         let h = R::from_f64(schedule.h);
         for cloth in cloths.iter() {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             team.phase(cloth.blocks.len(), |block| unsafe {
-                velocity::follow_positions(displacement, predicted, velocity, cloth.blocks.range(block), h);
+                velocity::follow_positions(
+                    [displacement, predicted, velocity],
+                    led,
+                    cloth.blocks.range(block),
+                    h,
+                );
             });
         }
     }

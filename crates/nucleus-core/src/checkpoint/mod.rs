@@ -133,7 +133,7 @@ kept!([R: Real] State<R> {
     columns: [anchor, displacement, velocity],
     values: [],
     parts: [],
-    anew: [start, predicted, normal, inverse_mass],
+    anew: [start, led, predicted, normal, inverse_mass],
 });
 
 kept!([R: Real] PairList<R> {

@@ -19,6 +19,7 @@ use nalgebra::Vector3;
 use proof::best_plane;
 
 use super::foresee::{Foreseen, spread};
+use super::friction::Push;
 use super::narrow;
 use crate::checkpoint::item;
 use crate::scalar::{Real, Row4, dot};
@@ -178,9 +179,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         if gap >= kept * touching {
             return Outcome::Apart;
         }
-        let start = self.points.map(|point| step.start(point));
-        let (gap_at_start, _) = self.gaps(start, step.share(step.time[0]));
-        self.push(step, kept - gap, kept - gap_at_start);
+        self.push(step, kept, [self.gap_at_start(step), gap]);
         Outcome::Pushed
     }
 
@@ -195,6 +194,18 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             least = if k == 0 || gap < least { gap } else { least };
         }
         (at_contact, least)
+    }
+
+    /// The gap at the start of the step.
+    #[inline(always)]
+    fn gap_at_start(&self, step: &Step<'_, R>) -> R {
+        self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0])).0
+    }
+
+    /// How far contacts led the cloth in this step, where this one is.
+    #[inline(always)]
+    fn led(&self, step: &Step<'_, R>) -> [R; 3] {
+        self.contact(self.points.map(|point| step.mover.led(point)))
     }
 
     /// Whether the contact is still about where the plane was found for.
@@ -236,7 +247,10 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             }
             if gap < 0.0 {
                 self.turn_to(normal, at_start, step);
-                self.carry(step, R::from_f64(thickness - gap));
+                let kept = R::from_f64(thickness);
+                let (gaps, led) =
+                    ([self.gap_at_start(step), R::from_f64(gap)], dot(self.normal, self.led(step)));
+                self.carry(step, Push::new(kept, gaps, led, step.h));
                 return Outcome::Caught;
             }
             proof = Some(normal);
@@ -247,7 +261,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         if distance >= thickness * (1.0 - TOUCH) {
             return Outcome::Apart;
         }
-        self.push(step, R::from_f64(thickness - distance), R::from_f64(thickness - start_line.norm()));
+        self.push(step, R::from_f64(thickness), [start_line.norm(), distance].map(R::from_f64));
         Outcome::Pushed
     }
 

@@ -1,6 +1,6 @@
 //! Friction, and how much of a push may count as motion.
 
-use crate::scalar::{Real, dot};
+use crate::scalar::{Real, dot, scale, sub};
 
 /// The speed in m/s at which cloth that starts a step inside the thickness is led out of it.
 const PUSH_OUT_SPEED: f64 = 1.0;
@@ -8,19 +8,23 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 /// A push out of a contact, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push<R> {
-    /// What undoes the motion of this step: it takes up velocity, and friction goes by it.
+    /// What undoes the motion of this step: it takes up velocity.
     pub pressed: R,
     /// What leads out of a depth that was there before the step, slowly and without velocity: a cloth that
-    /// was put down too close does not jump.
+    /// was put down too close does not jump, and one between two bodies that leave too little room does not tremble.
     pub led: R,
 }
 
 impl<R: Real> Push<R> {
-    /// Splits a push of `depth`, of which `before` was missing already when the step of length `h` began.
+    /// Splits the push that brings a gap from `now` to what is `kept`. The gap was `before` when the step of length `h`
+    /// began; since then contacts `led` the two apart by so much. What others led them together by is given back without
+    /// velocity.
     #[inline(always)]
-    pub fn new(depth: R, before: R, h: R) -> Self {
-        let free = clamp(before, depth);
-        let led = clamp(h * R::from_f64(PUSH_OUT_SPEED), free);
+    pub fn new(kept: R, [before, now]: [R; 2], led: R, h: R) -> Self {
+        let depth = kept - now;
+        let free = clamp(kept - before - led, depth);
+        let most = h * R::from_f64(PUSH_OUT_SPEED);
+        let led = clamp(if led < R::ZERO { larger(most, -led) } else { most - led }, free);
         Self { pressed: depth - free, led }
     }
 
@@ -38,14 +42,20 @@ impl<R: Real> Push<R> {
 }
 
 /// The correction along a surface: against the motion over it within the step, up to `limit`, which is the
-/// friction times how far the contact was pressed (Coulomb's law, in positions).
+/// friction times how far the contact was pushed (Coulomb's law, in positions). Then the part of it that is not to become
+/// velocity: it gives back what other contacts `led`.
 #[inline(always)]
-pub fn rub<R: Real>(motion: [R; 3], normal: [R; 3], limit: R) -> [R; 3] {
-    let off = dot(motion, normal);
-    let slip: [R; 3] = std::array::from_fn(|axis| motion[axis] - normal[axis] * off);
+pub fn rub<R: Real>([motion, led]: [[R; 3]; 2], normal: [R; 3], limit: R) -> [[R; 3]; 2] {
+    let along = |way: [R; 3]| sub(way, scale(normal, dot(way, normal)));
+    let slip = along(motion);
     let length = dot(slip, slip).sqrt();
     let grip = if length <= limit { R::ONE } else { limit / length };
-    slip.map(|s| -(s * grip))
+    [slip, along(led)].map(|way| scale(way, -grip))
+}
+
+#[inline(always)]
+fn larger<R: Real>(x: R, y: R) -> R {
+    if y > x { y } else { x }
 }
 
 /// `x` between nought and `most`.

@@ -9,6 +9,7 @@
 //! | narrow phase: how close two elements are | [`narrow`] |
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
+//! | what contacts move | [`mover`] |
 //! | cloth against itself and other cloth | [`mutual`] |
 //! | points inside a collider, and how they are led out | [`trapped`] |
 //! | the ground plane | [`plane`] |
@@ -24,6 +25,7 @@ pub mod contact;
 pub mod foresee;
 pub mod friction;
 pub mod maps;
+pub mod mover;
 pub mod mutual;
 pub mod narrow;
 pub mod pairs;

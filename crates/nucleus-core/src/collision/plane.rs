@@ -6,18 +6,16 @@ use nalgebra::Vector3;
 
 use super::friction::{Push, rub};
 use super::maps::Maps;
+use super::mover::Mover;
 use super::stick::Adhesion;
 use super::terms::{Sides, Terms};
-use crate::columns::Shared;
-use crate::scalar::{Real, Row4, dot};
+use crate::scalar::{Real, Row4, add, dot, scale};
 use std::ops::Range;
 
 /// The plane as a cloth meets it in one step.
 pub struct Ground<'a, R> {
-    /// Displacements, with the inverse mass.
-    pub displacement: Shared<'a, Row4<R>>,
-    /// Predicted displacements.
-    pub predicted: Shared<'a, Row4<R>>,
+    /// Places of the points.
+    pub mover: Mover<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
     /// Height of each anchor above the plane, in metres.
@@ -42,12 +40,10 @@ pub fn heights<R: Real>(anchors: &[[f64; 3]], origin: Vector3<f64>, normal: Vect
 
 impl<R: Real> Ground<'_, R> {
     /// Lifts the points of a run to the thickness; how many were pressed against it.
-    #[allow(unsafe_code)]
     pub fn lift(&self, points: Range<u32>) -> u64 {
-        // SAFETY: the phase hands every task a block of its own.
-        let rows = unsafe { self.displacement.run(points.clone()) };
         let mut contacts = 0;
-        for (row, point) in rows.iter_mut().zip(points) {
+        for point in points {
+            let row = self.mover.row(point);
             let gap = self.height[point as usize] + dot(self.normal, row.xyz());
             let kept = self.kept(point);
             if gap < kept && row.0[3] > R::ZERO {
@@ -59,11 +55,9 @@ impl<R: Real> Ground<'_, R> {
     }
 
     /// Holds the points of a run to the plane by what sticks.
-    #[allow(unsafe_code)]
     pub fn stick(&self, points: Range<u32>) {
-        // SAFETY: the phase hands every task a block of its own.
-        let rows = unsafe { self.displacement.run(points.clone()) };
-        for (row, point) in rows.iter_mut().zip(points).filter(|(row, _)| row.0[3] > R::ZERO) {
+        let rows = points.map(|point| (self.mover.row(point), point));
+        for (mut row, point) in rows.filter(|(row, _)| row.0[3] > R::ZERO) {
             let start = self.start[point as usize].xyz();
             let gap = self.height[point as usize] + dot(self.normal, start);
             let sides: Sides<'_, R, 1, 0> = ([point], [], &([R::ONE], []));
@@ -77,6 +71,7 @@ impl<R: Real> Ground<'_, R> {
             let now = std::array::from_fn(|axis| before[axis] + row.0[axis] - start[axis]);
             let held = adhesion.hold(before, now, self.normal, self.h).unwrap_or([R::ZERO; 3]);
             (0..3).for_each(|axis| row.0[axis] += held[axis]);
+            self.mover.push(point, row, [R::ZERO; 3]);
         }
     }
 
@@ -87,25 +82,21 @@ impl<R: Real> Ground<'_, R> {
         self.terms.thickness_at(self.maps, ([point], [], &([R::ONE], [])), most) * self.squeeze
     }
 
-    #[allow(unsafe_code)]
-    fn lift_point(&self, point: u32, row: &mut Row4<R>, [kept, gap]: [R; 2]) {
-        // SAFETY: as above.
-        let mut p = unsafe { self.predicted.get(point) };
+    fn lift_point(&self, point: u32, mut row: Row4<R>, [kept, gap]: [R; 2]) {
         let start = self.start[point as usize].xyz();
         let gap_at_start = self.height[point as usize] + dot(self.normal, start);
-        let mut push = Push::new(kept - gap, kept - gap_at_start, self.h);
+        let led = self.mover.led(point);
+        let mut push = Push::new(kept, [gap_at_start, gap], dot(self.normal, led), self.h);
         let sides: Sides<'_, R, 1, 0> = ([point], [], &([R::ONE], []));
         if self.terms.is_weak(self.maps) {
             push = push.times(self.terms.strength_at(self.maps, sides));
         }
         let motion: [R; 3] = std::array::from_fn(|axis| row.0[axis] - start[axis]);
         let friction = self.terms.friction_at(self.maps, sides);
-        let rub = rub(motion, self.normal, friction * push.pressed);
+        let [rub, given_back] = rub([motion, led], self.normal, friction * push.length());
         for axis in 0..3 {
             row.0[axis] += self.normal[axis] * push.length() + rub[axis];
-            p.0[axis] += self.normal[axis] * push.led;
         }
-        // SAFETY: as above.
-        unsafe { self.predicted.set(point, p) };
+        self.mover.push(point, row, add(scale(self.normal, push.led), given_back));
     }
 }

@@ -4,16 +4,16 @@ use super::Pair;
 use super::step::Step;
 use crate::collision::friction::{Push, rub};
 use crate::collision::terms::Sides;
-use crate::scalar::{Real, Row4};
+use crate::scalar::{Real, add, dot, scale};
 
 /// Least mobility of an element, in that of its most mobile point: no point moves farther than 1 / this times
 /// the depth of a contact.
 const LEAST_ARM: f64 = 0.25;
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
-    /// Moves the cloth's points by `depth` along the plane's normal at the contact, with friction.
-    /// `before` is how much of that was missing when the step began.
-    pub(super) fn push(&self, step: &Step<'_, R>, depth: R, before: R) {
+    /// Moves the cloth's points along the plane's normal until `kept` is kept at the contact, with friction. `gaps` are those
+    /// at the start of the step and now.
+    pub(super) fn push(&self, step: &Step<'_, R>, kept: R, gaps: [R; 2]) {
         let rows = self.points.map(|point| step.moved(point));
         let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
         // Beside a pinned point the arm is short, and what is free would be flung.
@@ -23,19 +23,21 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         if mobility <= R::ZERO {
             return;
         }
-        let mut push = Push::new(depth, before, step.h);
+        let led = self.led(step);
+        let mut push = Push::new(kept, gaps, dot(self.normal, led), step.h);
         if step.terms.is_weak(step.maps) {
             push = push.times(step.terms.strength_at(step.maps, self.sides(&(self.weights, []))));
         }
-        let along = self.normal.map(|n| n * push.length());
-        let rub = self.friction(step, rows, along, push.pressed);
+        let (along, led_along) = (scale(self.normal, push.length()), scale(self.normal, push.led));
+        let [rub, given_back] = self.friction(step, led, along, push.length());
+        let (moved, led) = (add(along, rub), add(led_along, given_back));
         for k in 0..N {
             let mobile = rows[k].0[3] * self.weights[k] / mobility;
             let mut row = rows[k];
             for axis in 0..3 {
-                row.0[axis] += mobile * (along[axis] + rub[axis]);
+                row.0[axis] += mobile * moved[axis];
             }
-            self.write(step, self.points[k], row, self.normal.map(|n| n * push.led * mobile));
+            step.mover.push(self.points[k], row, scale(led, mobile));
         }
     }
 
@@ -45,14 +47,14 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     }
 
     /// Moves all of the cloth's element along the plane's normal: no point of it is behind the plane then.
-    pub(super) fn carry(&self, step: &Step<'_, R>, depth: R) {
+    pub(super) fn carry(&self, step: &Step<'_, R>, push: Push<R>) {
         for point in self.points {
             let mut row = step.moved(point);
             if row.0[3] > R::ZERO {
                 for axis in 0..3 {
-                    row.0[axis] += self.normal[axis] * depth;
+                    row.0[axis] += self.normal[axis] * push.length();
                 }
-                self.write(step, point, row, [R::ZERO; 3]);
+                step.mover.push(point, row, self.normal.map(|n| n * push.led));
             }
         }
     }
@@ -67,37 +69,23 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
                 for axis in 0..3 {
                     row.0[axis] = start[axis] + self.surface_motion[axis] * passed;
                 }
-                self.write(step, point, row, [R::ZERO; 3]);
+                step.mover.put(point, row);
             }
         }
     }
 
-    /// The correction along the surface, against the motion over it within the step.
-    fn friction(&self, step: &Step<'_, R>, rows: [Row4<R>; N], along: [R; 3], pressed: R) -> [R; 3] {
-        let slip_limit = step.terms.friction_at(step.maps, self.sides(&(self.weights, []))) * pressed;
+    /// The correction along the surface, against the motion over it within the step, and the part of it that is no motion.
+    fn friction(&self, step: &Step<'_, R>, led: [R; 3], along: [R; 3], pushed: R) -> [[R; 3]; 2] {
+        let slip_limit = step.terms.friction_at(step.maps, self.sides(&(self.weights, []))) * pushed;
         if slip_limit <= R::ZERO {
-            return [R::ZERO; 3];
+            return [[R::ZERO; 3]; 2];
         }
         let start = self.contact(self.points.map(|point| step.start(point)));
-        let now = self.contact(rows.map(|row| row.xyz()));
+        let now = self.contact(self.points.map(|point| step.moved(point).xyz()));
         let passed = R::from_f64(step.time[1] - step.time[0]);
         let motion: [R; 3] = std::array::from_fn(|axis| {
             now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * passed
         });
-        rub(motion, self.normal, slip_limit)
-    }
-
-    #[allow(unsafe_code)]
-    #[inline(always)]
-    pub(super) fn write(&self, step: &Step<'_, R>, point: u32, row: Row4<R>, led: [R; 3]) {
-        // SAFETY: the phase hands every task points of its own.
-        unsafe {
-            step.displacement.set(point, row);
-            let mut predicted = step.predicted.get(point);
-            for axis in 0..3 {
-                predicted.0[axis] += led[axis];
-            }
-            step.predicted.set(point, predicted);
-        }
+        rub([motion, led], self.normal, slip_limit)
     }
 }

@@ -2,16 +2,14 @@
 
 use crate::collision::contact::Point;
 use crate::collision::maps::Maps;
+use crate::collision::mover::Mover;
 use crate::collision::terms::Terms;
-use crate::columns::Shared;
 use crate::scalar::{Real, Row4};
 
 /// All that resolving a pair needs to know of the step.
 pub struct Step<'a, R> {
-    /// Displacements from the anchors, with the inverse mass.
-    pub displacement: Shared<'a, Row4<R>>,
-    /// Where the points would be had nothing held them; less the start of the step, this is velocity.
-    pub predicted: Shared<'a, Row4<R>>,
+    /// Places of the cloth's points.
+    pub mover: Mover<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
     /// Anchors in metres.
@@ -84,21 +82,11 @@ impl<R: Real> Step<'_, R> {
     }
 
     /// Pushes a point, unless it is pinned; `led` is the part of it that is not to become velocity.
-    #[allow(unsafe_code)]
     pub fn push(&self, point: u32, push: Point, led: Point) {
         let mut row = self.moved(point);
-        if row.0[3] <= R::ZERO {
-            return;
-        }
-        // SAFETY: as for `moved`.
-        unsafe {
-            let mut predicted = self.predicted.get(point);
-            for axis in 0..3 {
-                row.0[axis] += R::from_f64(push[axis]);
-                predicted.0[axis] += R::from_f64(led[axis]);
-            }
-            self.displacement.set(point, row);
-            self.predicted.set(point, predicted);
+        if row.0[3] > R::ZERO {
+            (0..3).for_each(|axis| row.0[axis] += R::from_f64(push[axis]));
+            self.mover.push(point, row, [led.x, led.y, led.z].map(R::from_f64));
         }
     }
 
@@ -114,11 +102,9 @@ impl<R: Real> Step<'_, R> {
         (end - start - Point::from(drift.map(R::to_f64))).norm() * (self.span[1] - self.span[0])
     }
 
-    #[allow(unsafe_code)]
     #[inline(always)]
     pub(in crate::collision) fn moved(&self, point: u32) -> Row4<R> {
-        // SAFETY: the phase hands every task points of its own.
-        unsafe { self.displacement.get(point) }
+        self.mover.row(point)
     }
 
     #[inline(always)]

@@ -33,7 +33,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             for (k, mut row) in rows.into_iter().enumerate() {
                 let part = row.0[3] * self.weights[k] / mobility;
                 (0..3).for_each(|axis| row.0[axis] += part * held[axis]);
-                self.write(step, self.points[k], row, [R::ZERO; 3]);
+                step.mover.push(self.points[k], row, [R::ZERO; 3]);
             }
         }
     }

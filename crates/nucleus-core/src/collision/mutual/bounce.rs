@@ -19,10 +19,8 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         }
         #[allow(unsafe_code)]
         // SAFETY: tasks of a phase share no block, and a contact's points are in its task's blocks.
-        let (predicted, velocity) = (
-            |point: u32| unsafe { step.predicted.get(point) }.xyz(),
-            |point: u32| unsafe { velocities.get(point) },
-        );
+        let velocity = |point: u32| unsafe { velocities.get(point) };
+        let predicted = |point: u32| step.mover.predicted(point);
         let hit = Hit {
             predicted: self.between(&weights, predicted),
             displacement: self.between(&weights, |point| step.row(point).xyz()),

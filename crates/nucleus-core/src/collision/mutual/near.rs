@@ -6,18 +6,16 @@
 use super::ways::Points;
 use crate::checkpoint::{Item, Reader, item};
 use crate::collision::maps::Maps;
+use crate::collision::mover::Mover;
 use crate::collision::narrow::{Places, gap_along, shortest};
 use crate::collision::terms::{Sides, Terms};
-use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add};
 
 /// What a contact needs of the time step.
 #[derive(Clone, Copy)]
 pub struct Motion<'a, R> {
-    /// Displacements from the anchors, with the inverse mass.
-    pub displacement: Shared<'a, Row4<R>>,
-    /// Where the points would be had nothing held them.
-    pub predicted: Shared<'a, Row4<R>>,
+    /// Places of the points.
+    pub mover: Mover<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
     /// How cloths meet, by cloth and cloth.
@@ -31,31 +29,14 @@ pub struct Motion<'a, R> {
 }
 
 impl<R: Real> Motion<'_, R> {
-    #[allow(unsafe_code)]
     #[inline(always)]
     pub(super) fn row(&self, point: u32) -> Row4<R> {
-        // SAFETY: tasks of a phase share no block, and a contact's points are in its task's blocks.
-        unsafe { self.displacement.get(point) }
+        self.mover.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
     }
 
     #[inline(always)]
     pub(super) fn start(&self, point: u32) -> [R; 3] {
         self.start[point as usize].xyz()
-    }
-
-    /// Moves a point; `led` is the part of it that is not to become velocity.
-    #[allow(unsafe_code)]
-    #[inline(always)]
-    pub(super) fn write(&self, point: u32, row: Row4<R>, led: [R; 3]) {
-        // SAFETY: as above.
-        unsafe {
-            self.displacement.set(point, row);
-            let mut predicted = self.predicted.get(point);
-            for axis in 0..3 {
-                predicted.0[axis] += led[axis];
-            }
-            self.predicted.set(point, predicted);
-        }
     }
 }
 

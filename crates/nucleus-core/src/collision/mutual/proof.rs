@@ -94,7 +94,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         for axis in 0..3 {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
         }
-        step.write(point, row, [R::ZERO; 3]);
+        step.mover.put(point, row);
     }
 
     /// Lets all points of the two go nowhere in this step, or all along with one that is `held`: what moves as one
@@ -108,7 +108,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             if row.0[3] > R::ZERO {
                 let [x, y, z] = add(step.start(point), motion);
                 row = Row4([x, y, z, row.0[3]]);
-                step.write(point, row, [R::ZERO; 3]);
+                step.mover.put(point, row);
             }
             held[point as usize] = true;
         }

@@ -79,7 +79,8 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     ) {
         let Some(terms) = self.terms(step) else { return };
         let line_before = self.line(before, weights);
-        let mut push = Push::new(depth, kept - dot(self.normal, line_before), step.h);
+        // What both sides can yield to comes to a balance by its velocities: nothing that was led is given back here.
+        let mut push = Push::new(kept, [dot(self.normal, line_before), kept - depth], R::ZERO, step.h);
         if terms.is_weak(step.maps) {
             push = push.times(terms.strength_at(step.maps, self.sides(weights)));
         }
@@ -121,7 +122,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         for axis in 0..3 {
             row.0[axis] += moved[axis] * part;
         }
-        step.write(point, row, scale(led, part));
+        step.mover.part(point, row, scale(led, part));
     }
 
     /// The correction along the surfaces, against the motion of one over the other within the step.
@@ -139,7 +140,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             return [R::ZERO; 3];
         }
         let line = self.line(&self.now(step), weights);
-        rub(add(sub(line, line_before), along), self.normal, limit)
+        rub([add(sub(line, line_before), along), [R::ZERO; 3]], self.normal, limit)[0]
     }
 
     /// The line from the contact on theirs to the contact on ours.

@@ -215,7 +215,7 @@ impl Crossing {
             let moved = scale(way, mobility(point) * weight / all).map(R::from_f64);
             let row = step.row(point);
             let [x, y, z] = add(row.xyz(), moved);
-            step.write(point, Row4([x, y, z, row.0[3]]), moved);
+            step.mover.part(point, Row4([x, y, z, row.0[3]]), moved);
         }
     }
 }
