@@ -16,7 +16,7 @@ pub use step::Step;
 
 use nalgebra::Vector3;
 
-use proof::best_plane;
+use proof::{best_plane, stays};
 
 use super::foresee::{Foreseen, spread};
 use super::friction::Push;
@@ -242,10 +242,11 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
                 return Outcome::Tangled;
             };
-            if gap < 0.0 && self.may_pass(step) {
+            let passes = gap < 0.0 && !stays([x0, x1], [q0, q1]);
+            if passes && self.may_pass(step) {
                 return Outcome::Apart; // It is on the other side from now on.
             }
-            if gap < 0.0 {
+            if passes {
                 self.turn_to(normal, at_start, step);
                 let kept = R::from_f64(thickness);
                 let (gaps, led) =
@@ -253,7 +254,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
                 self.carry(step, Push::new(kept, gaps, led, step.h));
                 return Outcome::Caught;
             }
-            proof = Some(normal);
+            proof = (gap >= 0.0).then_some(normal);
         }
         let old = Point::new(self.normal[0].to_f64(), self.normal[1].to_f64(), self.normal[2].to_f64());
         let normal = line.try_normalize(1e-9).or(proof).unwrap_or(old);

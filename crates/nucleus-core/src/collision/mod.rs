@@ -6,7 +6,7 @@
 //! | a collider's motion, and boxes over it through a span of time | [`collider`], [`tree`], [`aabb`] |
 //! | elements of one object, in groups | [`skin`] |
 //! | broad phase: which elements can touch in this span | [`search`], [`pairs`] |
-//! | narrow phase: how close two elements are | [`narrow`] |
+//! | narrow phase: how close two elements are, and whether they stay apart on their ways | [`narrow`], [`apart`] |
 //! | contact: kept apart, with friction, and proven not to pass | [`contact`] |
 //! | friction, and how a push is split | [`friction`] |
 //! | what contacts move | [`mover`] |
@@ -19,6 +19,7 @@
 //! | one collision pass | [`resolve`] |
 
 pub mod aabb;
+pub mod apart;
 pub mod bounce;
 pub mod collider;
 pub mod contact;

@@ -2,6 +2,7 @@
 
 use super::step::Step;
 use super::{Pair, Point, across, closest, weigh};
+use crate::collision::apart::stay_apart;
 use crate::scalar::Real;
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
@@ -37,11 +38,20 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             [line(x0, q0, at_start), across(x1, q1), across(x0, q0), line(x1, q1, closest(x1, q1))];
         match best_plane(directions, cloth, surface) {
             Some((gap, normal)) if gap > 0.0 => self.turn_to(normal, at_start, step),
-            Some(_) => return false,
+            Some(_) => return stays(cloth, surface),
             None => {}
         }
         true
     }
+}
+
+/// Whether it is certain that the two stay apart all through the step, though no one direction tells.
+pub(super) fn stays<const N: usize, const M: usize>(
+    [x0, x1]: [[Point; N]; 2],
+    [q0, q1]: [[Point; M]; 2],
+) -> bool {
+    let at = |x: [Point; N], q: [Point; M]| (x.map(Into::into), q.map(Into::into));
+    stay_apart([&at(x0, q0), &at(x1, q1)], [0.0; 2])
 }
 
 /// Among some directions, each taken both ways, the one that separates the two at the start of the step

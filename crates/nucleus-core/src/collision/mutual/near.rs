@@ -62,7 +62,8 @@ pub struct Near<R, const N: usize, const M: usize> {
     pub theirs: [u32; M],
     /// Their anchors, in metres from the first of ours.
     places: ([[R; 3]; N], [[R; 3]; M]),
-    /// Points from theirs to ours; the two were apart along it at the start of the step.
+    /// Points from theirs to ours; the two were apart along it at the start of the step. Nought if no direction held all
+    /// through the last one.
     pub(super) normal: [R; 3],
     pub(super) meeting: Meeting<R>,
 }

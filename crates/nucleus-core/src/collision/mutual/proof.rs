@@ -1,8 +1,9 @@
 //! The proof that two elements did not pass each other in a step, and what is done where there is none.
 
 use super::near::{Motion, Near, larger};
-use crate::collision::narrow::{Places, across, gap_along, shortest};
-use crate::scalar::{Real, Row4, add, dot, sub, unit};
+use crate::collision::apart::{separating, stay_apart};
+use crate::collision::narrow::{Places, shortest};
+use crate::scalar::{Real, Row4, add, dot, sub};
 
 /// Share of the way to a plane that a point is let go: the rest is the gap that the next step starts with.
 const ROOM_USED: f64 = 0.9;
@@ -34,21 +35,26 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     #[cold]
     fn prove_otherwise(&mut self, step: &Motion<'_, R>, now: Places<R, N, M>) -> bool {
         let before = self.before(step);
-        let (first, _, distance) = shortest(before);
-        let grain = grain(&now);
-        let at_start = grain * R::from_f64(AT_START);
-        if distance <= at_start {
+        let least = leasts(&now);
+        if shortest(before).2 <= least[0] {
             return true;
         }
-        let candidates = [shortest(now).0, across(now.0, now.1), across(before.0, before.1), first];
-        let units = candidates.into_iter().filter_map(|line| unit(line, R::TINY));
-        let both = units.flat_map(|n| [n, n.map(|x| -x)]);
-        let mut proofs = both.filter(|&n| gap_along(n, &before) > at_start && gap_along(n, &now) > grain);
-        match proofs.next() {
+        match separating([&before, &now], least) {
             Some(normal) => self.normal = normal,
+            None if stay_apart([&before, &now], least) => self.forget_side(),
             None => return false,
         }
         true
+    }
+
+    /// Forgets the direction: none holds for all of the step, and the next looks for one anew.
+    pub(super) fn forget_side(&mut self) {
+        self.normal = [R::ZERO; 3];
+    }
+
+    /// Whether it is certain that the two stay apart all through the step.
+    pub(super) fn stays(&self, before: &Places<R, N, M>, now: &Places<R, N, M>) -> bool {
+        stay_apart([before, now], leasts(now))
     }
 
     /// Stops the points that would pass a plane between the two, before it: each is taken back along its own
@@ -113,6 +119,12 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             held[point as usize] = true;
         }
     }
+}
+
+/// What a gap has to be at the start and at the end of a step to be one.
+fn leasts<R: Real, const N: usize, const M: usize>(now: &Places<R, N, M>) -> [R; 2] {
+    let grain = grain(now);
+    [grain * R::from_f64(AT_START), grain]
 }
 
 /// What a gap may be off by, by rounding, in metres: places are reckoned from anchors, so it goes by how far the points

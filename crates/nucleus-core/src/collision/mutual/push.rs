@@ -47,6 +47,15 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             self.normal = normal;
             return false;
         }
+        if self.stays(&before, &now) {
+            self.normal = normal;
+            let kept = self.kept(step, &weights);
+            if distance < kept * touching {
+                self.push(step, &weights, &before, [kept, kept - distance]);
+            }
+            self.forget_side();
+            return distance < kept * touching;
+        }
         if self.may_pass(step) {
             // They are on the other side from now on.
             self.normal = normal;
@@ -60,8 +69,11 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     }
 
     /// Pushes the two apart along the contact's direction, where they were nearest when the step began.
-    fn push_back(&self, step: &Motion<'_, R>, before: &Places<R, N, M>, now: &Places<R, N, M>) {
-        let (_, weights, _) = shortest(*before);
+    fn push_back(&mut self, step: &Motion<'_, R>, before: &Places<R, N, M>, now: &Places<R, N, M>) {
+        let (first, weights, _) = shortest(*before);
+        if self.normal == [R::ZERO; 3] {
+            self.normal = first;
+        }
         let kept = self.kept(step, &weights);
         let depth = kept - dot(self.normal, self.line(now, &weights));
         if depth > R::ZERO {
