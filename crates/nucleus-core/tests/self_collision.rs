@@ -53,6 +53,23 @@ fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
     (0..points).map(|k| solver.point(ClothId(cloth), k)).collect()
 }
 
+// Turned over, a face of four corners is cut along its other diagonal: the two lie across each other in one place.
+#[test]
+fn a_sheet_whose_faces_are_there_twice_is_no_contact_with_itself() {
+    let (u, v) = (Vec3::new(0.8, 0.1, 0.59), Vec3::new(-0.3, -0.9, 0.31));
+    let mut sheet = grid(17, 17, u, v);
+    let faces: Vec<Vec<u32>> = sheet.faces.iter().map(<[u32]>::to_vec).collect();
+    faces.iter().for_each(|face| sheet.faces.push(&face.iter().rev().copied().collect::<Vec<_>>()));
+    let pins = scenes::pins(&sheet, 0..17);
+    let mut solver = Solver::<f32>::new(scenes::one_cloth(sheet, LISTS), 1);
+    let cloths = vec![ClothFrame { self_collision: full_surface(0.01), ..still() }];
+    let input = FrameInput { pins, cloths, ..frame(3, physical(48.0)) };
+    for step in 0..24 {
+        let report = solver.step(&input, &mut ());
+        assert_eq!((report.contacts, report.caught, report.crossed), (0, 0, 0), "frame {step}: {report:?}");
+    }
+}
+
 // EVIDENCE: N2.3-3  cloth against itself, in point and face and edge and edge
 #[test]
 fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {

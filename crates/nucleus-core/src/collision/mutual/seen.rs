@@ -1,9 +1,9 @@
 //! Where all points are foreseen to be in a span of time, as a search sees it.
 
 use super::paths::Paths;
-use super::ways::{Points, Ways};
+use super::ways::{GRAIN, Points, Ways};
 use crate::collision::aabb::{Aabb, SweptBox};
-use crate::collision::narrow::shortest;
+use crate::collision::narrow::{Places, shortest};
 use crate::scalar::Real;
 
 /// Share of their distance at rest that neighbours keep: a cloth thicker than its faces must still bend.
@@ -73,8 +73,19 @@ impl Seen {
         let resting = |rest: &[[f32; 3]]| {
             (ours.map(|point| rest[point as usize]), theirs.map(|point| rest[point as usize]))
         };
-        let at_rest = rest.map_or(f32::INFINITY, |rest| shortest(resting(rest)).2);
+        let at_rest = rest.map_or(f32::INFINITY, |rest| distance_at_rest(resting(rest)));
+        if at_rest <= 0.0 {
+            return None;
+        }
         let kept = thickness.min(at_rest * OF_REST_DISTANCE);
         (least < kept * reach).then_some(Kept { thickness: kept, limited: kept < thickness })
     }
+}
+
+/// The distance of two elements in the shape at rest; nought if it is none but for rounding, as of the diagonals of a face
+/// that is there twice: what lies in one place has no sides to be kept on.
+fn distance_at_rest<const N: usize, const M: usize>(places: Places<f32, N, M>) -> f32 {
+    let size = |[x, y, z]: [f32; 3]| x.abs() + y.abs() + z.abs();
+    let (_, _, distance) = shortest(places);
+    if distance > (size(places.0[0]) + size(places.1[0])) * GRAIN { distance } else { 0.0 }
 }

@@ -15,7 +15,7 @@ pub struct Ways {
 }
 
 /// Shares of the length of a place that it may be off by, by rounding.
-const GRAIN: f32 = 1e-6;
+pub const GRAIN: f32 = 1e-6;
 
 impl Ways {
     /// Ways of so many points.
