@@ -128,10 +128,10 @@ impl<R: Real> Solver<R> {
 
     /// Keeps the places that points have before a time step moves them, where they can meet anything.
     fn keep_start(&mut self, frame: &FrameInput) {
+        self.state.led.clear(); // of the last step, and of what may be no more: a plane that is keyed off
         if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
             let State { start, led, displacement, .. } = &mut self.state;
             start.clone_from(displacement);
-            led.clear();
             led.resize(start.len(), Row4::ZERO);
         }
     }

@@ -384,3 +384,23 @@ fn stickiness_bounce_and_collide_strength_of_each_point_count() {
     let [passes, stops] = two_at_a_box(factors, bead_settings(), [0.25, -1.0], 0.0);
     assert!((passes + 0.25).abs() < 1e-6 && (stops - THICKNESS).abs() < 1e-4, "{passes} and {stops}");
 }
+
+#[test]
+fn what_was_being_led_out_of_a_plane_falls_freely_once_there_is_none() {
+    // A tenth of its thickness above the plane: at 1 m/s it takes longer than a frame to be led out.
+    let bead = moving(beads(vec![Vec3::y() * 0.1]), 1.0, Vec3::zeros());
+    let mut solver = solver(vec![bead], Vec::new());
+    let cloths = vec![ClothFrame { thickness: 1.0, ..bead_settings() }];
+    let with_plane = FrameInput { plane: Some(ground(0.0)), cloths, ..frame(1, physical(48.0)) };
+    let without = FrameInput { plane: None, ..with_plane.clone() };
+    let mut speed = |input: &FrameInput| {
+        solver.step(input, &mut ());
+        let mut velocities = Vec::new();
+        solver.velocities(FIRST, 1.0, &mut velocities);
+        f64::from(velocities[0][1])
+    };
+    let before = speed(&with_plane);
+    let fallen = speed(&without) - before;
+    let free = without.gravity.y * without.duration;
+    assert!((fallen / free - 1.0).abs() < 1e-5, "{fallen} m/s, free fall is {free} m/s");
+}
