@@ -55,7 +55,7 @@ fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
 
 // Turned over, a face of four corners is cut along its other diagonal: the two lie across each other in one place.
 #[test]
-fn a_sheet_whose_faces_are_there_twice_is_no_contact_with_itself() {
+fn a_sheet_whose_faces_are_there_twice_is_in_no_contact_with_itself() {
     let (u, v) = (Vec3::new(0.8, 0.1, 0.59), Vec3::new(-0.3, -0.9, 0.31));
     let mut sheet = grid(17, 17, u, v);
     let faces: Vec<Vec<u32>> = sheet.faces.iter().map(<[u32]>::to_vec).collect();

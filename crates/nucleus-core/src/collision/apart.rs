@@ -10,10 +10,30 @@ use crate::scalar::{Real, scale, sub, unit};
 /// How often a way is halved.
 const HALVINGS: u32 = 6;
 
-/// A direction along which the two are apart by more than `least` at both ends of a way, in metres, if the shortest lines
-/// and the planes of the two there are any.
+/// How two elements are known to stay apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Apart<R> {
+    /// Along this direction, all the way.
+    Along([R; 3]),
+    /// Along a direction of its own in each part of the way.
+    ByParts,
+}
+
+/// How it is certain that the two stay apart, by more than `least` at the start and later on, in metres; nothing if it is
+/// not.
+#[cold]
+pub fn apart<R: Real, const N: usize, const M: usize>(
+    ends: [&Places<R, N, M>; 2],
+    least: [R; 2],
+) -> Option<Apart<R>> {
+    let along = separating(ends, least).map(Apart::Along);
+    along.or_else(|| halves_apart(ends, least, HALVINGS).then_some(Apart::ByParts))
+}
+
+/// A direction along which the two are apart at both ends of a way, if the shortest lines and the planes of the two there
+/// are any.
 #[inline]
-pub fn separating<R: Real, const N: usize, const M: usize>(
+fn separating<R: Real, const N: usize, const M: usize>(
     [before, now]: [&Places<R, N, M>; 2],
     least: [R; 2],
 ) -> Option<[R; 3]> {
@@ -24,28 +44,20 @@ pub fn separating<R: Real, const N: usize, const M: usize>(
     both.find(|&n| gap_along(n, before) > least[0] && gap_along(n, now) > least[1])
 }
 
-/// Whether it is certain that the two stay apart: by some direction along each part of the way.
-#[cold]
-pub fn stay_apart<R: Real, const N: usize, const M: usize>(
-    ends: [&Places<R, N, M>; 2],
-    least: [R; 2],
-) -> bool {
-    by_parts(ends, least, HALVINGS)
-}
-
-fn by_parts<R: Real, const N: usize, const M: usize>(
+/// Whether the two are apart in both halves of a way that no one direction tells it of.
+fn halves_apart<R: Real, const N: usize, const M: usize>(
     [before, now]: [&Places<R, N, M>; 2],
     least: [R; 2],
     halvings: u32,
 ) -> bool {
-    if separating([before, now], least).is_some() {
-        return true;
-    }
     let middle = halfway(before, now);
+    let is_apart = |ends: [&Places<R, N, M>; 2], least: [R; 2]| {
+        separating(ends, least).is_some() || halves_apart(ends, least, halvings - 1)
+    };
     halvings > 0
         && shortest(middle).2 > least[1]
-        && by_parts([before, &middle], least, halvings - 1)
-        && by_parts([&middle, now], [least[1]; 2], halvings - 1)
+        && is_apart([before, &middle], least)
+        && is_apart([&middle, now], [least[1]; 2])
 }
 
 fn halfway<R: Real, const N: usize, const M: usize>(
@@ -78,8 +90,7 @@ mod tests {
         let still = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
         let way = [[[0.0, 0.1, -1.0], [0.0, 0.1, 1.0]], [[0.0, 1.2, -0.1], [0.0, -1.0, 0.3]]];
         let turning = way.map(|edge| (edge, still));
-        assert_eq!(separating(ends(&turning), [1e-6; 2]), None);
-        assert!(stay_apart(ends(&turning), [1e-6; 2]));
+        assert_eq!(apart(ends(&turning), [1e-6; 2]), Some(Apart::ByParts));
     }
 
     proptest! {
@@ -90,7 +101,7 @@ mod tests {
         ) {
             let edges = |k: usize| ([places[k], places[k + 1]], [places[k + 2], places[k + 3]]);
             let way: [Edges; 2] = [edges(0), edges(4)];
-            if stay_apart(ends(&way), [1e-9; 2]) {
+            if apart(ends(&way), [1e-9; 2]).is_some() {
                 let at = |t: f64, from: [f64; 3], to: [f64; 3]| std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
                 let volume = |t: f64| {
                     let p: Vec<[f64; 3]> = (0..4).map(|k| at(t, places[k], places[k + 4])).collect();

@@ -1,6 +1,6 @@
 //! Friction, and how much of a push may count as motion.
 
-use crate::scalar::{Real, dot, scale, sub};
+use crate::scalar::{Real, dot, larger, scale, sub};
 
 /// The speed in m/s at which cloth that starts a step inside the thickness is led out of it.
 const PUSH_OUT_SPEED: f64 = 1.0;
@@ -51,11 +51,6 @@ pub fn rub<R: Real>([motion, led]: [[R; 3]; 2], normal: [R; 3], limit: R) -> [[R
     let length = dot(slip, slip).sqrt();
     let grip = if length <= limit { R::ONE } else { limit / length };
     [slip, along(led)].map(|way| scale(way, -grip))
-}
-
-#[inline(always)]
-fn larger<R: Real>(x: R, y: R) -> R {
-    if y > x { y } else { x }
 }
 
 /// `x` between nought and `most`.

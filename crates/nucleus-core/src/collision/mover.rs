@@ -1,4 +1,4 @@
-//! What contacts move: places, and how far they led them out of each other.
+//! What contacts move: places, and how far colliders led them out of their thickness.
 
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add};

@@ -1,4 +1,4 @@
-//! Triples: just what contact needs.
+//! Triples, and the larger of two numbers: just what contact needs.
 
 use super::{Real, dot};
 
@@ -31,4 +31,10 @@ pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 pub fn unit<R: Real>(a: [R; 3], least: R) -> Option<[R; 3]> {
     let length = dot(a, a).sqrt();
     (length > least).then(|| scale(a, R::ONE / length))
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+pub fn larger<R: Real>(x: R, y: R) -> R {
+    if y > x { y } else { x }
 }

@@ -2,7 +2,7 @@
 
 use super::step::Step;
 use super::{Pair, Point, across, closest, weigh};
-use crate::collision::apart::stay_apart;
+use crate::collision::apart::apart;
 use crate::scalar::Real;
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
@@ -51,7 +51,7 @@ pub(super) fn stays<const N: usize, const M: usize>(
     [q0, q1]: [[Point; M]; 2],
 ) -> bool {
     let at = |x: [Point; N], q: [Point; M]| (x.map(Into::into), q.map(Into::into));
-    stay_apart([&at(x0, q0), &at(x1, q1)], [0.0; 2])
+    apart([&at(x0, q0), &at(x1, q1)], [0.0; 2]).is_some()
 }
 
 /// Among some directions, each taken both ways, the one that separates the two at the start of the step

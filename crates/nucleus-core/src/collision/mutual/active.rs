@@ -118,17 +118,17 @@ impl<R: Real> Active<R> {
         // Two tasks of about the same length; nobody else has what is theirs.
         let of_points = Mutex::new((point_face, point_point));
         let of_edges = Mutex::new((edge_edge, point_edge));
-        let of = Renewal { tasks, strayed, is_late, blocks };
+        let renewal = Renewal { tasks, strayed, is_late, blocks };
         team.phase(2, |half| match half {
             0 => {
                 let Ok(mut lists) = of_points.lock() else { return };
-                of.renew(lists.0, |found| &found.point_face);
-                of.renew(lists.1, |found| &found.point_point);
+                renewal.renew(lists.0, |found| &found.point_face);
+                renewal.renew(lists.1, |found| &found.point_point);
             }
             _ => {
                 let Ok(mut lists) = of_edges.lock() else { return };
-                of.renew(lists.0, |found| &found.edge_edge);
-                of.renew(lists.1, |found| &found.point_edge);
+                renewal.renew(lists.0, |found| &found.edge_edge);
+                renewal.renew(lists.1, |found| &found.point_edge);
             }
         });
     }

@@ -218,8 +218,3 @@ fn places<R: Real, const N: usize, const M: usize>(
     };
     (ours.map(place), theirs.map(place))
 }
-
-#[inline(always)]
-pub(super) fn larger<R: Real>(x: R, y: R) -> R {
-    if y > x { y } else { x }
-}

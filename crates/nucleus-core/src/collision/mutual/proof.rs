@@ -1,9 +1,9 @@
 //! The proof that two elements did not pass each other in a step, and what is done where there is none.
 
-use super::near::{Motion, Near, larger};
-use crate::collision::apart::{separating, stay_apart};
+use super::near::{Motion, Near};
+use crate::collision::apart::{Apart, apart};
 use crate::collision::narrow::{Places, shortest};
-use crate::scalar::{Real, Row4, add, dot, sub};
+use crate::scalar::{Real, Row4, add, dot, larger, sub};
 
 /// Share of the way to a plane that a point is let go: the rest is the gap that the next step starts with.
 const ROOM_USED: f64 = 0.9;
@@ -39,9 +39,9 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         if shortest(before).2 <= least[0] {
             return true;
         }
-        match separating([&before, &now], least) {
-            Some(normal) => self.normal = normal,
-            None if stay_apart([&before, &now], least) => self.forget_side(),
+        match apart([&before, &now], least) {
+            Some(Apart::Along(normal)) => self.normal = normal,
+            Some(Apart::ByParts) => self.forget_side(),
             None => return false,
         }
         true
@@ -54,7 +54,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
 
     /// Whether it is certain that the two stay apart all through the step.
     pub(super) fn stays(&self, before: &Places<R, N, M>, now: &Places<R, N, M>) -> bool {
-        stay_apart([before, now], leasts(now))
+        apart([before, now], leasts(now)).is_some()
     }
 
     /// Stops the points that would pass a plane between the two, before it: each is taken back along its own

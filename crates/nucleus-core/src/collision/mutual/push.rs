@@ -1,12 +1,12 @@
 //! A contact pushes its two elements apart, with friction.
 
-use super::near::{Motion, Near, larger};
+use super::near::{Motion, Near};
 use super::proof::{AT_START, grain};
 use super::swept::{first_touch, passes_beside};
 use crate::collision::friction::{Push, rub};
 use crate::collision::narrow::{Places, gap_along, shortest, weigh};
 use crate::collision::terms::Terms;
-use crate::scalar::{Real, add, dot, scale, sub};
+use crate::scalar::{Real, add, dot, larger, scale, sub};
 
 /// Parts in a million of the thickness that count as touching: without it a contact at rest would push
 /// for ever at its last bit.
