@@ -143,17 +143,17 @@ fn beads() -> Mesh {
     Mesh { points: (0..288).map(point).collect(), faces: Vec::new() }
 }
 
-/// Fifty level squares of 20 with 11 by 11 points, 0.5 apart, each turned a little against the one below.
+/// Fifty level squares of 20 with 7 by 7 points, 0.5 apart, each turned a little against the one below.
 fn fifty_layers() -> Mesh {
     let mut mesh = Mesh::default();
     for layer in 0..50 {
         let (sin, cos) = (0.05 * f64::from(layer)).sin_cos();
         let point = |row: usize, column: usize| {
-            let [x, z] = [column, row].map(|k| 2.0 * (k as f64 - 5.0));
+            let [x, z] = [column, row].map(|k| (k as f64 - 3.0) * 10.0 / 3.0);
             [x * cos - z * sin, 0.5 * f64::from(layer), x * sin + z * cos]
         };
-        let row = |row: usize| (0..11).map(|column| point(row, column)).collect();
-        mesh.add(Mesh::rows((0..11).map(row).collect(), false));
+        let row = |row: usize| (0..7).map(|column| point(row, column)).collect();
+        mesh.add(Mesh::rows((0..7).map(row).collect(), false));
     }
     mesh
 }

@@ -69,18 +69,26 @@ impl<R: Real> Solver<R> {
 
     fn bounce_off_cloth(&mut self, schedule: &Schedule<R>, rebound: Bounce<R>) {
         let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
-        let Mutual { active, terms, .. } = mutual;
+        let Mutual { active, terms, began_at, .. } = mutual;
         if !terms.iter().flatten().any(|terms| terms.bounces()) {
             return;
         }
         let mut velocities = std::mem::take(&mut state.velocity);
-        active.bounce(&motion(state, terms, maps, schedule.h), Shared::new(&mut velocities), rebound, team);
+        active.bounce(
+            &motion(state, terms, began_at, maps, schedule.h),
+            Shared::new(&mut velocities),
+            rebound,
+            team,
+        );
         state.velocity = velocities;
     }
 
     fn hit(&self, row: usize) -> Hit<R> {
         Hit {
-            predicted: add(self.state.predicted[row].xyz(), self.state.led[row].xyz()),
+            predicted: add(
+                self.state.predicted[row].xyz(),
+                add(self.state.led[row].xyz(), self.state.parted[row].xyz()),
+            ),
             displacement: self.state.displacement[row].xyz(),
             velocity: self.state.velocity[row].xyz(),
         }

@@ -182,8 +182,8 @@ impl<R: Real> Solver<R> {
         let Some(ground) = &frame.plane else { return };
         let Self { cloths, state, heights, ground_terms, maps, team, .. } = self;
         let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
-        let State { displacement, predicted, led, start, .. } = state;
-        let mover = Mover::new([displacement, predicted, led]);
+        let State { displacement, predicted, led, parted, start, .. } = state;
+        let mover = Mover::new([displacement, led, parted], predicted);
         for (cloth, terms) in cloths.iter().zip(ground_terms) {
             let Some(terms) = *terms else { continue };
             let ground = Ground {
@@ -212,9 +212,9 @@ pub(crate) struct StepParts<'a, R> {
 
 impl<R: Real> StepParts<'_, R> {
     pub(crate) fn of<'s>(&'s self, state: &'s mut State<R>, collider: &'s ColliderState) -> Step<'s, R> {
-        let State { displacement, predicted, led, start, anchor, .. } = state;
+        let State { displacement, predicted, led, parted, start, anchor, .. } = state;
         Step {
-            mover: Mover::new([displacement, predicted, led]),
+            mover: Mover::new([displacement, led, parted], predicted),
             start,
             anchors: anchor,
             collider: [&collider.start, &collider.end],

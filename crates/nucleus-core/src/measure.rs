@@ -154,8 +154,8 @@ impl<R: Real> Solver<R> {
         let mut finite = true;
         for cloth in &self.cloths {
             for row in cloth.points() {
+                let v = self.state.seen_velocity(row);
                 let row = row as usize;
-                let v = self.state.velocity[row].xyz().map(R::to_f64);
                 let inverse_mass = self.state.inverse_mass[row].to_f64();
                 energy += dot(v, v) / (2.0 * inverse_mass);
                 finite &= self.state.displacement[row].xyz().iter().all(|x| x.to_f64().is_finite());
@@ -167,8 +167,8 @@ impl<R: Real> Solver<R> {
     /// The smallest distance between two elements of cloth, over the thickness kept there.
     fn smallest_cloth_gap(&mut self) -> f64 {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return f64::INFINITY };
-        let Mutual { active, terms, .. } = mutual;
-        let closeness = active.closeness(&motion(state, terms, maps, 0.0));
+        let Mutual { active, terms, began_at, .. } = mutual;
+        let closeness = active.closeness(&motion(state, terms, began_at, maps, 0.0));
         closeness.map_or(f64::INFINITY, R::to_f64)
     }
 

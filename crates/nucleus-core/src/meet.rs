@@ -93,14 +93,20 @@ impl<R: Real> Solver<R> {
         self.watch_contacts(frame, span, tally);
         watch.enter(Stage::Collide);
         let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
-        let Mutual { bodies, terms, active, tangle, .. } = mutual;
+        let Mutual { bodies, terms, active, began_at, tangle, .. } = mutual;
         if tangle.is_there() {
             let most = bodies.edge_length * SPEED * schedule.h;
             let anchors = std::mem::take(&mut state.anchor);
-            tangle.work_apart(&anchors, &motion(state, terms, maps, schedule.h), &bodies.cloth, most);
+            tangle.work_apart(
+                &anchors,
+                &motion(state, terms, began_at, maps, schedule.h),
+                &bodies.cloth,
+                most,
+            );
             state.anchor = anchors;
         }
-        let step = Motion { squeeze: R::from_f64(squeeze), ..motion(state, terms, maps, schedule.h) };
+        let (squeeze, tangled) = (R::from_f64(squeeze), tangle.pairs());
+        let step = Motion { squeeze, tangled, ..motion(state, terms, began_at, maps, schedule.h) };
         *tally.contacts.get_mut() += active.sweep(&step, team);
     }
 
@@ -116,7 +122,7 @@ impl<R: Real> Solver<R> {
         if self.mutual.as_ref().is_some_and(sticks) {
             self.watch_contacts(frame, span, tally);
             let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
-            mutual.active.stick(&motion(state, &mutual.terms, maps, schedule.h), team);
+            mutual.active.stick(&motion(state, &mutual.terms, &mutual.began_at, maps, schedule.h), team);
         }
     }
 
@@ -184,7 +190,7 @@ impl<R: Real> Solver<R> {
     /// where they are foreseen to be as the last one ends are foreseen to stay there. `since` is when the last one began.
     fn foresee(&mut self, frame: &FrameInput, now: Span, since: f64, is_late: bool) {
         let Self { mutual: Some(mutual), cloths, state, team, .. } = self else { return };
-        let Mutual { paths, began_at, span, strayed, .. } = mutual;
+        let Mutual { paths, began_at, span, strayed, active, .. } = mutual;
         let of_last = R::from_f64((now.to - now.from) / (now.from - since).max(now.to - now.from));
         let (paths, strayed) = (paths.shared(), Shared::new(strayed));
         for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
@@ -228,6 +234,7 @@ impl<R: Real> Solver<R> {
             });
         }
         if !is_late {
+            active.carry_slips(&state.start, began_at);
             began_at.clone_from(&state.start);
         }
     }
@@ -250,13 +257,16 @@ fn terms_of<'a, R: Real>(
 pub(crate) fn motion<'a, R: Real>(
     state: &'a mut State<R>,
     terms: &'a [Option<Terms<R>>],
+    began_at: &'a [Row4<R>],
     maps: &'a Maps<R>,
     h: f64,
 ) -> Motion<'a, R> {
-    let State { displacement, predicted, led, start, .. } = state;
+    let State { displacement, predicted, led, parted, start, .. } = state;
     Motion {
-        mover: Mover::new([displacement, predicted, led]),
+        mover: Mover::new([displacement, led, parted], predicted),
         start,
+        began_at,
+        tangled: &[],
         terms,
         maps,
         h: R::from_f64(h),

@@ -133,8 +133,7 @@ impl<R: Real> StateView for Solver<R> {
     }
 
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
-        let velocity = |row: u32| self.state.velocity[row as usize].xyz();
-        self.column(cloth, out, |row| velocity(row).map(|x| x.to_f64() * units_per_metre));
+        self.column(cloth, out, |row| self.state.seen_velocity(row).map(|x| x * units_per_metre));
     }
 
     fn contacts(&self, out: &mut Vec<Vec<Contact>>) {

@@ -6,7 +6,7 @@
 
 use crate::builder::Cloth;
 use crate::model::{ClothModel, point_masses};
-use crate::scalar::{Real, Row4};
+use crate::scalar::{Real, Row4, sub};
 
 /// The points of all cloths, in the solver's places.
 #[derive(Debug, Clone)]
@@ -22,6 +22,11 @@ pub struct State<R> {
     /// How far colliders led the point in the time step, in metres: a motion without velocity. Empty where nothing can be
     /// met.
     pub led: Vec<Row4<R>>,
+    /// How far contacts with cloth led the point in the time step, in metres: as little a velocity, but what a collider takes
+    /// back of it is one, for what is between the two has to bear the load. Empty where nothing can be met.
+    pub parted: Vec<Row4<R>>,
+    /// Length of the last time step in seconds.
+    pub step_length: f64,
     /// Displacement before anything held the point. Written by predict, read by velocity.
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
@@ -41,6 +46,8 @@ impl<R: Real> State<R> {
             velocity: vec![Row4::ZERO; rows],
             start: Vec::new(),
             led: Vec::new(),
+            parted: Vec::new(),
+            step_length: 0.0,
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             inverse_mass: vec![R::ZERO; rows],
@@ -64,6 +71,18 @@ impl<R: Real> State<R> {
     pub fn position(&self, row: u32) -> [f64; 3] {
         let (anchor, moved) = (self.anchor[row as usize], self.displacement[row as usize].0);
         std::array::from_fn(|axis| anchor[axis] + moved[axis].to_f64())
+    }
+
+    /// How fast a point moves, in m/s: its velocity, or how it moved in the last time step where contacts led it. What lies
+    /// still has a velocity there that contacts undo in every step.
+    pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
+        let row = row as usize;
+        let is_led = |column: &[Row4<R>]| column.get(row).is_some_and(|led| led.xyz() != [R::ZERO; 3]);
+        if is_led(&self.led) || is_led(&self.parted) {
+            let moved = sub(self.displacement[row].xyz(), self.start[row].xyz());
+            return moved.map(|x| x.to_f64() / self.step_length);
+        }
+        self.velocity[row].xyz().map(R::to_f64)
     }
 
     /// A fingerprint of all positions and velocities: equal bits, equal hash (FNV-1a over words).

@@ -101,7 +101,7 @@ impl<R: Real> Solver<R> {
     ) {
         let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
-        self.keep_start(frame);
+        self.keep_start(frame, schedule.h);
         self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
         for round in &schedule.rounds {
             match round {
@@ -127,12 +127,16 @@ impl<R: Real> Solver<R> {
     }
 
     /// Keeps the places that points have before a time step moves them, where they can meet anything.
-    fn keep_start(&mut self, frame: &FrameInput) {
-        self.state.led.clear(); // of the last step, and of what may be no more: a plane that is keyed off
+    fn keep_start(&mut self, frame: &FrameInput, h: f64) {
+        // Of the last step, and of what may be no more: a plane that is keyed off.
+        self.state.led.clear();
+        self.state.parted.clear();
+        self.state.step_length = h;
         if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
-            let State { start, led, displacement, .. } = &mut self.state;
+            let State { start, led, parted, displacement, .. } = &mut self.state;
             start.clone_from(displacement);
             led.resize(start.len(), Row4::ZERO);
+            parted.resize(start.len(), Row4::ZERO);
         }
     }
 
@@ -201,7 +205,7 @@ impl<R: Real> Solver<R> {
         let Self { cloths, state, team, .. } = self;
         let (displacement, predicted) =
             (Shared::new(&mut state.displacement), Shared::new(&mut state.predicted));
-        let (led, velocity) = (&state.led[..], Shared::new(&mut state.velocity));
+        let (led, velocity) = ([&state.led[..], &state.parted[..]], Shared::new(&mut state.velocity));
         let h = R::from_f64(schedule.h);
         for cloth in cloths.iter() {
             // SAFETY: blocks do not overlap.

@@ -33,7 +33,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// What the bytes are; counted up whenever their layout changes.
-const KIND: [u8; 8] = *b"solver 2";
+const KIND: [u8; 8] = *b"solver 3";
 
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
@@ -133,7 +133,7 @@ kept!([R: Real] State<R> {
     columns: [anchor, displacement, velocity],
     values: [],
     parts: [],
-    anew: [start, led, predicted, normal, inverse_mass],
+    anew: [start, led, parted, step_length, predicted, normal, inverse_mass],
 });
 
 kept!([R: Real] PairList<R> {

@@ -1,4 +1,4 @@
-//! What contacts move: places, and how far colliders led them out of their thickness.
+//! What contacts move: places, and how far they were led out of a thickness.
 
 use crate::columns::Shared;
 use crate::scalar::{Real, Row4, add};
@@ -7,24 +7,26 @@ use crate::scalar::{Real, Row4, add};
 #[derive(Clone, Copy)]
 pub struct Mover<'a, R> {
     displacement: Shared<'a, Row4<R>>,
-    predicted: Shared<'a, Row4<R>>,
     led: Shared<'a, Row4<R>>,
+    parted: Shared<'a, Row4<R>>,
+    predicted: &'a [Row4<R>],
 }
 
 #[allow(unsafe_code)]
 impl<'a, R: Real> Mover<'a, R> {
-    /// Lends three columns of a state: displacement with inverse mass, where it would be had nothing held it, and how far
-    /// it was led.
-    pub fn new(columns: [&'a mut Vec<Row4<R>>; 3]) -> Self {
-        let [displacement, predicted, led] = columns.map(|column| Shared::new(column));
-        Self { displacement, predicted, led }
+    /// Lends three columns of a state: displacement with inverse mass, and how far colliders and cloth led it; and shows
+    /// where it would be had nothing held it.
+    pub fn new(columns: [&'a mut Vec<Row4<R>>; 3], predicted: &'a [Row4<R>]) -> Self {
+        let [displacement, led, parted] = columns.map(|column| Shared::new(column));
+        Self { displacement, led, parted, predicted }
     }
 
     /// Where a point would be had nothing held it, but for what led it.
     #[inline(always)]
     pub fn predicted(&self, point: u32) -> [R; 3] {
         // SAFETY: as below.
-        add(unsafe { self.predicted.get(point) }.xyz(), self.led(point))
+        let parted = unsafe { self.parted.get(point) }.xyz();
+        add(self.predicted[point as usize].xyz(), add(self.led(point), parted))
     }
 
     /// A point's displacement, and its inverse mass.
@@ -58,10 +60,10 @@ impl<'a, R: Real> Mover<'a, R> {
     pub fn part(&self, point: u32, row: Row4<R>, led: [R; 3]) {
         // SAFETY: as above.
         unsafe {
-            let mut predicted = self.predicted.get(point);
-            (0..3).for_each(|axis| predicted.0[axis] += led[axis]);
+            let mut parted = self.parted.get(point);
+            (0..3).for_each(|axis| parted.0[axis] += led[axis]);
             self.displacement.set(point, row);
-            self.predicted.set(point, predicted);
+            self.parted.set(point, parted);
         }
     }
 
@@ -72,6 +74,7 @@ impl<'a, R: Real> Mover<'a, R> {
         unsafe {
             self.displacement.set(point, row);
             self.led.set(point, Row4::ZERO);
+            self.parted.set(point, Row4::ZERO);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::checkpoint::Item;
 use crate::compiled::Compiled;
 
 pub use lanes::{Lanes, Quad};
-pub use vector::{add, cross, larger, scale, sub, unit};
+pub use vector::{add, cross, larger, scale, shortened, sub, unit};
 
 /// A scalar the solver can work in: `f32` to be fast, `f64` for references.
 pub trait Real:

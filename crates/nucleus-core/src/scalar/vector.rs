@@ -33,6 +33,13 @@ pub fn unit<R: Real>(a: [R; 3], least: R) -> Option<[R; 3]> {
     (length > least).then(|| scale(a, R::ONE / length))
 }
 
+/// A triple, no longer than `most`.
+#[inline(always)]
+pub fn shortened<R: Real>(a: [R; 3], most: R) -> [R; 3] {
+    let length = dot(a, a).sqrt();
+    if length > most { scale(a, most / length) } else { a }
+}
+
 /// The larger of two numbers.
 #[inline(always)]
 pub fn larger<R: Real>(x: R, y: R) -> R {

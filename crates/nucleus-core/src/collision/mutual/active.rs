@@ -187,6 +187,14 @@ impl<R: Real> Active<R> {
         self.point_face.count(team, |near| near.bounce(step, velocities, rebound));
     }
 
+    /// Carries what slipped over into a span that begins at `start`; the last one `began_at`.
+    pub fn carry_slips(&mut self, start: &[Row4<R>], began_at: &[Row4<R>]) {
+        self.point_face.iter_mut().for_each(|near| near.carry_slip(start, began_at));
+        self.edge_edge.iter_mut().for_each(|near| near.carry_slip(start, began_at));
+        self.point_edge.iter_mut().for_each(|near| near.carry_slip(start, began_at));
+        self.point_point.iter_mut().for_each(|near| near.carry_slip(start, began_at));
+    }
+
     /// How many contacts are not proven.
     pub fn prove(&mut self, step: &Motion<'_, R>, team: &Team) -> u64 {
         self.edge_edge.prove(step, team) + self.point_face.prove(step, team)

@@ -1,7 +1,7 @@
 //! How the way of each point is foreseen: on in a straight line, or beside what it was foreseen to keep to.
 
 use super::paths::Path;
-use crate::scalar::{Real, Row4, add, dot, scale, sub};
+use crate::scalar::{Real, Row4, add, dot, scale, shortened, sub};
 use crate::schedule::Span;
 
 /// Share of its ball within which a point that stays in it needs no search as a span begins.
@@ -59,7 +59,5 @@ pub fn mean_motion<R: Real>(start: &[Row4<R>], now: &[Row4<R>]) -> [R; 3] {
 
 /// A motion that differs from the common one by `most` at most.
 fn limited<R: Real>(motion: [R; 3], common: [R; 3], most: R) -> [R; 3] {
-    let own = sub(motion, common);
-    let length = dot(own, own).sqrt();
-    if length > most { add(common, scale(own, most / length)) } else { motion }
+    add(common, shortened(sub(motion, common), most))
 }

@@ -32,6 +32,7 @@ pub mod paths;
 mod pieces;
 mod proof;
 mod push;
+mod rub;
 pub mod search;
 mod seen;
 mod sought;

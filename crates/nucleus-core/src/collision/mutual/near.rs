@@ -18,6 +18,11 @@ pub struct Motion<'a, R> {
     pub mover: Mover<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
+    /// Displacements as the span began.
+    pub began_at: &'a [Row4<R>],
+    /// Cloths that pass through each other: they are to come apart, so that friction holds no slip of theirs for longer than a
+    /// step.
+    pub tangled: &'a [[u32; 2]],
     /// How cloths meet, by cloth and cloth.
     pub terms: &'a [Option<Terms<R>>],
     /// What points bring into a contact beyond their cloth.
@@ -32,6 +37,17 @@ impl<R: Real> Motion<'_, R> {
     #[inline(always)]
     pub(super) fn row(&self, point: u32) -> Row4<R> {
         self.mover.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
+    }
+
+    /// Whether two cloths pass through each other, given by the place of their terms.
+    #[inline(always)]
+    pub(super) fn are_tangled(&self, terms: u32) -> bool {
+        if self.tangled.is_empty() {
+            return false;
+        }
+        let cloths = self.terms.len().isqrt() as u32;
+        let [a, b] = [terms / cloths, terms % cloths];
+        self.tangled.contains(&[a.min(b), a.max(b)])
     }
 
     #[inline(always)]
@@ -51,6 +67,8 @@ pub struct Meeting<R> {
     pub limited: bool,
     /// Whether one side is a free point, which can go farther in a step than anything is large.
     pub is_swept: bool,
+    /// Whether they have been pushed apart with friction.
+    pub rubs: bool,
 }
 
 /// A contact: `N` points of one element, `M` of the other.
@@ -65,24 +83,28 @@ pub struct Near<R, const N: usize, const M: usize> {
     /// Points from theirs to ours; the two were apart along it at the start of the step. Nought if no direction held all
     /// through the last one.
     pub(super) normal: [R; 3],
+    /// How far ours had slipped along theirs as the span began, of what friction is still to take back. It counts only where
+    /// the two rub.
+    pub(super) slip: [R; 3],
     pub(super) meeting: Meeting<R>,
 }
 
-item!([R: Real] Meeting<R> { thickness: R, terms: u32, limited: bool, is_swept: bool });
+item!([R: Real] Meeting<R> { thickness: R, terms: u32, limited: bool, is_swept: bool, rubs: bool });
 
 impl<R: Real, const N: usize, const M: usize> Item for Near<R, N, M> {
-    const SIZE: usize = <Points<N, M>>::SIZE + <[R; 3]>::SIZE + Meeting::<R>::SIZE;
+    const SIZE: usize = <Points<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + Meeting::<R>::SIZE;
     fn put(&self, out: &mut Vec<u8>) {
         // Places are those of the next frame's anchors.
-        let Self { ours, theirs, places: _, normal, meeting } = self;
+        let Self { ours, theirs, places: _, normal, slip, meeting } = self;
         (*ours, *theirs).put(out);
-        normal.put(out);
+        [*normal, *slip].put(out);
         meeting.put(out);
     }
     fn take(from: &mut Reader<'_>) -> Option<Self> {
         let (ours, theirs) = Item::take(from)?;
         let places = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
-        Some(Self { ours, theirs, places, normal: Item::take(from)?, meeting: Item::take(from)? })
+        let [normal, slip] = Item::take(from)?;
+        Some(Self { ours, theirs, places, normal, slip, meeting: Item::take(from)? })
     }
 }
 
@@ -97,13 +119,14 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         start: &[Row4<R>],
     ) -> Self {
         let places = places((ours, theirs), anchors);
-        let mut near = Self { ours, theirs, places, normal: [R::ZERO; 3], meeting };
+        let [normal, slip] = [[R::ZERO; 3]; 2];
+        let mut near = Self { ours, theirs, places, normal, slip, meeting };
         near.normal = shortest(near.at(|point| start[point as usize].xyz())).0;
         near
     }
 
     #[inline(always)]
-    fn at(&self, displacement: impl Fn(u32) -> [R; 3]) -> Places<R, N, M> {
+    pub(super) fn at(&self, displacement: impl Fn(u32) -> [R; 3]) -> Places<R, N, M> {
         let ours = std::array::from_fn(|k| add(self.places.0[k], displacement(self.ours[k])));
         (ours, std::array::from_fn(|k| add(self.places.1[k], displacement(self.theirs[k]))))
     }

@@ -1,9 +1,9 @@
-//! A contact pushes its two elements apart, with friction.
+//! A contact pushes its two elements apart.
 
 use super::near::{Motion, Near};
 use super::proof::{AT_START, grain};
 use super::swept::{first_touch, passes_beside};
-use crate::collision::friction::{Push, rub};
+use crate::collision::friction::Push;
 use crate::collision::narrow::{Places, gap_along, shortest, weigh};
 use crate::collision::terms::Terms;
 use crate::scalar::{Real, add, dot, larger, scale, sub};
@@ -83,7 +83,7 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
 
     /// Moves both sides by `depth` in all, where `kept` is to be kept, each by its mobility, with friction.
     fn push(
-        &self,
+        &mut self,
         step: &Motion<'_, R>,
         weights: &([R; N], [R; M]),
         before: &Places<R, N, M>,
@@ -96,9 +96,20 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
         if terms.is_weak(step.maps) {
             push = push.times(terms.strength_at(step.maps, self.sides(weights)));
         }
-        let along = scale(self.normal, push.length());
-        let rub = self.rub(step, terms, weights, line_before, along, push.pressed);
-        self.part(step, terms, weights, add(along, rub), scale(self.normal, push.led));
+        let along = [push.length(), push.led].map(|length| scale(self.normal, length));
+        let friction = terms.friction_at(step.maps, self.sides(weights));
+        let rub = if friction > R::ZERO {
+            self.rub(
+                step,
+                weights,
+                line_before,
+                along[0],
+                [push.pressed, push.led].map(|most| most * friction),
+            )
+        } else {
+            [[R::ZERO; 3]; 2]
+        };
+        self.part(step, terms, weights, add(along[0], rub[0]), add(along[1], rub[1]));
     }
 
     /// Moves the two by `moved` from each other, each side by its mobility; `led` is the part of it that is not to
@@ -135,24 +146,6 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
             row.0[axis] += moved[axis] * part;
         }
         step.mover.part(point, row, scale(led, part));
-    }
-
-    /// The correction along the surfaces, against the motion of one over the other within the step.
-    fn rub(
-        &self,
-        step: &Motion<'_, R>,
-        terms: &Terms<R>,
-        weights: &([R; N], [R; M]),
-        line_before: [R; 3],
-        along: [R; 3],
-        pressed: R,
-    ) -> [R; 3] {
-        let limit = terms.friction_at(step.maps, self.sides(weights)) * pressed;
-        if limit <= R::ZERO {
-            return [R::ZERO; 3];
-        }
-        let line = self.line(&self.now(step), weights);
-        rub([add(sub(line, line_before), along), [R::ZERO; 3]], self.normal, limit)[0]
     }
 
     /// The line from the contact on theirs to the contact on ours.

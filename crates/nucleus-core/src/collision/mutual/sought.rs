@@ -246,6 +246,7 @@ impl<'a, R: Real> Pair<'a, R> {
             terms: ours * look.cloths.len() as u32 + theirs,
             limited: kept.limited,
             is_swept: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
+            rubs: false,
         };
         Some(Near::new(points, meeting, look.anchors, look.moved[0]))
     }

@@ -94,6 +94,11 @@ impl Tangle {
         !self.crossings.is_empty()
     }
 
+    /// The cloths that pass through each other, the lower index first.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        if self.is_there() { &self.pairs } else { &[] }
+    }
+
     /// Whether any is known, or to be looked for.
     pub fn may_be_there(&self) -> bool {
         self.is_suspected || self.is_there()

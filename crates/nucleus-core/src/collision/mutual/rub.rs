@@ -1,0 +1,64 @@
+//! Friction between two elements that can both be moved.
+//!
+//! In a stack of cloth no pass leaves every layer at rest: whoever is pushed later slips over whom was pushed before. What is
+//! left of that is taken back by the next step, without velocity, as what is left of a depth is. Otherwise layers that hold
+//! creep downhill, by about g h² in each step.
+
+use super::near::{Motion, Near};
+use crate::collision::narrow::{Places, shortest};
+use crate::scalar::{Real, Row4, add, dot, scale, shortened, sub};
+
+impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
+    /// The correction along the surfaces, in metres, and the part of it that is not to become velocity: against the motion
+    /// of one over the other since the step began, and against what is left of slips before. Each is bounded by Coulomb's
+    /// law: `most` are friction times how far the two were pressed apart, and led. `along` is that push, which is on its way.
+    pub(super) fn rub(
+        &mut self,
+        step: &Motion<'_, R>,
+        weights: &([R; N], [R; M]),
+        line_before: [R; 3],
+        along: [R; 3],
+        most: [R; 2],
+    ) -> [[R; 3]; 2] {
+        let normal = self.normal;
+        let flat = |way: [R; 3]| sub(way, scale(normal, dot(way, normal)));
+        let motion = flat(add(sub(self.line(&self.now(step), weights), line_before), along));
+        let in_span =
+            sub(line_before, self.line(&self.at(|point| step.began_at[point as usize].xyz()), weights));
+        let holds = self.meeting.rubs && !step.are_tangled(self.meeting.terms);
+        let slip = if holds { flat(add(self.slip, in_span)) } else { [R::ZERO; 3] };
+        let slip = shortened(slip, most[1]);
+        self.slip = sub(slip, in_span);
+        self.meeting.rubs = true;
+        let way = add(motion, slip);
+        let led = along_of(slip, way);
+        let held = shortened(sub(way, led), most[0]);
+        [add(held, led), led].map(|way| scale(way, -R::ONE))
+    }
+
+    /// Carries slips over into a span that begins at `start`; the last one `began_at`.
+    pub(super) fn carry_slip(&mut self, start: &[Row4<R>], began_at: &[Row4<R>]) {
+        if !self.meeting.rubs {
+            return;
+        }
+        let now = self.at(|point| start[point as usize].xyz());
+        let weights = shortest(now).1;
+        let line = |at: &Places<R, N, M>| self.line(at, &weights);
+        let in_span = sub(line(&now), line(&self.at(|point| began_at[point as usize].xyz())));
+        self.slip = add(self.slip, in_span);
+    }
+}
+
+/// How much of `slip` a way goes back over.
+fn along_of<R: Real>(slip: [R; 3], way: [R; 3]) -> [R; 3] {
+    let square = dot(slip, slip);
+    if square <= R::TINY {
+        return [R::ZERO; 3];
+    }
+    let share = dot(way, slip) / square;
+    match share {
+        share if share <= R::ZERO => [R::ZERO; 3],
+        share if share < R::ONE => scale(slip, share),
+        _ => slip,
+    }
+}
