@@ -44,7 +44,6 @@ fn slid(degrees: f64, ground_friction: f64, from: usize) -> Vec<f64> {
     laid.iter().zip(gone).map(|(laid, gone)| gone - laid).collect()
 }
 
-// EVIDENCE: N2.4-13  friction holds layers that lie on each other
 #[test]
 fn a_stack_of_sheets_holds_on_a_slope_that_its_friction_holds_on() {
     // It would hold up to atan 0.5 = 26.57 degrees. As it is laid down, it slips by half a millimetre.
