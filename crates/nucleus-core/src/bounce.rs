@@ -69,17 +69,12 @@ impl<R: Real> Solver<R> {
 
     fn bounce_off_cloth(&mut self, schedule: &Schedule<R>, rebound: Bounce<R>) {
         let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
-        let Mutual { active, terms, began_at, .. } = mutual;
+        let Mutual { active, terms, .. } = mutual;
         if !terms.iter().flatten().any(|terms| terms.bounces()) {
             return;
         }
         let mut velocities = std::mem::take(&mut state.velocity);
-        active.bounce(
-            &motion(state, terms, began_at, maps, schedule.h),
-            Shared::new(&mut velocities),
-            rebound,
-            team,
-        );
+        active.bounce(&motion(state, terms, maps, schedule.h), Shared::new(&mut velocities), rebound, team);
         state.velocity = velocities;
     }
 

@@ -167,8 +167,8 @@ impl<R: Real> Solver<R> {
     /// The smallest distance between two elements of cloth, over the thickness kept there.
     fn smallest_cloth_gap(&mut self) -> f64 {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return f64::INFINITY };
-        let Mutual { active, terms, began_at, .. } = mutual;
-        let closeness = active.closeness(&motion(state, terms, began_at, maps, 0.0));
+        let Mutual { active, terms, .. } = mutual;
+        let closeness = active.closeness(&motion(state, terms, maps, 0.0));
         closeness.map_or(f64::INFINITY, R::to_f64)
     }
 

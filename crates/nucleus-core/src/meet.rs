@@ -7,6 +7,7 @@ use crate::collision::mover::Mover;
 use crate::collision::mutual::Mutual;
 use crate::collision::mutual::active::Active;
 use crate::collision::mutual::ahead::{Ahead, mean_motion};
+use crate::collision::mutual::friction::Memory;
 use crate::collision::mutual::near::Motion;
 use crate::collision::mutual::paths::Path;
 use crate::collision::mutual::search::{Look, search};
@@ -97,16 +98,12 @@ impl<R: Real> Solver<R> {
         if tangle.is_there() {
             let most = bodies.edge_length * SPEED * schedule.h;
             let anchors = std::mem::take(&mut state.anchor);
-            tangle.work_apart(
-                &anchors,
-                &motion(state, terms, began_at, maps, schedule.h),
-                &bodies.cloth,
-                most,
-            );
+            tangle.work_apart(&anchors, &motion(state, terms, maps, schedule.h), &bodies.cloth, most);
             state.anchor = anchors;
         }
-        let (squeeze, tangled) = (R::from_f64(squeeze), tangle.pairs());
-        let step = Motion { squeeze, tangled, ..motion(state, terms, began_at, maps, schedule.h) };
+        let memory = Some(Memory { began_at, tangled: tangle.pairs() });
+        let squeeze = R::from_f64(squeeze);
+        let step = Motion { squeeze, memory, ..motion(state, terms, maps, schedule.h) };
         *tally.contacts.get_mut() += active.sweep(&step, team);
     }
 
@@ -122,7 +119,7 @@ impl<R: Real> Solver<R> {
         if self.mutual.as_ref().is_some_and(sticks) {
             self.watch_contacts(frame, span, tally);
             let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return };
-            mutual.active.stick(&motion(state, &mutual.terms, &mutual.began_at, maps, schedule.h), team);
+            mutual.active.stick(&motion(state, &mutual.terms, maps, schedule.h), team);
         }
     }
 
@@ -257,7 +254,6 @@ fn terms_of<'a, R: Real>(
 pub(crate) fn motion<'a, R: Real>(
     state: &'a mut State<R>,
     terms: &'a [Option<Terms<R>>],
-    began_at: &'a [Row4<R>],
     maps: &'a Maps<R>,
     h: f64,
 ) -> Motion<'a, R> {
@@ -265,8 +261,7 @@ pub(crate) fn motion<'a, R: Real>(
     Motion {
         mover: Mover::new([displacement, led, parted], predicted),
         start,
-        began_at,
-        tangled: &[],
+        memory: None,
         terms,
         maps,
         h: R::from_f64(h),

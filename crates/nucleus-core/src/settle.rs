@@ -68,21 +68,21 @@ impl<R: Real> Solver<R> {
 
     fn prove_cloths(&mut self, schedule: &Schedule<R>) -> u64 {
         let Self { mutual: Some(mutual), state, maps, team, .. } = self else { return 0 };
-        let Mutual { active, terms, began_at, .. } = mutual;
-        active.prove(&motion(state, terms, began_at, maps, schedule.h), team)
+        let Mutual { active, terms, .. } = mutual;
+        active.prove(&motion(state, terms, maps, schedule.h), team)
     }
 
     fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
-        let Mutual { active, terms, began_at, .. } = mutual;
-        *tally.caught.get_mut() += active.clip(&motion(state, terms, began_at, maps, schedule.h));
+        let Mutual { active, terms, .. } = mutual;
+        *tally.caught.get_mut() += active.clip(&motion(state, terms, maps, schedule.h));
     }
 
     /// Lets contacts that are not proven go nowhere, or where one of their points is held already.
     fn stop(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
-        let Mutual { active, held, terms, began_at, .. } = mutual;
-        *tally.caught.get_mut() += active.stop(&motion(state, terms, began_at, maps, schedule.h), held);
+        let Mutual { active, held, terms, .. } = mutual;
+        *tally.caught.get_mut() += active.stop(&motion(state, terms, maps, schedule.h), held);
     }
 
     /// Begins with no point held but those that are pinned.

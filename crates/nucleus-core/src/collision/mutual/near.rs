@@ -3,6 +3,7 @@
 //! It carries a direction along which the two were apart at the start of the time step. As long as they are
 //! apart along it at the end too, they have not passed; otherwise another direction is looked for.
 
+use super::friction::Memory;
 use super::ways::Points;
 use crate::checkpoint::{Item, Reader, item};
 use crate::collision::maps::Maps;
@@ -18,11 +19,8 @@ pub struct Motion<'a, R> {
     pub mover: Mover<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
-    /// Displacements as the span began.
-    pub began_at: &'a [Row4<R>],
-    /// Cloths that pass through each other: they are to come apart, so that friction holds no slip of theirs for longer than a
-    /// step.
-    pub tangled: &'a [[u32; 2]],
+    /// What friction remembers by; nothing where it does not act.
+    pub memory: Option<Memory<'a, R>>,
     /// How cloths meet, by cloth and cloth.
     pub terms: &'a [Option<Terms<R>>],
     /// What points bring into a contact beyond their cloth.
@@ -37,17 +35,6 @@ impl<R: Real> Motion<'_, R> {
     #[inline(always)]
     pub(super) fn row(&self, point: u32) -> Row4<R> {
         self.mover.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
-    }
-
-    /// Whether two cloths pass through each other, given by the place of their terms.
-    #[inline(always)]
-    pub(super) fn are_tangled(&self, terms: u32) -> bool {
-        if self.tangled.is_empty() {
-            return false;
-        }
-        let cloths = self.terms.len().isqrt() as u32;
-        let [a, b] = [terms / cloths, terms % cloths];
-        self.tangled.contains(&[a.min(b), a.max(b)])
     }
 
     #[inline(always)]
