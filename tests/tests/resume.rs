@@ -117,7 +117,7 @@ fn cloth_that_is_pinched_and_let_go_of_goes_on_as_if_it_had_not_stopped() {
     // They close on each other, and leave no room.
     let run = assert_resumes_always("pinch", nodes, 15);
     assert!(ever(&run, |report| report.trapped), "points are inside");
-    assert!(ever(&run, |report| report.crossed), "pairs are let go");
+    assert!(ever(&run, |report| report.pairs_unresolved), "pairs are let go");
 }
 
 #[test]

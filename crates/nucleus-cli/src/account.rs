@@ -21,8 +21,10 @@ pub struct FrameFigures {
     pub contacts: u64,
     pub pairs: u64,
     pub broad_phases: u32,
-    pub caught: u64,
-    pub crossed: u64,
+    #[serde(alias = "caught")]
+    pub pairs_reverted: u64,
+    #[serde(alias = "crossed")]
+    pub pairs_unresolved: u64,
     /// Points inside colliders, which are being led out.
     pub trapped: u64,
     /// Edges of cloth through faces of cloth, which are being worked apart.
@@ -46,8 +48,8 @@ impl FrameFigures {
             contacts: self.contacts,
             pairs: self.pairs,
             broad_phases: self.broad_phases,
-            caught: self.caught,
-            crossed: self.crossed,
+            pairs_reverted: self.pairs_reverted,
+            pairs_unresolved: self.pairs_unresolved,
             trapped: self.trapped,
             tangled: self.tangled,
             kinetic_energy: self.kinetic_energy,
@@ -64,7 +66,16 @@ impl FrameFigures {
         let StepReport {
             max_strain, strain_99, min_gap, min_cloth_gap, contacts, pairs, broad_phases, ..
         } = *report;
-        let StepReport { caught, crossed, trapped, tangled, kinetic_energy, finite, refused, .. } = *report;
+        let StepReport {
+            pairs_reverted,
+            pairs_unresolved,
+            trapped,
+            tangled,
+            kinetic_energy,
+            finite,
+            refused,
+            ..
+        } = *report;
         let [min_gap, min_cloth_gap] = [min_gap, min_cloth_gap].map(|gap| gap.is_finite().then_some(gap));
         Self {
             frame,
@@ -75,8 +86,8 @@ impl FrameFigures {
             contacts,
             pairs,
             broad_phases,
-            caught,
-            crossed,
+            pairs_reverted,
+            pairs_unresolved,
             trapped,
             tangled,
             kinetic_energy,
@@ -100,8 +111,8 @@ pub struct Account {
     pub worst_strain: Option<(f64, i32)>,
     /// The smallest gap over thickness, and its frame; nothing if nothing ever came near.
     pub smallest_gap: Option<(f64, i32)>,
-    /// Points that ended on the far side of a collider, over all frames.
-    pub crossed: u64,
+    /// Pairs of elements that were not kept apart, over all time steps.
+    pub pairs_unresolved: u64,
     /// Points inside colliders: the most in a frame, and how many at the end.
     pub trapped: [u64; 2],
     /// The same for edges of cloth through faces of cloth.
@@ -134,7 +145,7 @@ impl Account {
         {
             self.smallest_gap = Some((gap, frame));
         }
-        self.crossed += figures.crossed;
+        self.pairs_unresolved += figures.pairs_unresolved;
         self.trapped = [self.trapped[0].max(figures.trapped), figures.trapped];
         self.tangled = [self.tangled[0].max(figures.tangled), figures.tangled];
         self.refused += figures.refused;
@@ -180,8 +191,18 @@ mod tests {
 
     #[test]
     fn the_first_frame_that_is_not_finite_is_named() {
-        let bad = StepReport { finite: false, crossed: 2, ..StepReport::default() };
+        let bad = StepReport { finite: false, pairs_unresolved: 2, ..StepReport::default() };
         let account = account(&[StepReport::default(), bad, bad]);
-        assert_eq!((account.not_finite, account.crossed), (Some(3), 4));
+        assert_eq!((account.not_finite, account.pairs_unresolved), (Some(3), 4));
+    }
+
+    #[test]
+    fn figures_that_were_recorded_under_older_names_are_read() {
+        let report = StepReport { pairs_reverted: 5, pairs_unresolved: 2, ..StepReport::default() };
+        let now = serde_json::to_string(&FrameFigures::new(2, &report)).unwrap();
+        assert!(now.contains("\"pairs_reverted\":5,\"pairs_unresolved\":2"), "{now}");
+        let older = now.replace("pairs_reverted", "caught").replace("pairs_unresolved", "crossed");
+        let read: FrameFigures = serde_json::from_str(&older).unwrap();
+        assert_eq!((read.pairs_reverted, read.pairs_unresolved), (5, 2));
     }
 }

@@ -56,9 +56,12 @@ impl Summary<'_> {
         if let Some((gap, frame)) = account.smallest_gap {
             writeln!(text, "smallest gap {} of the thickness, at frame {frame}", figures::number(gap))?;
         }
-        if account.crossed > 0 {
-            let points = figures::count(account.crossed as usize, "point");
-            writeln!(text, "{points} ended on the far side of a collider")?;
+        if account.pairs_unresolved > 0 {
+            let pairs = figures::count(account.pairs_unresolved as usize, "pair");
+            writeln!(
+                text,
+                "{pairs} of elements unresolved, over all time steps: they may have passed each other"
+            )?;
         }
         let [trapped, tangled] = [account.trapped, account.tangled];
         if trapped[0] > 0 {
@@ -131,7 +134,7 @@ impl Summary<'_> {
             "milliseconds_per_frame": account.milliseconds(),
             "worst_strain": at(account.worst_strain),
             "smallest_gap": at(account.smallest_gap),
-            "crossed": account.crossed,
+            "pairs_unresolved": account.pairs_unresolved,
             "trapped": { "most": account.trapped[0], "end": account.trapped[1] },
             "tangled": { "most": account.tangled[0], "end": account.tangled[1] },
             "refused": account.refused,

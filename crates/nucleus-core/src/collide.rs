@@ -71,17 +71,20 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    /// How many pairs of a cloth and a collider are not proven to be on their sides at the end of a time step.
+    /// How many pairs of a cloth and a collider are open and how many inseparable at the end of a time step.
     pub(crate) fn prove_sides(
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
         span: Span,
         tally: &mut Tally,
-    ) -> u64 {
-        let mut open = 0;
-        self.for_lists(frame, schedule, span, tally, |list, step, team, _| open += prove(list, step, team));
-        open
+    ) -> [u64; 2] {
+        let mut counts = [0; 2];
+        self.for_lists(frame, schedule, span, tally, |list, step, team, _| {
+            let [open, inseparable] = prove(list, step, team);
+            counts = [counts[0] + open, counts[1] + inseparable];
+        });
+        counts
     }
 
     /// Takes back what is not proven to where it began the time step, and marks its points as held.

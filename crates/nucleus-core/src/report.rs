@@ -24,11 +24,12 @@ pub struct StepReport {
     pub pairs: u64,
     /// Runs of the broad phase: one per substep, and one more wherever motion outran its margin.
     pub broad_phases: u32,
-    /// Points that were caught on the far side of a collider and carried back to their own.
-    pub caught: u64,
-    /// Points that ended a substep on the far side of a collider after all. Always 0 unless the
-    /// start was already tangled.
-    pub crossed: u64,
+    /// Pairs of elements, of cloth and a collider or of two cloths, that would have passed each other and whose motion
+    /// was undone or cut short, once for each time.
+    pub pairs_reverted: u64,
+    /// Such pairs for which nothing helped, so that one may have passed the other, once for each time step. They are
+    /// between pins or colliders that leave no way out, or touched when the time step began.
+    pub pairs_unresolved: u64,
     /// Points that are inside a closed collider, and are being led out.
     pub trapped: u64,
     /// Edges of cloth that go through faces of cloth at the end of the frame, and are being worked apart.
@@ -52,8 +53,8 @@ impl Default for StepReport {
             contacts: 0,
             pairs: 0,
             broad_phases: 0,
-            caught: 0,
-            crossed: 0,
+            pairs_reverted: 0,
+            pairs_unresolved: 0,
             trapped: 0,
             tangled: 0,
             kinetic_energy: 0.0,

@@ -41,7 +41,13 @@ impl<R: Real> Solver<R> {
                 self.watch_contacts(frame, span, tally);
             }
             watch.enter(Stage::Collide);
-            let open = [self.prove_cloths(schedule), self.prove_sides(frame, schedule, span, tally)];
+            let cloths = self.prove_cloths(schedule);
+            let [sides, inseparable] = self.prove_sides(frame, schedule, span, tally);
+            let open = [cloths, sides];
+            let is_last = attempt == SQUEEZED + CLIPS + STOPS;
+            if open == [0, 0] || is_last {
+                *tally.pairs_unresolved.get_mut() += open[0] + open[1] + inseparable;
+            }
             if open == [0, 0] {
                 return;
             }
@@ -54,14 +60,14 @@ impl<R: Real> Solver<R> {
             } else if attempt < SQUEEZED + CLIPS {
                 self.clip(schedule, tally);
                 self.hold_sides(frame, schedule, span, tally);
-            } else if attempt < SQUEEZED + CLIPS + STOPS {
+            } else if !is_last {
                 if attempt == SQUEEZED + CLIPS {
                     self.hold_none();
                 }
                 self.hold_sides(frame, schedule, span, tally);
                 self.stop(schedule, tally);
             } else {
-                return self.let_go(frame, schedule, span, open, tally);
+                return self.let_go(frame, schedule, span, open[0] > 0, tally);
             }
         }
     }
@@ -75,14 +81,14 @@ impl<R: Real> Solver<R> {
     fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
         let Mutual { active, terms, .. } = mutual;
-        *tally.caught.get_mut() += active.clip(&motion(state, terms, maps, schedule.h));
+        *tally.pairs_reverted.get_mut() += active.clip(&motion(state, terms, maps, schedule.h));
     }
 
     /// Lets contacts that are not proven go nowhere, or where one of their points is held already.
     fn stop(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
         let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
         let Mutual { active, held, terms, .. } = mutual;
-        *tally.caught.get_mut() += active.stop(&motion(state, terms, maps, schedule.h), held);
+        *tally.pairs_reverted.get_mut() += active.stop(&motion(state, terms, maps, schedule.h), held);
     }
 
     /// Begins with no point held but those that are pinned.
@@ -98,13 +104,12 @@ impl<R: Real> Solver<R> {
         frame: &FrameInput,
         schedule: &Schedule<R>,
         span: Span,
-        open: [u64; 2],
+        among_cloths: bool,
         tally: &mut Tally,
     ) {
-        *tally.crossed.get_mut() += open[0] + open[1];
         self.release_sides(frame, schedule, span, tally);
         if let Some(mutual) = &mut self.mutual {
-            mutual.tangle.is_suspected |= open[0] > 0;
+            mutual.tangle.is_suspected |= among_cloths;
         }
     }
 }

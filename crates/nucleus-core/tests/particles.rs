@@ -263,7 +263,7 @@ fn particles_stay_out_of_colliders_that_stand_and_that_move() {
                 let cloths = vec![balls(0.01)];
                 let input = FrameInput { cloths, colliders, plane: None, ..frame(3, resistance) };
                 let report = solver.step(&input, &mut ());
-                assert_eq!(report.crossed, 0, "{speed} m/s, {resistance:?}, frame {step}");
+                assert_eq!(report.pairs_unresolved, 0, "{speed} m/s, {resistance:?}, frame {step}");
                 let centre = Vec3::y() * height(step + 1);
                 let inside = |p: &Vec3| (p - centre).norm() < scenes::INSCRIBED * 0.3;
                 assert_eq!(points(&solver, BEADS, places.len()).iter().filter(|p| inside(p)).count(), 0);
@@ -293,7 +293,7 @@ fn poured(threads: usize, far_away: bool) -> (Vec<u64>, Vec<Vec3>) {
     let mut hashes = Vec::new();
     for _ in 0..16 {
         let report = solver.step(&input, &mut ());
-        assert_eq!(report.crossed, 0);
+        assert_eq!(report.pairs_unresolved, 0);
         hashes.push(solver.state_hash());
     }
     (hashes, points(&solver, BEADS, places.len()))

@@ -66,7 +66,11 @@ fn a_sheet_whose_faces_are_there_twice_is_in_no_contact_with_itself() {
     let input = FrameInput { pins, cloths, ..frame(3, physical(48.0)) };
     for step in 0..24 {
         let report = solver.step(&input, &mut ());
-        assert_eq!((report.contacts, report.caught, report.crossed), (0, 0, 0), "frame {step}: {report:?}");
+        assert_eq!(
+            (report.contacts, report.pairs_reverted, report.pairs_unresolved),
+            (0, 0, 0),
+            "frame {step}: {report:?}"
+        );
     }
 }
 

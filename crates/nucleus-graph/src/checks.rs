@@ -73,11 +73,11 @@ const NO_CROSSING: &str = "noCrossing";
 static FORMS: [Form; 8] = [
     Form {
         name: "noPenetration",
-        doc: "No point ends a substep on the far side of a collider.",
+        doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
         parameters: &[],
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, _| Some(seen.report.crossed as f64),
+        figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
     },
     Form {
         name: NO_CROSSING,

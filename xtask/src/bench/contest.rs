@@ -108,7 +108,7 @@ mod tests {
             shares: Default::default(),
             evaluations: 1.0,
             searches: 1.0,
-            crossed: 0,
+            pairs_unresolved: 0,
             accuracy,
             hash: 0,
         }

@@ -21,7 +21,7 @@ fn text(runs: &[Outcome]) -> String {
     let mut text = String::from("workload,points,threads,frames,resistance,bend,evaluations,processor,wall");
     STAGES.iter().for_each(|(_, name)| text.extend([",", name]));
     text.push_str(
-        ",link_evaluations,searches,crossed,build,strain,stretch,max,sag,energy,depth,worst_depth,lower_edge,hash\n",
+        ",link_evaluations,searches,pairs_unresolved,build,strain,stretch,max,sag,energy,depth,worst_depth,lower_edge,hash\n",
     );
     for run in runs {
         let (trial, setting, found) = (run.trial, run.trial.setting, run.accuracy);
@@ -32,7 +32,7 @@ fn text(runs: &[Outcome]) -> String {
         let errors = [
             run.evaluations,
             run.searches,
-            run.crossed as f64,
+            run.pairs_unresolved as f64,
             run.build,
             found.strain,
             found.stretch,

@@ -70,7 +70,7 @@ fn is_worth_it(setting: &Setting) -> bool {
 /// Our own runs.
 fn own_table(workload: Workload, runs: &[Outcome]) -> Table {
     let errors: &[&str] = match workload {
-        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "searches", "crossed"],
+        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "searches", "unresolved"],
         _ => &["strain %", "stretch %", "largest %", "sag m", "energy J/kg"],
     };
     let head: Vec<&str> =
@@ -82,7 +82,7 @@ fn own_table(workload: Workload, runs: &[Outcome]) -> Table {
             Workload::Drape => {
                 let depths = [1e3 * found.depth, 1e3 * found.worst_depth];
                 let stretches = [1e2 * found.stretch, 1e2 * found.max];
-                [stretches, depths, [run.searches, run.crossed as f64]].concat()
+                [stretches, depths, [run.searches, run.pairs_unresolved as f64]].concat()
             }
             _ => vec![1e2 * found.strain, 1e2 * found.stretch, 1e2 * found.max, found.sag, found.energy],
         };

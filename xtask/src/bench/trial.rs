@@ -39,8 +39,8 @@ pub struct Outcome {
     pub evaluations: f64,
     /// Runs of the broad phase in a frame.
     pub searches: f64,
-    /// Points that ended a substep on the wrong side of the ball, over all frames.
-    pub crossed: u64,
+    /// Pairs of elements that were not kept apart, over all time steps.
+    pub pairs_unresolved: u64,
     /// How wrong it is.
     pub accuracy: Accuracy,
     /// The solver's fingerprint after the last frame.
@@ -90,7 +90,7 @@ impl Trial {
         let (build, mut solver) = Spent::on(|| Solver::<f32>::new(builder, self.threads as usize));
         let mut stages = StageClock::default();
         let mut frames = Vec::with_capacity(self.frames as usize);
-        let (mut searches, mut crossed) = (0.0, 0);
+        let (mut searches, mut pairs_unresolved) = (0.0, 0);
         for _ in 0..self.frames {
             let (spent, account) = Spent::on(|| {
                 let report = solver.step(&frame, &mut stages);
@@ -99,7 +99,7 @@ impl Trial {
             });
             frames.push(spent);
             searches += f64::from(account.broad_phases) / f64::from(self.frames);
-            crossed += account.crossed;
+            pairs_unresolved += account.pairs_unresolved;
             meter.frame(&solver);
         }
         Ok(Outcome {
@@ -110,7 +110,7 @@ impl Trial {
             shares: stages.shares(),
             evaluations: link_evaluations(&solver, &frame),
             searches,
-            crossed,
+            pairs_unresolved,
             accuracy: meter.finish(),
             hash: solver.state_hash(),
         })

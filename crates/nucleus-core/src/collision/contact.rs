@@ -67,9 +67,20 @@ pub enum Outcome {
     /// Touched, and pushed to the thickness.
     Pushed,
     /// Would have passed; pushed back to its side.
-    Caught,
-    /// No plane holds: the two are tangled, and are left alone.
-    Tangled,
+    Reverted,
+    /// The two touched when the step began: no plane is between them, and they are left alone.
+    Inseparable,
+}
+
+/// Whether it is certain that a pair did not pass each other in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Proof {
+    /// It is.
+    Certain,
+    /// It is not, and something has to be done.
+    Open,
+    /// The two touched when the step began, and one is behind the other's plane now: nothing can tell their sides.
+    Inseparable,
 }
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
@@ -240,7 +251,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         if least < R::ZERO {
             let directions = [start_line, across(x1, q1), across(x0, q0), line];
             let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
-                return Outcome::Tangled;
+                return Outcome::Inseparable;
             };
             let passes = gap < 0.0 && !stays([x0, x1], [q0, q1]);
             if passes && self.may_pass(step) {
@@ -252,7 +263,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
                 let (gaps, led) =
                     ([self.gap_at_start(step), R::from_f64(gap)], dot(self.normal, self.led(step)));
                 self.carry(step, Push::new(kept, gaps, led, step.h));
-                return Outcome::Caught;
+                return Outcome::Reverted;
             }
             proof = (gap >= 0.0).then_some(normal);
         }

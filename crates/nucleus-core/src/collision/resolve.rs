@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::contact::{Outcome, Pair, Step};
+use super::contact::{Outcome, Pair, Proof, Step};
 use super::pairs::PairList;
 use crate::columns::Shared;
 use crate::scalar::Real;
@@ -18,10 +18,10 @@ const ROUNDS: usize = 4;
 pub struct Tally {
     /// Contacts that pushed.
     pub contacts: AtomicU64,
-    /// Points that were caught on the far side.
-    pub caught: AtomicU64,
-    /// Pairs for which no plane held.
-    pub crossed: AtomicU64,
+    /// Pairs whose motion was undone or cut short, once for each time.
+    pub pairs_reverted: AtomicU64,
+    /// Pairs that ended a time step without proof that they are on their sides, once for each time step.
+    pub pairs_unresolved: AtomicU64,
     /// Pairs found by the broad phase.
     pub pairs: AtomicU64,
     /// Runs of the broad phase.
@@ -31,12 +31,11 @@ pub struct Tally {
 impl Tally {
     fn count(&self, outcome: Outcome) -> bool {
         match outcome {
-            Outcome::Apart => return false,
+            Outcome::Apart | Outcome::Inseparable => return false,
             Outcome::Pushed => self.contacts.fetch_add(1, Ordering::Relaxed),
-            Outcome::Caught => self.caught.fetch_add(1, Ordering::Relaxed),
-            Outcome::Tangled => self.crossed.fetch_add(1, Ordering::Relaxed),
+            Outcome::Reverted => self.pairs_reverted.fetch_add(1, Ordering::Relaxed),
         };
-        outcome != Outcome::Tangled
+        true
     }
 }
 
@@ -58,12 +57,13 @@ pub fn resolve<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team,
     }
 }
 
-/// How many active pairs are not proven to be on their sides at the end of the step.
-pub fn prove<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) -> u64 {
+/// How many active pairs are open and how many inseparable at the end of the step.
+pub fn prove<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) -> [u64; 2] {
     let PairList { point_face, edge_edge, face_point, active, .. } = list;
-    prove_all(point_face, &active.point_face, step, team)
-        + prove_all(edge_edge, &active.edge_edge, step, team)
-        + prove_all(face_point, &active.face_point, step, team)
+    let of_points = prove_all(point_face, &active.point_face, step, team);
+    let of_edges = prove_all(edge_edge, &active.edge_edge, step, team);
+    let of_faces = prove_all(face_point, &active.face_point, step, team);
+    [0, 1].map(|k| of_points[k] + of_edges[k] + of_faces[k])
 }
 
 fn prove_all<R: Real, const N: usize, const M: usize>(
@@ -71,21 +71,23 @@ fn prove_all<R: Real, const N: usize, const M: usize>(
     active: &[u32],
     step: &Step<'_, R>,
     team: &Team,
-) -> u64 {
-    let (pairs, open) = (Shared::new(pairs), AtomicU64::new(0));
+) -> [u64; 2] {
+    let (pairs, counts) = (Shared::new(pairs), [AtomicU64::new(0), AtomicU64::new(0)]);
     team.phase(active.len().div_ceil(PROOFS_PER_TASK), |task| {
         let end = active.len().min((task + 1) * PROOFS_PER_TASK);
-        let mut open_here = 0;
+        let mut counts_here = [0; 2];
         for &index in &active[task * PROOFS_PER_TASK..end] {
             // SAFETY: a pair is active once, and proofs move no point.
             #[allow(unsafe_code)]
             let [pair] = (unsafe { pairs.run(index..index + 1) }) else { continue };
-            open_here += u64::from(!pair.prove(step));
+            let proof = pair.prove(step);
+            counts_here[0] += u64::from(proof == Proof::Open);
+            counts_here[1] += u64::from(proof == Proof::Inseparable);
         }
         // Once a task: threads that count in one place wait for each other.
-        open.fetch_add(open_here, Ordering::Relaxed);
+        (0..2).for_each(|k| _ = counts[k].fetch_add(counts_here[k], Ordering::Relaxed));
     });
-    open.into_inner()
+    counts.map(AtomicU64::into_inner)
 }
 
 /// Takes every element of the cloth that is not proven back to where it was at the start of the step, along with
@@ -118,7 +120,7 @@ fn release_all<R: Real, const N: usize, const M: usize>(
 ) {
     for &index in active {
         let pair = &mut pairs[index as usize];
-        if !pair.prove(step) {
+        if pair.prove(step) == Proof::Open {
             pair.points.into_iter().for_each(&mut *tell);
         }
     }
@@ -133,10 +135,10 @@ fn hold_all<R: Real, const N: usize, const M: usize>(
 ) {
     for &index in active {
         let pair = &mut pairs[index as usize];
-        if !pair.prove(step) {
+        if pair.prove(step) == Proof::Open {
             pair.ride(step);
             pair.points.into_iter().for_each(&mut *hold);
-            tally.count(Outcome::Caught);
+            tally.count(Outcome::Reverted);
         }
     }
 }
@@ -170,8 +172,8 @@ pub fn stick<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) {
     });
 }
 
-/// Goes through the pairs of one point until none pushes it any more. A point that is still being caught then
-/// rides along with the face that caught it: what moves with a rigid surface passes no part of it.
+/// Goes through the pairs of one point until none pushes it any more. A point that is still being reverted
+/// then rides along with the face that it would pass: what moves with a rigid surface passes no part of it.
 fn settle_point<R: Real>(
     pairs: Shared<'_, Pair<R, 1, 3>>,
     of_point: &[u32],
@@ -179,19 +181,19 @@ fn settle_point<R: Real>(
     tally: &Tally,
 ) {
     for round in 1..=ROUNDS {
-        let (mut pushed, mut caught) = (0, false);
+        let (mut pushed, mut reverted) = (0, false);
         for &index in of_point {
             // SAFETY: the pairs of a point belong to the task of its block.
             #[allow(unsafe_code)]
             let [pair] = (unsafe { pairs.run(index..index + 1) }) else { continue };
             let outcome = pair.resolve(step);
             pushed += usize::from(tally.count(outcome));
-            caught |= outcome == Outcome::Caught;
-            if round == ROUNDS && outcome == Outcome::Caught {
+            reverted |= outcome == Outcome::Reverted;
+            if round == ROUNDS && outcome == Outcome::Reverted {
                 return pair.ride(step);
             }
         }
-        if pushed == 0 || (of_point.len() == 1 && !caught) {
+        if pushed == 0 || (of_point.len() == 1 && !reverted) {
             return;
         }
     }

@@ -26,9 +26,9 @@ fn a_gap_must_not_be_smaller() {
 }
 
 #[test]
-fn one_crossing_is_a_penetration() {
-    let crossed = StepReport { crossed: 1, ..StepReport::default() };
-    assert!(!judge("noPenetration", &[], &[StepReport::default(), crossed, StepReport::default()]).passed);
+fn one_unresolved_pair_is_a_penetration() {
+    let unresolved = StepReport { pairs_unresolved: 1, ..StepReport::default() };
+    assert!(!judge("noPenetration", &[], &[StepReport::default(), unresolved, StepReport::default()]).passed);
     assert!(judge("noPenetration", &[], &[StepReport::default()]).passed);
 }
 

@@ -29,20 +29,23 @@ fn try_it(reading: Reading) -> Finding {
         vec![
             substeps.to_string(),
             passes.to_string(),
-            run.contact.crossed.to_string(),
+            run.contact.pairs_unresolved.to_string(),
             figure(least(run)),
             figure(run.ms()),
         ]
     });
     Finding {
         reading: super::page::name(reading),
-        verdict: Verdict::of(one.contact.crossed == 0 && least(one) > 0.98 && one.is_finite()),
+        verdict: Verdict::of(one.contact.pairs_unresolved == 0 && least(one) > 0.98 && one.is_finite()),
         because: format!(
-            "at one and one, {} points went through and the least gap is {} of the thickness",
-            one.contact.crossed,
+            "at one and one, {} pairs are unresolved and the least gap is {} of the thickness",
+            one.contact.pairs_unresolved,
             figure(least(one))
         ),
-        table: (vec!["substeps", "collision iterations", "went through", "least gap", "ms"], rows.collect()),
+        table: (
+            vec!["substeps", "collision iterations", "pairs unresolved", "least gap", "ms"],
+            rows.collect(),
+        ),
     }
 }
 

@@ -321,8 +321,8 @@ impl Outcome {
     fn counts(&mut self, course: &Course) {
         let counts = [
             (course.sum(|seen| seen.report.refused.count), "inputs refused"),
-            (course.sum(|seen| seen.report.caught), "caught on the far side"),
-            (course.sum(|seen| seen.report.crossed), "crossed"),
+            (course.sum(|seen| seen.report.pairs_reverted), "pairs reverted"),
+            (course.sum(|seen| seen.report.pairs_unresolved), "pairs unresolved"),
         ];
         let words = counts.iter().filter(|(count, _)| *count > 0);
         self.reported.extend(words.map(|(count, what)| format!("{count} {what}")));

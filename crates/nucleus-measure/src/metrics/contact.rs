@@ -10,7 +10,7 @@ pub struct Contact {
     /// near.
     pub least_gap: Option<f64>,
     /// Points that ended a substep on the wrong side, over all frames. Has to be 0.
-    pub crossed: u64,
+    pub pairs_unresolved: u64,
 }
 
 impl Contact {
@@ -19,7 +19,7 @@ impl Contact {
         if report.min_gap < f64::INFINITY {
             self.least_gap = Some(self.least_gap.map_or(report.min_gap, |least| least.min(report.min_gap)));
         }
-        self.crossed += report.crossed;
+        self.pairs_unresolved += report.pairs_unresolved;
     }
 }
 
@@ -30,10 +30,10 @@ mod tests {
     #[test]
     fn the_smallest_gap_is_kept_and_crossings_add_up() {
         let mut contact = Contact::default();
-        for (min_gap, crossed) in [(f64::INFINITY, 0), (1.2, 1), (0.7, 0), (0.9, 2)] {
-            contact.add(&StepReport { min_gap, crossed, ..StepReport::default() });
+        for (min_gap, pairs_unresolved) in [(f64::INFINITY, 0), (1.2, 1), (0.7, 0), (0.9, 2)] {
+            contact.add(&StepReport { min_gap, pairs_unresolved, ..StepReport::default() });
         }
-        assert_eq!(contact, Contact { least_gap: Some(0.7), crossed: 3 });
+        assert_eq!(contact, Contact { least_gap: Some(0.7), pairs_unresolved: 3 });
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::trade::{Reading, Trade};
 /// Every setting on a line, the cheapest first; times in milliseconds, errors and strains as shares.
 pub fn csv(trade: &Trade) -> String {
     let head = "reading,substeps,collision_iterations,evaluations,resistance_factor,ms_per_frame,error,\
-                position_rms,position_max,strain_99,strain_max,energy_created,least_gap,crossed,pairs_per_frame,\
+                position_rms,position_max,strain_99,strain_max,energy_created,least_gap,pairs_unresolved,pairs_per_frame,\
                 broad_phases_per_frame,first_frame_not_finite,sound,frontier,hash\n";
     let mut text = head.to_owned();
     for point in &trade.points {
@@ -26,7 +26,7 @@ pub fn csv(trade: &Trade) -> String {
             point.max_strain.to_string(),
             maybe(point.created),
             maybe(point.least_gap),
-            point.crossed.to_string(),
+            point.pairs_unresolved.to_string(),
             point.pairs.to_string(),
             point.searches.to_string(),
             point.lost.map(|frame| frame.to_string()).unwrap_or_default(),

@@ -69,11 +69,11 @@ fn troubles(trade: &Trade) -> Vec<String> {
     let count =
         |is: &dyn Fn(&crate::trade::Point) -> bool| trade.points.iter().filter(|point| is(point)).count();
     let all = trade.points.len();
-    let crossed = count(&|point| point.crossed > 0);
+    let unresolved = count(&|point| point.pairs_unresolved > 0);
     let lost = count(&|point| point.lost.is_some());
     let energy = match trade.is_closed {
         true => format!("{} of {all} settings created energy", count(&|point| point.made_energy())),
         false => "the cloth is driven, by wind or by what moves: energy created cannot be told".to_owned(),
     };
-    vec![energy, format!("{crossed} of {all} settings let something through, {lost} did not stay finite")]
+    vec![energy, format!("{unresolved} of {all} settings left pairs unresolved, {lost} did not stay finite")]
 }

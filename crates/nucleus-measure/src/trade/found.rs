@@ -31,8 +31,9 @@ pub struct Point {
     pub created: Option<f64>,
     /// The smallest gap over the thickness.
     pub least_gap: Option<f64>,
-    /// Points on the wrong side at the end of substeps.
-    pub crossed: u64,
+    /// Pairs of elements that were not kept apart, once for each time step.
+    #[serde(alias = "crossed")]
+    pub pairs_unresolved: u64,
     /// Candidate pairs in a frame.
     pub pairs: f64,
     /// Runs of the broad phase in a frame.
@@ -90,7 +91,7 @@ impl Point {
             max_strain: largest(|frame| frame.max_strain),
             created: (subject.is_closed && weight > 0.0).then(|| made / weight),
             least_gap: run.contact.least_gap,
-            crossed: run.contact.crossed,
+            pairs_unresolved: run.contact.pairs_unresolved,
             pairs: run.pairs as f64 / run.frames.len().max(1) as f64,
             searches: run.searches as f64 / run.frames.len().max(1) as f64,
             lost: (!run.is_finite()).then(|| run.frames.len() + 1),
@@ -107,10 +108,11 @@ impl Point {
     /// What forbids the setting, in words.
     pub fn trouble(&self) -> Option<String> {
         let lost = self.lost.map(|frame| format!("not finite from frame {frame} on"));
-        let crossed = (self.crossed > 0).then(|| format!("{} points went through", self.crossed));
+        let unresolved =
+            (self.pairs_unresolved > 0).then(|| format!("{} pairs unresolved", self.pairs_unresolved));
         let created = self.created.filter(|_| self.made_energy());
         let created = created.map(|share| format!("created energy: {:.2} % of a fall", 100.0 * share));
-        let all: Vec<String> = [lost, crossed, created].into_iter().flatten().collect();
+        let all: Vec<String> = [lost, unresolved, created].into_iter().flatten().collect();
         (!all.is_empty()).then(|| all.join(", "))
     }
 
@@ -227,7 +229,7 @@ pub(super) mod tests {
             max_strain: 0.0,
             created: Some(0.0),
             least_gap: None,
-            crossed: 0,
+            pairs_unresolved: 0,
             pairs: 0.0,
             searches: 0.0,
             lost: None,
@@ -254,7 +256,7 @@ pub(super) mod tests {
 
     #[test]
     fn the_frontier_is_what_nothing_sound_beats() {
-        let through = Point { crossed: 1, ..point(2.0, 1e-6) };
+        let through = Point { pairs_unresolved: 1, ..point(2.0, 1e-6) };
         let made = Point { created: Some(0.5), ..point(3.0, 1e-6) };
         let trade = trade(vec![point(1.0, 0.1), through, made, point(4.0, 0.2), point(5.0, 0.05)]);
         let frontier: Vec<f64> = trade.frontier().map(|point| point.ms).collect();

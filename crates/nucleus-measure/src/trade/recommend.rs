@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn where_nothing_is_sound_nothing_is_recommended() {
-        let trade = trade(vec![Point { crossed: 3, ..point(1.0, 0.1) }]);
+        let trade = trade(vec![Point { pairs_unresolved: 3, ..point(1.0, 0.1) }]);
         assert_eq!(for_error(&trade, 1.0), Choice::None);
         assert_eq!(for_time(&trade, 9.0).point(), None);
     }

@@ -6,10 +6,10 @@ const MOST = 240;
 // What stands behind the lines as bars: the rungs on which contact needed more than a push.
 const TROUBLES = [
   { key: "pinched", name: "pinched", colour: "#e6761c60" },
-  { key: "caught", name: "caught", colour: "#c9a22750" },
+  { key: "pairs_reverted", name: "pairs reverted", colour: "#c9a22750" },
   { key: "trapped", name: "trapped", colour: "#b455c870" },
   { key: "tangled", name: "tangled", colour: "#ff6a5a80" },
-  { key: "crossed", name: "let go", colour: "#ff2020c0" },
+  { key: "pairs_unresolved", name: "pairs unresolved", colour: "#ff2020c0" },
 ];
 const LINES = [
   ["max_strain", (x) => `strain ${(100 * x).toPrecision(3)} %`],

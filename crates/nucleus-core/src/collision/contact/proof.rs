@@ -1,15 +1,15 @@
 //! The proof that cloth and collider did not pass each other in a step.
 
 use super::step::Step;
-use super::{Pair, Point, across, closest, weigh};
+use super::{Pair, Point, Proof, across, closest, weigh};
 use crate::collision::apart::apart;
 use crate::scalar::Real;
 
 impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     /// Whether it is certain that the two did not pass each other in this step; takes up another plane if that
-    /// proves it. What was not apart when the step began has nothing to lose.
+    /// proves it.
     #[inline]
-    pub fn prove(&mut self, step: &Step<'_, R>) -> bool {
+    pub fn prove(&mut self, step: &Step<'_, R>) -> Proof {
         let moved = self.points.map(|point| step.moved(point).xyz());
         let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
         // What lies within rounding of the plane is looked at in double precision.
@@ -17,7 +17,10 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
         let (_, at_end) = self.gaps(moved, step.share(step.time[1]));
         // The plane may be of the end of a pass in this step, and good for nothing at its start.
         let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.share(step.time[0]));
-        (at_end > grain && at_start > grain) || self.may_pass(step) || self.prove_otherwise(step)
+        if (at_end > grain && at_start > grain) || self.may_pass(step) {
+            return Proof::Certain;
+        }
+        self.prove_otherwise(step, at_end)
     }
 
     /// Whether the scene lets the two pass through each other: a collision that is carried out in part is none that holds.
@@ -29,7 +32,7 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
     }
 
     #[cold]
-    fn prove_otherwise(&mut self, step: &Step<'_, R>) -> bool {
+    fn prove_otherwise(&mut self, step: &Step<'_, R>, at_end: R) -> Proof {
         let (cloth, surface) = (step.cloth(self.points), step.surface(self.collider_points));
         let ([x0, x1], [q0, q1]) = (cloth, surface);
         let at_start = closest(x0, q0);
@@ -38,10 +41,11 @@ impl<R: Real, const N: usize, const M: usize> Pair<R, N, M> {
             [line(x0, q0, at_start), across(x1, q1), across(x0, q0), line(x1, q1, closest(x1, q1))];
         match best_plane(directions, cloth, surface) {
             Some((gap, normal)) if gap > 0.0 => self.turn_to(normal, at_start, step),
-            Some(_) => return stays(cloth, surface),
-            None => {}
+            Some(_) if !stays(cloth, surface) => return Proof::Open,
+            None if at_end < R::ZERO => return Proof::Inseparable,
+            _ => {}
         }
-        true
+        Proof::Certain
     }
 }
 

@@ -78,9 +78,9 @@ const fn at_least(what: &'static str, limit: f64, figure: fn(&Course, &Course) -
     Demand { what, figure, side: Side::AtLeast, limit }
 }
 
-/// No point ends a substep on the far side of a collider.
+/// The safeguard keeps every pair of elements apart.
 const NOTHING_CROSSES: Demand =
-    at_most("points crossed", 0.0, |course, _| course.sum(|seen| seen.report.crossed) as f64);
+    at_most("pairs unresolved", 0.0, |course, _| course.sum(|seen| seen.report.pairs_unresolved) as f64);
 
 /// Nodes of a scene, as text.
 struct Nodes(String);
