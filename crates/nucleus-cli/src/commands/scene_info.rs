@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use nucleus_core::{ClothFrame, FrameInput, PassCost, PhysicalStiffness, ResistanceModel, classic_stiffness};
+use nucleus_core::{ClothId, FrameInput, PassCost, PhysicalStiffness, ResistanceModel, classic_stiffness};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Object, ObjectKind, Program};
 use nucleus_graph::scene::{Scene, TimeSpan};
@@ -16,7 +16,13 @@ pub struct SceneInfo {
     time: TimeSpan,
     /// Name and type of each node.
     nodes: Vec<(String, &'static str)>,
+    nuclei: Vec<NucleusFacts>,
     objects: Vec<ObjectFacts>,
+}
+
+/// A nucleus with objects, which is solved for itself.
+struct NucleusFacts {
+    name: String,
     input: FrameInput,
     passes: Vec<PassCost>,
 }
@@ -37,71 +43,98 @@ impl SceneInfo {
     /// Looks at the first frame of a scene.
     pub fn of(scene: &Scene, program: &Program) -> Self {
         let simulation: Simulation = Simulation::new(program, 1);
-        let input = program.first_input();
         let nodes =
             scene.graph.iter().map(|(_, node)| (node.name().to_owned(), node.node_type().name)).collect();
-        let passes = simulation.solver().passes(&input).into_iter().filter(|pass| pass.evaluations() > 0.0);
-        Self {
-            time: program.time(),
-            nodes,
-            objects: program
-                .objects()
-                .iter()
-                .map(|object| facts(object, program, &simulation, &input))
-                .collect(),
-            passes: passes.collect(),
-            input,
-        }
+        let nuclei: Vec<_> = program
+            .universes()
+            .iter()
+            .zip(program.first_inputs())
+            .zip(simulation.solvers())
+            .map(|((universe, input), solver)| {
+                let passes = solver.passes(&input).into_iter().filter(|pass| pass.evaluations() > 0.0);
+                let name = scene.graph.node(universe.nucleus()).name().to_owned();
+                NucleusFacts { name, passes: passes.collect(), input }
+            })
+            .collect();
+        let objects = program.objects().iter().map(|object| facts(object, program, &simulation, &nuclei));
+        Self { time: program.time(), nodes, objects: objects.collect(), nuclei }
     }
 
     /// For people.
     pub fn as_text(&self, name: &str) -> Result<String, std::fmt::Error> {
         let TimeSpan { start, end, fps } = self.time;
         let mut text = format!("{name}: frames {start} to {end} at {} a second\n", figures::number(fps));
-        let reading = match self.input.resistance {
-            ResistanceModel::Classic => "classic: resistances are counts".to_owned(),
-            ResistanceModel::Physical { evaluations } => {
-                format!("physical: {} evaluations in 1/24 s", figures::number(evaluations))
-            }
-        };
-        writeln!(text, "{} a frame; {reading}", figures::count(self.input.substeps as usize, "substep"))?;
+        for nucleus in &self.nuclei {
+            writeln!(text, "{}{}", self.heading(nucleus), nucleus.line())?;
+        }
         for (name, node_type) in &self.nodes {
             writeln!(text, "node {name}: {node_type}")?;
         }
         for object in &self.objects {
             writeln!(text, "object {}", object.line())?;
         }
-        let total: f64 = self.passes.iter().map(PassCost::evaluations).sum();
-        for pass in &self.passes {
-            let (sweeps, evaluations) = (figures::number(pass.sweeps), figures::number(pass.evaluations()));
-            let share = figures::percent((100.0 * pass.evaluations() / total).round() / 100.0);
-            writeln!(
-                text,
-                "pass {:<9} {:>8} rows x {sweeps:>5} sweeps = {evaluations:>9} a frame, {share}",
-                pass.name, pass.rows
-            )?;
+        let passes = || self.nuclei.iter().flat_map(|nucleus| &nucleus.passes);
+        let total: f64 = passes().map(PassCost::evaluations).sum();
+        for nucleus in &self.nuclei {
+            for pass in &nucleus.passes {
+                let (sweeps, evaluations) =
+                    (figures::number(pass.sweeps), figures::number(pass.evaluations()));
+                let share = figures::percent((100.0 * pass.evaluations() / total).round() / 100.0);
+                writeln!(
+                    text,
+                    "{}pass {:<9} {:>8} rows x {sweeps:>5} sweeps = {evaluations:>9} a frame, {share}",
+                    self.heading(nucleus),
+                    pass.name,
+                    pass.rows
+                )?;
+            }
         }
         Ok(text)
     }
 
+    /// The name of a nucleus, where there is more than one.
+    fn heading(&self, nucleus: &NucleusFacts) -> String {
+        if self.nuclei.len() > 1 { format!("{}: ", nucleus.name) } else { String::new() }
+    }
+
     /// For machines.
     pub fn as_json(&self) -> Value {
+        let node = |(name, node_type): &(String, &str)| json!({ "name": name, "type": node_type });
+        json!({
+            "frames": { "start": self.time.start, "end": self.time.end, "per_second": self.time.fps },
+            "nodes": self.nodes.iter().map(node).collect::<Vec<_>>(),
+            "objects": self.objects.iter().map(ObjectFacts::as_json).collect::<Vec<_>>(),
+            "nuclei": self.nuclei.iter().map(NucleusFacts::as_json).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl NucleusFacts {
+    /// `3 substeps a frame; physical: 96 evaluations in 1/24 s`.
+    fn line(&self) -> String {
+        let reading = match self.input.resistance {
+            ResistanceModel::Classic => "classic: resistances are counts".to_owned(),
+            ResistanceModel::Physical { evaluations } => {
+                format!("physical: {} evaluations in 1/24 s", figures::number(evaluations))
+            }
+        };
+        format!("{} a frame; {reading}", figures::count(self.input.substeps as usize, "substep"))
+    }
+
+    fn as_json(&self) -> Value {
         let pass = |pass: &PassCost| {
             json!({
                 "name": pass.name, "rows": pass.rows, "sweeps": pass.sweeps, "evaluations": pass.evaluations(),
             })
         };
-        let node = |(name, node_type): &(String, &str)| json!({ "name": name, "type": node_type });
         let evaluations = match self.input.resistance {
             ResistanceModel::Classic => None,
             ResistanceModel::Physical { evaluations } => Some(evaluations),
         };
         json!({
-            "frames": { "start": self.time.start, "end": self.time.end, "per_second": self.time.fps },
+            "name": self.name,
             "substeps": self.input.substeps,
             "evaluations": evaluations,
-            "nodes": self.nodes.iter().map(node).collect::<Vec<_>>(),
-            "objects": self.objects.iter().map(ObjectFacts::as_json).collect::<Vec<_>>(),
             "passes": self.passes.iter().map(pass).collect::<Vec<_>>(),
         })
     }
@@ -129,14 +162,19 @@ impl ObjectFacts {
     }
 }
 
-fn facts(object: &Object, program: &Program, simulation: &Simulation, input: &FrameInput) -> ObjectFacts {
+fn facts(
+    object: &Object,
+    program: &Program,
+    simulation: &Simulation,
+    nuclei: &[NucleusFacts],
+) -> ObjectFacts {
     let mut positions = Vec::new();
     let (kind, stiffness) = match object.kind {
         ObjectKind::Cloth(id) => {
             simulation.state().positions(id, 1.0, &mut positions);
             match object.radius {
                 Some(_) => ("particles", None),
-                None => ("cloth", Some(ClothStiffness::of(&input.cloths[id.index()], program, input))),
+                None => ("cloth", ClothStiffness::of(id, program, nuclei)),
             }
         }
         ObjectKind::Collider(id) => {
@@ -165,17 +203,20 @@ enum ClothStiffness {
 
 impl ClothStiffness {
     /// The Classic reading takes the mean mass of all points of the scene.
-    fn of(cloth: &ClothFrame, program: &Program, input: &FrameInput) -> Self {
+    fn of(id: ClothId, program: &Program, nuclei: &[NucleusFacts]) -> Option<Self> {
+        let mut own = program.universes().iter().map(|universe| universe.cloths()).zip(nuclei);
+        let (cloths, NucleusFacts { input, .. }) = own.find(|(cloths, _)| cloths.contains(&id.0))?;
+        let cloth = input.cloths.get((id.0 - cloths.start) as usize)?;
         let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
         let points: usize = program.objects().iter().filter(is_cloth).map(|object| object.points).sum();
         let substep = input.duration / f64::from(input.substeps);
-        match input.resistance {
+        Some(match input.resistance {
             ResistanceModel::Classic => {
                 let mass = program.mass() / points as f64;
                 Self::Classic(classic_stiffness(cloth.stretch_resistance, substep, mass))
             }
             ResistanceModel::Physical { .. } => Self::Physical(PhysicalStiffness::of(cloth)),
-        }
+        })
     }
 
     fn stretch(&self) -> f64 {

@@ -63,8 +63,43 @@ fn a_scene_tells_its_nodes_and_what_its_passes_cost() {
     assert!(said.contains("object cloth1: cloth, 49 points, 84 edges, 36 faces, 0.5 x 0 x 0.5 m"), "{said}");
     let output = nucleus(folder.path(), &["info", "drape.ron", "--json"]);
     let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let passes = said["passes"].as_array().unwrap();
+    let passes = said["nuclei"][0]["passes"].as_array().unwrap();
     let stretch = passes.iter().find(|pass| pass["name"] == "stretch").expect("cloth has links");
     // Two cross links in each face take part in stretch.
     assert_eq!(stretch["rows"], 84 + 2 * 36);
+}
+
+#[test]
+fn a_scene_of_two_nuclei_tells_the_cost_and_the_stiffness_of_each() {
+    let folder = folder();
+    let text = r#"Scene(
+    time: (start: 1, end: 2, fps: 24),
+    nodes: {
+        "n1": nucleus(subSteps: 2, evaluations: 24),
+        "n2": nucleus(subSteps: 5, evaluations: 24),
+        "p1": polyPlane(subdivisions: (6, 6)),
+        "p2": polyPlane(subdivisions: (3, 3)),
+        "c1": nCloth(inputMesh: "p1", nucleus: "n1", stretchResistance: 20),
+        "c2": nCloth(inputMesh: "p2", nucleus: "n2", stretchResistance: 80),
+    },
+)
+"#;
+    fs::write(folder.path().join("two.ron"), text).unwrap();
+    let output = nucleus(folder.path(), &["info", "two.ron"]);
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(said.contains("n1: 2 substeps a frame") && said.contains("n2: 5 substeps a frame"), "{said}");
+    assert!(said.contains("n1: pass stretch") && said.contains("n2: pass stretch"), "{said}");
+    let output = nucleus(folder.path(), &["info", "two.ron", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // Edges and two cross links in each face.
+    for (k, name, substeps, rows) in [(0, "n1", 2, 84 + 2 * 36), (1, "n2", 5, 24 + 2 * 9)] {
+        let nucleus = &said["nuclei"][k];
+        assert_eq!((nucleus["name"].as_str(), nucleus["substeps"].as_u64()), (Some(name), Some(substeps)));
+        let passes = nucleus["passes"].as_array().unwrap();
+        let stretch = passes.iter().find(|pass| pass["name"] == "stretch").expect("cloth has links");
+        assert_eq!(stretch["rows"], rows, "{name}");
+    }
+    let stiffness = |k: usize| said["objects"][k]["stretch_stiffness"].as_f64().unwrap();
+    assert!(stiffness(1) > stiffness(0), "{said}");
 }

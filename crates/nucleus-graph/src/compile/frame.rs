@@ -39,8 +39,17 @@ pub(crate) struct Stretch<'p> {
 impl Program {
     /// The input of the first frame of the first nucleus, as an example of what a frame costs.
     pub fn first_input(&self) -> FrameInput {
-        let start = self.universes()[0].start as f64;
-        self.stretch(0, [start, start + 1.0], 1.0, false)
+        self.first_input_of(0)
+    }
+
+    /// The input of the first frame of each nucleus, in the order of the program.
+    pub fn first_inputs(&self) -> impl Iterator<Item = FrameInput> {
+        (0..self.universes().len()).map(|universe| self.first_input_of(universe))
+    }
+
+    fn first_input_of(&self, universe: usize) -> FrameInput {
+        let start = self.universes()[universe].start as f64;
+        self.stretch(universe, [start, start + 1.0], 1.0, false)
             .input(&mut Grips::default(), &|_, _| Vector3::zeros())
     }
 
