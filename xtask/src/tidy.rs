@@ -1,4 +1,5 @@
-//! Checks that no compiler makes: the map fits the tree, files stay short, nothing names one machine.
+//! Checks that no compiler makes: the map fits the tree, attributes name modules that exist, files stay short, nothing
+//! names one machine.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -36,7 +37,11 @@ pub fn problems(root: &Path) -> io::Result<Vec<String>> {
     for path in files::below(root)? {
         // What is not text has neither lines nor words.
         let Ok(text) = fs::read_to_string(&path) else { continue };
-        problems.extend(text_problems(&files::name(root, &path), &text));
+        let name = files::name(root, &path);
+        problems.extend(text_problems(&name, &text));
+        if name.starts_with(TABLES) {
+            problems.extend(solved_problems(root, &name, &text));
+        }
     }
     Ok(problems)
 }
@@ -53,6 +58,34 @@ fn text_problems(name: &str, text: &str) -> Vec<String> {
         }
     }
     problems
+}
+
+/// Attributes of a table that name a module that is not there.
+fn solved_problems(root: &Path, name: &str, text: &str) -> Vec<String> {
+    const CALL: &str = "solved(\"";
+    let of_line = |(index, line): (usize, &str)| {
+        let (_, after) = line.split_once(CALL)?;
+        let module = after.split('"').next()?;
+        let files = module_files(module);
+        if files.iter().any(|file| root.join(file).is_file()) {
+            return None;
+        }
+        let [file, folder] = files;
+        let hint = "write the path of the module in which the attribute takes effect now";
+        Some(format!(
+            "{name}:{}: `{module}` is no module, for there is neither `{file}` nor `{folder}`; {hint}",
+            index + 1
+        ))
+    };
+    text.lines().enumerate().filter_map(of_line).collect()
+}
+
+/// The files that a module can be in, from the root: `nucleus_core::collision::stick` in
+/// `crates/nucleus-core/src/collision/stick.rs`.
+fn module_files(module: &str) -> [String; 2] {
+    let (package, path) = module.split_once("::").unwrap_or((module, ""));
+    let stem = format!("crates/{}/src/{}", package.replace('_', "-"), path.replace("::", "/"));
+    [format!("{stem}.rs"), format!("{stem}/mod.rs")]
 }
 
 /// Where `ARCHITECTURE.md` and the tree differ.

@@ -94,3 +94,33 @@ fn a_missing_map_is_one_problem() {
 fn this_repository_is_tidy() {
     assert_eq!(problems(&crate::root()).unwrap(), [""; 0]);
 }
+
+#[test]
+fn an_attribute_that_names_no_module_is_found_at_its_line() {
+    let page = format!(
+        "{PAGE}### `crates/nucleus-graph`\n| `attributes` | tables |\n### `crates/nucleus-core`\n| `air` | drag |\n| `collision` | contact |\n"
+    );
+    let table = |modules: [&str; 3]| {
+        modules.map(|module| format!("X: f64 = float().solved(\"{module}\");\n")).concat()
+    };
+    let with = |modules| {
+        let table = table(modules);
+        let more = [
+            ("crates/nucleus-graph/Cargo.toml", ""),
+            ("crates/nucleus-graph/src/attributes/n_cloth.rs", table.as_str()),
+            ("crates/nucleus-core/Cargo.toml", ""),
+            ("crates/nucleus-core/src/air.rs", ""),
+            ("crates/nucleus-core/src/collision/mod.rs", ""),
+            ("crates/nucleus-core/src/collision/stick.rs", ""),
+        ];
+        found(&page, &more)
+    };
+    let good = ["nucleus_core::air", "nucleus_core::collision", "nucleus_core::collision::stick"];
+    assert_eq!(with(good), [""; 0]);
+    for bad in ["nucleus_core::collision::slip", "stick", "nucleus_cora::air"] {
+        let problems = with([good[0], bad, good[2]]);
+        let place = format!("crates/nucleus-graph/src/attributes/n_cloth.rs:2: `{bad}` is no module");
+        assert!(problems.len() == 1 && problems[0].starts_with(&place), "{problems:?}");
+        assert!(problems[0].contains("write the path of the module"), "{problems:?}");
+    }
+}

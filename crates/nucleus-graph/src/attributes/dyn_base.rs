@@ -14,7 +14,7 @@ node_table! {
     }
     "Nucleus (open)" {
         /// The object it acts on, or emits into.
-        TARGET: Plugged = node("target", "target", None).solved("graph").extension();
+        TARGET: Plugged = node("target", "target", None).solved("nucleus_graph::graph").extension();
     }
     "Owner" {
         /// Out of use in Maya.

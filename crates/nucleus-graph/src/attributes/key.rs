@@ -183,7 +183,7 @@ impl<T> Key<T> {
         self
     }
 
-    /// The module where it takes effect.
+    /// The module where it takes effect, as a path from its crate on.
     pub(super) const fn solved(mut self, module: &'static str) -> Self {
         self.row.effect = Effect::Solved(module);
         self

@@ -9,6 +9,6 @@ node_table! {
     MESH = "mesh", inherits Some(&SURFACE_SHAPE), hides [];
     "Nucleus (open)" {
         /// An OBJ file, its path relative to the scene's own. `####` in its name stands for the frame: then there is a file for each.
-        FILE: String = text("file", "file").solved("mesh").extension();
+        FILE: String = text("file", "file").solved("nucleus_graph::mesh").extension();
     }
 }

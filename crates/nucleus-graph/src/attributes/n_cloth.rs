@@ -10,7 +10,7 @@ node_table! {
     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
-        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::self_collision");
         /// Out of use in Maya.
         SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0).unused();
         /// What Maya draws of the solver's data.
@@ -22,11 +22,11 @@ node_table! {
         /// Whether a resistance belongs to a link, or to the cloth however finely it is divided.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]);
         /// Resistance of links that are longer than at rest.
-        STRETCH_RESISTANCE: f64 = float("stretchResistance", "stch", 20.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("stretch");
+        STRETCH_RESISTANCE: f64 = float("stretchResistance", "stch", 20.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
         /// Resistance of links that are shorter than at rest; at 0 they are rubber bands.
-        COMPRESSION_RESISTANCE: f64 = float("compressionResistance", "comr", 10.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("stretch");
+        COMPRESSION_RESISTANCE: f64 = float("compressionResistance", "comr", 10.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
         /// How strongly faces keep the angle between them.
-        BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("bend");
+        BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::bend");
         /// Lets small bends be free and resists large ones.
         BEND_ANGLE_DROPOFF: f64 = float("bendAngleDropoff", "bnad", 0.0).soft(0.0, 1.0);
         /// Links pulled harder than this stay longer.
@@ -34,7 +34,7 @@ node_table! {
         /// Edges bent farther than this stay bent; at 360 none do.
         RESTITUTION_ANGLE: f64 = float("restitutionAngle", "reae", 360.0).soft(0.0, 360.0).unit("degrees");
         /// Resistance of the cross links of quads.
-        SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("shear");
+        SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::shear");
         /// How strongly the whole mesh moves like one rigid body.
         RIGIDITY: f64 = float("rigidity", "rity", 0.0).soft(0.0, 10.0);
         /// Treats unconnected parts of the mesh each on its own for `rigidity` and `deformResistance`.
@@ -52,17 +52,17 @@ node_table! {
         /// Factor on rest angles: 0 wants to be flat, 1 as modelled.
         BEND_ANGLE_SCALE: f64 = float("bendAngleScale", "basc", 1.0).soft(-2.0, 2.0);
         /// Takes speed out of links that grow longer or shorter.
-        STRETCH_DAMP: f64 = float("stretchDamp", "sdmp", 0.1).min(0.0).soft(0.0, 10.0).solved("damp");
+        STRETCH_DAMP: f64 = float("stretchDamp", "sdmp", 0.1).min(0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::damp");
         /// Does not feel the solver's gravity.
-        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("predict");
+        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::predict");
         /// Does not feel the solver's wind.
-        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("air");
+        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::air");
         /// Force of the air at right angles to the motion.
-        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("air");
+        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("nucleus_core::air");
         /// Force of the air against the motion, as far as the surface faces it.
-        DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("air");
+        DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::air");
         /// Share of `drag` that also acts along the surface.
-        TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("air");
+        TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::air");
     }
     "Wind Field Generation" {
         /// Lets parts of the object keep the wind from other parts.
@@ -90,27 +90,27 @@ node_table! {
         /// How bending is worked out.
         BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]);
         /// Whether collision has the last word in a step where shape attraction is in use. It always has, as at 1, whatever is set here.
-        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("schedule");
+        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("nucleus_core::schedule");
         /// Solves links in the order of their distance from contacts and constraints.
         SORT_LINKS: bool = toggle("sortLinks", "stlk", false);
         /// Whether links are solved one after another, or all from the same state.
         EVALUATION_ORDER: Choice = choice("evaluationOrder", "evo", 0, &[(0, "Sequential"), (1, "Parallel")]);
         /// Links all corners of faces with more than three.
-        ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("stretch").fixed();
+        ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("nucleus_core::constraints::stretch").fixed();
         /// `crossoverPush` of the object against itself.
-        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("tangle");
+        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::mutual::tangle");
         /// `trappedCheck` of the object against itself: always done, whatever is set here.
-        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("tangle");
+        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("nucleus_core::collision::mutual::tangle");
     }
     "Nucleus (open)" {
         /// Physical: stiffness of the cloth against being stretched, Young's modulus times its thickness. Below 0 it comes from `stretchResistance`, 500 N/m for 1.
-        STRETCH_STIFFNESS: f64 = float("stretchStiffness", "stretchStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("stretch").extension();
+        STRETCH_STIFFNESS: f64 = float("stretchStiffness", "stretchStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: stiffness against being compressed. Below 0 it comes from `compressionResistance`, 500 N/m for 1.
-        COMPRESSION_STIFFNESS: f64 = float("compressionStiffness", "compressionStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("stretch").extension();
+        COMPRESSION_STIFFNESS: f64 = float("compressionStiffness", "compressionStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: shear modulus times thickness, on top of what cross links resist. Below 0 it comes from `shearResistance`, 500 N/m for 1.
-        SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("shear").extension();
+        SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::shear").extension();
         /// Physical: flexural rigidity of the cloth, the moment on a width of 1 m that bends it to a radius of 1 m. Below 0 it comes from `bendResistance`, 1e-4 N·m for 1.
-        BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("bend").extension();
+        BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("nucleus_core::constraints::bend").extension();
     }
     "Caching" {
         /// What a cache keeps of this object.
@@ -120,17 +120,17 @@ node_table! {
     }
     "Dynamic Properties Maps" {
         /// Texture that varies stretch.
-        STRETCH_MAP: f64 = texture("stretchMap", "stmp", 1.0).solved("factors");
+        STRETCH_MAP: f64 = texture("stretchMap", "stmp", 1.0).solved("nucleus_core::factors");
         /// Factor on stretch at each point.
-        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv").solved("factors");
+        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv").solved("nucleus_core::factors");
         /// Texture that varies compression.
-        COMPRESSION_MAP: f64 = texture("compressionMap", "cmmp", 1.0).solved("factors");
+        COMPRESSION_MAP: f64 = texture("compressionMap", "cmmp", 1.0).solved("nucleus_core::factors");
         /// Factor on compression at each point.
-        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv").solved("factors");
+        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv").solved("nucleus_core::factors");
         /// Texture that varies bend.
-        BEND_MAP: f64 = texture("bendMap", "bemp", 0.0).solved("factors");
+        BEND_MAP: f64 = texture("bendMap", "bemp", 0.0).solved("nucleus_core::factors");
         /// Factor on bend at each point.
-        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("factors");
+        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("nucleus_core::factors");
         /// Texture that varies bend angle dropoff.
         BEND_ANGLE_DROPOFF_MAP: f64 = texture("bendAngleDropoffMap", "badm", 0.0);
         /// Factor on bend angle dropoff at each point.
@@ -152,21 +152,21 @@ node_table! {
         /// Factor on input attract at each point.
         INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv");
         /// Texture that varies rest length scale.
-        REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("factors");
+        REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("nucleus_core::factors");
         /// Factor on rest length scale at each point.
-        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv").solved("factors");
+        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv").solved("nucleus_core::factors");
         /// Texture that varies lift.
-        LIFT_MAP: f64 = texture("liftMap", "lfmp", 1.0).solved("factors");
+        LIFT_MAP: f64 = texture("liftMap", "lfmp", 1.0).solved("nucleus_core::factors");
         /// Factor on lift at each point.
-        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv").solved("factors");
+        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv").solved("nucleus_core::factors");
         /// Texture that varies drag.
-        DRAG_MAP: f64 = texture("dragMap", "drmp", 1.0).solved("factors");
+        DRAG_MAP: f64 = texture("dragMap", "drmp", 1.0).solved("nucleus_core::factors");
         /// Factor on drag at each point.
-        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv").solved("factors");
+        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv").solved("nucleus_core::factors");
         /// Texture that varies tangential drag.
-        TANGENTIAL_DRAG_MAP: f64 = texture("tangentialDragMap", "tdmp", 1.0).solved("factors");
+        TANGENTIAL_DRAG_MAP: f64 = texture("tangentialDragMap", "tdmp", 1.0).solved("nucleus_core::factors");
         /// Factor on tangential drag at each point.
-        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("factors");
+        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("nucleus_core::factors");
         /// Texture that varies wrinkle.
         WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0);
         /// Factor on wrinkle at each point.
@@ -174,11 +174,11 @@ node_table! {
         /// How high the wrinkles of the wrinkle map stand.
         WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0);
         /// Whether stretch is varied by nothing, by point, or by a texture.
-        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("factors").fixed();
+        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether compression is varied by nothing, by point, or by a texture.
-        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("factors").fixed();
+        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether bend is varied by nothing, by point, or by a texture.
-        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("factors").fixed();
+        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether bend angle dropoff is varied by nothing, by point, or by a texture.
         BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES);
         /// Whether restitution angle is varied by nothing, by point, or by a texture.
@@ -190,13 +190,13 @@ node_table! {
         /// Whether input attract is varied by nothing, by point, or by a texture.
         INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES);
         /// Whether rest length scale is varied by nothing, by point, or by a texture.
-        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("factors").fixed();
+        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether lift is varied by nothing, by point, or by a texture.
-        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("factors").fixed();
+        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether drag is varied by nothing, by point, or by a texture.
-        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("factors").fixed();
+        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether tangential drag is varied by nothing, by point, or by a texture.
-        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("factors").fixed();
+        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
         /// Whether wrinkle is varied by nothing, by point, or by a texture.
         WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES);
     }

@@ -67,19 +67,19 @@ node_table! {
     }
     "Per Particle (Array) Attributes" {
         /// Where the particles are when the simulation begins, in world space, unless `position0` says it.
-        POSITION: Vec<[f64; 3]> = vectors("position", "pos").unit("scene units").solved("compile");
+        POSITION: Vec<[f64; 3]> = vectors("position", "pos").unit("scene units").solved("nucleus_graph::compile");
         /// How fast they are then, unless `velocity0` says it.
-        VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").unit("scene units/s").solved("compile");
+        VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Initial State" {
         /// Initial positions in world space; a file may be an OBJ, of which the points are taken.
-        POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").unit("scene units").solved("compile");
+        POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").unit("scene units").solved("nucleus_graph::compile");
         /// Initial velocities in world space.
-        VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").unit("scene units/s").solved("compile");
+        VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Dynamic Properties" {
         /// Kilograms of every particle, however resistances are read.
-        POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg").solved("compile").fixed();
+        POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg").solved("nucleus_graph::compile").fixed();
         /// Slows the particles down.
         DAMP: f64 = float("damp", "adng", 0.0).min(0.0).soft(0.0, 10.0);
         /// How strongly particles are drawn to an input mesh.
@@ -87,11 +87,11 @@ node_table! {
         /// How little they swing about it: 0 freely, 1 not at all.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0);
         /// Does not feel the solver's gravity.
-        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("predict");
+        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::predict");
         /// Does not feel the solver's wind.
-        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("air");
+        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::air");
         /// Force of the air against the motion, the same in all directions; on a light particle it does more.
-        DRAG: f64 = float("drag", "drg", 0.01).soft(0.0, 2.0).unit("per 1/24 s").solved("air");
+        DRAG: f64 = float("drag", "drg", 0.01).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::air");
         /// Factor on mass, by particle.
         MASS_SCALE: Cow<'static, [RampPoint]> = ramp("massScale", "mssc", FULL);
         /// What the mass ramp is read by.
@@ -107,13 +107,13 @@ node_table! {
     }
     "Collisions" {
         /// Up to which elements it collides: particles are points, whatever it says.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 1, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("compile");
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 1, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile");
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness")]);
         /// Size in collisions, as a multiple of the radius.
-        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("contact");
+        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::collision::terms");
         /// Size towards each other, as a multiple of the size in collisions.
-        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("self_collision");
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::self_collision");
         /// Factor on friction, by particle.
         FRICTION_SCALE: Cow<'static, [RampPoint]> = ramp("frictionScale", "frsc", FULL);
         /// What the friction ramp is read by.
@@ -215,7 +215,7 @@ node_table! {
     }
     "Particle Size" {
         /// Radius of each particle: two touch at the sum of theirs.
-        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("contact").fixed();
+        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::collision::terms").fixed();
         /// Factor on radius, by particle.
         RADIUS_SCALE: Cow<'static, [RampPoint]> = ramp("radiusScale", "rdc", FULL);
         /// What the radius ramp is read by.

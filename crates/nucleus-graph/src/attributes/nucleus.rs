@@ -10,67 +10,67 @@ node_table! {
     NUCLEUS = "nucleus", inherits Some(&TRANSFORM), hides [];
     "General" {
         /// Solves at all; when off, everything keeps the state it has.
-        ENABLE: bool = toggle("enable", "ena", true).solved("simulation");
+        ENABLE: bool = toggle("enable", "ena", true).solved("nucleus_graph::simulation");
     }
     "Gravity and Wind" {
         /// Acceleration of free fall; metres are scene units times `spaceScale`.
-        GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("predict");
+        GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("nucleus_core::predict");
         /// Where things fall to; its length does not matter.
-        GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("predict");
+        GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("nucleus_core::predict");
         /// How much there is of the air that drags and lifts: 0 is a vacuum, 1 ordinary air.
-        AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("air");
+        AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::air");
         /// How fast the air moves.
-        WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("air");
+        WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("nucleus_core::air");
         /// Where the wind blows to; its length does not matter.
-        WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("air");
+        WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("nucleus_core::air");
         /// How unsteady the wind is.
         WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0);
     }
     "Ground Plane" {
         /// Adds an endless ground plane that everything collides with.
-        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("contact");
+        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::collision::plane");
         /// Any point of the ground plane.
-        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("contact");
+        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::collision::plane");
         /// The side of the ground plane on which things stay; its length does not matter.
-        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("contact");
+        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::collision::plane");
         /// How much speed is kept when something bounces off the ground plane.
-        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("contact");
+        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::bounce");
         /// Friction of the ground plane, added to the other side's.
-        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("contact");
+        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::friction");
         /// Stickiness of the ground plane, added to the other side's.
-        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("stick");
+        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::collision::stick");
     }
     "Solver Attributes" {
         /// Reads directions and the ground plane in the space of this node's own transform.
-        USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("compile");
+        USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("nucleus_graph::compile");
         /// Objects whose collision layers are this far apart, or farther, do not meet.
-        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("self_collision");
+        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::collision::terms");
         /// Parts that a frame is solved in; the shortest time the solver knows.
-        SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("schedule");
+        SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("nucleus_core::schedule");
         /// Collision passes in 1/24 s, shared among the substeps.
-        MAX_COLLISION_ITERATIONS: i64 = int("maxCollisionIterations", "mcit", 4).min(0.0).max(1000000.0).soft(0.0, 100.0).unit("per 1/24 s").solved("schedule");
+        MAX_COLLISION_ITERATIONS: i64 = int("maxCollisionIterations", "mcit", 4).min(0.0).max(1000000.0).soft(0.0, 100.0).unit("per 1/24 s").solved("nucleus_core::schedule");
         /// Whether Maya prints how long frames or substeps take.
         TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]);
     }
     "Scale Attributes" {
         /// How fast simulated time runs against the time of the animation.
-        TIME_SCALE: f64 = float("timeScale", "tisc", 1.0).min(0.0001).max(10000.0).soft(0.01, 10.0).solved("compile");
+        TIME_SCALE: f64 = float("timeScale", "tisc", 1.0).min(0.0001).max(10000.0).soft(0.01, 10.0).solved("nucleus_graph::compile");
         /// Metres in one scene unit: 1 for a scene in metres, 0.01 for one in centimetres.
-        SPACE_SCALE: f64 = float("spaceScale", "spsc", 1.0).min(1e-06).max(1000000.0).soft(0.01, 10.0).unit("m per scene unit").solved("compile").fixed();
+        SPACE_SCALE: f64 = float("spaceScale", "spsc", 1.0).min(1e-06).max(1000000.0).soft(0.01, 10.0).unit("m per scene unit").solved("nucleus_graph::compile").fixed();
     }
     "Time Attributes" {
         /// The time it solves for; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("simulation");
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("nucleus_graph::simulation");
         /// The frame at which everything is in its initial state, and where a run begins. Left out, it is the first frame of the scene.
-        START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("simulation").fixed();
+        START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("nucleus_graph::simulation").fixed();
         /// How many frames a single evaluation may leap over and still be solved.
-        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0).solved("simulation");
+        FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0).solved("nucleus_graph::simulation");
     }
     "Nucleus (open)" {
         /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.
-        RESISTANCE_MODEL: Choice = choice("resistanceModel", "resistanceModel", 1, &[(0, "Classic"), (1, "Physical")]).solved("schedule").fixed().extension();
+        RESISTANCE_MODEL: Choice = choice("resistanceModel", "resistanceModel", 1, &[(0, "Classic"), (1, "Physical")]).solved("nucleus_core::schedule").fixed().extension();
         /// Physical: evaluations of every list in 1/24 s. More only lessens the error.
-        EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("schedule").extension();
+        EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("nucleus_core::schedule").extension();
     }
     "Hidden" {
         /// How deep a contact may press into the thickness.

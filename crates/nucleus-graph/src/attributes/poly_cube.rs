@@ -10,22 +10,22 @@ node_table! {
     POLY_CUBE = "polyCube", inherits Some(&SURFACE_SHAPE), hides [];
     "Shape" {
         /// Length along x.
-        WIDTH: f64 = float("width", "w", 1.0).min(1e-6).max(1e9).unit("scene units").solved("mesh").fixed();
+        WIDTH: f64 = float("width", "w", 1.0).min(1e-6).max(1e9).unit("scene units").solved("nucleus_graph::mesh").fixed();
         /// Length along y.
-        HEIGHT: f64 = float("height", "h", 1.0).min(1e-6).max(1e9).unit("scene units").solved("mesh").fixed();
+        HEIGHT: f64 = float("height", "h", 1.0).min(1e-6).max(1e9).unit("scene units").solved("nucleus_graph::mesh").fixed();
         /// Length along z.
-        DEPTH: f64 = float("depth", "d", 1.0).min(1e-6).max(1e9).unit("scene units").solved("mesh").fixed();
+        DEPTH: f64 = float("depth", "d", 1.0).min(1e-6).max(1e9).unit("scene units").solved("nucleus_graph::mesh").fixed();
         /// Quads along x.
-        SUBDIVISIONS_WIDTH: i64 = int("subdivisionsWidth", "sw", 1).min(1.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_WIDTH: i64 = int("subdivisionsWidth", "sw", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Quads along y.
-        SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Quads along z.
-        SUBDIVISIONS_DEPTH: i64 = int("subdivisionsDepth", "sd", 1).min(1.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_DEPTH: i64 = int("subdivisionsDepth", "sd", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Which way it stands.
         AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
     }
     "Nucleus (open)" {
         /// All numbers of subdivisions in one go.
-        SUBDIVISIONS: Plugged = together("subdivisions", &["subdivisionsWidth", "subdivisionsHeight", "subdivisionsDepth"]).solved("mesh").extension();
+        SUBDIVISIONS: Plugged = together("subdivisions", &["subdivisionsWidth", "subdivisionsHeight", "subdivisionsDepth"]).solved("nucleus_graph::mesh").extension();
     }
 }

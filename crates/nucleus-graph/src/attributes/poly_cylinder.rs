@@ -10,20 +10,20 @@ node_table! {
     POLY_CYLINDER = "polyCylinder", inherits Some(&SURFACE_SHAPE), hides [];
     "Shape" {
         /// Radius.
-        RADIUS: f64 = float("radius", "r", 1.0).min(1e-6).max(1e9).unit("scene units").solved("mesh").fixed();
+        RADIUS: f64 = float("radius", "r", 1.0).min(1e-6).max(1e9).unit("scene units").solved("nucleus_graph::mesh").fixed();
         /// Length along y.
-        HEIGHT: f64 = float("height", "h", 2.0).min(1e-6).max(1e9).unit("scene units").solved("mesh").fixed();
+        HEIGHT: f64 = float("height", "h", 2.0).min(1e-6).max(1e9).unit("scene units").solved("nucleus_graph::mesh").fixed();
         /// Quads round the axis.
-        SUBDIVISIONS_AXIS: i64 = int("subdivisionsAxis", "sa", 20).min(3.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_AXIS: i64 = int("subdivisionsAxis", "sa", 20).min(3.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Quads along the height.
-        SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Rings from rim to centre of a cap: 0 makes it one polygon.
-        SUBDIVISIONS_CAPS: i64 = int("subdivisionsCaps", "sc", 0).min(0.0).max(4096.0).solved("mesh").fixed();
+        SUBDIVISIONS_CAPS: i64 = int("subdivisionsCaps", "sc", 0).min(0.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
         /// Which way it stands.
         AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
     }
     "Nucleus (open)" {
         /// All numbers of subdivisions in one go.
-        SUBDIVISIONS: Plugged = together("subdivisions", &["subdivisionsAxis", "subdivisionsHeight", "subdivisionsCaps"]).solved("mesh").extension();
+        SUBDIVISIONS: Plugged = together("subdivisions", &["subdivisionsAxis", "subdivisionsHeight", "subdivisionsCaps"]).solved("nucleus_graph::mesh").extension();
     }
 }

@@ -52,7 +52,8 @@ pub struct Range {
 /// Where an attribute takes effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// In this module.
+    /// In the module of this path, from its crate on: `nucleus_core::constraints::bend`. `cargo xtask tidy` looks for its
+    /// file.
     Solved(&'static str),
     /// Nowhere yet: it can be set, and whoever sets it is told.
     NotYet,

@@ -8,7 +8,7 @@
 ///     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, &["mass"]];
 ///     "Dynamic Properties" {
 ///         /// How strongly faces keep the angle between them.
-///         BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).soft(0.0, 200.0).solved("bend");
+///         BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).soft(0.0, 200.0).solved("nucleus_core::constraints::bend");
 ///     }
 /// }
 /// ```
