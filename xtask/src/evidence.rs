@@ -1,7 +1,7 @@
 //! Which claim of the paper is shown by which test or scene.
 //!
 //! `docs/claims.md` numbers the claims. A test carries, in the comment above it, the word EVIDENCE, a colon
-//! and one or more numbers, then what it shows of them; a scene carries the same anywhere in a comment.
+//! and one or more numbers, then what it shows of them; a scene carries the same in a comment of its own line.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,7 +28,7 @@ pub struct Evidence {
     pub claim: String,
     /// File and line.
     pub place: String,
-    /// The test's name, or the scene's.
+    /// The test's name, or the scene's; empty where there is no test below the comment.
     pub name: String,
 }
 
@@ -81,10 +81,12 @@ fn evidence_in(file: &str, text: &str) -> Vec<Evidence> {
     let lines: Vec<_> = text.lines().collect();
     let mut found = Vec::new();
     for (index, line) in lines.iter().enumerate() {
-        let Some((_, tag)) = line.split_once("EVIDENCE:").filter(|(before, _)| before.contains("//")) else {
-            continue;
+        // Not in the midst of a line: that is text which a test is about.
+        let Some(tag) = line.trim_start().strip_prefix("// EVIDENCE:") else { continue };
+        let name = match file.ends_with(".rs") {
+            true => test_below(&lines[index..]).unwrap_or_default(),
+            false => scene_name(file),
         };
-        let name = test_after(&lines[index..]).unwrap_or_else(|| scene_name(file));
         for claim in tag.split([' ', ',']).filter(|word| !word.is_empty()).take_while(|word| is_id(word)) {
             let place = format!("{file}:{}", index + 1);
             found.push(Evidence { claim: claim.to_owned(), place, name: name.clone() });
@@ -100,10 +102,11 @@ fn is_id(word: &str) -> bool {
     parts.is_some_and(|(section, number)| numbers(section) && numbers(number))
 }
 
-/// The function that follows.
-fn test_after(lines: &[&str]) -> Option<String> {
-    let name =
-        lines.iter().find_map(|line| line.trim_start().trim_start_matches("pub ").strip_prefix("fn "))?;
+/// The function below a comment, with nothing but comments and attributes between.
+fn test_below(lines: &[&str]) -> Option<String> {
+    let mut code = lines.iter().map(|line| line.trim_start());
+    let first = code.find(|line| !line.starts_with("//") && !line.starts_with('#'))?;
+    let name = first.trim_start_matches("pub ").strip_prefix("fn ")?;
     Some(name.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default().to_owned())
 }
 
@@ -141,10 +144,23 @@ mod tests {
     }
 
     #[test]
-    fn every_tag_names_a_claim_that_exists() {
+    fn a_tag_in_a_text_that_a_test_is_about_is_none() {
+        let text = format!("    let text = r#\"{TAG} N1.2-2  a flag\n\"#;\n#[test]\nfn next() {{}}\n");
+        assert_eq!(evidence_in("tests/paper.rs", &text), []);
+    }
+
+    #[test]
+    fn a_tag_that_is_not_right_above_a_test_has_no_name() {
+        let text = format!("{TAG} N1.2-2  a flag\nconst FLAG: u32 = 1;\n#[test]\nfn next() {{}}\n");
+        assert_eq!(evidence_in("tests/paper.rs", &text)[0].name, "");
+    }
+
+    #[test]
+    fn every_tag_names_a_claim_that_exists_and_stands_right_above_a_test() {
         let root = crate::root();
         let claims = claims(&root).unwrap();
         for evidence in evidence(&root).unwrap() {
+            assert!(!evidence.name.is_empty(), "{evidence:?}");
             assert!(claims.iter().any(|claim| claim.id == evidence.claim), "{evidence:?}");
         }
     }

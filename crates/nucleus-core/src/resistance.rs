@@ -91,7 +91,6 @@ mod tests {
     }
 
     // EVIDENCE: N2.4-11  10 is 10 at one substep, 5 each at 2, 1 each at 10, 1 weakened each at 20
-    // EVIDENCE: N2.4-12  collision iterations are shared in the same way
     // EVIDENCE: N2.2-8  a count is per 1/24 s
     #[test]
     fn a_resistance_of_ten_is_shared_as_the_paper_says() {

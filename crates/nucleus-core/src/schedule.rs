@@ -258,7 +258,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::frame::COUNT_PERIOD;
+    use crate::frame::{COUNT_PERIOD, ColliderFrame};
 
     fn frame(substeps: u32, cloth: ClothFrame) -> FrameInput {
         FrameInput {
@@ -297,7 +297,6 @@ mod tests {
 
     // EVIDENCE: N2.2-1  attributes say how often each effect is evaluated
     // EVIDENCE: N2.2-2  effects are interleaved, not run one after the other
-    // EVIDENCE: N2.2-3  collision passes lie between stretch passes
     #[test]
     fn effects_are_interleaved_by_their_counts() {
         let cloth = ClothFrame {
@@ -311,13 +310,35 @@ mod tests {
         assert_eq!(letters(&Schedule::new(&frame(1, cloth))), "scCshCscCsC");
     }
 
-    // EVIDENCE: N2.2-4  the last pass of a step is always collision
+    /// A frame of two cloths that meet each other and a collider, and have every resistance.
+    fn in_contact(substeps: u32, resistance: ResistanceModel) -> FrameInput {
+        let cloth = ClothFrame { shear_resistance: 3.0, bend_resistance: 7.0, ..ClothFrame::default() };
+        let colliders = vec![ColliderFrame { collide: true, ..ColliderFrame::default() }];
+        FrameInput { resistance, cloths: vec![cloth; 2], colliders, ..frame(substeps, cloth) }
+    }
+
+    // EVIDENCE: N2.2-4  after the last sweep of a resistance come passes of contact, and the safeguard
     #[test]
-    fn collision_always_has_the_last_word() {
+    fn a_step_in_contact_ends_with_collision_passes() {
         for substeps in 1..30 {
             for resistance in [ResistanceModel::Classic, ResistanceModel::Physical { evaluations: 50.0 }] {
-                let input = FrameInput { resistance, ..frame(substeps, ClothFrame::default()) };
-                assert_eq!(Schedule::<f64>::new(&input).rounds.last(), Some(&Round::Collide));
+                let letters = letters(&Schedule::new(&in_contact(substeps, resistance)));
+                assert!(letters.contains('b'), "{letters}");
+                assert!(letters.ends_with("MCS"), "{substeps} substeps, {resistance:?}: {letters}");
+            }
+        }
+    }
+
+    // EVIDENCE: N2.4-12  10 collision iterations are 5 in each of two substeps, and so are 10 among cloths
+    #[test]
+    fn collision_iterations_are_shared_among_substeps() {
+        for (substeps, passes) in [(1, 10), (2, 5), (5, 2), (10, 1)] {
+            let mut input = in_contact(substeps, ResistanceModel::Classic);
+            for (own, other, letters) in [(10.0, 1.0, ['C', 'M']), (1.0, 10.0, ['M', 'C'])] {
+                (input.collision_iterations, input.self_collision_iterations) = (own, other);
+                let schedule = self::letters(&Schedule::new(&input));
+                let counts = letters.map(|letter| schedule.chars().filter(|&c| c == letter).count());
+                assert_eq!(counts, [passes, 1], "{substeps} substeps: {schedule}");
             }
         }
     }

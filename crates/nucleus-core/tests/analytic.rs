@@ -96,7 +96,6 @@ fn the_error_of_a_swing_falls_with_the_length_of_the_step() {
     assert!(errors[0] / errors[1] > 1.7 && errors[1] / errors[2] > 1.7, "{errors:?}");
 }
 
-// EVIDENCE: N2.2-7  links between pairs of points carry a hanging chain
 #[test]
 fn a_hanging_chain_of_100_links_is_a_catenary() {
     // Span over length, sag over length.
@@ -144,7 +143,6 @@ fn sag(points: u32, input: &FrameInput) -> f64 {
 }
 
 // EVIDENCE: N1.3-2  a higher resistance makes cloth inelastic
-// EVIDENCE: N2.2-6  more iterations, less stretch
 #[test]
 fn a_hanging_sheet_sags_less_wrongly_the_more_evaluations_it_gets() {
     // 0.2 kg/m², 10 kN/m: rho g H² / 2K.

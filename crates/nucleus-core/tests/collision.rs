@@ -31,7 +31,7 @@ fn cloth_rests_on_the_ground_at_its_thickness_without_sinking_or_jitter() {
     }
 }
 
-// EVIDENCE: N2.3-3  surface against surface is point-face plus edge-edge
+// EVIDENCE: N2.3-2  cloth and collider both have a thickness
 #[test]
 fn cloth_rests_on_a_mesh_at_the_sum_of_the_thicknesses() {
     for resistance in [ResistanceModel::Classic, physical(96.0)] {
@@ -213,7 +213,6 @@ fn cloth_that_is_stretched_a_thousandfold_holds_a_box_all_the_same() {
 }
 
 // EVIDENCE: N2.2-4  the last pass of a step is collision: nothing is left inside
-// EVIDENCE: N2.2-5  stretch near collisions goes away with more evaluations
 #[test]
 fn a_sheet_draped_on_a_sphere_is_almost_unstretched_and_not_inside() {
     let (builder, input) = drape(41, 384.0);
@@ -225,11 +224,13 @@ fn a_sheet_draped_on_a_sphere_is_almost_unstretched_and_not_inside() {
     let report = last.expect("sixty frames");
     assert!(report.strain_99 < 0.01, "{report:?}");
     assert!(report.pairs_unresolved == 0 && report.pairs_reverted == 0, "{report:?}");
+    // A pass of resistance after the last of collision would press it in.
+    assert!(report.min_gap > 0.999, "{report:?}");
     assert!((0..1681).all(|k| solver.point(CLOTH, k).norm() > 0.31 * INSCRIBED), "a point is inside");
     println!("draped at 384 evaluations: {report:?}");
 }
 
-// EVIDENCE: N1.3-3  more substeps cure stretch near collisions
+// EVIDENCE: N2.2-5  each evaluation has a collision pass, and more of them leave less stretch
 #[test]
 fn more_evaluations_leave_less_stretch_on_a_sphere() {
     let strain = [24.0, 96.0].map(|evaluations| {

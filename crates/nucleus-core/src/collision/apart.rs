@@ -94,7 +94,6 @@ mod tests {
     }
 
     proptest! {
-        // EVIDENCE: N2.4-12  nothing that passes is ever taken for apart
         #[test]
         fn what_stays_apart_never_meets_on_the_way(
             places in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 8),

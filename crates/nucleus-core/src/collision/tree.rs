@@ -88,7 +88,6 @@ mod tests {
     }
 
     proptest! {
-        // EVIDENCE: N2.4-1  the tree finds what trying every pair finds
         #[test]
         fn the_tree_finds_every_box_that_meets(corners in boxes(), sought in 0usize..100) {
             let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();

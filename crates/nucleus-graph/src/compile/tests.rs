@@ -65,7 +65,6 @@ fn lists(cloth: &str) -> String {
     lists.expect("a cloth has lists").to_owned()
 }
 
-// EVIDENCE: N1.1-3  nodes only set up relations and carry data: what the solver gets is plain numbers
 // EVIDENCE: N1.3-1  scene units are read as metres through spaceScale
 #[test]
 fn lengths_are_scaled_and_accelerations_are_not() {

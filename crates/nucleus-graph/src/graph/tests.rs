@@ -68,7 +68,6 @@ fn a_collider_is_connected_as_maya_connects_it() {
     );
 }
 
-// EVIDENCE: N2.4-3  a constraint becomes a list of elements of each of its members
 #[test]
 fn a_constraint_gets_one_component_node_per_member() {
     let (mut graph, cloth, nucleus, plane) = sheet();

@@ -337,7 +337,6 @@ fn reads_back(graph: &Graph) {
 prop_state_machine! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    // EVIDENCE: N3.1-1  any sequence of changes to nodes and connections keeps the graph whole
     #[test]
     fn any_sequence_of_changes_keeps_the_graph_whole(sequential 1..40 => Whole);
 }
