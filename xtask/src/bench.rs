@@ -18,7 +18,7 @@
 //! | how fast caches are                              | [`caches`]    |
 //! | what is kept of a run                            | [`report`]    |
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
@@ -146,6 +146,30 @@ impl Part {
 }
 
 impl Options {
+    /// What `docs/benchmarks.md` is made with: the bench beside other solvers, all sizes.
+    pub fn of_benchmarks(root: &Path) -> Self {
+        let parts = [Part::W1, Part::W2, Part::Hang, Part::Threads, Part::Scale];
+        Self::of_page(&parts, &[33, 65, 129, 257], root.join("docs/benchmarks.md"))
+    }
+
+    /// What `docs/contact.md` is made with.
+    pub fn of_contact(root: &Path) -> Self {
+        let parts = [Part::W3, Part::W4, Part::SelfCollision, Part::Scenes];
+        Self::of_page(&parts, &[33, 65], root.join("docs/contact.md"))
+    }
+
+    fn of_page(parts: &[Part], sizes: &[u32], page: PathBuf) -> Self {
+        Self {
+            sizes: sizes.to_vec(),
+            threads: vec![1, 2],
+            only: parts.to_vec(),
+            scenes: Vec::new(),
+            repeat: 1,
+            csv: None,
+            write: Some(page),
+        }
+    }
+
     /// Writes what has been found so far, so that a bench that is stopped has not been for nothing.
     fn keep(&self, report: &Report) -> anyhow::Result<()> {
         if let Some(path) = &self.csv {

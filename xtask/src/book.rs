@@ -10,6 +10,7 @@
 //! | what a prototype promised                        | [`nucleus_measure::experiments`] |
 //! | what a feature costs                             | [`mod@features`]             |
 //! | how fast caches are                              | [`mod@caches`]               |
+//! | speed and error beside other solvers             | [`mod@bench`]                |
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -21,7 +22,7 @@ use anyhow::{Context, ensure};
 use clap::ValueEnum;
 use nucleus_measure::{advice, experiments, machine, report, store, trade};
 
-use crate::bench::{caches, features};
+use crate::bench::{self, caches, features};
 
 /// What to make.
 #[derive(Debug, Clone, clap::Args)]
@@ -48,6 +49,10 @@ enum Page {
     Caches,
     /// `docs/features.md`: what each feature costs, on and off
     Features,
+    /// `docs/contact.md`: what contact costs beside other solvers, and whether anything gets through
+    Contact,
+    /// `docs/benchmarks.md`: speed at which error, beside other solvers; takes half an hour
+    Benchmarks,
 }
 
 /// Runs of each sheet of the page on features; the median counts.
@@ -75,6 +80,8 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
             Page::Experiments => experiments(root)?,
             Page::Caches => caches(root)?,
             Page::Features => features(root)?,
+            Page::Contact => bench::run(&bench::Options::of_contact(root))?,
+            Page::Benchmarks => bench::run(&bench::Options::of_benchmarks(root))?,
         }
         eprintln!("{page:?}: {:.0} s", start.elapsed().as_secs_f64());
     }

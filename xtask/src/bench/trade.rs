@@ -101,12 +101,13 @@ fn stage_table(workload: Workload, runs: &[Outcome]) -> Table {
     let used: Vec<usize> =
         (0..STAGES.len()).filter(|&k| typical.iter().any(|run| run.shares[k] > 0.002)).collect();
     let names = used.iter().map(|&k| STAGES[k].1);
-    let head: Vec<&str> = ["points", "ms"].into_iter().chain(names).chain(["setting"]).collect();
+    let head: Vec<&str> = ["points", "ms"].into_iter().chain(names).chain(["setting", "hash"]).collect();
     let mut table = Table::new(&format!("{workload}: milliseconds a frame by stage"), &head);
     for run in typical {
         let stages = used.iter().map(|&k| figure(run.ms() * run.shares[k]));
         let cells = [format!("{}²", run.trial.size), figure(run.ms())];
-        table.row(cells.into_iter().chain(stages).chain([run.trial.setting.to_string()]));
+        let of_run = [run.trial.setting.to_string(), format!("{:016x}", run.hash)];
+        table.row(cells.into_iter().chain(stages).chain(of_run));
     }
     table
 }
