@@ -1,10 +1,13 @@
-//! One chunk, which is one frame: found, read, unpacked, and checked against its checksum.
+//! One chunk, which is one frame, or one copy: found, read, unpacked, and checked against its checksum.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 
-use mcap::records::{MessageHeader, Record, op};
+use mcap::MAGIC;
+use mcap::records::{Header, MessageHeader, Metadata, Record, op};
 use zstd::bulk::Decompressor;
+
+use crate::copies;
 
 /// Bytes before the body of a record: its kind and its length.
 pub(crate) const RECORD_HEAD: u64 = 9;
@@ -36,6 +39,9 @@ pub(crate) struct Chunk {
     unpacker: Option<Decompressor<'static>>,
     channels: Vec<mcap::records::Channel>,
     messages: Vec<(MessageHeader, Range<usize>)>,
+    /// Only copies have these.
+    metadata: Vec<Metadata>,
+    header: Option<Header>,
 }
 
 /// Why a chunk cannot be used.
@@ -54,11 +60,24 @@ impl Chunk {
         file: &mut (impl Read + Seek),
         bytes: Range<u64>,
     ) -> Result<(u64, u64), ChunkFault> {
+        self.take_up(file, bytes)?;
+        self.unpack().ok_or(ChunkFault::Damaged)
+    }
+
+    /// Reads the copy whose record fills `bytes` of the file.
+    pub fn read_copy(&mut self, file: &mut (impl Read + Seek), bytes: Range<u64>) -> Result<(), ChunkFault> {
+        self.take_up(file, bytes)?;
+        self.unpack_copy().ok_or(ChunkFault::Damaged)
+    }
+
+    /// Replaces what is in memory by so many bytes of the file.
+    fn take_up(&mut self, file: &mut (impl Read + Seek), bytes: Range<u64>) -> Result<(), ChunkFault> {
         self.messages.clear();
         self.channels.clear();
+        self.metadata.clear();
+        self.header = None;
         file.seek(SeekFrom::Start(bytes.start)).map_err(ChunkFault::Io)?;
-        self.fetch(file, bytes.end.saturating_sub(bytes.start)).map_err(ChunkFault::Io)?;
-        self.unpack().ok_or(ChunkFault::Damaged)
+        self.fetch(file, bytes.end.saturating_sub(bytes.start)).map_err(ChunkFault::Io)
     }
 
     /// Reads so many bytes, or as many as there are.
@@ -86,6 +105,16 @@ impl Chunk {
     /// The channels that were introduced in this chunk.
     pub fn channels(&self) -> &[mcap::records::Channel] {
         &self.channels
+    }
+
+    /// What a copy repeats of what is known of the run.
+    pub fn metadata(&self) -> &[Metadata] {
+        &self.metadata
+    }
+
+    /// The first record of the file that a copy holds.
+    pub fn header(&self) -> Option<&Header> {
+        self.header.as_ref()
     }
 
     /// The messages in order.
@@ -129,22 +158,48 @@ impl Chunk {
         if !whole || crc32fast::hash(&self.records) != header.uncompressed_crc {
             return None;
         }
-        self.list_records()?;
+        self.list_records(0..self.records.len())?;
         let times = self.messages.iter().map(|(head, _)| head.log_time);
         let times = (times.clone().min().unwrap_or(0), times.max().unwrap_or(0));
         (times == (header.message_start_time, header.message_end_time)).then_some(times)
     }
 
-    /// Notes where each message lies, and each channel.
-    fn list_records(&mut self) -> Option<()> {
-        let mut rest = 0..self.records.len();
+    /// Checks and unpacks `compressed`, an attachment; `None` when it is no copy or not as written.
+    fn unpack_copy(&mut self) -> Option<()> {
+        let (&opcode, body) = self.compressed.split_first()?;
+        let (length, body) = body.split_first_chunk::<8>()?;
+        let (body, sum) = body.split_last_chunk::<4>()?;
+        let is_whole = u64::from_le_bytes(*length) == body.len() as u64 + 4;
+        if opcode != op::ATTACHMENT || !is_whole || crc32fast::hash(body) != u32::from_le_bytes(*sum) {
+            return None;
+        }
+        // Two times, its name and its type, and the data with its length.
+        let (name, rest) = word(body.get(16..)?)?;
+        let (_, rest) = word(rest)?;
+        let data = rest.get(8..)?;
+        if name != copies::NAME.as_bytes() {
+            return None;
+        }
+        let most = (data.len() as u64).saturating_mul(LARGEST_RATIO);
+        copies::unpack(data, most, &mut self.records).ok()?;
+        let records = self.records.strip_prefix(MAGIC)?.strip_suffix(MAGIC)?.len();
+        self.list_records(MAGIC.len()..MAGIC.len() + records)
+    }
+
+    /// Notes where each message lies, each channel, and what is known of the run.
+    fn list_records(&mut self, mut rest: Range<usize>) -> Option<()> {
         while let Some((opcode, body)) = next_record(&self.records, &mut rest) {
+            if !matches!(opcode, op::HEADER | op::CHANNEL | op::MESSAGE | op::METADATA) {
+                continue;
+            }
             let data = &self.records[body.clone()];
             match mcap::parse_record(opcode, data).ok()? {
                 Record::Message { header, data } => {
                     self.messages.push((header, body.end - data.len()..body.end));
                 }
                 Record::Channel(channel) => self.channels.push(channel),
+                Record::Metadata(record) => self.metadata.push(record),
+                Record::Header(header) => self.header = Some(header),
                 _ => {}
             }
         }
@@ -169,6 +224,12 @@ fn expand(
     }
     unpacker.as_mut()?.decompress_to_buffer(data, out).ok()?;
     Some(())
+}
+
+/// The text at the start of `bytes`, with its length before it, and what follows.
+fn word(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    rest.split_at_checked(u32::from_le_bytes(*length) as usize)
 }
 
 /// The kind and the body of the record at the start of `rest`, which is moved behind it; `None` at the end

@@ -1,11 +1,14 @@
 //! What a cache holds and where, however that was found out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Read, Seek};
+use std::ops::Range;
 
 use mcap::records::{Channel, Metadata};
 
 use crate::checkpoint;
-use crate::chunk::{Chunk, ChunkPlace};
+use crate::chunk::{Chunk, ChunkFault, ChunkPlace};
+use crate::provenance::is_sound;
 
 /// The table of contents.
 #[derive(Debug, Default, PartialEq)]
@@ -15,6 +18,26 @@ pub(crate) struct Contents {
     pub metadata: Vec<Metadata>,
     /// For each channel the times of its messages in order, and the chunk each lies in.
     pub messages: BTreeMap<u16, Vec<(u64, usize)>>,
+    pub copies: CopyIndex,
+}
+
+/// Where the copies are, and what is in them once that has been looked up.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct CopyIndex {
+    /// The whole records.
+    pub places: Vec<Range<u64>>,
+    /// For each channel the times of the messages that are copied, in order, and the copy each lies in.
+    messages: BTreeMap<u16, Vec<(u64, usize)>>,
+    /// The program that wrote the file.
+    pub library: Option<String>,
+    is_read: bool,
+}
+
+impl CopyIndex {
+    /// Time and copy of a channel's last copied message at or before `log_time`.
+    pub fn latest(&self, channel: u16, log_time: u64) -> Option<(u64, usize)> {
+        latest(self.messages.get(&channel)?, log_time)
+    }
 }
 
 impl Contents {
@@ -23,6 +46,66 @@ impl Contents {
         let messages = chunk.messages().map(|(header, _)| (header.channel_id, header.log_time));
         self.add_messages(place, messages);
         self.channels.extend(chunk.channels().iter().map(|channel| (channel.id, channel.clone())));
+    }
+
+    /// Adds a copy that was come by in order: what is known of the run and the channels, as far as it is missing.
+    pub fn add_copy(&mut self, place: Range<u64>, copy: &Chunk) {
+        let index = self.copies.places.len();
+        self.copies.places.push(place);
+        self.list_copy(index, copy);
+    }
+
+    fn list_copy(&mut self, index: usize, copy: &Chunk) {
+        for record in copy.metadata() {
+            self.add_metadata(record.clone());
+        }
+        for channel in copy.channels() {
+            self.channels.entry(channel.id).or_insert_with(|| channel.clone());
+        }
+        for (header, _) in copy.messages() {
+            let messages = self.copies.messages.entry(header.channel_id).or_default();
+            let place = messages.partition_point(|&(time, _)| time < header.log_time);
+            messages.insert(place, (header.log_time, index));
+        }
+        let library = copy.header().map(|header| header.library.clone());
+        self.copies.library = self.copies.library.take().or(library);
+    }
+
+    /// Looks up what is in the copies, unless that is known. Those that are damaged are left out.
+    pub fn read_copies(&mut self, file: &mut (impl Read + Seek), chunk: &mut Chunk) -> io::Result<()> {
+        if std::mem::replace(&mut self.copies.is_read, true) {
+            return Ok(());
+        }
+        for index in 0..self.copies.places.len() {
+            match chunk.read_copy(file, self.copies.places[index].clone()) {
+                Ok(()) => self.list_copy(index, chunk),
+                Err(ChunkFault::Damaged) => {}
+                Err(ChunkFault::Io(error)) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Says that all that is in the copies has been added on the way.
+    pub fn has_read_copies(&mut self) {
+        self.copies.is_read = true;
+    }
+
+    /// Adds what is known of the run. Of two records of a name the one whose checksum holds is kept.
+    pub fn add_metadata(&mut self, record: Metadata) {
+        match self.metadata.iter_mut().find(|known| known.name == record.name) {
+            None => self.metadata.push(record),
+            Some(known) if !is_sound(known) && is_sound(&record) => *known = record,
+            Some(_) => {}
+        }
+    }
+
+    /// Whether any of it is of a kind that only caches have.
+    pub fn is_of_a_cache(&self) -> bool {
+        let is_ours = |text: &str| text.starts_with("nucleus.");
+        !self.copies.places.is_empty()
+            || self.channels.values().any(|channel| is_ours(&channel.message_encoding))
+            || self.metadata.iter().any(|record| is_ours(&record.name) && is_sound(record))
     }
 
     /// Adds a chunk by the channels and times of its messages.
@@ -50,10 +133,19 @@ impl Contents {
         self.channels.values().find(|channel| channel.topic == topic).map(|channel| channel.id)
     }
 
+    /// The times of a channel's messages and copies, each once and in order.
+    pub fn message_times(&self, channel: u16) -> BTreeSet<u64> {
+        let messages = [self.messages.get(&channel), self.copies.messages.get(&channel)];
+        messages.into_iter().flatten().flatten().map(|&(time, _)| time).collect()
+    }
+
     /// The chunk and time of a channel's last message at or before `log_time`.
     pub fn latest(&self, channel: u16, log_time: u64) -> Option<(u64, usize)> {
-        let messages = self.messages.get(&channel)?;
-        let after = messages.partition_point(|&(time, _)| time <= log_time);
-        messages[..after].last().copied()
+        latest(self.messages.get(&channel)?, log_time)
     }
+}
+
+fn latest(messages: &[(u64, usize)], log_time: u64) -> Option<(u64, usize)> {
+    let after = messages.partition_point(|&(time, _)| time <= log_time);
+    messages[..after].last().copied()
 }

@@ -6,6 +6,7 @@
 //! | how a frame is found and read back                  | [`Playback`]                        |
 //! | what a killed run or a flipped byte costs           | [`Loss`]                            |
 //! | where two runs differ first                         | [`compare`]                         |
+//! | how the start of a file survives damage            | `copies.rs`                         |
 //! | how an object gets another mesh on the way          | [`FrameRecorder::change_mesh`], [`Playback::object_at`] |
 //! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
 //! | how a run goes on from its cache                    | [`Recorder::resume`]                |
@@ -15,7 +16,8 @@
 //! | why floats are stored byte by byte                  | `shuffle.rs`                        |
 //!
 //! Each frame is one compressed chunk with a checksum, closed and handed to the system before the next
-//! begins. A run that is killed loses the frame in flight and nothing else.
+//! begins. A run that is killed loses the frame in flight and nothing else, and a damaged chunk costs its own frame:
+//! what holds beyond a frame (the run, meshes, colliders that stand still) has a copy behind the next.
 //!
 //! **Invariant:** this crate knows no scene and no node; a cache opens without them. Same run, same bytes.
 //!
@@ -51,6 +53,7 @@ mod camera;
 mod checkpoint;
 mod chunk;
 mod contents;
+mod copies;
 mod diff;
 mod loss;
 mod mesh;

@@ -10,6 +10,14 @@ pub struct Loss {
     pub cut_off: bool,
     /// The index is there but damaged; everything was found without it.
     pub index: bool,
+    /// The start of the file is damaged, and was read from a copy of it.
+    pub start: bool,
+    /// What is known of the run is lost, and its frames are found by what is in them.
+    pub run: bool,
+    /// Objects whose meshes are lost, and which are shown as points.
+    pub meshes: Vec<String>,
+    /// Objects of which nothing is left.
+    pub objects: Vec<String>,
     /// The text of the scene is damaged and left out.
     pub scene: bool,
     /// Bytes at the end that belong to no whole frame.
@@ -27,6 +35,11 @@ impl Loss {
             frames.sort_unstable();
             frames.dedup();
         }
+    }
+
+    /// Whether the run can be gone on with: what it is and all its meshes are known.
+    pub fn knows_run(&self) -> bool {
+        !self.run && self.meshes.is_empty() && self.objects.is_empty()
     }
 
     /// Whether nothing is missing.
@@ -47,6 +60,21 @@ impl fmt::Display for Loss {
         if self.index {
             parts.push("the index is damaged; the frames were found without it".to_owned());
         }
+        if self.start {
+            parts.push("the start of the file is damaged; it was read from a copy".to_owned());
+        }
+        if self.run {
+            parts.push(
+                "the record of the run is lost; its frames were found by what is in them, its units are unknown"
+                    .to_owned(),
+            );
+        }
+        if !self.meshes.is_empty() {
+            parts.push(format!("shown as points, without a mesh: {}", names(&self.meshes)));
+        }
+        if !self.objects.is_empty() {
+            parts.push(format!("lost: {}", names(&self.objects)));
+        }
         if self.scene {
             parts.push("the text of the scene is damaged".to_owned());
         }
@@ -61,6 +89,11 @@ impl fmt::Display for Loss {
             false => f.write_str(&parts.join("; ")),
         }
     }
+}
+
+/// `` `a`, `b` ``.
+fn names(objects: &[String]) -> String {
+    objects.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// `frame 3`, `frames 3 to 5, 9`.

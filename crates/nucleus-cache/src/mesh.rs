@@ -76,10 +76,13 @@ impl Track {
     }
 }
 
+/// The time of the meshes that objects begin with.
+pub(crate) const FIRST: u64 = 0;
+
 /// A mesh that an object has for a while, and not at first.
 pub(crate) struct Mesh {
-    /// Where its message lies: time and chunk.
-    place: (u64, usize),
+    /// When it was recorded.
+    time: u64,
     number: u32,
     object: ObjectInfo,
 }
@@ -115,12 +118,12 @@ impl<R: Read + Seek> Playback<R> {
     /// The moments at which an object has another mesh than at the moment before, in order.
     pub fn mesh_changes(&self, object: usize) -> Vec<usize> {
         let Some(&channel) = self.mesh_channels.get(object) else { return Vec::new() };
-        let messages = self.contents.messages.get(&channel).map_or(&[][..], Vec::as_slice);
-        let moment = |&(time, _): &(u64, usize)| {
+        let times = self.contents.message_times(channel).into_iter().filter(|&time| time > FIRST);
+        let moment = |time: u64| {
             let before = self.moments().partition_point(|moment| moment.log_time < time);
             Some(before).filter(|&moment| moment < self.moments().len())
         };
-        let mut changes: Vec<usize> = messages.iter().skip(1).filter_map(moment).collect();
+        let mut changes: Vec<usize> = times.filter_map(moment).collect();
         changes.dedup();
         changes
     }
@@ -131,45 +134,68 @@ impl<R: Read + Seek> Playback<R> {
         let channel = *self.mesh_channels.get(object).ok_or(ReadError::NoObject { object, objects })?;
         let name = &self.objects()[object].name;
         let lost = ReadError::MeshLost { object: name.clone(), frame: self.run().frame_at(log_time) };
-        let Some(place) = self.contents.latest(channel, log_time) else { return Err(lost) };
-        if self.is_first(channel, log_time) {
+        let Some(time) = self.mesh_time(channel, log_time) else { return Err(lost) };
+        if time == FIRST {
             return Ok((0, &self.objects()[object]));
         }
-        if self.meshes[object].as_ref().is_none_or(|mesh| mesh.place != place) {
+        if self.meshes[object].as_ref().is_none_or(|mesh| mesh.time != time) {
             let name = name.clone();
-            match self.load(place.1) {
-                Ok(()) => {}
-                Err(ReadError::Damaged { .. }) => return Err(lost),
+            let held = match self.held(channel, log_time) {
+                Ok(Some(held)) => held,
+                Ok(None) | Err(ReadError::Damaged { .. }) => return Err(lost),
                 Err(error) => return Err(error),
-            }
-            let message = self.chunk.last_message(channel, place.0);
+            };
+            let message = self.held_message(channel, held);
             let Some((found, number)) = message.and_then(|data| topology::read(&name, data)) else {
                 return Err(lost);
             };
-            self.meshes[object] = Some(Mesh { place, number, object: found });
+            self.meshes[object] = Some(Mesh { time, number, object: found });
         }
         self.meshes[object].as_ref().map(|mesh| (mesh.number, &mesh.object)).ok_or(lost)
     }
 
-    /// Whether the mesh at a time is the first on its channel.
-    fn is_first(&self, channel: u16, log_time: u64) -> bool {
-        let first = self.contents.messages.get(&channel).and_then(|messages| messages.first().copied());
-        self.contents.latest(channel, log_time) == first
+    /// When the mesh that holds at a time was recorded.
+    fn mesh_time(&self, channel: u16, log_time: u64) -> Option<u64> {
+        let original = self.contents.latest(channel, log_time);
+        let copied = self.contents.copies.latest(channel, log_time);
+        original.max(copied).map(|(time, _)| time)
     }
 
-    /// Looks through the chunk in memory for points whose mesh is lost, and notes their frames. `numbers` has the number of
-    /// the last mesh of each object that was come by.
-    pub(crate) fn note_lost_meshes(&mut self, numbers: &mut BTreeMap<u16, u32>) {
+    /// Whether the mesh at a time is the first on its channel.
+    fn is_first(&self, channel: u16, log_time: u64) -> bool {
+        self.mesh_time(channel, log_time) == Some(FIRST)
+    }
+
+    /// Looks through the chunk in memory for points whose mesh was not come by, and adds their objects, times and mesh
+    /// numbers to `missed`. `numbers` has the number of the last mesh of each object that was come by.
+    pub(crate) fn note_missed_meshes(
+        &self,
+        numbers: &mut BTreeMap<u16, u32>,
+        missed: &mut Vec<(usize, u64, u32)>,
+    ) {
         for (header, data) in self.chunk.messages() {
             if self.mesh_channels.contains(&header.channel_id) {
                 numbers.insert(header.channel_id, topology::number(data).unwrap_or(0));
             } else if let Some(object) = self.points_channels.iter().position(|&one| one == header.channel_id)
             {
                 let has = numbers.get(&self.mesh_channels[object]).copied().unwrap_or(0);
-                if PointsMessage::read(data).is_some_and(|points| points.mesh != has) {
-                    self.loss.frames.push(self.run().frame_at(header.log_time));
-                }
+                let points = PointsMessage::read(data).filter(|points| points.mesh != has);
+                missed.extend(points.map(|points| (object, header.log_time, points.mesh)));
             }
         }
+    }
+
+    /// Notes the frames of those that have no copy either.
+    pub(crate) fn note_lost_meshes(&mut self, missed: Vec<(usize, u64, u32)>) -> Result<(), ReadError> {
+        for (object, log_time, number) in missed {
+            match self.mesh_at(object, log_time) {
+                Ok((found, _)) if found == number => {}
+                Ok(_) | Err(ReadError::MeshLost { .. }) => {
+                    self.loss.frames.push(self.run().frame_at(log_time));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
     }
 }

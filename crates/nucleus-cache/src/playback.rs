@@ -40,7 +40,9 @@ pub struct Playback<R = BufReader<File>> {
     pub(crate) meshes: Vec<Option<Mesh>>,
     moments: Vec<RecordedMoment>,
     pub(crate) chunk: Chunk,
+    copy: Chunk,
     loaded: Option<usize>,
+    loaded_copy: Option<usize>,
 }
 
 /// How the bytes of a cache are shared out.
@@ -77,22 +79,16 @@ impl<R: Read + Seek> Playback<R> {
     /// As [`Playback::open`].
     pub fn read(mut file: R) -> Result<Self, OpenError> {
         let bytes = file.seek(SeekFrom::End(0))?;
-        let library = check_head(&mut file)?;
-        let (contents, mut loss) = match summary::read(&mut file, bytes) {
+        let head = Head::read(&mut file)?;
+        let (contents, loss) = match summary::read(&mut file, bytes) {
             Some(contents) => (contents, Loss::default()),
             None => salvage::read(&mut file, bytes)?,
         };
-        let nothing = loss.cut_off && contents.chunks.is_empty();
-        let (run, scene_is_sound) = match RunInfo::from_metadata(&contents.metadata) {
-            Err(OpenError::NoRecord { .. }) if nothing => return Err(OpenError::TooShort),
-            run => run?,
-        };
-        loss.scene = !scene_is_sound;
         let mut playback = Self {
             file,
             bytes,
-            library,
-            run,
+            library: String::new(),
+            run: RunInfo::default(),
             contents,
             loss,
             objects: Vec::new(),
@@ -101,12 +97,41 @@ impl<R: Read + Seek> Playback<R> {
             meshes: Vec::new(),
             moments: Vec::new(),
             chunk: Chunk::default(),
+            copy: Chunk::default(),
             loaded: None,
+            loaded_copy: None,
         };
+        playback.read_run(head)?;
         playback.read_objects()?;
         playback.moments = moment::list(&playback.run, &playback.contents, &playback.points_channels);
         playback.loss.frames = moment::missing(&playback.run, &playback.moments);
         Ok(playback)
+    }
+
+    /// Reads what the run is, from a copy where that is damaged.
+    fn read_run(&mut self, head: Head) -> Result<(), OpenError> {
+        let is_ours = matches!(&head, Head::Of { profile, .. } if profile == PROFILE);
+        let read = RunInfo::from_metadata(&self.contents.metadata);
+        let is_sound = matches!(read, Ok((_, true)));
+        if !is_ours || !is_sound {
+            self.contents.read_copies(&mut self.file, &mut self.copy)?;
+        }
+        if !is_ours && !self.contents.is_of_a_cache() {
+            return Err(head.refusal());
+        }
+        let nothing = self.loss.cut_off && self.contents.chunks.is_empty();
+        let (run, scene_is_sound) = match RunInfo::from_metadata(&self.contents.metadata) {
+            Err(OpenError::NoRecord { .. }) if nothing => return Err(OpenError::TooShort),
+            run => run?,
+        };
+        self.run = run;
+        self.loss.start = !is_ours || scene_is_sound && !is_sound;
+        self.loss.scene = !scene_is_sound;
+        self.library = match head {
+            Head::Of { library, .. } if is_ours => library,
+            _ => self.contents.copies.library.clone().unwrap_or_default(),
+        };
+        Ok(())
     }
 
     /// What the run is.
@@ -279,14 +304,15 @@ impl<R: Read + Seek> Playback<R> {
     /// # Errors
     /// When the system fails to read.
     pub fn verify(&mut self) -> Result<&Loss, ReadError> {
-        let mut numbers = BTreeMap::new();
+        let (mut numbers, mut missed) = (BTreeMap::new(), Vec::new());
         for index in 0..self.contents.chunks.len() {
             match self.load(index) {
-                Ok(()) => self.note_lost_meshes(&mut numbers),
+                Ok(()) => self.note_missed_meshes(&mut numbers, &mut missed),
                 Err(ReadError::Damaged { frame }) => self.note_damage(index, frame),
                 Err(error) => return Err(error),
             }
         }
+        self.note_lost_meshes(missed)?;
         self.loss.in_order();
         Ok(&self.loss)
     }
@@ -307,20 +333,80 @@ impl<R: Read + Seek> Playback<R> {
             *self.moments.get(moment).ok_or(ReadError::NoMoment { moment, moments })?;
         let (mesh, has) = self.mesh_at(object, log_time)?;
         let (count, name) = (has.rest.len(), has.name.clone());
-        let Some((log_time, index)) = self.contents.latest(channel, log_time) else {
+        let Some(held) = self.held(channel, log_time)? else {
             return Err(ReadError::Nothing { object: name, frame });
         };
-        self.load(index)?;
-        let frame = self.run.frame_at(log_time);
-        let message = self.chunk.message(channel, log_time).and_then(PointsMessage::read);
+        let frame = self.run.frame_at(held.time);
         let is_whole =
-            |points: &PointsMessage| (points.stamp.frame, points.stamp.log_time()) == (frame, log_time);
+            |points: &PointsMessage| (points.stamp.frame, points.stamp.log_time()) == (frame, held.time);
+        let message = self.held_message(channel, held).and_then(PointsMessage::read);
         let points = message.filter(is_whole).ok_or(ReadError::Damaged { frame })?;
         match points.mesh == mesh {
             true if points.count() == count => Ok(points),
             true => Err(ReadError::Damaged { frame }),
             false => Err(ReadError::MeshLost { object: name, frame }),
         }
+    }
+
+    /// Loads the last message of a channel at or before a time: from its chunk, or from its copy where that is damaged
+    /// or lost. Nothing when there is none.
+    ///
+    /// # Errors
+    /// When there is one and it cannot be read.
+    pub(crate) fn held(&mut self, channel: u16, log_time: u64) -> Result<Option<Held>, ReadError> {
+        let original = self.contents.latest(channel, log_time);
+        let is_newer = |copied: (u64, usize)| original.is_none_or(|(time, _)| copied.0 > time);
+        if let Some((time, index)) = original
+            && !self.contents.copies.latest(channel, log_time).is_some_and(is_newer)
+        {
+            match self.load(index) {
+                Ok(()) => return Ok(Some(Held { time, is_copy: false })),
+                Err(error @ ReadError::Damaged { .. }) => {
+                    self.read_copies()?;
+                    let begin = self.contents.chunks[index].times.0;
+                    if self.contents.copies.latest(channel, log_time).is_none_or(|(copied, _)| copied < begin)
+                    {
+                        return Err(error);
+                    }
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        self.held_copy(channel, log_time)
+    }
+
+    /// Looks up what is in the copies, unless that is known.
+    pub(crate) fn read_copies(&mut self) -> Result<(), ReadError> {
+        Ok(self.contents.read_copies(&mut self.file, &mut self.copy)?)
+    }
+
+    /// Loads the last message of a channel that is copied, at or before a time.
+    pub(crate) fn held_copy(&mut self, channel: u16, log_time: u64) -> Result<Option<Held>, ReadError> {
+        let Some((time, copy)) = self.contents.copies.latest(channel, log_time) else { return Ok(None) };
+        self.load_copy(copy, time)?;
+        Ok(Some(Held { time, is_copy: true }))
+    }
+
+    /// The bytes of a message that [`held`](Self::held) has loaded.
+    pub(crate) fn held_message(&self, channel: u16, held: Held) -> Option<&[u8]> {
+        let chunk = if held.is_copy { &self.copy } else { &self.chunk };
+        chunk.last_message(channel, held.time)
+    }
+
+    /// Makes `index` the copy in memory.
+    fn load_copy(&mut self, index: usize, log_time: u64) -> Result<(), ReadError> {
+        if self.loaded_copy == Some(index) {
+            return Ok(());
+        }
+        self.loaded_copy = None;
+        match self.copy.read_copy(&mut self.file, self.contents.copies.places[index].clone()) {
+            Ok(()) => self.loaded_copy = Some(index),
+            Err(ChunkFault::Damaged) => {
+                return Err(ReadError::Damaged { frame: self.run.frame_at(log_time) });
+            }
+            Err(ChunkFault::Io(error)) => return Err(ReadError::Io(error)),
+        }
+        Ok(())
     }
 
     /// Makes `index` the chunk in memory.
@@ -352,10 +438,9 @@ impl<R: Read + Seek> Playback<R> {
         for (mesh_channel, name) in topologies {
             let damaged = || OpenError::Topology { object: format!("`{name}`") };
             let points = self.contents.channel(&format!("/{name}/points")).ok_or_else(damaged)?;
-            let meshes = self.contents.messages.get(&mesh_channel);
-            let (log_time, index) = *meshes.and_then(|meshes| meshes.first()).ok_or_else(damaged)?;
-            self.load(index).map_err(|_| damaged())?;
-            let message = self.chunk.message(mesh_channel, log_time);
+            let held = self.held(mesh_channel, 0).ok().flatten().ok_or_else(damaged)?;
+            self.loss.start |= held.is_copy;
+            let message = self.held_message(mesh_channel, held);
             let found = message.and_then(|data| topology::read(&name, data));
             let (object, _) = found.filter(|&(_, number)| number == 0).ok_or_else(damaged)?;
             self.objects.push(object);
@@ -373,18 +458,44 @@ impl<R: Read + Seek> Playback<R> {
     }
 }
 
-/// Looks at the first bytes; gives the library that wrote them.
-fn check_head(file: &mut (impl Read + Seek)) -> Result<String, OpenError> {
-    let mut head = Vec::new();
-    file.seek(SeekFrom::Start(0))?;
-    file.take(4096).read_to_end(&mut head)?;
-    let magic = &mcap::MAGIC[..mcap::MAGIC.len().min(head.len())];
-    match target::read_header(&head) {
-        _ if head.is_empty() => Err(OpenError::Empty),
-        _ if !head.starts_with(magic) => Err(OpenError::NotMcap),
-        None if head.len() < 64 => Err(OpenError::TooShort),
-        None => Err(OpenError::NotMcap),
-        Some((profile, library)) if profile == PROFILE => Ok(library),
-        Some((profile, library)) => Err(OpenError::OtherTool { profile, library }),
+/// A message that is in memory.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Held {
+    /// When it was recorded.
+    pub time: u64,
+    pub is_copy: bool,
+}
+
+/// The first bytes of a file.
+enum Head {
+    /// Those of an MCAP file.
+    Of { profile: String, library: String },
+    /// Too few to tell.
+    Short,
+    /// Others.
+    Other,
+}
+
+impl Head {
+    fn read(file: &mut (impl Read + Seek)) -> Result<Self, OpenError> {
+        let mut head = Vec::new();
+        file.seek(SeekFrom::Start(0))?;
+        file.take(4096).read_to_end(&mut head)?;
+        let magic = &mcap::MAGIC[..mcap::MAGIC.len().min(head.len())];
+        Ok(match target::read_header(&head) {
+            _ if head.is_empty() => return Err(OpenError::Empty),
+            Some((profile, library)) => Self::Of { profile, library },
+            None if head.len() < 64 && head.starts_with(magic) => Self::Short,
+            None => Self::Other,
+        })
+    }
+
+    /// What is said of a file in which nothing of a cache is found.
+    fn refusal(self) -> OpenError {
+        match self {
+            Self::Of { profile, library } => OpenError::OtherTool { profile, library },
+            Self::Short => OpenError::TooShort,
+            Self::Other => OpenError::NotMcap,
+        }
     }
 }

@@ -65,6 +65,16 @@ pub(crate) fn write_head(stamp: &Stamp, count: usize, mesh: u32, velocities: boo
     out.extend_from_slice(&stamp.time.to_le_bytes());
 }
 
+/// Gives a points message the moment of another, whose head is given; says whether both have one.
+pub(crate) fn restamp(message: &mut [u8], head: &[u8]) -> bool {
+    if message.len() < HEAD || head.len() < HEAD {
+        return false;
+    }
+    message[..12].copy_from_slice(&head[..12]);
+    message[24..HEAD].copy_from_slice(&head[24..HEAD]);
+    true
+}
+
 /// A points message, its values still shuffled.
 pub(crate) struct PointsMessage<'a> {
     pub stamp: Stamp,

@@ -12,6 +12,8 @@ use crate::run::{Detail, Packing, Plane, RunInfo};
 /// The layout written here. A reader refuses a higher one.
 const FORMAT: u32 = 1;
 pub(crate) const PROFILE: &str = "nucleus";
+/// What a cache names as the program that wrote it.
+pub(crate) const LIBRARY: &str = concat!("nucleus ", env!("CARGO_PKG_VERSION"));
 const SCENE: &str = "nucleus.scene";
 const CAMERAS: &str = "nucleus.cameras";
 const RUN: &str = "nucleus.run";
@@ -78,7 +80,10 @@ impl RunInfo {
 
     /// The run, and whether its scene is as it was written. A damaged scene is left out.
     pub(crate) fn from_metadata(records: &[Metadata]) -> Result<(Self, bool), OpenError> {
-        let find = |name: &str| records.iter().find(|record| record.name == name);
+        let find = |name: &str| {
+            let mut named = records.iter().filter(|record| record.name == name);
+            named.clone().find(|record| is_sound(record)).or(named.next())
+        };
         let missing = OpenError::NoRecord { name: RUN };
         let Some(record) = find(RUN) else { return Err(missing) };
         let mut run = Keys(record.metadata.clone());
@@ -130,7 +135,8 @@ fn sealed(name: &str, mut values: BTreeMap<String, String>) -> Metadata {
     Metadata { name: name.to_owned(), metadata: values }
 }
 
-fn is_sound(record: &Metadata) -> bool {
+/// Whether the checksum of a record holds.
+pub(crate) fn is_sound(record: &Metadata) -> bool {
     let mut values = record.metadata.clone();
     values.remove(CHECKSUM).is_some_and(|found| found == checksum(&values))
 }

@@ -275,6 +275,9 @@ impl<W: Write + Seek> Recorder<W> {
             let is_cloth = matches!(source, Source::Cloth(_));
             let mesh_channel = self.channel(&schemas, &name, "topology", topology::ENCODING)?;
             let channel = self.channel(&schemas, &name, "points", points::ENCODING)?;
+            if object.kind == ObjectKind::Collider {
+                self.stream.hold(channel); // It is recorded only when it moves.
+            }
             let contacts = match is_cloth && self.run.contacts {
                 true => Some(self.channel(&schemas, &name, CONTACTS.topic, CONTACTS.encoding)?),
                 false => None,

@@ -10,8 +10,9 @@ use mcap::{Compression, McapResult, WriteOptions, Writer};
 
 use crate::attribute::{self, Attribute};
 use crate::checkpoint;
+use crate::copies::Copies;
 use crate::points::{self, Stamp};
-use crate::provenance::PROFILE;
+use crate::provenance::{LIBRARY, PROFILE};
 use crate::record_error::{RecordError, cause};
 use crate::run::Packing;
 use crate::tally::Tally;
@@ -27,6 +28,7 @@ pub(crate) struct Stream<W: Write + Seek> {
     writer: Writer<BufWriter<Tally<W>>>,
     progress: Progress,
     sequence: u32,
+    copies: Copies,
 }
 
 /// The numbers of the schemas that a cache uses.
@@ -51,11 +53,13 @@ impl<W: Write + Seek> Stream<W> {
         let (tally, length) = Tally::new(target);
         let progress = Progress { frames: 0, length };
         let writer = progress.check(options(packing).create(BufWriter::new(tally)))?;
-        Ok(Self { writer, progress, sequence: 0 })
+        let copies = progress.check(Copies::new())?;
+        Ok(Self { writer, progress, sequence: 0, copies })
     }
 
     pub fn metadata(&mut self, record: &Metadata) -> Result<(), RecordError> {
-        self.progress.check(self.writer.write_metadata(record))
+        self.progress.check(self.writer.write_metadata(record))?;
+        self.progress.check(self.copies.metadata(record))
     }
 
     /// Adds a schema written for people.
@@ -79,27 +83,40 @@ impl<W: Write + Seek> Stream<W> {
     }
 
     pub fn channel(&mut self, topic: &str, schema: u16, encoding: &str) -> Result<u16, RecordError> {
-        self.progress.check(self.writer.add_channel(schema, topic, encoding, &BTreeMap::new()))
+        let id = self.progress.check(self.writer.add_channel(schema, topic, encoding, &BTreeMap::new()))?;
+        self.progress.check(self.copies.channel(id, topic, encoding))?;
+        Ok(id)
+    }
+
+    /// Announces that messages of a channel hold until the next, so that they need copies.
+    pub fn hold(&mut self, channel: u16) {
+        self.copies.hold(channel);
     }
 
     pub fn send(&mut self, stamp: &Stamp, channel: u16, message: &[u8]) -> Result<(), RecordError> {
         self.sequence = self.sequence.wrapping_add(1);
         let header = stamp.header(channel, self.sequence);
-        self.progress.check(self.writer.write_to_known_channel(&header, message))
+        self.write(&header, message)
     }
 
     /// Adds a message as it was in another file.
     pub fn copy(&mut self, channel: u16, header: &MessageHeader, message: &[u8]) -> Result<(), RecordError> {
         self.sequence = self.sequence.wrapping_add(1);
         let header = MessageHeader { channel_id: channel, sequence: self.sequence, ..*header };
-        self.progress.check(self.writer.write_to_known_channel(&header, message))
+        self.write(&header, message)
+    }
+
+    fn write(&mut self, header: &MessageHeader, message: &[u8]) -> Result<(), RecordError> {
+        self.progress.check(self.writer.write_to_known_channel(header, message))?;
+        self.progress.check(self.copies.message(header, message))
     }
 
     /// Closes the chunk and hands it to the system, so that only the next frame can be lost.
     pub fn close_frame(&mut self) -> Result<(), RecordError> {
         self.close_chunk()?;
         self.progress.frames += 1;
-        Ok(())
+        self.progress.check(self.copies.end_frame(&mut self.writer))?;
+        self.close_chunk()
     }
 
     /// The same for a chunk that is no frame.
@@ -114,6 +131,7 @@ impl<W: Write + Seek> Stream<W> {
 
     /// Writes the index; gives frames and bytes.
     pub fn finish(mut self) -> Result<(u32, u64), RecordError> {
+        self.progress.check(self.copies.finish(&mut self.writer))?;
         self.progress.check(self.writer.finish())?;
         self.progress.check(self.writer.into_inner().flush().map_err(Into::into))?;
         Ok((self.progress.frames, self.progress.bytes()))
@@ -142,7 +160,7 @@ fn options(packing: Packing) -> WriteOptions {
     };
     WriteOptions::new()
         .profile(PROFILE)
-        .library(concat!("nucleus ", env!("CARGO_PKG_VERSION")))
+        .library(LIBRARY)
         .compression(Some(Compression::Zstd))
         .compression_level(level)
         .compression_threads(0)

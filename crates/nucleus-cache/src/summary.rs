@@ -10,6 +10,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::chunk::{Chunk, ChunkPlace, RECORD_HEAD, next_record};
 use crate::contents::Contents;
+use crate::copies;
 
 /// The last record, which says where the index begins, and the magic bytes after it.
 const FOOTER: u64 = RECORD_HEAD + 20 + MAGIC.len() as u64;
@@ -32,16 +33,21 @@ pub(crate) fn read(file: &mut (impl Read + Seek), length: u64) -> Option<Content
         }
         Record::ChunkIndex(index) => chunks.push(index),
         Record::MetadataIndex(index) => metadata.push(index),
+        Record::AttachmentIndex(index) if index.name == copies::NAME => {
+            contents.copies.places.push(index.offset..index.offset.saturating_add(index.length));
+        }
         _ => {}
     })?;
     for index in chunks {
         add_chunk(file, &index, begin, &mut contents)?;
     }
     for MetadataIndex { offset, length, .. } in metadata {
-        let (opcode, body) = first_record(&read_range(file, offset, length, begin)?)?;
-        match mcap::parse_record(opcode, &body) {
-            Ok(Record::Metadata(record)) => contents.metadata.push(record),
-            _ => return None,
+        // A damaged one is missed later on, and looked for among the copies.
+        let (opcode, body) = first_record(&read_range(file, offset, length, begin)?).unwrap_or_default();
+        if opcode == op::METADATA
+            && let Ok(Record::Metadata(record)) = mcap::parse_record(opcode, &body)
+        {
+            contents.add_metadata(record);
         }
     }
     Some(contents)
@@ -88,7 +94,8 @@ fn each_record(
     Some(())
 }
 
-/// Adds a chunk by its message index; where that makes no sense, by reading the chunk; where that fails, not.
+/// Adds a chunk by its message index; where that makes no sense, by reading the chunk; where that fails, by what the
+/// index says of it, so that nothing older is taken for what it held.
 fn add_chunk(
     file: &mut (impl Read + Seek),
     index: &ChunkIndex,
@@ -104,16 +111,19 @@ fn add_chunk(
         return Some(());
     }
     let mut chunk = Chunk::default();
-    if chunk.read(file, bytes).is_ok() {
-        contents.add_chunk(place, &chunk);
+    match chunk.read(file, bytes) {
+        Ok(_) => contents.add_chunk(place, &chunk),
+        Err(_) => {
+            let ends = index.message_index_offsets.keys().map(|&channel| (channel, index.message_end_time));
+            contents.add_messages(place, ends.collect::<Vec<_>>());
+        }
     }
     Some(())
 }
 
-/// Channels and times of a chunk's messages. `None` when they contradict what the index says of the chunk:
-/// the message indexes between the chunks have no checksum of their own.
+/// Channels and times of a chunk's messages. `None` when they contradict what the index says of the chunk, or are not
+/// those of substeps: the message indexes between the chunks have no checksum of their own.
 fn messages(indexes: &[u8], chunk: &ChunkIndex) -> Option<Vec<(u16, u64)>> {
-    let times = chunk.message_start_time..=chunk.message_end_time;
     let mut rest = 0..indexes.len();
     let mut channels = BTreeSet::new();
     let mut messages = Vec::new();
@@ -126,10 +136,18 @@ fn messages(indexes: &[u8], chunk: &ChunkIndex) -> Option<Vec<(u16, u64)>> {
         channels.insert(index.channel_id);
         messages.extend(index.records.iter().map(|entry| (index.channel_id, entry.log_time)));
     }
+    let times: BTreeSet<u64> = messages.iter().map(|&(_, time)| time).collect();
     let sound = rest.is_empty()
-        && messages.iter().all(|(_, time)| times.contains(time))
+        && are_even(&times, chunk.message_start_time, chunk.message_end_time)
         && channels.iter().eq(chunk.message_index_offsets.keys());
     sound.then_some(messages)
+}
+
+/// Whether times begin and end as stated and have the same distance from each to the next, but for rounding.
+fn are_even(times: &BTreeSet<u64>, start: u64, end: u64) -> bool {
+    let distances = || times.iter().zip(times.iter().skip(1)).map(|(time, next)| next - time);
+    let (shortest, longest) = (distances().min().unwrap_or(0), distances().max().unwrap_or(0));
+    times.first() == Some(&start) && times.last() == Some(&end) && longest - shortest <= 2
 }
 
 /// Bytes of the file, where they lie before `end`.

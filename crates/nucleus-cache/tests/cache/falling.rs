@@ -145,6 +145,15 @@ pub fn whole_run(run: &RunInfo) -> (Vec<u8>, Recorded) {
     (file.contents(), recorded)
 }
 
+/// The same cache with all its copies damaged, as one that was recorded before there were any.
+pub fn without_copies(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    for copy in mcap::Summary::read(&bytes).unwrap().unwrap().attachment_indexes {
+        bytes[(copy.offset + copy.length) as usize - 1] ^= 0x55;
+    }
+    bytes
+}
+
 /// The same, with every substep.
 pub fn with_substeps() -> RunInfo {
     RunInfo { detail: Detail::Substeps, velocities: true, ..run_info() }

@@ -4,6 +4,7 @@ mod checkpoints;
 mod compared;
 mod damage;
 mod falling;
+mod flipped;
 mod full_disk;
 mod meshes;
 mod recovered;

@@ -48,3 +48,16 @@ fn damaged_frames_are_left_out_and_named() {
     let mut cache = Playback::read(Cursor::new(saved)).unwrap();
     assert_eq!(cache.verify().unwrap().frames, [falling::START + 4], "what is gone stays named");
 }
+
+/// A cache that was recorded before there were copies.
+const OLD: &[u8] = include_bytes!("../old/without_copies.mcap");
+
+#[test]
+fn a_cache_without_copies_opens_as_it_always_did() {
+    let mut cache = Playback::read(Cursor::new(OLD.to_vec())).unwrap();
+    assert!(cache.verify().unwrap().is_none(), "{}", cache.loss());
+    assert_eq!((cache.moments().len(), cache.objects().len()), (5, 2));
+    let (saved, ..) = recovered(OLD);
+    let mut with_copies = Playback::read(Cursor::new(saved)).unwrap();
+    assert_eq!(compare(&mut cache, &mut with_copies, 0.0).unwrap().differences, []);
+}

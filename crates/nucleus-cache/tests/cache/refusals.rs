@@ -16,9 +16,11 @@ fn create_error(path: &Path) -> RecordError {
     Recorder::create(path, &falling::run_info(), falling::objects()).err().expect("it should be refused")
 }
 
-/// A cache whose bytes have `from` exchanged for `to`, of the same length.
+/// A cache of one frame, which has no copies yet, whose bytes have `from` exchanged for `to`, of the same length.
 fn forged(from: &str, to: &str) -> Result<Playback<Cursor<Vec<u8>>>, OpenError> {
     let (mut bytes, _) = falling::whole_run(&falling::run_info());
+    let first = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[0].clone();
+    bytes.truncate((first.chunk_start_offset + first.chunk_length) as usize);
     let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).unwrap();
     bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
     Playback::read(Cursor::new(bytes))
