@@ -5,6 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result, anyhow};
 use nucleus_cache::{OpenError, Playback};
 
+use crate::output::say;
+
 /// Opens a cache; the error names the file.
 pub fn open(path: &Path) -> Result<Playback> {
     Playback::open(path).map_err(|error| match error {
@@ -26,7 +28,7 @@ pub fn open(path: &Path) -> Result<Playback> {
 pub fn open_and_warn(path: &Path) -> Result<Playback> {
     let cache = open(path)?;
     if !cache.loss().is_none() {
-        eprintln!("warning: `{}`: {}", path.display(), cache.loss());
+        say!("warning: `{}`: {}", path.display(), cache.loss());
     }
     Ok(cache)
 }
@@ -48,6 +50,8 @@ pub fn is_cache(path: &Path) -> bool {
     use std::io::Read;
     let mut head = [0; 5];
     let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
-    let named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
+    // What a killed run has left has more behind its name.
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let named = [".mcap", ".mcap.part", ".mcap.resuming"].iter().any(|end| name.ends_with(end));
     named || read.is_ok() && head == *b"\x89MCAP"
 }

@@ -12,6 +12,7 @@ use nucleus_graph::scene::Scene;
 use nucleus_measure::trade::Subject;
 
 use crate::account::FrameFigures;
+use crate::output::say;
 use crate::{fingerprint, scene_file};
 
 /// A cache to go on with.
@@ -181,7 +182,7 @@ impl Continued {
             match found {
                 Ok(simulation) => return Ok((simulation, frame)),
                 Err(error @ (RestoreError::Damaged | RestoreError::OtherVersion)) => {
-                    eprintln!("warning: frame {frame}: {error}; the one before it is taken");
+                    say!("warning: frame {frame}: {error}; the one before it is taken");
                 }
                 Err(error) => bail!("{} cannot be gone on with: {error}", self.name()),
             }
@@ -193,7 +194,7 @@ impl Continued {
                 self.name()
             );
         }
-        eprintln!(
+        say!(
             "{} has no sound checkpoint up to frame {latest}: all is solved again from frame {start}",
             self.name()
         );

@@ -13,6 +13,7 @@ use nucleus_graph::graph::Setting;
 use nucleus_graph::scene::{Diagnostic, Scene};
 
 use crate::cache_file;
+use crate::output::say;
 
 /// A frame of a cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,7 +74,7 @@ impl InitialState {
             start(&mut scene, cloth, rows[1], &velocities, scale)?;
         }
         if !has_velocities {
-            eprintln!(
+            say!(
                 "warning: `{}` has no velocities, so they are taken from the moment before; record them with \
                  `nucleus run --velocities`",
                 self.cache.display()

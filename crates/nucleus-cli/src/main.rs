@@ -41,6 +41,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use outcome::Outcome;
+use output::say;
+
 /// The open Nucleus: cloth and colliders, simulated without Maya.
 #[derive(Debug, Parser)]
 #[command(name = "nucleus", version, after_help = outcome::EXIT_CODES)]
@@ -51,12 +54,23 @@ struct Arguments {
 
 fn main() -> ExitCode {
     match Arguments::parse().command.run() {
-        Ok(outcome) => outcome.into(),
+        Ok(outcome) => having_told(outcome).into(),
         // Whoever reads our output has seen enough: `nucleus info x.mcap | head -3`.
         Err(error) if output::reader_has_gone(&error) => ExitCode::SUCCESS,
+        Err(error) if output::is_lost(&error) => {
+            say!("error: {error:#}");
+            Outcome::Trouble.into()
+        }
         Err(error) => {
-            eprintln!("error: {error:#}");
+            say!("error: {error:#}");
             outcome::COULD_NOT_START.into()
         }
     }
+}
+
+/// The outcome of a command that has done its work: if it could not tell of it, that is trouble too.
+fn having_told(outcome: Outcome) -> Outcome {
+    let Some(error) = output::lost() else { return outcome };
+    say!("warning: standard output cannot be written to, not all was printed: {error}");
+    if outcome == Outcome::Fine { Outcome::Trouble } else { outcome }
 }

@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::account::Account;
 use crate::figures;
+use crate::output::say;
 
 /// How often a line is printed where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -49,7 +50,7 @@ impl Progress {
                 *last = Instant::now();
                 let left = account.spent / account.frames.max(1) * (*frames - account.frames.min(*frames));
                 let left = left.as_secs();
-                eprintln!("frame {} of {frames}, {left} s left, {}", account.frames, state(account));
+                say!("frame {} of {frames}, {left} s left, {}", account.frames, state(account));
             }
             Self::Lines { .. } => {}
         }

@@ -39,13 +39,15 @@ impl Session {
     /// Runs it to its end.
     ///
     /// # Errors
-    /// When what is to be told cannot be, and when `is_refusal` says so of why the run was lost.
+    /// When `is_refusal` says so of why the run was lost.
     pub fn run(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Outcome> {
         let Self { mut simulation, mut recorder, out, mut judge, account, start, frames, audit, json } = self;
         let mut progress = Progress::new(frames);
         let mut tell = |figures: &FrameFigures, account: &Account| {
             progress.show(account);
-            if json { print_frame(figures, account) } else { Ok(()) }
+            if json {
+                tell_frame(figures, account);
+            }
         };
         let (account, mut ending) = simulate(&mut simulation, &mut recorder, &mut judge, account, &mut tell)?;
         progress.end();
@@ -60,8 +62,8 @@ impl Session {
         let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
         let summary = Summary { account, ending, checks, audit, recorded, frames, objects };
         match json {
-            true => output::print_json(&summary.as_json())?,
-            false => output::print(&summary.as_text()?)?,
+            true => output::tell_json(&summary.as_json()),
+            false => output::tell(&summary.as_text()?),
         }
         Ok(summary.outcome())
     }
@@ -83,8 +85,8 @@ fn close(simulation: &Simulation, recorder: Option<Recorder>, ending: &mut Endin
     }
 }
 
-fn print_frame(figures: &FrameFigures, account: &Account) -> Result<()> {
-    let mut line = serde_json::to_value(figures)?;
+fn tell_frame(figures: &FrameFigures, account: &Account) {
+    let mut line = json!(figures);
     line["milliseconds"] = json!(account.last.as_secs_f64() * 1e3);
-    output::print_json(&line)
+    output::tell_json(&line);
 }

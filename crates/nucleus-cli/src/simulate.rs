@@ -29,7 +29,7 @@ pub fn simulate(
     recorder: &mut Option<Recorder>,
     judge: &mut Judge,
     mut account: Account,
-    tell: &mut dyn FnMut(&FrameFigures, &Account) -> Result<()>,
+    tell: &mut dyn FnMut(&FrameFigures, &Account),
 ) -> Result<(Account, Ending)> {
     while !simulation.is_done() {
         if interrupt::asked() {
@@ -42,7 +42,7 @@ pub fn simulate(
             Err(error) => return Ok((account, Ending::Lost(error.into()))),
         };
         account.add(&figures, begin.elapsed());
-        tell(&figures, &account)?;
+        tell(&figures, &account);
         if !figures.finite {
             return Ok((account, Ending::NotFinite));
         }

@@ -102,7 +102,7 @@ impl Export {
         let exported = exported?;
         let sizes = exported.files.iter().map(|file| Ok(std::fs::metadata(file)?.len()));
         let bytes: u64 = sizes.sum::<std::io::Result<u64>>()?;
-        output::print(&format!(
+        output::tell(&format!(
             "{} of {} as {} in `{}` ({}, {})\n",
             figures::count(exported.samples, "sample"),
             figures::count(exported.objects, "object"),
@@ -110,7 +110,7 @@ impl Export {
             out.display(),
             figures::count(exported.files.len(), "file"),
             figures::bytes(bytes),
-        ))?;
+        ));
         Ok(Outcome::Fine)
     }
 

@@ -1,7 +1,7 @@
 //! `nucleus extremes`: what the solver does where scenes leave the ordinary.
 
 use std::fs;
-use std::io::{IsTerminal, Write, stdout};
+use std::io::{self, IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -54,17 +54,19 @@ impl Extremes {
             return save(&rows, folder);
         }
         let mut outcomes = Vec::new();
-        let mut tell = |outcome: Judged| -> Result<()> {
+        // Where a page is written, that is the result.
+        let is_result = self.write.is_none();
+        let mut take = |outcome: Judged| -> Result<()> {
             match self.json {
-                true => output::print_json(&as_json(&outcome))?,
-                false => print(&outcome, outcomes.last())?,
+                true => output::put(output::write(&format!("{}\n", as_json(&outcome))), is_result)?,
+                false => output::put(print(&outcome, outcomes.last())?, is_result)?,
             }
             outcomes.push(outcome);
             Ok(())
         };
-        judge_all(&rows, threads::count(self.threads), Patience::Long, &mut tell)?;
+        judge_all(&rows, threads::count(self.threads), Patience::Long, &mut take)?;
         if !self.json {
-            output::print(&total(&outcomes))?;
+            output::tell(&total(&outcomes));
         }
         if let Some(file) = &self.write {
             fs::write(file, page(&outcomes)).with_context(|| format!("cannot write `{}`", file.display()))?;
@@ -98,7 +100,7 @@ fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
         written.with_context(|| format!("cannot write to `{}`", folder.display()))?;
     }
     let scenes = figures::count(rows.len(), "scene");
-    output::print(&format!("{scenes} in `{}`; `nucleus run` runs them\n", folder.display()))?;
+    output::tell(&format!("{scenes} in `{}`; `nucleus run` runs them\n", folder.display()));
     Ok(Outcome::Fine)
 }
 
@@ -113,7 +115,7 @@ fn total(outcomes: &[Judged]) -> String {
 }
 
 /// A row of the table, under a heading if a new part begins with it.
-fn print(outcome: &Judged, before: Option<&Judged>) -> Result<()> {
+fn print(outcome: &Judged, before: Option<&Judged>) -> Result<io::Result<()>> {
     let choice = if stdout().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let writer = BufferWriter::stdout(choice);
     let mut buffer = writer.buffer();
@@ -127,7 +129,7 @@ fn print(outcome: &Judged, before: Option<&Judged>) -> Result<()> {
     if let Some(reason) = outcome.extreme.fails.filter(|_| !outcome.holds()) {
         writeln!(buffer, "        known: {reason}")?;
     }
-    Ok(writer.print(&buffer)?)
+    Ok(writer.print(&buffer))
 }
 
 fn heading(buffer: &mut Buffer, group: &str) -> Result<()> {

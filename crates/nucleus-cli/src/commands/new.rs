@@ -51,7 +51,7 @@ impl New {
             Err(error) => return Err(error).with_context(|| format!("cannot write `{path}`")),
         };
         file.write_all(self.template.text().as_bytes()).with_context(|| format!("cannot write `{path}`"))?;
-        output::print(&format!("wrote `{path}`; run it with `nucleus run {path}`\n"))?;
+        output::tell(&format!("wrote `{path}`; run it with `nucleus run {path}`\n"));
         Ok(Outcome::Fine)
     }
 }

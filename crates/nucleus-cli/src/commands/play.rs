@@ -53,7 +53,7 @@ impl Play {
                 nucleus_view::serve_both(&cache, other, self.port)?
             }
         };
-        output::print(&format!("playing `{}` at {} (Ctrl-C ends it)\n", cache.display(), player.url()))?;
+        output::tell(&format!("playing `{}` at {} (Ctrl-C ends it)\n", cache.display(), player.url()));
         if !self.no_open {
             open_browser(&player.url());
         }

@@ -74,7 +74,7 @@ impl Render {
             Way::Still => self.still(&mut cache, &out)?,
             way => self.film(&mut cache, &out, way)?,
         };
-        output::print(&format!("{drawn}\n"))?;
+        output::tell(&format!("{drawn}\n"));
         Ok(Outcome::Fine)
     }
 

@@ -15,6 +15,7 @@ use crate::account::Account;
 use crate::frame_range::FrameRange;
 use crate::initial_state::InitialState;
 use crate::outcome::Outcome;
+use crate::output::say;
 use crate::record::{Channels, Record};
 use crate::recording::{self, Manner};
 use crate::session::Session;
@@ -148,7 +149,7 @@ impl Run {
     /// The program at the setting that a quality wants, and that setting.
     fn program_of(&self, scene: &Scene, wanted: f64) -> Result<(Program, Setting)> {
         let (scene, said, setting) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
-        eprintln!("{said}");
+        say!("{said}");
         let first =
             |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
         let program =

@@ -13,6 +13,7 @@ use nucleus_measure::trade::{Found, Point, Reading, Setting, Subject, TradeError
 
 use crate::frame_range::FrameRange;
 use crate::outcome::Outcome;
+use crate::output::say;
 use crate::{interrupt, output, quality, scene_file, threads};
 
 mod page;
@@ -109,7 +110,7 @@ impl Trade {
         match self.measure(&subject, &store) {
             Ok(found) => self.tell(&subject, &store, &found, &text),
             Err(TradeError::Interrupted) => {
-                eprintln!("interrupted: what was finished is kept, and the same command goes on from there");
+                say!("interrupted: what was finished is kept, and the same command goes on from there");
                 Ok(Outcome::Interrupted)
             }
             Err(TradeError::Store(error)) => Err(error.into()),
@@ -167,11 +168,11 @@ impl Trade {
             write_whole(&path(end), content.as_bytes())?;
         }
         if self.json {
-            output::print_json(&serde_json::to_value(trade)?)?;
+            output::tell_json(&serde_json::to_value(trade)?);
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
             let said = format!("{}\n{}", report::text(trade), self.recommendation(&choice, trade.floor));
-            output::print(&format!("{said}written to {}\n", names.join(", ")))?;
+            output::tell(&format!("{said}written to {}\n", names.join(", ")));
         }
         if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
             self.apply(apply.as_ref(), subject, &point.setting, text)?;
@@ -212,14 +213,14 @@ impl Trade {
         let edited = edit::edit(text, &subject.edits(setting))?;
         let to = to.unwrap_or(&self.scene);
         write_whole(to, edited.as_bytes())?;
-        eprintln!("`{}` now has {setting}", to.display());
+        say!("`{}` now has {setting}", to.display());
         Ok(())
     }
 }
 
 /// Says why there is nothing to find.
 fn trouble(error: TradeError) -> Result<Outcome> {
-    eprintln!("error: {error}");
+    say!("error: {error}");
     Ok(Outcome::Trouble)
 }
 

@@ -10,6 +10,7 @@ use nucleus_measure::validation::{Case, Finding, cases, page};
 use serde_json::json;
 
 use crate::outcome::Outcome;
+use crate::output::say;
 use crate::{output, threads};
 
 /// Holds the solver against exact physics: strips that bend and buckle, sheets that hang, friction, swings, drape.
@@ -51,8 +52,8 @@ impl Validate {
             std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
         }
         match self.json {
-            true => output::print_json(&as_json(&results))?,
-            false => output::print(&as_text(&results))?,
+            true => output::tell_json(&as_json(&results)),
+            false => output::tell(&as_text(&results)),
         }
         let right = results.iter().all(|(_, findings)| findings.iter().all(Finding::holds));
         Ok(if right { Outcome::Fine } else { Outcome::Trouble })
@@ -85,7 +86,7 @@ impl Validate {
                 let word =
                     if wrong == 0 { "ok".to_owned() } else { format!("{wrong} of {} fail", findings.len()) };
                 let seconds = start.elapsed().as_secs_f64();
-                eprintln!("[{count}/{}] {}: {word}, {seconds:.1} s", cases.len(), case.name);
+                say!("[{count}/{}] {}: {word}, {seconds:.1} s", cases.len(), case.name);
                 results.push((index, (*case, findings)));
             }
         };

@@ -7,6 +7,7 @@ mod extremes;
 mod from;
 mod info;
 mod interrupted;
+mod output;
 mod play;
 mod render;
 mod resume;

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use nucleus_measure::trade::Progress;
 
+use crate::output::say;
+
 /// How often a line is printed where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
@@ -40,7 +42,7 @@ impl Bar {
             }
             None if self.last.elapsed() >= LINE_EVERY => {
                 self.last = Instant::now();
-                eprintln!("{:.0} %, {words}", 100.0 * progress.done);
+                say!("{:.0} %, {words}", 100.0 * progress.done);
             }
             None => {}
         }
