@@ -41,7 +41,7 @@ use crate::{checkpoint, target, topology};
 /// dropped before [`finish`](Self::finish) leaves a `.part` that plays to its last whole frame.
 pub struct Recorder<W: Write + Seek = File> {
     pub(crate) stream: Stream<W>,
-    run: RunInfo,
+    pub(crate) run: RunInfo,
     pub(crate) tracks: Vec<Track>,
     pub(crate) report_channel: u16,
     /// Where checkpoints go, if there are to be any.

@@ -19,7 +19,8 @@ use crate::{checkpoint, topology};
 /// Which frames of an older cache a run goes on from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kept {
-    /// Frames up to this one are copied. The older cache has a checkpoint of it, or it is the start frame.
+    /// Frames up to this one are copied. The older cache has a checkpoint of it, or it is the start frame, or the one
+    /// before that: then nothing is copied, and the start is recorded anew.
     pub copied: i32,
     /// Frames up to this one are solved again and held to what the older cache has; later ones are dropped.
     pub compared: i32,
@@ -107,7 +108,7 @@ impl<W: Write + Seek> Recorder<W> {
                 Err(error) => return Err(RecordError::Original { source: error }),
             }
         }
-        self.last_frame = last;
+        self.last_frame = last.max(self.run.start);
         Ok(())
     }
 

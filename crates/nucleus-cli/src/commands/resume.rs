@@ -11,6 +11,7 @@ use nucleus_graph::checks::{Check, Judge};
 use crate::account::Account;
 use crate::continued::Continued;
 use crate::outcome::Outcome;
+use crate::output::say;
 use crate::session::Session;
 use crate::{interrupt, output, recording, threads};
 
@@ -61,7 +62,7 @@ impl Resume {
             return self.tell_that_it_is_finished(&old);
         }
         if old.file != self.cache {
-            eprintln!("going on with {}, which a run that was ended has left", old.name());
+            say!("going on with {}, which a run that was ended has left", old.name());
         }
         interrupt::listen()?;
         // What is lost is solved again too.
@@ -92,8 +93,12 @@ impl Resume {
         let replace = self.force || self.out.is_none();
         let objects = recording::sources(&simulation, old.cache.objects().to_vec());
         let help = self.help(&old, copied);
-        let kept = Kept { copied, compared };
+        let start_is_lost = old.lost().contains(&start);
+        let kept = Kept { copied: if start_is_lost { start - 1 } else { copied }, compared };
         let mut recorder = Recorder::resume(&out, replace, &run, objects, old.cache, kept)?;
+        if start_is_lost {
+            recorder.record_start(simulation.state())?;
+        }
         if recorder.wants_checkpoint() {
             recorder.record_checkpoint(&simulation.save())?; // that of the start was lost
         }
