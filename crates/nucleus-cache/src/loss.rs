@@ -42,6 +42,12 @@ impl Loss {
         !self.run && self.meshes.is_empty() && self.objects.is_empty()
     }
 
+    /// What no copy brings back, in words: frames, checkpoints, meshes; nothing where there is no such loss.
+    pub fn for_good(&self) -> Option<String> {
+        let left = Self { cut_off: false, index: false, bytes: 0, start: false, ..self.clone() };
+        (!left.is_none()).then(|| left.to_string())
+    }
+
     /// Whether nothing is missing.
     pub fn is_none(&self) -> bool {
         *self == Self::default()

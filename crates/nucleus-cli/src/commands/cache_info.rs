@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Playback, Sizes};
+use nucleus_cache::{Detail, Loss, ObjectInfo, ObjectKind, Playback, Sizes};
 use serde_json::json;
 
 use crate::figures;
@@ -31,7 +31,7 @@ pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<St
         }
         None => writeln!(text, "  packed      not counted in a file of this size; --verify does")?,
     }
-    writeln!(text, "  lost        {}", cache.loss())?;
+    writeln!(text, "  lost        {}", lost(cache.loss(), sizes.is_some()))?;
     if let Some(last) = cache.checkpoints().last() {
         let (count, size) = (cache.checkpoints().len(), figures::bytes(cache.checkpoint_bytes()));
         writeln!(
@@ -107,14 +107,20 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "units_per_metre": run.units_per_metre,
         "bytes": cache.bytes(),
         "loss": {
-            "none": loss.is_none(),
+            // Only who has read every frame knows.
+            "none": if loss.is_none() && sizes.is_none() { None } else { Some(loss.is_none()) },
+            "verified": sizes.is_some(),
             "cut_off": loss.cut_off,
             "index": loss.index,
             "scene": loss.scene,
             "bytes": loss.bytes,
             "frames": loss.frames,
             "checkpoints": loss.checkpoints,
-            "text": loss.to_string(),
+            "start": loss.start,
+            "run": loss.run,
+            "meshes": loss.meshes,
+            "objects": loss.objects,
+            "text": lost(loss, sizes.is_some()),
         },
         "ground": run.ground.map(|plane| json!({ "origin": plane.origin, "normal": plane.normal })),
         "cameras": run.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
@@ -124,6 +130,15 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "objects": objects,
         "channels": channels,
     })
+}
+
+/// What is lost, as far as that is known: frames are, once every one of them has been read.
+fn lost(loss: &Loss, is_verified: bool) -> String {
+    match (is_verified, loss.is_none()) {
+        (true, _) => loss.to_string(),
+        (false, true) => "not verified; --verify reads every frame".to_owned(),
+        (false, false) => format!("{loss}; frames not verified, --verify reads them all"),
+    }
 }
 
 /// `1 to 48 at 24 a second; 120 was asked for`.
@@ -176,4 +191,16 @@ fn size(object: &ObjectInfo, units_per_metre: f64) -> [f64; 3] {
         let (low, high) = along.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
         (high - low).max(0.0) / units_per_metre
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_said_to_be_whole_that_was_not_read() {
+        let none = Loss::default();
+        assert_eq!(lost(&none, true), "nothing is lost");
+        assert_eq!(lost(&none, false), "not verified; --verify reads every frame");
+    }
 }

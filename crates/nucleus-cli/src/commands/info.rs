@@ -9,7 +9,7 @@ use super::{cache_info, scene_info};
 use crate::outcome::Outcome;
 use crate::{cache_file, output, scene_file};
 
-/// Bytes of a cache whose channels are counted without being asked to.
+/// Bytes of a cache that is verified, and whose channels are counted, without being asked to.
 const COUNTED: u64 = 500_000_000;
 
 /// Tells what a scene compiles to, or what a cache holds and has lost.
@@ -17,7 +17,7 @@ const COUNTED: u64 = 500_000_000;
 pub struct Info {
     /// The scene (.ron) or the cache (.mcap).
     file: PathBuf,
-    /// Read every frame of the cache, check it, and count the bytes of each channel.
+    /// Read every frame of the cache, check it, and count the bytes of each channel, in a file larger than 500 MB too.
     #[arg(long)]
     verify: bool,
     /// Print one JSON object.
@@ -33,11 +33,14 @@ impl Info {
 
     fn cache(&self) -> Result<Outcome> {
         let mut cache = cache_file::open(&self.file)?;
-        if self.verify {
-            cache.verify()?;
-        }
         // All frames have to be unpacked for that, which takes a while in a large file.
-        let sizes = if self.verify || cache.bytes() <= COUNTED { Some(cache.sizes()?) } else { None };
+        let is_verified = self.verify || cache.bytes() <= COUNTED;
+        let sizes = if is_verified {
+            cache.verify()?;
+            Some(cache.sizes()?)
+        } else {
+            None
+        };
         match self.json {
             true => output::print_json(&cache_info::as_json(&cache, sizes.as_ref()))?,
             false => output::print(&cache_info::as_text(

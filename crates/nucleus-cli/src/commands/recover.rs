@@ -25,7 +25,7 @@ pub struct Recover {
 }
 
 impl Recover {
-    /// Recovers it. Frames that are lost for good are trouble.
+    /// Recovers it. What is lost for good is trouble.
     pub fn run(self) -> Result<Outcome> {
         let mut cache = cache_file::open(&self.file)?;
         let out = self.out()?;
@@ -38,7 +38,7 @@ impl Recover {
         beside.push(".recovering");
         let beside = PathBuf::from(beside);
         let target = File::create(&beside).with_context(|| format!("cannot write `{}`", out.display()))?;
-        let before = cache.loss().to_string();
+        cache.verify()?;
         let recovered = match cache.recover(target).map_err(anyhow::Error::from) {
             Ok(recovered) => recovered,
             Err(error) => {
@@ -50,16 +50,16 @@ impl Recover {
         fs::rename(&beside, &out).with_context(|| format!("cannot write `{}`", out.display()))?;
         let frames = figures::count(recovered.frames, "frame");
         let size = figures::bytes(recovered.bytes);
-        output::print(&format!(
-            "`{}`: {before}\n{frames} in `{}` ({size})\n",
+        let loss = cache.loss();
+        output::tell(&format!(
+            "`{}`: {loss}\n{frames} in `{}` ({size})\n",
             self.file.display(),
             out.display()
-        ))?;
-        let lost = !cache.loss().frames.is_empty();
-        if lost {
-            output::print(&format!("lost for good: {}\n", cache.loss()))?;
+        ));
+        if let Some(gone) = loss.for_good() {
+            output::tell(&format!("lost for good: {gone}\n"));
         }
-        Ok(if lost { Outcome::Trouble } else { Outcome::Fine })
+        Ok(if loss.for_good().is_some() { Outcome::Trouble } else { Outcome::Fine })
     }
 
     fn out(&self) -> Result<PathBuf> {

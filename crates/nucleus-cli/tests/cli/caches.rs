@@ -126,3 +126,47 @@ fn info_tells_what_each_channel_takes() {
             .contains("/points: nucleus.points.v1, 6 messages, 480 bytes")
     );
 }
+
+/// Flips a bit of a cache where that costs a frame.
+fn damage_a_frame(path: &std::path::Path) {
+    let bytes = fs::read(path).unwrap();
+    let costs_a_frame = |at: usize| {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x10;
+        fs::write(path, damaged).unwrap();
+        !nucleus_cache::Playback::open(path).unwrap().verify().unwrap().frames.is_empty()
+    };
+    assert!((bytes.len() / 6..bytes.len()).any(costs_a_frame));
+}
+
+#[test]
+fn a_damaged_frame_is_told_once_by_recover_and_without_being_asked_by_info() {
+    let folder = folder();
+    let path = cache(folder.path());
+    damage_a_frame(&path);
+    let info = nucleus(folder.path(), &["info", "fall.mcap"]);
+    assert_eq!(info.status.code(), Some(1), "{}", stdout(&info));
+    assert!(stdout(&info).contains("missing or damaged: frame "), "{}", stdout(&info));
+    let output = nucleus(folder.path(), &["recover", "fall.mcap"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stdout(&output);
+    assert!(said.contains("lost for good: missing or damaged: frame "), "{said}");
+    assert!(
+        !said.contains("nothing is lost") && said.contains("5 frames in `fall.recovered.mcap`"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_cache_whose_first_byte_is_damaged_is_recovered_whole() {
+    let folder = folder();
+    let path = cache(folder.path());
+    let sound = fs::read(&path).unwrap();
+    let mut bytes = sound.clone();
+    bytes[0] ^= 1;
+    fs::write(&path, bytes).unwrap();
+    let output = nucleus(folder.path(), &["recover", "fall.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("the start of the file is damaged"), "{}", stdout(&output));
+    assert!(fs::read(folder.path().join("fall.recovered.mcap")).unwrap() == sound);
+}
