@@ -100,6 +100,12 @@ impl Contents {
         }
     }
 
+    /// Replaces what is known of the run.
+    pub fn set_metadata(&mut self, record: Metadata) {
+        self.metadata.retain(|known| known.name != record.name);
+        self.metadata.push(record);
+    }
+
     /// Whether any of it is of a kind that only caches have.
     pub fn is_of_a_cache(&self) -> bool {
         let is_ours = |text: &str| text.starts_with("nucleus.");

@@ -55,6 +55,7 @@ mod chunk;
 mod contents;
 mod copies;
 mod diff;
+mod infer;
 mod loss;
 mod mesh;
 mod moment;

@@ -134,7 +134,8 @@ impl<R: Read + Seek> Playback<R> {
         let channel = *self.mesh_channels.get(object).ok_or(ReadError::NoObject { object, objects })?;
         let name = &self.objects()[object].name;
         let lost = ReadError::MeshLost { object: name.clone(), frame: self.run().frame_at(log_time) };
-        let Some(time) = self.mesh_time(channel, log_time) else { return Err(lost) };
+        // What has no mesh at all is shown as points.
+        let time = self.mesh_time(channel, log_time).unwrap_or(FIRST);
         if time == FIRST {
             return Ok((0, &self.objects()[object]));
         }
@@ -163,7 +164,7 @@ impl<R: Read + Seek> Playback<R> {
 
     /// Whether the mesh at a time is the first on its channel.
     fn is_first(&self, channel: u16, log_time: u64) -> bool {
-        self.mesh_time(channel, log_time) == Some(FIRST)
+        self.mesh_time(channel, log_time).is_none_or(|time| time == FIRST)
     }
 
     /// Looks through the chunk in memory for points whose mesh was not come by, and adds their objects, times and mesh

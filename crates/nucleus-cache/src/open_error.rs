@@ -79,6 +79,15 @@ pub enum OpenError {
     },
 }
 
+impl From<ReadError> for OpenError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Io(error) => Self::Read(error),
+            other => Self::Read(io::Error::other(other)),
+        }
+    }
+}
+
 /// Why a frame cannot be read from an open cache.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

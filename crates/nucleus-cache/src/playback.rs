@@ -116,12 +116,21 @@ impl<R: Read + Seek> Playback<R> {
         if !is_ours || !is_sound {
             self.contents.read_copies(&mut self.file, &mut self.copy)?;
         }
+        if self.contents.channels.is_empty() {
+            self.infer_channels()?;
+        }
         if !is_ours && !self.contents.is_of_a_cache() {
             return Err(head.refusal());
         }
         let nothing = self.loss.cut_off && self.contents.chunks.is_empty();
         let (run, scene_is_sound) = match RunInfo::from_metadata(&self.contents.metadata) {
             Err(OpenError::NoRecord { .. }) if nothing => return Err(OpenError::TooShort),
+            Err(error @ OpenError::NoRecord { .. }) => {
+                let [_, record] = self.infer_run()?.ok_or(error)?.to_metadata();
+                self.contents.set_metadata(record);
+                self.loss.run = true;
+                RunInfo::from_metadata(&self.contents.metadata)?
+            }
             run => run?,
         };
         self.run = run;
@@ -426,6 +435,14 @@ impl<R: Read + Seek> Playback<R> {
         Ok(())
     }
 
+    /// The mesh that an object begins with, from where it was recorded or from a copy.
+    fn first_mesh(&mut self, channel: u16, name: &str) -> Option<ObjectInfo> {
+        let held = self.held(channel, 0).ok().flatten()?;
+        self.loss.start |= held.is_copy;
+        let (object, number) = topology::read(name, self.held_message(channel, held)?)?;
+        (number == 0).then_some(object)
+    }
+
     /// Reads the meshes.
     fn read_objects(&mut self) -> Result<(), OpenError> {
         let topologies: BTreeMap<u16, String> = self
@@ -438,11 +455,19 @@ impl<R: Read + Seek> Playback<R> {
         for (mesh_channel, name) in topologies {
             let damaged = || OpenError::Topology { object: format!("`{name}`") };
             let points = self.contents.channel(&format!("/{name}/points")).ok_or_else(damaged)?;
-            let held = self.held(mesh_channel, 0).ok().flatten().ok_or_else(damaged)?;
-            self.loss.start |= held.is_copy;
-            let message = self.held_message(mesh_channel, held);
-            let found = message.and_then(|data| topology::read(&name, data));
-            let (object, _) = found.filter(|&(_, number)| number == 0).ok_or_else(damaged)?;
+            let object = match self.first_mesh(mesh_channel, &name) {
+                Some(object) => object,
+                None => match self.cloud(points, &name)? {
+                    Some(object) => {
+                        self.loss.meshes.push(name);
+                        object
+                    }
+                    None => {
+                        self.loss.objects.push(name);
+                        continue;
+                    }
+                },
+            };
             self.objects.push(object);
             self.points_channels.push(points);
             self.mesh_channels.push(mesh_channel);
@@ -451,7 +476,7 @@ impl<R: Read + Seek> Playback<R> {
         if self.contents.channels.is_empty() && self.loss.cut_off && self.contents.chunks.is_empty() {
             return Err(OpenError::TooShort);
         }
-        if self.contents.channels.is_empty() {
+        if self.contents.channels.is_empty() || self.objects.is_empty() && !self.loss.objects.is_empty() {
             return Err(OpenError::Topology { object: "every object".to_owned() });
         }
         Ok(())

@@ -127,6 +127,12 @@ impl RunInfo {
     }
 }
 
+/// A run whose own record is lost, with the cameras that are not.
+pub(crate) fn with_cameras(run: RunInfo, records: &[Metadata]) -> RunInfo {
+    let found = records.iter().find(|record| record.name == CAMERAS && is_sound(record));
+    RunInfo { cameras: found.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default(), ..run }
+}
+
 /// A metadata record with a checksum, as MCAP has none for them.
 fn sealed(name: &str, mut values: BTreeMap<String, String>) -> Metadata {
     values.remove(CHECKSUM);

@@ -93,7 +93,9 @@ impl<R: Read + Seek> Playback<R> {
             self.contents.channels.values().any(|channel| channel.message_encoding == one.encoding)
         };
         let schemas = saved.stream.own_schemas(uses, self.contents.checkpoints().next().is_some())?;
-        for channel in self.contents.channels.values() {
+        let is_lost =
+            |topic: &str| self.loss.objects.iter().any(|name| topic.starts_with(&format!("/{name}/")));
+        for channel in self.contents.channels.values().filter(|channel| !is_lost(&channel.topic)) {
             let schema = schemas.of(&channel.message_encoding);
             let id = saved.stream.channel(&channel.topic, schema, &channel.message_encoding)?;
             saved.ids.insert(channel.id, id);

@@ -61,3 +61,55 @@ fn a_cache_without_copies_opens_as_it_always_did() {
     let mut with_copies = Playback::read(Cursor::new(saved)).unwrap();
     assert_eq!(compare(&mut cache, &mut with_copies, 0.0).unwrap().differences, []);
 }
+
+/// Opens a cache without copies whose bytes up to a place are gone, with its index and without.
+fn without_start(bytes: &[u8], hole: std::ops::Range<usize>) -> [Vec<u8>; 2] {
+    let mut holed = falling::without_copies(bytes);
+    holed[hole].fill(0);
+    let cut = holed[..holed.len() - 20].to_vec();
+    [holed, cut]
+}
+
+#[test]
+fn a_lost_record_of_the_run_costs_no_frame() {
+    for run in [falling::run_info(), falling::with_all_channels()] {
+        let bytes = falling::whole_run(&run).0;
+        let first =
+            mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[0].chunk_start_offset as usize;
+        let mut sound = Playback::read(Cursor::new(bytes.clone())).unwrap();
+        for holed in without_start(&bytes, 0..first) {
+            let (saved, ..) = recovered(&holed);
+            for file in [holed, saved] {
+                let mut cache = Playback::read(Cursor::new(file)).unwrap();
+                assert_eq!(compare(&mut cache, &mut sound, 0.0).unwrap().differences, []);
+                let found = cache.run();
+                assert_eq!((found.start, found.end, found.frames_per_second), (run.start, run.end, 24.0));
+                assert_eq!((found.detail, found.velocities), (run.detail, run.velocities));
+                assert_eq!(cache.moments(), sound.moments());
+            }
+        }
+    }
+}
+
+#[test]
+fn without_its_first_chunk_and_all_copies_a_cache_is_shown_as_points() {
+    let bytes = falling::whole_run(&falling::with_all_channels()).0;
+    let chunk = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[0].clone();
+    let end = (chunk.chunk_start_offset + chunk.chunk_length) as usize;
+    let mut sound = Playback::read(Cursor::new(bytes.clone())).unwrap();
+    for (holed, name) in without_start(&bytes, 0..end).into_iter().zip(["a|b:cloth/1 \u{e4}", "object 1"]) {
+        let (saved, _, damaged) = recovered(&holed);
+        assert!(damaged.loss().run && !damaged.loss().knows_run(), "{}", damaged.loss());
+        assert_eq!(damaged.loss().meshes[0], name);
+        for file in [holed, saved] {
+            let mut cache = Playback::read(Cursor::new(file)).unwrap();
+            assert_eq!(cache.objects()[0].faces.len(), 0);
+            for moment in 1..sound.moments().len() {
+                let time = sound.moments()[moment].time;
+                let same = cache.moments().iter().position(|found| found.time == time).unwrap();
+                assert_eq!(cache.positions(0, same).unwrap(), sound.positions(0, moment).unwrap());
+                assert_eq!(cache.contacts(0, same).unwrap(), sound.contacts(0, moment).unwrap());
+            }
+        }
+    }
+}

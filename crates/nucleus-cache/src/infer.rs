@@ -1,0 +1,140 @@
+//! What a cache holds where neither the start of the file nor a copy of it is left: found by what is in its messages.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{Read, Seek};
+
+use mcap::records::{Channel, MessageHeader};
+use nucleus_core::Faces;
+
+use crate::attribute;
+use crate::object::{ObjectInfo, ObjectKind};
+use crate::open_error::ReadError;
+use crate::playback::Playback;
+use crate::points::{self, PointsMessage, Stamp};
+use crate::run::{Detail, RunInfo};
+use crate::{checkpoint, provenance, topology};
+
+/// The end of a topic and the encoding of a message.
+type Kind = (&'static str, &'static str);
+const POINTS: Kind = ("points", points::ENCODING);
+const TOPOLOGY: Kind = ("topology", topology::ENCODING);
+
+impl<R: Read + Seek> Playback<R> {
+    /// Finds the channels by their messages. Objects are named by their order.
+    pub(crate) fn infer_channels(&mut self) -> Result<(), ReadError> {
+        let mut kinds: BTreeMap<u16, Kind> = BTreeMap::new();
+        self.each_message(|header, data| {
+            if !kinds.contains_key(&header.channel_id) {
+                kinds.extend(kind(header, data).map(|kind| (header.channel_id, kind)));
+            }
+        })?;
+        // The channel of an object's mesh is the one before that of its points, whether it has messages or not.
+        let points: Vec<u16> = kinds.iter().filter(|(_, kind)| **kind == POINTS).map(|(&id, _)| id).collect();
+        kinds.extend(points.iter().filter_map(|id| Some((id.checked_sub(1)?, TOPOLOGY))));
+        for (id, (end, encoding)) in kinds {
+            let topic = match encoding {
+                "json" | checkpoint::ENCODING => format!("/{end}"),
+                // A mesh stands before the points of its object, all else behind them.
+                topology::ENCODING => {
+                    format!("/object {}/{end}", 1 + points.partition_point(|&one| one < id))
+                }
+                _ => format!("/object {}/{end}", points.partition_point(|&one| one <= id).max(1)),
+            };
+            let (message_encoding, metadata) = (encoding.to_owned(), BTreeMap::new());
+            self.contents
+                .channels
+                .insert(id, Channel { id, schema_id: 0, topic, message_encoding, metadata });
+        }
+        Ok(())
+    }
+
+    /// Finds what the run is by the stamps of its points; nothing where there are none.
+    pub(crate) fn infer_run(&mut self) -> Result<Option<RunInfo>, ReadError> {
+        let (mut stamps, mut velocities) = (Vec::new(), false);
+        self.each_message(|header, data| {
+            if kind(header, data) == Some(POINTS)
+                && let Some(points) = PointsMessage::read(data)
+            {
+                stamps.push(points.stamp);
+                velocities |= points.velocities().is_some();
+            }
+        })?;
+        let has = |attribute: &attribute::Attribute| {
+            self.contents.channels.values().any(|channel| channel.message_encoding == attribute.encoding)
+        };
+        let (contacts, strain) = (has(&attribute::CONTACTS), has(&attribute::STRAIN));
+        let known = RunInfo { velocities, contacts, strain, version: String::new(), ..RunInfo::default() };
+        Ok(of_stamps(&stamps, known).map(|run| provenance::with_cameras(run, &self.contents.metadata)))
+    }
+
+    /// An object without its mesh: points where they are first. Nothing where none can be read.
+    pub(crate) fn cloud(&mut self, channel: u16, name: &str) -> Result<Option<ObjectInfo>, ReadError> {
+        for (time, index) in self.contents.messages.get(&channel).cloned().unwrap_or_default() {
+            match self.load(index) {
+                Ok(()) => {}
+                Err(ReadError::Damaged { .. }) => continue,
+                Err(error) => return Err(error),
+            }
+            let message = self.chunk.message(channel, time).and_then(PointsMessage::read);
+            let Some(points) = message.filter(|points| points.mesh == 0) else { continue };
+            let mut rest = Vec::new();
+            points.positions(&mut rest);
+            let (name, kind, faces) = (name.to_owned(), ObjectKind::Particles, Faces::default());
+            return Ok(Some(ObjectInfo { name, kind, faces, rest }));
+        }
+        Ok(None)
+    }
+
+    /// Shows every message of every chunk that is sound.
+    fn each_message(&mut self, mut see: impl FnMut(&MessageHeader, &[u8])) -> Result<(), ReadError> {
+        for index in 0..self.contents.chunks.len() {
+            match self.load(index) {
+                Ok(()) => self.chunk.messages().for_each(|(header, data)| see(header, data)),
+                Err(ReadError::Damaged { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a message must be, as its length and its time tell.
+fn kind(header: &MessageHeader, data: &[u8]) -> Option<Kind> {
+    if data.first() == Some(&b'{') && serde_json::from_slice::<serde_json::Value>(data).is_ok() {
+        return Some(("report", "json"));
+    }
+    let stamped = Stamp::read(data).filter(|(stamp, _)| stamp.log_time() == header.log_time);
+    if let Some((stamp, count)) = stamped {
+        if PointsMessage::read(data).is_some() {
+            return Some(POINTS);
+        }
+        let moment = (stamp.frame, header.log_time);
+        let fits = |one: &&&attribute::Attribute| one.read(data, count as usize, moment).is_some();
+        return attribute::ALL.iter().find(fits).map(|one| (one.topic, one.encoding));
+    }
+    if topology::number(data).is_some() {
+        return Some(TOPOLOGY);
+    }
+    checkpoint::read(data).map(|_| ("checkpoint", checkpoint::ENCODING))
+}
+
+/// The frames of a run by the ends of frames among its stamps.
+fn of_stamps(stamps: &[Stamp], known: RunInfo) -> Option<RunInfo> {
+    let ends = || stamps.iter().filter(|stamp| stamp.substep == stamp.substeps || stamp.substep == 0);
+    let (first, last) =
+        (ends().min_by(|a, b| a.time.total_cmp(&b.time))?, ends().max_by(|a, b| a.time.total_cmp(&b.time))?);
+    let rate = (f64::from(last.frame) - f64::from(first.frame)) / (last.time - first.time);
+    let rate = if rate.is_finite() && rate > 0.0 { rate } else { known.frames_per_second };
+    // Rates mostly have few digits; their quotient is off by a few bits.
+    let plain = (1e3 * rate).round() / 1e3;
+    let frames_per_second = if (plain - rate).abs() < 1e-9 * rate { plain } else { rate };
+    let start = first.frame.saturating_sub((first.time * frames_per_second).round() as i32);
+    let frames: BTreeSet<i32> = ends().map(|stamp| stamp.frame).collect();
+    let step = frames.iter().zip(frames.iter().skip(1)).map(|(one, next)| next - one).min().unwrap_or(1);
+    let detail = match stamps.iter().any(|stamp| 0 < stamp.substep && stamp.substep < stamp.substeps) {
+        true => Detail::Substeps,
+        false if step > 1 => Detail::Every(step as u32),
+        false => Detail::Frames,
+    };
+    Some(RunInfo { start, end: last.frame, frames_per_second, detail, ..known })
+}
