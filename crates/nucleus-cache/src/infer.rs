@@ -31,6 +31,7 @@ impl<R: Read + Seek> Playback<R> {
         // The channel of an object's mesh is the one before that of its points, whether it has messages or not.
         let points: Vec<u16> = kinds.iter().filter(|(_, kind)| **kind == POINTS).map(|(&id, _)| id).collect();
         kinds.extend(points.iter().filter_map(|id| Some((id.checked_sub(1)?, TOPOLOGY))));
+        self.nameless = (1..=points.len()).map(|place| format!("object {place}")).collect();
         for (id, (end, encoding)) in kinds {
             let topic = match encoding {
                 "json" | checkpoint::ENCODING => format!("/{end}"),
@@ -65,6 +66,65 @@ impl<R: Read + Seek> Playback<R> {
         let (contacts, strain) = (has(&attribute::CONTACTS), has(&attribute::STRAIN));
         let known = RunInfo { velocities, contacts, strain, version: String::new(), ..RunInfo::default() };
         Ok(of_stamps(&stamps, known).map(|run| provenance::with_cameras(run, &self.contents.metadata)))
+    }
+
+    /// Takes what is lost of run and meshes from the scene that was recorded: what it says of its run, and its objects in
+    /// order. Objects that were found without a name are taken to be the next with as many points.
+    ///
+    /// # Errors
+    /// With the reason, when the scene cannot be that of the cache.
+    pub fn supply(&mut self, run: &RunInfo, objects: Vec<ObjectInfo>) -> Result<(), String> {
+        let found = self.run().clone();
+        if run.frames_per_second != found.frames_per_second || run.start != found.start && !self.loss.run {
+            let [scene, cache] = [run, &found].map(|run| (run.start, run.frames_per_second));
+            return Err(format!(
+                "the scene starts at frame {} with {} frames a second, the cache at frame {} with {}",
+                scene.0, scene.1, cache.0, cache.1
+            ));
+        }
+        let mut left = objects.into_iter();
+        let nameless = self.nameless.clone();
+        let lost = std::mem::take(&mut self.loss.meshes);
+        for name in lost {
+            let Some(place) = self.objects().iter().position(|object| object.name == name) else { continue };
+            let points = self.objects()[place].rest.len();
+            let fits = |object: &ObjectInfo| {
+                object.rest.len() == points && (nameless.contains(&name) || object.name == name)
+            };
+            let Some(object) = left.find(fits) else {
+                return Err(format!("the scene has no further object like `{name}`, with {points} points"));
+            };
+            self.rename(&name, &object.name);
+            self.objects[place] = object;
+        }
+        if std::mem::take(&mut self.loss.run) {
+            let RunInfo { start, end, frames_per_second, detail, velocities, contacts, strain, .. } = found;
+            let run = RunInfo {
+                start,
+                end,
+                frames_per_second,
+                detail,
+                velocities,
+                contacts,
+                strain,
+                checkpoint: 0,
+                ..run.clone()
+            };
+            let records = run.to_metadata().into_iter().chain(run.cameras_to_metadata());
+            records.for_each(|record| self.contents.set_metadata(record));
+            self.loss.scene = false;
+            self.run = run;
+        }
+        Ok(())
+    }
+
+    /// Gives the channels of an object the name of another.
+    fn rename(&mut self, from: &str, to: &str) {
+        for channel in self.contents.channels.values_mut() {
+            if let Some(end) = channel.topic.strip_prefix(&format!("/{from}/")) {
+                channel.topic = format!("/{to}/{end}");
+            }
+        }
     }
 
     /// An object without its mesh: points where they are first. Nothing where none can be read.

@@ -30,10 +30,12 @@ pub struct Playback<R = BufReader<File>> {
     file: R,
     bytes: u64,
     library: String,
-    run: RunInfo,
+    pub(crate) run: RunInfo,
     pub(crate) contents: Contents,
     pub(crate) loss: Loss,
-    objects: Vec<ObjectInfo>,
+    pub(crate) objects: Vec<ObjectInfo>,
+    /// The names of objects whose own are lost.
+    pub(crate) nameless: Vec<String>,
     pub(crate) points_channels: Vec<u16>,
     pub(crate) mesh_channels: Vec<u16>,
     /// Of each object the mesh that was asked for last, if it is not the first.
@@ -92,6 +94,7 @@ impl<R: Read + Seek> Playback<R> {
             contents,
             loss,
             objects: Vec::new(),
+            nameless: Vec::new(),
             points_channels: Vec::new(),
             mesh_channels: Vec::new(),
             meshes: Vec::new(),

@@ -43,6 +43,12 @@ impl Continued {
         let mut cache = opened.with_context(cannot)?;
         cache.verify().with_context(cannot)?;
         ensure!(
+            cache.loss().knows_run(),
+            "{}: {}; `nucleus recover` saves its frames",
+            cannot(),
+            cache.loss()
+        );
+        ensure!(
             !cache.moments().is_empty(),
             "`{}` holds no frame: `nucleus run` begins it again",
             file.display()

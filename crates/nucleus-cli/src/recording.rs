@@ -42,30 +42,16 @@ pub fn begin(
     scene: (&Path, &str),
 ) -> Result<Option<Recorder>> {
     let Moments::Of(detail) = manner.moments else { return Ok(None) };
-    let program = simulation.program();
-    let (start, end) = frames(program)?;
-    let units = program.units_per_metre();
     let Channels { velocities, contacts, strain } = manner.channels;
-    let plane = program.first_input().plane;
     let run = RunInfo {
-        scene_path: scene.0.display().to_string(),
-        scene_text: scene.1.to_owned(),
-        start,
-        end,
-        frames_per_second: program.time().fps,
-        units_per_metre: units,
         detail,
         velocities,
         contacts,
         strain,
-        ground: plane
-            .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
-        radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
-        cameras: program.cameras().into_iter().map(camera).collect(),
         packing: if manner.compact { Packing::Small } else { Packing::Fast },
         checkpoint: manner.checkpoint,
         extra: manner.facts,
-        ..RunInfo::default()
+        ..of_scene(simulation, scene)?
     };
     let objects = objects(simulation);
     let recorder = match manner.force {
@@ -78,6 +64,27 @@ pub fn begin(
         recorder.record_checkpoint(&simulation.save())?;
     }
     Ok(Some(recorder))
+}
+
+/// What a scene alone tells of its run.
+pub fn of_scene(simulation: &Simulation, scene: (&Path, &str)) -> Result<RunInfo> {
+    let program = simulation.program();
+    let (start, end) = frames(program)?;
+    let units = program.units_per_metre();
+    let plane = program.first_input().plane;
+    Ok(RunInfo {
+        scene_path: scene.0.display().to_string(),
+        scene_text: scene.1.to_owned(),
+        start,
+        end,
+        frames_per_second: program.time().fps,
+        units_per_metre: units,
+        ground: plane
+            .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
+        radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
+        cameras: program.cameras().into_iter().map(camera).collect(),
+        ..RunInfo::default()
+    })
 }
 
 /// A camera as a cache has it.
@@ -151,7 +158,7 @@ pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source
 }
 
 /// The objects as they are now, at the start frame.
-fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
+pub fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
     let units = simulation.units_per_metre();
     let state = simulation.state();
     let object = |object: &compile::Object| {

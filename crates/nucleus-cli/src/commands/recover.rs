@@ -3,11 +3,12 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
+use nucleus_graph::Simulation;
 
 use crate::outcome::Outcome;
-use crate::{cache_file, figures, output};
+use crate::{cache_file, figures, output, recording, scene_file};
 
 /// Writes what survives of a damaged cache, or of a run that was killed, as a cache that is whole.
 ///
@@ -19,6 +20,9 @@ pub struct Recover {
     /// The cache to write; the name without `.part`, or else with `.recovered.mcap`, if none is given.
     #[arg(short, long)]
     out: Option<PathBuf>,
+    /// The scene that was recorded (.ron): what is lost of run and meshes is taken from it.
+    #[arg(long)]
+    scene: Option<PathBuf>,
     /// Replace a file that exists.
     #[arg(long)]
     force: bool,
@@ -28,6 +32,15 @@ impl Recover {
     /// Recovers it. What is lost for good is trouble.
     pub fn run(self) -> Result<Outcome> {
         let mut cache = cache_file::open(&self.file)?;
+        if let Some(scene) = &self.scene {
+            let Some((_, program, text)) = scene_file::open(scene, None)?.told()? else {
+                return Ok(Outcome::Refused);
+            };
+            let simulation = Simulation::new(&program, 1);
+            let run = recording::of_scene(&simulation, (scene, &text))?;
+            let objects = recording::objects(&simulation).into_iter().map(|(_, object)| object).collect();
+            cache.supply(&run, objects).map_err(|fault| anyhow!("`{}`: {fault}", scene.display()))?;
+        }
         let out = self.out()?;
         ensure!(out != self.file, "a damaged file is not overwritten; give another name with `-o`");
         if out.exists() && !self.force {

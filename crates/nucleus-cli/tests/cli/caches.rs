@@ -170,3 +170,29 @@ fn a_cache_whose_first_byte_is_damaged_is_recovered_whole() {
     assert!(stdout(&output).contains("the start of the file is damaged"), "{}", stdout(&output));
     assert!(fs::read(folder.path().join("fall.recovered.mcap")).unwrap() == sound);
 }
+
+#[test]
+fn a_cache_that_has_lost_its_start_is_recovered_with_the_meshes_of_its_scene() {
+    let folder = folder();
+    scene(folder.path(), 6, "");
+    let run = nucleus(folder.path(), &["run", "drape.ron", "--checkpoint", "0"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let path = folder.path().join("drape.mcap");
+    let bytes = fs::read(&path).unwrap();
+    // All up to the copy behind the second frame is gone, and the copy and the index behind the last.
+    let mark = b"nucleus.copy";
+    let copies: Vec<usize> = (0..bytes.len()).filter(|&at| bytes[at..].starts_with(mark)).collect();
+    let mut damaged = bytes[..copies[1] - 33].to_vec();
+    damaged[..=copies[0]].fill(0);
+    fs::write(&path, damaged).unwrap();
+    let output = nucleus(folder.path(), &["recover", "drape.mcap", "-o", "points.mcap"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("shown as points, without a mesh: `object 1`"), "{}", stdout(&output));
+    let output =
+        nucleus(folder.path(), &["recover", "drape.mcap", "--scene", "drape.ron", "-o", "meshes.mcap"]);
+    assert!(!stdout(&output).contains("shown as points"), "{}{}", stdout(&output), stderr(&output));
+    let cache = nucleus_cache::Playback::open(folder.path().join("meshes.mcap")).unwrap();
+    assert_eq!((cache.objects()[0].name.as_str(), cache.objects()[0].faces.len()), ("cloth1", 36));
+    assert_eq!((cache.run().units_per_metre, cache.run().start), (100.0, 1));
+    assert!(cache.moments().len() >= 4, "{}", cache.loss());
+}
