@@ -1,5 +1,7 @@
 //! Watching a frame from outside: after each substep the solver shows its state to an observer.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector3;
 
 use crate::ids::{ClothId, ColliderId};
@@ -74,6 +76,12 @@ pub trait StepObserver {
     /// straight from one of these states to the next.
     fn step(&mut self, share: f64, state: &dyn StateView) {
         let _ = (share, state);
+    }
+
+    /// Asked within a frame, between the rounds of each time step: an answer of `Break` ends the frame there. Its report
+    /// then says so, and the state is within a time step: a run goes on from a state that was saved before the frame.
+    fn go_on(&self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
 
     /// Called when the solver turns to another stage of its work. The solver has no clock; who wants to know

@@ -40,6 +40,8 @@ pub struct StepReport {
     pub finite: bool,
     /// What the frame brought and was no number: held or left out.
     pub refused: Refusals,
+    /// Whether the observer ended the frame before its end; the other figures then mean nothing.
+    pub stopped: bool,
 }
 
 impl Default for StepReport {
@@ -60,6 +62,7 @@ impl Default for StepReport {
             kinetic_energy: 0.0,
             finite: true,
             refused: Refusals::default(),
+            stopped: false,
         }
     }
 }

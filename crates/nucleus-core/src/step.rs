@@ -1,6 +1,6 @@
 //! One frame, told as a story.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::Ordering;
 
 use crate::air::{self, Breeze};
@@ -54,6 +54,22 @@ impl<R: Real> Solver<R> {
     fn solve(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
         let schedule = Schedule::new(frame);
         let mut tally = Tally::default();
+        if self.substeps(frame, &schedule, &mut tally, watch).is_break() {
+            return StepReport { stopped: true, ..StepReport::default() };
+        }
+        watch.enter(Stage::Report);
+        self.touches = tally.contacts.load(Ordering::Relaxed) > 0;
+        self.report(frame, &schedule, &tally)
+    }
+
+    /// All substeps of a frame, unless the observer ends it before.
+    fn substeps(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        tally: &mut Tally,
+        watch: &mut dyn StepObserver,
+    ) -> ControlFlow<()> {
         watch.enter(Stage::FrameStart);
         self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
         let fastest = self.fastest(frame);
@@ -67,30 +83,28 @@ impl<R: Real> Solver<R> {
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
                 let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(frame, &schedule, span, &fastest);
+                let parts = self.parts(frame, schedule, span, &fastest);
                 if parts == 1 {
-                    let now = Step { schedule: &schedule, index: step, span, direction };
-                    self.advance(frame, &now, &fastest, &mut tally, watch);
+                    let now = Step { schedule, index: step, span, direction };
+                    self.advance(frame, &now, &fastest, tally, watch)?;
                     continue;
                 }
                 let split = schedule.split(frame, parts);
                 for part in 0..parts {
                     let (index, span) = (step * parts + part, span.part(part, parts));
                     let now = Step { schedule: &split, index, span, direction };
-                    self.advance(frame, &now, &fastest, &mut tally, watch);
+                    self.advance(frame, &now, &fastest, tally, watch)?;
                 }
             }
-            self.damp(frame, &schedule);
+            self.damp(frame, schedule);
             self.set_time(f64::from(substep) / f64::from(schedule.substeps));
             watch.enter(Stage::Watch);
             watch.substep(Moment { substep, substeps: schedule.substeps }, self);
         }
-        watch.enter(Stage::Report);
-        self.touches = tally.contacts.load(Ordering::Relaxed) > 0;
-        self.report(frame, &schedule, &tally)
+        ControlFlow::Continue(())
     }
 
-    /// One time step.
+    /// One time step, unless the observer ends the frame.
     fn advance(
         &mut self,
         frame: &FrameInput,
@@ -98,12 +112,13 @@ impl<R: Real> Solver<R> {
         fastest: &[f64],
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
-    ) {
+    ) -> ControlFlow<()> {
         let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
         self.keep_start(frame, schedule.h);
         self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
         for round in &schedule.rounds {
+            watch.go_on()?;
             match round {
                 Round::Relax(sweeps) => {
                     watch.enter(Stage::Relax);
@@ -124,6 +139,7 @@ impl<R: Real> Solver<R> {
         self.follow_positions(schedule);
         self.bounce(frame, schedule, span.to);
         watch.step(span.to, self);
+        ControlFlow::Continue(())
     }
 
     /// Keeps the places that points have before a time step moves them, where they can meet anything.

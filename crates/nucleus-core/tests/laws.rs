@@ -2,6 +2,8 @@
 
 mod scenes;
 
+use std::ops::ControlFlow;
+
 use nalgebra::{Rotation3, Vector3};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
@@ -220,6 +222,27 @@ fn an_observer_sees_every_substep_once() {
     let mut seen = Count(Vec::new());
     solver.step(&frame(7, physical(96.0)), &mut seen);
     assert_eq!(seen.0, (1..=7).map(|substep| Moment { substep, substeps: 7 }).collect::<Vec<_>>());
+}
+
+#[test]
+fn an_observer_can_end_a_frame_between_time_steps() {
+    struct UntilSubstep(u32, Count);
+    impl StepObserver for UntilSubstep {
+        fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+            self.1.substep(moment, state);
+        }
+        fn go_on(&self) -> ControlFlow<()> {
+            if self.1.0.len() as u32 == self.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+    }
+    let solver = || Solver::<f32>::new(one_cloth(grid(3, 3, Vec3::x(), Vec3::z()), LINKS), 1);
+    let input = frame(7, physical(96.0));
+    let mut watch = UntilSubstep(3, Count(Vec::new()));
+    assert!(solver().step(&input, &mut watch).stopped);
+    assert_eq!(watch.1.0.len(), 3);
+    let mut watch = UntilSubstep(7, Count(Vec::new()));
+    assert!(!solver().step(&input, &mut watch).stopped);
+    assert_eq!(watch.1.0.len(), 7);
 }
 
 // EVIDENCE: N2.4-7  what is animated moves along a straight line inside a frame

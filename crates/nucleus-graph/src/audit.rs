@@ -1,5 +1,7 @@
 //! A run under audit: whether anything passes through anything, found apart from the solver.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector3;
 use nucleus_audit::{Account, Auditor, Body, Moment, Rules, World};
 use nucleus_core::{self as core, Stage, StateView, StepObserver};
@@ -137,6 +139,10 @@ impl StepObserver for Audited<'_> {
     fn step(&mut self, share: f64, state: &dyn StateView) {
         self.audit.step(share, self.substep, state);
         self.watch.step(share, state);
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        self.watch.go_on()
     }
 
     fn enter(&mut self, stage: Stage) {

@@ -44,7 +44,7 @@ struct Run<R: Real> {
 /// What the solver says about a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameReport {
-    /// The frame that was reached.
+    /// The frame that was reached, or was on the way to be.
     pub frame: i64,
     /// What happened on the way there; of several nuclei the worst of each figure.
     pub report: StepReport,
@@ -87,6 +87,9 @@ impl<R: Real> Simulation<R> {
     }
 
     /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
+    ///
+    /// Where `watch` stops the frame, its report says so. The run still is at the frame before, but its state is not: only
+    /// a run [`restored`](Self::restored) from what was saved there goes on with the same bits.
     pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
         self.advance_with(&mut |_, _| {}, watch)
     }
@@ -124,6 +127,9 @@ impl<R: Real> Simulation<R> {
         let mut report: Option<StepReport> = None;
         for leap in leaps {
             let seen = self.leap(&leap, change, &mut Watched { watch: &mut *watch, done, total });
+            if seen.stopped {
+                return seen;
+            }
             done += leap.substeps;
             report = Some(report.map_or(seen, |before| worst(&before, &seen, leap.is_new_time)));
         }
@@ -265,6 +271,7 @@ fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
         kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         finite: a.finite && b.finite,
         refused: if a.refused.count > 0 { a.refused } else { b.refused },
+        stopped: a.stopped || b.stopped,
     }
 }
 

@@ -1,5 +1,7 @@
 //! The states of several nuclei, seen as one.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, ColliderId, Contact, Moment, Real, Stage, StateView, StepObserver};
 
@@ -150,6 +152,10 @@ impl StepObserver for Merge<'_> {
         let parts = self.parts(state);
         let share = (f64::from(self.done) + share * f64::from(self.own)) / f64::from(self.total);
         self.watch.step(share, &View { program: self.program, parts });
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        self.watch.go_on()
     }
 
     fn enter(&mut self, stage: Stage) {
