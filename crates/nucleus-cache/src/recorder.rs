@@ -50,6 +50,8 @@ pub struct Recorder<W: Write + Seek = File> {
     pub(crate) checkpointed: Option<i32>,
     pub(crate) last_frame: i32,
     pub(crate) moments: u64,
+    /// The frame before the one in flight, and how many moments there were at its end.
+    before: Option<(i32, u64)>,
     pub(crate) places: Option<Places>,
     /// An older cache, to which what is recorded is held.
     pub(crate) witness: Option<Box<Witness>>,
@@ -153,6 +155,7 @@ impl<W: Write + Seek> Recorder<W> {
             checkpointed: None,
             last_frame: run.start,
             moments: 0,
+            before: None,
             places: None,
             witness: None,
             trouble: None,
@@ -183,6 +186,7 @@ impl<W: Write + Seek> Recorder<W> {
         if frame <= self.last_frame {
             return Err(RecordError::FrameOrder { frame, last: self.last_frame });
         }
+        self.before = Some((self.last_frame, self.moments));
         self.last_frame = frame;
         self.rungs = None;
         Ok(FrameRecorder { recorder: self })
@@ -205,7 +209,21 @@ impl<W: Write + Seek> Recorder<W> {
         self.message.extend_from_slice(report.to_string().as_bytes());
         self.stream.send(&stamp, self.report_channel, &self.message)?;
         self.stream.close_frame()?;
+        self.before = None;
         self.catch_up()
+    }
+
+    /// Drops the frame in flight, of which the solver has not come to the end. Whether nothing of it was written: if it was,
+    /// because substeps are recorded, the file cannot be finished any more, and stays a `.part`.
+    pub fn drop_frame(&mut self) -> bool {
+        let Some((frame, moments)) = self.before.take() else { return true };
+        self.last_frame = frame;
+        self.moments == moments && self.trouble.is_none()
+    }
+
+    /// Whether checkpoints are recorded at all.
+    pub fn makes_checkpoints(&self) -> bool {
+        self.run.checkpoint > 0
     }
 
     /// Whether a checkpoint is due at the end of the frame that was recorded last.

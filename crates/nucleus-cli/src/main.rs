@@ -53,6 +53,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    interrupt::heed_file_size_limit();
     match Arguments::parse().command.run() {
         Ok(outcome) => having_told(outcome).into(),
         // Whoever reads our output has seen enough: `nucleus info x.mcap | head -3`.

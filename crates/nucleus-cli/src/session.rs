@@ -72,10 +72,21 @@ impl Session {
 /// Closes the cache, with a checkpoint of its last frame; gives its size in bytes, if there is one and it could be
 /// written to its end.
 fn close(simulation: &Simulation, recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
-    let mut recorder = recorder.filter(|_| !matches!(ending, Ending::Lost(_)))?;
-    // What is no number is nothing to go on from.
-    let to_go_on = recorder.wants_last_checkpoint() && !matches!(ending, Ending::NotFinite);
-    let last = if to_go_on { recorder.record_checkpoint(&simulation.save()) } else { Ok(()) };
+    let is_open = |ending: &Ending| match ending {
+        Ending::Lost(_) => false,
+        Ending::Stopped(stopped) => stopped.is_clean,
+        _ => true,
+    };
+    let mut recorder = recorder.filter(|_| is_open(ending))?;
+    let state = match ending {
+        // What is no number is nothing to go on from.
+        Ending::NotFinite => None,
+        // The state is that of a frame that is dropped.
+        Ending::Stopped(stopped) => stopped.state.take(),
+        _ => recorder.wants_last_checkpoint().then(|| simulation.save()),
+    };
+    let state = state.filter(|_| recorder.wants_last_checkpoint());
+    let last = state.map_or(Ok(()), |state| recorder.record_checkpoint(&state));
     match last.and_then(|()| recorder.finish()) {
         Ok(recorded) => Some(recorded.bytes),
         Err(error) => {

@@ -33,7 +33,7 @@ impl Summary<'_> {
     /// What the command is to end with.
     pub fn outcome(&self) -> Outcome {
         match self.ending {
-            Ending::Interrupted => Outcome::Interrupted,
+            Ending::Interrupted | Ending::Stopped(_) => Outcome::Interrupted,
             Ending::Done if self.is_clean() && self.checks.iter().all(|check| check.passed) => Outcome::Fine,
             _ => Outcome::Trouble,
         }
@@ -95,6 +95,13 @@ impl Summary<'_> {
         match &self.ending {
             Ending::Done => String::new(),
             Ending::Interrupted => format!("interrupted after frame {last}\n"),
+            Ending::Stopped(stopped) if !stopped.is_clean => format!(
+                "interrupted within the frame after frame {last}, of which substeps are recorded: the cache stays a \
+                 `.part`, and `nucleus resume` goes on with it\n"
+            ),
+            Ending::Stopped(_) => {
+                format!("interrupted after frame {last}; the frame that was in flight is dropped\n")
+            }
             Ending::NotFinite => {
                 format!("ended at frame {last}: a position or velocity is not a finite number\n")
             }
@@ -120,7 +127,7 @@ impl Summary<'_> {
             self.recorded.as_ref().map(|(path, bytes)| (path.display().to_string(), *bytes)).unzip();
         let (ending, trouble) = match &self.ending {
             Ending::Done => ("done", None),
-            Ending::Interrupted => ("interrupted", None),
+            Ending::Interrupted | Ending::Stopped(_) => ("interrupted", None),
             Ending::NotFinite => ("not finite", None),
             Ending::Lost(error) => ("lost", Some(format!("{error:#}"))),
         };

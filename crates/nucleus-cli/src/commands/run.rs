@@ -27,8 +27,8 @@ const CHECKPOINT: u32 = 48;
 
 /// Simulates a scene and records it as a cache.
 ///
-/// Ctrl-C ends the run after the frame it is in and closes the cache; the exit code is then 130. A second
-/// Ctrl-C ends it at once; the cache then plays to its last whole frame. `nucleus resume` goes on after either.
+/// Ctrl-C drops the frame that is being solved, closes the cache with the frame before, and gives exit code 130. A second
+/// Ctrl-C ends the program at once; the cache then plays to its last whole frame. `nucleus resume` goes on after either.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The scene (.ron).

@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -55,7 +55,7 @@ fn a_killed_run_leaves_a_cache_that_plays() {
 
 #[test]
 fn an_interrupted_run_closes_its_cache_and_says_so() {
-    for name in ["INT", "TERM"] {
+    for name in ["INT", "TERM", "HUP", "QUIT"] {
         let folder = folder();
         let run = long_run(folder.path());
         signal(&run, name);
@@ -65,4 +65,85 @@ fn an_interrupted_run_closes_its_cache_and_says_so() {
         let info = nucleus(folder.path(), &["info", "drape.mcap", "--verify"]);
         assert_eq!(info.status.code(), Some(0), "{}", stdout(&info));
     }
+}
+
+/// A run of eight frames, of which the sixth takes so many substeps that a signal finds it there.
+fn slow_frame(folder: &Path, substeps: u32) {
+    let text = r#"Scene(
+    time: (start: 1, end: 8, fps: 24),
+    nodes: {
+        "nucleus1": nucleus(spaceScale: 0.01, subSteps: keys([(5, 2), (6, SUBSTEPS), (7, 2)])),
+        "sheet": polyPlane(width: 50, height: 50, subdivisions: (6, 6), translate: (0, 25, 0)),
+        "cloth1": nCloth(inputMesh: "sheet", thickness: 1),
+        "ball": polySphere(radius: 20),
+        "rigid1": nRigid(inputMesh: "ball"),
+    },
+)
+"#;
+    std::fs::write(folder.join("slow.ron"), text.replace("SUBSTEPS", &substeps.to_string())).unwrap();
+}
+
+/// Starts it and interrupts it within its sixth frame; gives what it says.
+fn stopped_within_a_frame(folder: &Path, substeps: u32, record: &str) -> Output {
+    slow_frame(folder, substeps);
+    let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
+    run.args(["run", "slow.ron", "--threads", "1", "--record", record]).current_dir(folder);
+    let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begin = Instant::now();
+    let at_last = || Playback::open(folder.join("slow.mcap.part")).map_or(0, |cache| last_frame(&cache));
+    while at_last() < 5 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "the run does not begin");
+        sleep(Duration::from_millis(5));
+    }
+    signal(&child, "INT");
+    child.wait_with_output().unwrap()
+}
+
+fn last_frame(cache: &Playback) -> i32 {
+    cache.moments().last().map_or(0, |moment| moment.frame)
+}
+
+/// Goes on with what an interrupted run has left, and holds the cache to that of a run that was not.
+fn assert_resumes_to_the_same_bytes(folder: &Path, left: &str, record: &str) {
+    let resumed = nucleus(folder, &["resume", left]);
+    assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
+    let whole = nucleus(folder, &["run", "slow.ron", "-o", "whole.mcap", "--record", record]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
+    let bytes = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert!(bytes("slow.mcap") == bytes("whole.mcap"));
+}
+
+#[test]
+fn an_interrupt_within_a_frame_drops_it_and_the_resumed_cache_has_the_same_bytes() {
+    let folder = folder();
+    let output = stopped_within_a_frame(folder.path(), 100_000, "frames");
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stdout(&output).contains("interrupted after frame 5"), "{}", stdout(&output));
+    assert_eq!(last_frame(&Playback::open(folder.path().join("slow.mcap")).unwrap()), 5);
+    assert_resumes_to_the_same_bytes(folder.path(), "slow.mcap", "frames");
+}
+
+/// The substeps of the frame in flight are in the file already, and cannot be taken out of it.
+#[test]
+fn an_interrupt_within_a_frame_whose_substeps_are_recorded_leaves_a_part_to_resume() {
+    let folder = folder();
+    let output = stopped_within_a_frame(folder.path(), 30_000, "substeps");
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stdout(&output).contains("`nucleus resume"), "{}", stdout(&output));
+    assert!(!folder.path().join("slow.mcap").exists());
+    assert_resumes_to_the_same_bytes(folder.path(), "slow.mcap.part", "substeps");
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_ends_a_run_like_a_full_disk() {
+    let folder = folder();
+    scene(folder.path(), 400, "");
+    let mut run = Command::new("sh");
+    let limited = format!("ulimit -f 64; exec '{}' run drape.ron --threads 1", env!("CARGO_BIN_EXE_nucleus"));
+    let output = run.args(["-c", &limited]).current_dir(folder.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(stdout(&output).contains("File too large"), "{}", stdout(&output));
+    let resumed = nucleus(folder.path(), &["resume", "drape.mcap.part", "--to", "60"]);
+    assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
+    assert_eq!(last_frame(&Playback::open(folder.path().join("drape.mcap")).unwrap()), 60);
 }
