@@ -115,6 +115,34 @@ fn a_silent_visitor_keeps_nobody_waiting() {
     assert_eq!(get(player.address(), "/", "").0, 200);
 }
 
+/// More than there are threads, and more than may wait at one time.
+#[test]
+fn many_half_open_connections_keep_nobody_waiting() {
+    let (_folder, player, _) = served();
+    let half = |k: usize| {
+        let mut stream = TcpStream::connect(player.address()).unwrap();
+        stream.write_all(if k.is_multiple_of(2) { b"GET / HTTP/1.1\r\n" } else { b"" }).unwrap();
+        stream
+    };
+    let half_open: Vec<TcpStream> = (0..400).map(half).collect();
+    for _ in 0..20 {
+        assert_eq!(get(player.address(), "/", "").0, 200);
+    }
+    drop(half_open);
+    assert_eq!(get(player.address(), "/", "").0, 200);
+}
+
+/// A thread for each of them would be hundreds; those of other tests that run beside this one are fewer.
+#[cfg(target_os = "linux")]
+#[test]
+fn connections_do_not_make_threads() {
+    let (_folder, player, _) = served();
+    let _half_open: Vec<TcpStream> =
+        (0..300).map(|_| TcpStream::connect(player.address()).unwrap()).collect();
+    assert_eq!(get(player.address(), "/", "").0, 200);
+    assert!(std::fs::read_dir("/proc/self/task").unwrap().count() < 250);
+}
+
 #[test]
 fn a_stopped_player_gives_its_port_back() {
     let (folder, player, _) = served();

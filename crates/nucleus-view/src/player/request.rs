@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, Read};
 
 /// A request longer than this is not from a browser.
-const LONGEST: u64 = 16 * 1024;
+pub(super) const LONGEST: u64 = 16 * 1024;
 
 /// A request without its body.
 #[derive(Debug, PartialEq, Eq)]

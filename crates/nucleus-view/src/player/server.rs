@@ -1,19 +1,26 @@
 //! Serves the player to browsers on this machine, and to no other.
 
-use std::io::{self, BufReader, BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::request::Request;
+use super::arriving::{Asked, arrive};
+use super::deadline::Deadline;
 use super::response;
 use crate::ViewError;
 
-/// A browser that takes longer than this to ask or to listen has gone away.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// A browser that takes longer than this to take an answer has gone away. At a slow 10 MB/s it is 600 MB, and a page asks
+/// for a frame at a time.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// Threads that answer. A browser opens six connections at a time.
+const WORKERS: usize = 8;
+/// Connections, and requests, that may wait their turn.
+const QUEUE: usize = 64;
 
 /// The caches that the page can have.
 #[derive(Debug)]
@@ -57,8 +64,22 @@ fn serve_caches(caches: Caches, port: u16) -> Result<Player, ViewError> {
     let address = listener.local_addr().map_err(|source| ViewError::Listen { port, source })?;
     let stopping = Arc::new(AtomicBool::new(false));
     let stop = Arc::clone(&stopping);
-    let server = thread::spawn(move || accept(&listener, &caches.into(), &stop));
+    let server = start(listener, caches, stop).map_err(|source| ViewError::Listen { port, source })?;
     Ok(Player { address, stopping, server: Some(server) })
+}
+
+/// Starts all threads that there ever are: one that takes up connections, one that waits for their requests, and those that
+/// answer. Each ends when the one before it has ended.
+fn start(listener: TcpListener, caches: Caches, stopping: Arc<AtomicBool>) -> io::Result<JoinHandle<()>> {
+    let named = |name: &str| thread::Builder::new().name(format!("player {name}"));
+    let ((connect, connections), (ask, asked)) = (sync_channel(QUEUE), sync_channel(QUEUE));
+    let (caches, asked) = (Arc::new(caches), Arc::new(Mutex::new(asked)));
+    for _ in 0..WORKERS {
+        let (caches, asked) = (Arc::clone(&caches), Arc::clone(&asked));
+        named("answers").spawn(move || work(&asked, &caches))?;
+    }
+    named("requests").spawn(move || arrive(&connections, &ask))?;
+    named("connections").spawn(move || accept(&listener, &connect, &stopping))
 }
 
 impl Player {
@@ -104,29 +125,33 @@ fn check_is_file(path: &Path) -> io::Result<()> {
     }
 }
 
-fn accept(listener: &TcpListener, caches: &Arc<Caches>, stopping: &AtomicBool) {
+fn accept(listener: &TcpListener, connect: &SyncSender<TcpStream>, stopping: &AtomicBool) {
     for connection in listener.incoming() {
         if stopping.load(Ordering::SeqCst) {
             return;
         }
         match connection {
-            Ok(connection) => {
-                let caches = Arc::clone(caches);
-                // A browser that hangs up early is no trouble of ours.
-                thread::spawn(move || drop(converse(&connection, &caches)));
-            }
+            Ok(connection) => drop(connect.send(connection)),
             // Out of file handles, say: wait for some to be given back.
             Err(_) => thread::sleep(Duration::from_millis(50)),
         }
     }
 }
 
-fn converse(connection: &TcpStream, caches: &Caches) -> io::Result<()> {
-    connection.set_read_timeout(Some(PATIENCE))?;
-    connection.set_write_timeout(Some(PATIENCE))?;
-    let mut to = BufWriter::new(connection);
-    match Request::read(&mut BufReader::new(connection))? {
-        Some(request) => response::answer(&request, caches, &mut to)?,
+/// Answers one request after another.
+fn work(asked: &Mutex<Receiver<Asked>>, caches: &Caches) {
+    loop {
+        let next = asked.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        let Ok(asked) = next else { return };
+        // A browser that hangs up early is no trouble of ours.
+        drop(answer(&asked, caches));
+    }
+}
+
+fn answer((connection, request): &Asked, caches: &Caches) -> io::Result<()> {
+    let mut to = BufWriter::new(Deadline::new(connection, PATIENCE));
+    match request {
+        Some(request) => response::answer(request, caches, &mut to)?,
         None => response::refuse_nonsense(&mut to)?,
     }
     to.flush()
