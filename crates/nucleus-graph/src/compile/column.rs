@@ -7,9 +7,10 @@ use crate::paint::{Expression, Point, Texture, read_numbers};
 use super::maps::Map;
 use super::objects::Compiler;
 
-/// Maya's indices of `none` and `perVertex`; 2 is `texture`.
+/// Maya's indices of `none`, `perVertex` and `texture`.
 const NONE: Choice = Choice(0);
 const PER_VERTEX: Choice = Choice(1);
+const TEXTURE: Choice = Choice(2);
 
 /// Larger factors than this are a mistake.
 const MOST: f64 = 1e6;
@@ -59,10 +60,21 @@ impl Compiler<'_> {
     }
 
     fn source_row(&self, cloth: NodeId, map: &'static Map) -> Option<&'static Attribute> {
-        match self.start.get(cloth, map.kind) {
+        match self.kind(cloth, map) {
             NONE => None,
             PER_VERTEX => Some(&map.values.row),
             _ => Some(&map.texture.row),
+        }
+    }
+
+    /// The type of a map: as given, else by what else is given of the map. Of values and a texture the texture counts, which
+    /// is Maya's default.
+    fn kind(&self, cloth: NodeId, map: &'static Map) -> Choice {
+        let given = |row: &'static Attribute| self.scene.graph.is_given_by_name(cloth, row.name);
+        match given(&map.kind.row) {
+            true => self.start.get(cloth, map.kind),
+            false if given(&map.values.row) && !given(&map.texture.row) => PER_VERTEX,
+            false => TEXTURE,
         }
     }
 
@@ -143,7 +155,7 @@ impl Compiler<'_> {
     fn warn_of_idle(&mut self, column: &Column) {
         let Column { cloth, map, .. } = *column;
         let graph = &self.scene.graph;
-        let kind = self.start.get(cloth, map.kind);
+        let kind = self.kind(cloth, map);
         let given = |row: &'static Attribute| graph.is_given_by_name(cloth, row.name);
         let mut idle = |row: &'static Attribute, why: String, help: String| {
             let name = graph.node(cloth).name();

@@ -1,7 +1,7 @@
 //! Maps: attributes that differ from point to point.
 //!
-//! A map multiplies its attribute. It counts by its type: per vertex what `...PerVertex` holds, texture (as Maya sets
-//! it) what `...Map` shows; a map without values, or without a texture, is none. The stretch map holds for
+//! A map multiplies its attribute. Its type says where its factors come from: per vertex from `...PerVertex`, texture from
+//! `...Map`. A type that is not given is that of what is given. A map without values, or without a texture, is none. The stretch map holds for
 //! compression too, unless there is a compression map. A map that is the same everywhere is the attribute with
 //! another value, to the bit, and costs what that costs.
 

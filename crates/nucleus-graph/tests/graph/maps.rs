@@ -153,7 +153,7 @@ fn a_map_counts_by_its_type() {
         (format!("bendMapType: perVertex, bendPerVertex: {values}"), true),
         (format!("bendMapType: none, bendPerVertex: {values}"), false),
         (format!("bendMapType: texture, bendPerVertex: {values}"), false),
-        (format!("bendPerVertex: {values}"), false),
+        (format!("bendPerVertex: {values}"), true),
         ("bendMapType: perVertex".to_owned(), false),
         ("bendMapType: texture".to_owned(), false),
         ("bendMap: 0.5".to_owned(), false),
@@ -164,10 +164,27 @@ fn a_map_counts_by_its_type() {
 }
 
 #[test]
+fn a_map_that_is_given_gives_its_type() {
+    let of = |fields: &str| program(&hanging(fields)).model().cloths()[0].factors.clone();
+    let maps =
+        ["mass", "damp", "stretch", "compression", "bend", "restLengthScale", "drag", "tangentialDrag"];
+    let more = ["lift", "thickness", "friction", "stickiness", "bounce", "collideStrength"];
+    for map in maps.into_iter().chain(more) {
+        let values = format!("{map}PerVertex: expression(\"1 + u\")");
+        assert_eq!(of(&values), of(&format!("{map}MapType: perVertex, {values}")), "{map}");
+        assert_ne!(of(&values), of(&format!("{map}MapType: none, {values}")), "{map}");
+    }
+}
+
+#[test]
 fn what_is_set_of_a_map_and_does_not_count_is_a_warning() {
     let file = Path::new("test.ron");
     for (fields, message, place) in [
-        ("bendPerVertex: [1]", "`bendPerVertex` of `c` has no effect: `bendMapType` is texture", "[1]"),
+        (
+            "bendMapType: texture, bendPerVertex: [1]",
+            "`bendPerVertex` of `c` has no effect: `bendMapType` is texture",
+            "[1]",
+        ),
         (
             "bendMapType: none, bendPerVertex: [1]",
             "`bendPerVertex` of `c` has no effect: `bendMapType` is none",
