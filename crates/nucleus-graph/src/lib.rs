@@ -16,6 +16,8 @@
 //! | how values change with time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
 //! | values that differ from point to point           | [`paint`]                  |
+//! | which files are read                             | `files.rs`                 |
+//! | how much memory a scene may take                 | [`memory`]                 |
 //!
 //! **Invariant:** nodes carry data to the solver and never act themselves (§1.1). The same scene gives the
 //! same program, in whatever order its nodes stand.
@@ -25,10 +27,13 @@ pub mod attributes;
 pub mod audit;
 pub mod checks;
 pub mod compile;
+mod files;
 pub mod graph;
+pub mod memory;
 pub mod mesh;
 pub mod paint;
 pub mod scene;
 mod simulation;
 
+pub use files::Piece;
 pub use simulation::{FrameReport, Simulation};

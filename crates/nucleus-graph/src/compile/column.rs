@@ -2,6 +2,7 @@
 
 use crate::attributes::{Attribute, Choice, Painting, Value};
 use crate::graph::NodeId;
+use crate::memory;
 use crate::paint::{Expression, Point, Texture, read_numbers};
 
 use super::maps::Map;
@@ -37,7 +38,9 @@ impl Compiler<'_> {
         let found = match held? {
             Value::Floats(values) if !values.is_empty() => Ok(values),
             Value::Painting(Painting::File(file)) => {
-                read_numbers(&self.scene.source.path(&file)).map_err(|error| error.to_string())
+                let path = self.scene.source.path(&file);
+                let checked = self.check_file(&path, memory::NUMBER_BYTE);
+                checked.and_then(|()| read_numbers(&path).map_err(|error| error.to_string()))
             }
             Value::Painting(Painting::Expression(text)) => self.painted(column, &text)?,
             Value::Painting(Painting::Texture(file)) => self.textured(column, &file)?,

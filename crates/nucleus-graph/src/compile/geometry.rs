@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 use nucleus_core::Surface;
 
 use crate::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
+use crate::files;
 use crate::graph::{Node, NodeId};
-use crate::mesh::{
-    ObjError, PrimitiveError, drop_degenerate_faces, poly_cube as cube, poly_cylinder as cylinder,
-    poly_plane as plane, poly_plane_uvs, poly_sphere as sphere, read_obj, read_obj_uvs,
-};
+use crate::memory::{self, Budget, Cost, Size, TooLarge};
+use crate::mesh::{ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj, read_obj_uvs};
 use crate::scene::{Findings, Scene};
 
 use super::shape::{Points, Shape};
 
 /// Meshes by node, each made once. In the space of the node, lengths in scene units.
-#[derive(Default)]
 pub(super) struct Geometry {
     made: BTreeMap<NodeId, Option<Mesh>>,
+    /// What is left of the memory that the scene may take.
+    pub(super) budget: Budget,
 }
 
 /// A mesh as it is made.
@@ -29,6 +29,20 @@ struct Mesh {
 }
 
 impl Geometry {
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self { made: BTreeMap::new(), budget: scene.source.budget() }
+    }
+
+    /// How large the mesh of a node is: of a primitive without making it.
+    pub(super) fn size(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<Size> {
+        if let Some(primitive) = primitive(scene.graph.node(node)) {
+            return Some(primitive.size());
+        }
+        let surface = self.surface(scene, node, findings)?;
+        let [points, corners] = [surface.positions.len(), surface.faces.corners().len()];
+        Some(Size { points: points as u64, corners: corners as u64 })
+    }
+
     /// The surface of a node, or nothing if there is none; why not has been said then.
     pub(super) fn surface(
         &mut self,
@@ -86,16 +100,22 @@ impl Geometry {
     }
 
     fn mesh(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<&Mesh> {
-        self.made.entry(node).or_insert_with(|| make(scene, scene.graph.node(node), findings)).as_ref()
+        let Self { made, budget } = self;
+        let make = || make(scene, scene.graph.node(node), budget, findings);
+        made.entry(node).or_insert_with(make).as_ref()
     }
 }
 
-fn make(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mesh> {
-    let node_type = node.node_type();
-    let mut mesh = if node_type == &mesh::MESH {
-        read_files(scene, node, findings)?
+fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings) -> Option<Mesh> {
+    let mut mesh = if node.node_type() == &mesh::MESH {
+        read_files(scene, node, budget, findings)?
     } else {
-        match primitive(node)? {
+        let primitive = primitive(node)?;
+        if let Err(refused) = budget.claim(Cost::MESH.of(primitive.size())) {
+            refuse(scene, node, &refused, findings);
+            return None;
+        }
+        match primitive.surface() {
             Ok(surface) => Mesh { surface, frames: Vec::new() },
             Err(error) => {
                 findings.error(&scene.source.place(node.name()), format!("`{}`: {error}", node.name()));
@@ -116,26 +136,27 @@ fn make(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mesh> {
     Some(mesh)
 }
 
-fn primitive(node: &Node) -> Option<Result<Surface, PrimitiveError>> {
+/// The primitive that a node makes, if it is one.
+pub(super) fn primitive(node: &Node) -> Option<Primitive> {
     let node_type = node.node_type();
     Some(if node_type == &poly_plane::POLY_PLANE {
         use poly_plane::{HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
-        let [sx, sy] = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
-        plane(node.get(&WIDTH), node.get(&HEIGHT), (sx, sy))
+        let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT];
+        Primitive::Plane([&WIDTH, &HEIGHT].map(|key| node.get(key)), steps.map(|key| count(node.get(key))))
     } else if node_type == &poly_sphere::POLY_SPHERE {
         use poly_sphere::{RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_HEIGHT};
-        let [sx, sy] = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
-        sphere(node.get(&RADIUS), (sx, sy))
+        let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT];
+        Primitive::Sphere(node.get(&RADIUS), steps.map(|key| count(node.get(key))))
     } else if node_type == &poly_cube::POLY_CUBE {
         use poly_cube::{DEPTH, HEIGHT, SUBDIVISIONS_DEPTH, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
-        let keys = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_DEPTH];
-        let [sx, sy, sz] = keys.map(|key| count(node.get(key)));
-        cube(node.get(&WIDTH), node.get(&HEIGHT), node.get(&DEPTH), (sx, sy, sz))
+        let lengths = [&WIDTH, &HEIGHT, &DEPTH].map(|key| node.get(key));
+        let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_DEPTH];
+        Primitive::Cube(lengths, steps.map(|key| count(node.get(key))))
     } else if node_type == &poly_cylinder::POLY_CYLINDER {
         use poly_cylinder::{HEIGHT, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_CAPS, SUBDIVISIONS_HEIGHT};
-        let keys = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_CAPS];
-        let [sx, sy, sz] = keys.map(|key| count(node.get(key)));
-        cylinder(node.get(&RADIUS), node.get(&HEIGHT), (sx, sy, sz))
+        let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_CAPS];
+        let lengths = [&RADIUS, &HEIGHT].map(|key| node.get(key));
+        Primitive::Cylinder(lengths, steps.map(|key| count(node.get(key))))
     } else {
         return None;
     })
@@ -146,8 +167,18 @@ fn count(number: i64) -> u32 {
     u32::try_from(number).unwrap_or_default()
 }
 
+/// Says that a mesh takes too much memory.
+fn refuse(scene: &Scene, node: &Node, refused: &TooLarge, findings: &mut Findings) {
+    if !refused.is_first {
+        return;
+    }
+    let name = node.name();
+    let error = findings.error(&scene.source.place(name), format!("the mesh `{name}` takes {refused}"));
+    error.help(refused.help("make it coarser"));
+}
+
 /// The file of a mesh, or its files if there is one for each frame.
-fn read_files(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mesh> {
+fn read_files(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings) -> Option<Mesh> {
     let file = node.get(&mesh::FILE);
     let name = node.name();
     if file.is_empty() {
@@ -156,21 +187,43 @@ fn read_files(scene: &Scene, node: &Node, findings: &mut Findings) -> Option<Mes
         return None;
     }
     let place = scene.source.place(&format!("{name}.file"));
-    let read = |file: &str, findings: &mut Findings| match read_obj(scene.source.path(file)) {
-        Ok(surface) => Some(surface),
-        Err(error) => {
-            findings.error(&place, error.to_string());
-            None
+    let read = |file: &str, budget: &Budget, findings: &mut Findings| {
+        let path = scene.source.path(file);
+        if let Err(refused) = budget.check(files::length(&path).saturating_mul(memory::MESH_BYTE)) {
+            let error = findings.error(&place, format!("to read `{}` takes {refused}", path.display()));
+            error.help(refused.help("take a smaller file"));
+            return None;
+        }
+        match read_obj(path) {
+            Ok(surface) => Some(surface),
+            Err(error) => {
+                findings.error(&place, error.to_string());
+                None
+            }
         }
     };
+    let points = |surface: &Surface| surface.positions.len() as u64;
     let Some(numbered) = Numbered::new(&file) else {
-        return Some(Mesh { surface: read(&file, findings)?, frames: Vec::new() });
+        let surface = read(&file, budget, findings)?;
+        let size = Size { points: points(&surface), corners: surface.faces.corners().len() as u64 };
+        let claimed = budget.claim(Cost::MESH.of(size));
+        return match claimed {
+            Ok(()) => Some(Mesh { surface, frames: Vec::new() }),
+            Err(refused) => {
+                refuse(scene, node, &refused, findings);
+                None
+            }
+        };
     };
-    let surface = read(&numbered.file(scene.time.start), findings)?;
+    let surface = read(&numbered.file(scene.time.start), budget, findings)?;
     let mut frames: Vec<Points> = vec![surface.positions.as_slice().into()];
     for frame in scene.time.start + 1..=scene.time.end {
         let file = numbered.file(frame);
-        let points = read(&file, findings)?.positions;
+        if let Err(refused) = budget.claim(points(&surface) * memory::SHAPE_POINT) {
+            refuse(scene, node, &refused, findings);
+            return None;
+        }
+        let points = read(&file, budget, findings)?.positions;
         let (first, now) = (surface.positions.len(), points.len());
         if now != first {
             let message =

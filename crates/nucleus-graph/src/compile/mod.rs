@@ -14,7 +14,9 @@
 //! | what holds points, and where it takes hold of them   | `pins.rs`        |
 //! | what an audit is to find kept apart                  | `apart.rs`       |
 //! | where a run is seen from                             | `camera.rs`      |
+//! | widths that no scene can mean                        | `widths.rs`      |
 //! | where scene units become metres                      | `units.rs`       |
+//! | how many points an object has at most                | `extent.rs`      |
 //! | the thickness that nobody sets                       | `thickness.rs`   |
 //!
 //! **Invariant:** a scene pays only for what it uses, and whatever could go wrong in a run is refused
@@ -23,6 +25,7 @@
 mod apart;
 mod camera;
 mod column;
+mod extent;
 mod frame;
 mod geometry;
 mod lists;
@@ -38,6 +41,7 @@ mod start;
 mod thickness;
 mod time;
 mod units;
+mod widths;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -51,6 +55,7 @@ use objects::{Compiled, Compiler};
 use program::Whole;
 
 pub use camera::{Camera, FilmFit, View};
+pub(crate) use extent::most_points;
 pub(crate) use pins::Grips;
 pub use program::{Object, ObjectKind, Program, Universe};
 
@@ -102,7 +107,7 @@ pub(crate) fn survey(scene: &Scene, broken: &BTreeSet<NodeId>) -> Vec<Diagnostic
 
 /// Each nucleus for itself, in the order of names. Of several, those without objects are left out.
 fn universes(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) -> Vec<Compiled> {
-    let mut geometry = Geometry::default();
+    let mut geometry = Geometry::new(scene);
     let mut nuclei: Vec<NodeId> = scene.graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect();
     nuclei.sort_by_key(|id| scene.graph.node(*id).name());
     let mut all: Vec<Compiled> = Vec::new();

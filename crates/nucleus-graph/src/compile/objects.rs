@@ -1,13 +1,17 @@
 //! Objects: from nodes to what the model is built of.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
+use nalgebra::Vector3;
 use nucleus_core::{BuildError, Cloth, ClothId, Collider, ColliderId, Faces, Mass, ModelBuilder, Surface};
 
 use crate::attributes::{
     Choice, Key, NodeType, Plugged, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape,
 };
+use crate::files;
 use crate::graph::{Moment, NodeId};
+use crate::memory::{Cost, Size};
 use crate::scene::{Findings, Scene};
 
 use super::geometry::Geometry;
@@ -59,6 +63,8 @@ pub(super) struct Compiler<'a> {
     pub(super) whole: Universe,
     pub(super) objects: Vec<Object>,
     mass: f64,
+    /// The corners of the box that holds all objects at the start, in scene units.
+    pub(super) bounds: Option<[Vector3<f64>; 2]>,
 }
 
 /// A nucleus that has been compiled, its objects, and the mass of its cloth in kilograms.
@@ -88,7 +94,7 @@ impl<'a> Compiler<'a> {
             first_cloth: before.map_or(0, |before| before.cloths().end),
             first_collider: before.map_or(0, |before| before.colliders().end),
         };
-        Self { scene, broken, findings, geometry, start, whole, objects: Vec::new(), mass: 0.0 }
+        Self { scene, broken, findings, geometry, start, whole, objects: Vec::new(), mass: 0.0, bounds: None }
     }
 
     /// All objects and constraints; those that are broken, or made from something broken, are left out. What
@@ -109,6 +115,10 @@ impl<'a> Compiler<'a> {
             self.collider(shaped);
         }
         self.whole.pins = self.pins();
+        let cloths = self.whole.cloths.iter().map(|cloth| cloth.node);
+        let objects: Vec<NodeId> =
+            cloths.chain(self.whole.colliders.iter().map(|collider| collider.node)).collect();
+        self.check_widths(&objects);
         if !self.objects.is_empty() {
             time::check_driven(self.scene, self.whole.nucleus, self.findings);
         }
@@ -247,6 +257,9 @@ impl<'a> Compiler<'a> {
         if self.broken.contains(&mesh) {
             return None;
         }
+        let size = self.geometry.size(self.scene, mesh, self.findings)?;
+        let is_cloth = graph.node(object).node_type().is_a(&n_cloth::N_CLOTH);
+        self.claim(object, mesh, size, if is_cloth { Cost::CLOTH } else { Cost::COLLIDER })?;
         let placement = self.start.placement(mesh);
         let fixed = self.geometry.is_fixed(self.scene, mesh, self.findings);
         let mut surface = self.geometry.surface(self.scene, mesh, self.findings)?.clone();
@@ -258,6 +271,26 @@ impl<'a> Compiler<'a> {
             *position = placement.point(*position);
         }
         Some((mesh, surface))
+    }
+
+    /// Takes the memory that an object will need, if there is so much; else says so.
+    pub(super) fn claim(&mut self, object: NodeId, mesh: NodeId, size: Size, cost: Cost) -> Option<()> {
+        let Err(refused) = self.geometry.budget.claim(cost.of(size)) else { return Some(()) };
+        if !refused.is_first {
+            return None;
+        }
+        let [object, mesh] = [object, mesh].map(|id| self.scene.graph.node(id).name());
+        let message = format!("`{object}`, of {} points, takes {refused}", size.points);
+        let error = self.findings.error(&self.scene.source.place(mesh), message);
+        error.help(refused.help(&format!("make `{mesh}` coarser")));
+        None
+    }
+
+    /// Why a file is too large to be read, if it is. `each` is what a byte of it takes.
+    pub(super) fn check_file(&self, path: &Path, each: u64) -> Result<(), String> {
+        let bytes = files::length(path).saturating_mul(each);
+        let checked = self.geometry.budget.check(bytes);
+        checked.map_err(|refused| format!("to read `{}` takes {refused}", path.display()))
     }
 
     /// The mesh that feeds an object. A mesh that only shows what another node gives out, as the output of a

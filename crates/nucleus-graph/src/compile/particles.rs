@@ -8,6 +8,7 @@ use nucleus_core::{
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
 use crate::graph::NodeId;
+use crate::memory::{Cost, Size};
 
 use super::frame::Stretch;
 use super::maps::Scales;
@@ -35,6 +36,8 @@ impl Compiler<'_> {
             warning.help("say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`");
             return None;
         }
+        let size = Size { points: vectors.len() as u64, corners: 0 };
+        self.claim(node, node, size, Cost::CLOTH)?;
         let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).collect();
         let is_far = |position: &Vector3<f64>| self.whole.units.point(*position).amax() > FARTHEST;
         if let Some(point) = positions.iter().position(is_far) {

@@ -35,7 +35,8 @@ impl Compiler<'_> {
         self.in_order(placed)
     }
 
-    fn in_order(&self, mut shaped: Vec<Shaped>) -> Vec<Shaped> {
+    fn in_order(&mut self, mut shaped: Vec<Shaped>) -> Vec<Shaped> {
+        self.note_extent(&shaped);
         shaped.sort_by(|a, b| a.compare(b, &self.scene.graph));
         shaped
     }

@@ -6,6 +6,7 @@ use nucleus_core::{FARTHEST, Start};
 
 use crate::attributes::{Key, Painting, Value, n_base};
 use crate::graph::NodeId;
+use crate::memory;
 use crate::mesh::read_obj;
 use crate::paint::read_vectors;
 
@@ -25,6 +26,7 @@ impl Compiler<'_> {
             Some(Value::Vectors(vectors)) => Ok(vectors),
             Some(Value::Painting(Painting::File(file))) => {
                 let path = self.scene.source.path(&file);
+                self.check_file(&path, memory::NUMBER_BYTE)?;
                 if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
                     let points = read_obj(path).map_err(|error| error.to_string())?.positions;
                     return Ok(points.into_iter().map(Into::into).collect());

@@ -12,7 +12,7 @@ use nucleus_core::{Faces, Surface};
 pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
     let before = surface.faces.len();
     let mut kept = Faces::with_capacity(before, surface.faces.corners().len());
-    let mut corners = Vec::new();
+    let (mut corners, mut sorted) = (Vec::new(), Vec::new());
     for face in surface.faces.iter() {
         corners.clear();
         corners.extend_from_slice(face);
@@ -20,7 +20,7 @@ pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
         while corners.len() > 1 && corners.first() == corners.last() {
             corners.pop();
         }
-        if corners.len() >= 3 && !names_a_point_twice(&corners) && has_area(surface, &corners) {
+        if corners.len() >= 3 && !names_a_point_twice(&corners, &mut sorted) && has_area(surface, &corners) {
             kept.push(&corners);
         }
     }
@@ -28,8 +28,12 @@ pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
     before - surface.faces.len()
 }
 
-fn names_a_point_twice(corners: &[u32]) -> bool {
-    (1..corners.len()).any(|k| corners[..k].contains(&corners[k]))
+/// A face may have as many corners as its mesh has points, so they are not compared pair by pair. `sorted` is memory.
+fn names_a_point_twice(corners: &[u32], sorted: &mut Vec<u32>) -> bool {
+    sorted.clear();
+    sorted.extend_from_slice(corners);
+    sorted.sort_unstable();
+    sorted.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// Whether any triangle of the fan has.

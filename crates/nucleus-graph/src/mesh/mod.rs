@@ -5,6 +5,7 @@
 //! | what of an OBJ file is read, and what is refused | [`read_obj`]                |
 //! | texture coordinates, which only textures ask for | [`read_obj_uvs`], [`poly_plane_uvs`] |
 //! | what becomes of triangles without area           | [`drop_degenerate_faces`]   |
+//! | how large a primitive is, before it is made      | [`Primitive::size`]         |
 //! | in which order Maya counts the points of a plane, cube, sphere, cylinder | [`poly_plane`], [`poly_cube`], [`poly_sphere`], [`poly_cylinder`] |
 //!
 //! **Invariant:** the order and number of points is that of the file, or of Maya, and nothing here changes
@@ -23,5 +24,5 @@ pub use cube::poly_cube;
 pub use degenerate::drop_degenerate_faces;
 pub use obj::{ObjError, ObjFault, read_obj, read_obj_uvs};
 pub use plane::{poly_plane, poly_plane_uvs};
-pub use primitive::PrimitiveError;
+pub use primitive::{Primitive, PrimitiveError};
 pub use round::{poly_cylinder, poly_sphere};

@@ -4,12 +4,13 @@
 //! `7//5`, `7/2/5` or counted backwards from `-1`). Everything else is passed over: texture coordinates,
 //! normals, groups, materials. Names need not be UTF-8.
 
-use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_core::Surface;
+
+use crate::files::{self, Piece};
 
 pub use error::{ObjError, ObjFault};
 use lines::Lines;
@@ -21,6 +22,10 @@ mod lines;
 mod tests;
 mod uvs;
 
+/// As many as the cap of a cylinder may have. Neighbours at a point are compared in pairs, and in a fan of triangles one
+/// point has all others as neighbours.
+const MOST_CORNERS: usize = 4096;
+
 /// Reads a mesh. Its points are all vertices of the file, used or not, in their order there; its faces are
 /// as written, degenerate ones too (see [`drop_degenerate_faces`](super::drop_degenerate_faces)). Lengths
 /// are as in the file.
@@ -29,9 +34,9 @@ mod uvs;
 /// When the file cannot be read, has no vertices, or a line of it is not as it should be; see [`ObjError`].
 pub fn read_obj(path: impl AsRef<Path>) -> Result<Surface, ObjError> {
     let path = path.as_ref();
-    let surface = File::open(path)
+    let surface = files::open(path)
         .map_err(Trouble::from)
-        .and_then(|file| read(BufReader::with_capacity(1 << 18, file)));
+        .and_then(|(file, _)| read(BufReader::with_capacity(1 << 18, file)));
     surface.map_err(|trouble| trouble.in_file(path))
 }
 
@@ -65,7 +70,7 @@ fn read(input: impl BufRead) -> Result<Surface, Trouble> {
     let mut lines = Lines::new(input);
     while let Some((line, statement)) = lines.next()? {
         let mut words = words(statement);
-        let result = match words.next() {
+        let result = match words.next().map(|word| word.bytes) {
             Some(b"v") => mesh.vertex(words),
             Some(b"f") => mesh.face(words, line),
             _ => Ok(()),
@@ -75,10 +80,24 @@ fn read(input: impl BufRead) -> Result<Surface, Trouble> {
     mesh.finish()
 }
 
+/// A word of a statement.
+#[derive(Clone, Copy)]
+struct Word<'a> {
+    bytes: &'a [u8],
+    statement: &'a [u8],
+}
+
+impl Word<'_> {
+    fn piece(self) -> Piece {
+        Piece::of(self.bytes, self.statement)
+    }
+}
+
 /// The words of a statement up to a comment.
-fn words(statement: &[u8]) -> impl Iterator<Item = &[u8]> {
+fn words(statement: &[u8]) -> impl Iterator<Item = Word<'_>> {
     let code = statement.split(|&byte| byte == b'#').next().unwrap_or_default();
-    code.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+    let words = code.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    words.map(move |bytes| Word { bytes, statement })
 }
 
 /// What has been read so far.
@@ -92,7 +111,7 @@ struct Mesh {
 }
 
 impl Mesh {
-    fn vertex<'a>(&mut self, mut words: impl Iterator<Item = &'a [u8]>) -> Result<(), ObjFault> {
+    fn vertex<'a>(&mut self, mut words: impl Iterator<Item = Word<'a>>) -> Result<(), ObjFault> {
         let mut position = Vector3::zeros();
         for (found, coordinate) in position.iter_mut().enumerate() {
             *coordinate = number(words.next().ok_or(ObjFault::WrongNumberCount { found })?)?;
@@ -109,7 +128,7 @@ impl Mesh {
         Ok(())
     }
 
-    fn face<'a>(&mut self, words: impl Iterator<Item = &'a [u8]>, line: u64) -> Result<(), ObjFault> {
+    fn face<'a>(&mut self, words: impl Iterator<Item = Word<'a>>, line: u64) -> Result<(), ObjFault> {
         self.corners.clear();
         for word in words {
             let point = self.corner(word)?;
@@ -121,6 +140,9 @@ impl Mesh {
         if self.corners.len() < 3 {
             return Err(ObjFault::TooFewCorners { found: self.corners.len() });
         }
+        if self.corners.len() > MOST_CORNERS {
+            return Err(ObjFault::TooManyCorners { found: self.corners.len(), most: MOST_CORNERS });
+        }
         if self.surface.faces.corners().len() + self.corners.len() > u32::MAX as usize {
             return Err(ObjFault::TooLarge { most: u32::MAX });
         }
@@ -129,10 +151,10 @@ impl Mesh {
     }
 
     /// The point that a corner names, counted from 0. It may come later in the file.
-    fn corner(&self, word: &[u8]) -> Result<u32, ObjFault> {
-        let digits = word.split(|&byte| byte == b'/').next().unwrap_or_default();
+    fn corner(&self, word: Word<'_>) -> Result<u32, ObjFault> {
+        let digits = word.bytes.split(|&byte| byte == b'/').next().unwrap_or_default();
         let number = std::str::from_utf8(digits).ok().and_then(|digits| digits.parse::<i64>().ok());
-        let vertex = number.ok_or_else(|| ObjFault::NotACorner { text: lossy(word) })?;
+        let vertex = number.ok_or_else(|| ObjFault::NotACorner { piece: word.piece() })?;
         let vertices = self.surface.positions.len();
         let point = match vertex {
             0 => return Err(ObjFault::VertexZero),
@@ -155,16 +177,11 @@ impl Mesh {
     }
 }
 
-fn number(word: &[u8]) -> Result<f64, ObjFault> {
-    let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f64>().ok());
+fn number(word: Word<'_>) -> Result<f64, ObjFault> {
+    let number = std::str::from_utf8(word.bytes).ok().and_then(|text| text.parse::<f64>().ok());
     match number {
         Some(number) if number.is_finite() => Ok(number),
-        Some(_) => Err(ObjFault::NotFinite { text: lossy(word) }),
-        None => Err(ObjFault::NotANumber { text: lossy(word) }),
+        Some(_) => Err(ObjFault::NotFinite { piece: word.piece() }),
+        None => Err(ObjFault::NotANumber { piece: word.piece() }),
     }
-}
-
-/// Words for a message: cut to a length that fits one.
-fn lossy(word: &[u8]) -> String {
-    String::from_utf8_lossy(&word[..word.len().min(40)]).into_owned()
 }

@@ -1,4 +1,69 @@
-//! What all meshes made from numbers have in common: the check at the door, and even spacing.
+//! What all meshes made from numbers have in common: how large they are, the check at the door, and even spacing.
+
+use nucleus_core::Surface;
+
+use super::{poly_cube, poly_cylinder, poly_plane, poly_sphere};
+use crate::memory::Size;
+
+/// A mesh that is made from numbers; see the function of the same name for what they mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Primitive {
+    /// [`poly_plane`]: width, height; subdivisions along them.
+    Plane([f64; 2], [u32; 2]),
+    /// [`poly_sphere`]: radius; subdivisions.
+    Sphere(f64, [u32; 2]),
+    /// [`poly_cube`]: width, height, depth; subdivisions along them.
+    Cube([f64; 3], [u32; 3]),
+    /// [`poly_cylinder`]: radius, height; subdivisions.
+    Cylinder([f64; 2], [u32; 3]),
+}
+
+impl Primitive {
+    /// How large it is to be, before it is made; of numbers that make no mesh it means nothing.
+    pub fn size(&self) -> Size {
+        let product = |factors: &[u64]| factors.iter().fold(1, |all: u64, one| all.saturating_mul(*one));
+        let sum = |terms: &[u64]| terms.iter().fold(0, |all: u64, one| all.saturating_add(*one));
+        let (points, corners) = match *self {
+            Self::Plane(_, [x, y]) => {
+                let [x, y] = [x, y].map(u64::from);
+                (product(&[x + 1, y + 1]), product(&[4, x, y]))
+            }
+            Self::Sphere(_, [x, y]) => {
+                let [x, y] = [x, y].map(u64::from);
+                (sum(&[product(&[x, y.max(1) - 1]), 2]), product(&[x, 4 * y.max(2) - 2]))
+            }
+            Self::Cube(_, [x, y, z]) => {
+                let [x, y, z] = [x, y, z].map(u64::from);
+                let sides = product(&[2, y.max(1) - 1, z.max(1) - 1]);
+                let faces = sum(&[product(&[x, y]), product(&[y, z]), product(&[z, x])]);
+                (sum(&[product(&[2, y + z, x + 1]), sides]), product(&[8, faces]))
+            }
+            Self::Cylinder(_, [x, y, 0]) => {
+                let [x, y] = [x, y].map(u64::from);
+                (product(&[x, y + 1]), product(&[x, 4 * y + 2]))
+            }
+            Self::Cylinder(_, [x, y, z]) => {
+                let [x, y, z] = [x, y, z].map(u64::from);
+                let rings = y + 2 * (z - 1);
+                (sum(&[product(&[x, rings + 1]), 2]), product(&[x, 4 * rings + 6]))
+            }
+        };
+        Size { points, corners }
+    }
+
+    /// Makes it.
+    ///
+    /// # Errors
+    /// When the numbers do not describe a mesh.
+    pub fn surface(&self) -> Result<Surface, PrimitiveError> {
+        match *self {
+            Self::Plane([width, height], [x, y]) => poly_plane(width, height, (x, y)),
+            Self::Sphere(radius, [x, y]) => poly_sphere(radius, (x, y)),
+            Self::Cube([width, height, depth], [x, y, z]) => poly_cube(width, height, depth, (x, y, z)),
+            Self::Cylinder([radius, height], [x, y, z]) => poly_cylinder(radius, height, (x, y, z)),
+        }
+    }
+}
 
 /// Why numbers do not describe a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

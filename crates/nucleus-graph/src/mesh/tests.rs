@@ -137,6 +137,21 @@ fn numbers_that_make_no_mesh_are_refused() {
 
 proptest! {
     #[test]
+    fn the_size_of_a_primitive_is_known_before_it_is_made(x in 3..9_u32, y in 2..9_u32, z in 0..5_u32) {
+        for primitive in [
+            Primitive::Plane([1.0, 2.0], [x, y]),
+            Primitive::Sphere(1.0, [x, y]),
+            Primitive::Cube([1.0, 2.0, 3.0], [x, y, z + 1]),
+            Primitive::Cylinder([1.0, 2.0], [x, y, z]),
+        ] {
+            let made = primitive.surface().unwrap();
+            let counted = [made.positions.len(), made.faces.corners().len()].map(|count| count as u64);
+            let size = primitive.size();
+            prop_assert_eq!([size.points, size.corners], counted, "{:?}", primitive);
+        }
+    }
+
+    #[test]
     fn a_plane_is_one_sheet(sx in 1..12_u32, sy in 1..12_u32) {
         let plane = poly_plane(3.0, 2.0, (sx, sy)).unwrap();
         prop_assert_eq!(euler_characteristic(&plane), 1);

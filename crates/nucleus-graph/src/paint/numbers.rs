@@ -1,8 +1,10 @@
 //! Files of numbers: one for each point, or three. Between numbers are spaces, commas or line ends; what follows a
 //! `#` on a line is a remark.
 
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+
+use crate::files::{self, Piece};
 
 /// Why a file is not a list of numbers.
 #[derive(Debug, thiserror::Error)]
@@ -17,14 +19,14 @@ pub enum NumbersError {
         source: io::Error,
     },
     /// Something in it is no number that can be reckoned with.
-    #[error("`{}`, line {line}: `{text}` is not a finite number", path.display())]
+    #[error("`{}`, line {line}, {piece}: not a finite number", path.display())]
     NotANumber {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// What stands there.
-        text: String,
+        /// Where in the line.
+        piece: Piece,
     },
     /// Not all vectors have three numbers.
     #[error("`{}` has {count} numbers, which are no vectors of three", path.display())]
@@ -41,19 +43,20 @@ pub enum NumbersError {
 /// # Errors
 /// When it cannot be read, or holds anything else; see [`NumbersError`].
 pub fn read_numbers(path: &Path) -> Result<Vec<f64>, NumbersError> {
-    let bytes =
-        fs::read(path).map_err(|source| NumbersError::Unreadable { path: path.to_owned(), source })?;
+    let mut bytes = Vec::new();
+    let read = files::open(path).and_then(|(mut file, _)| file.read_to_end(&mut bytes));
+    read.map_err(|source| NumbersError::Unreadable { path: path.to_owned(), source })?;
     let text = String::from_utf8_lossy(&bytes);
     let mut numbers = Vec::new();
-    for (line, content) in text.lines().enumerate() {
-        let content = content.split('#').next().unwrap_or_default();
+    for (line, whole) in text.lines().enumerate() {
+        let content = whole.split('#').next().unwrap_or_default();
         let words = content.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
         for word in words {
             match word.parse::<f64>() {
                 Ok(number) if number.is_finite() => numbers.push(number),
                 _ => {
-                    let text = word.chars().take(40).collect();
-                    return Err(NumbersError::NotANumber { path: path.to_owned(), line: line + 1, text });
+                    let piece = Piece::of(word.as_bytes(), whole.as_bytes());
+                    return Err(NumbersError::NotANumber { path: path.to_owned(), line: line + 1, piece });
                 }
             }
         }

@@ -4,9 +4,10 @@
 //! undone. Transparency does not count. Between the middles of pixels values go straight (bilinear). As in Maya
 //! (0, 0) is the lower left corner, and the picture repeats beyond 0 to 1.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
+
+use crate::files;
 
 /// A picture in grey.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,8 +58,8 @@ impl Texture {
     /// # Errors
     /// When the file cannot be read, or is not a sound PNG.
     pub fn read(path: &Path) -> Result<Self, TextureError> {
-        let file =
-            File::open(path).map_err(|source| TextureError::Unreadable { path: path.to_owned(), source })?;
+        let (file, _) =
+            files::open(path).map_err(|source| TextureError::Unreadable { path: path.to_owned(), source })?;
         let broken = |source| TextureError::Broken { path: path.to_owned(), source };
         let mut decoder = png::Decoder::new(BufReader::new(file));
         decoder.set_transformations(png::Transformations::EXPAND);

@@ -31,7 +31,7 @@ pub use document::{Record, Scene, TimeSpan};
 pub(crate) use findings::Findings;
 pub(crate) use nearest::nearest;
 pub use preset::{Preset, presets, read_preset};
-pub use read::{read_scene, read_scene_text};
+pub use read::{TextError, read_scene, read_scene_text, read_scene_within, read_text};
 pub use source::Source;
 pub use write::{format_scene, write_scene};
 

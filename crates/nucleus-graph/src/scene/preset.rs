@@ -5,16 +5,20 @@
 //! nCloth(friction: 0.05, stretchResistance: 60)
 //! ```
 
-use std::fs;
 use std::path::Path;
 
 use crate::attributes::{Attribute, NodeType};
 use crate::graph::Setting;
+use crate::memory::Memory;
 
 use super::diagnostic::Diagnostic;
 use super::findings::Findings;
-use super::read::read_lone_node;
+use super::read::{TextError, read_lone_node, read_text};
+use super::syntax;
 use super::write::setting_lines;
+
+/// A file that is longer is no preset.
+const LONGEST: Memory = Memory(1_000_000);
 
 /// The presets that come along, by name.
 static PRESETS: [(&str, &str); 13] = [
@@ -77,10 +81,23 @@ pub(super) fn preset(
         return Err((format!("there is no preset `{name}`"), help));
     }
     let path = file(name);
-    let text = fs::read_to_string(&path).map_err(|error| {
-        let message = format!("cannot read the preset `{}`: {error}", path.display());
+    let text = read_text(&path, LONGEST).map_err(|error| {
+        let message = match error {
+            TextError::Unreadable { path, cause } => format!("cannot read the preset `{path}`: {cause}"),
+            other => format!("cannot take the preset `{name}`: {other}"),
+        };
         (message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned())
     })?;
+    // What such a message quotes may be anything, if the file is not a preset.
+    if let Err(mistakes) = syntax::parse(&text) {
+        let at = mistakes.first().map_or(0, |mistake| mistake.span.start.min(text.len()));
+        let before = text.get(..at).unwrap_or_default();
+        let (line, start) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |end| end + 1));
+        let column = before[start..].chars().count() + 1;
+        let message =
+            format!("the preset `{name}` cannot be read: line {line}, column {column} is not as in a scene");
+        return Err((message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned()));
+    }
     read_preset(name, &text, &path).map_err(|mistakes| told(name, &mistakes))
 }
 

@@ -1,20 +1,37 @@
-//! Where a scene comes from: its file, and where in it everything stands.
+//! Where a scene comes from: its file, where in it everything stands, and how much memory it may take.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+
+use crate::memory::{Budget, Memory};
 
 /// The file of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Source {
     file: PathBuf,
     places: BTreeMap<String, Range<usize>>,
+    budget: Budget,
 }
 
 impl Source {
     /// A file in which nothing has a known place.
     pub fn new(file: impl Into<PathBuf>) -> Self {
-        Self { file: file.into(), places: BTreeMap::new() }
+        Self { file: file.into(), ..Self::default() }
+    }
+
+    /// The same, with a limit on the memory that the scene may take.
+    pub(super) fn within(file: &Path, memory: Memory) -> Self {
+        Self { budget: Budget::new(memory), ..Self::new(file) }
+    }
+
+    /// The memory that the scene may take, and what reading it has taken of it.
+    pub(crate) fn budget(&self) -> Budget {
+        self.budget
+    }
+
+    pub(crate) fn budget_mut(&mut self) -> &mut Budget {
+        &mut self.budget
     }
 
     /// Its path, as it was given.

@@ -296,7 +296,7 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
         (per_vertex("[1, nan]"), "`massPerVertex` of `c` takes a number, found the word `nan`".to_owned(), "nan"),
         (
             per_vertex("file(\"bad.txt\")"),
-            format!("`{}`, line 3: `nan` is not a finite number", at("bad.txt")),
+            format!("`{}`, line 3, column 3, 3 bytes: not a finite number", at("bad.txt")),
             "file(\"bad.txt\")",
         ),
         (

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::files::Piece;
+
 /// What is wrong with a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -38,16 +40,16 @@ pub enum ObjError {
 #[non_exhaustive]
 pub enum ObjFault {
     /// A coordinate is not written as a number.
-    #[error("`{text}` is not a number")]
+    #[error("{piece}: not a number")]
     NotANumber {
-        /// What is written.
-        text: String,
+        /// Where it is written.
+        piece: Piece,
     },
     /// A coordinate is NaN, infinite, or too large to hold.
-    #[error("`{text}` is not a finite number")]
+    #[error("{piece}: not a finite number")]
     NotFinite {
-        /// What is written.
-        text: String,
+        /// Where it is written.
+        piece: Piece,
     },
     /// A vertex has neither three numbers nor three and a weight, a colour or both.
     #[error("a vertex takes three numbers, then may take a weight and a colour; this one has {found}")]
@@ -61,11 +63,19 @@ pub enum ObjFault {
         /// How many it has.
         found: usize,
     },
+    /// A face has more corners than can be worked with in reasonable time.
+    #[error("a face may have {most} corners; this one has {found}: cut it into smaller faces")]
+    TooManyCorners {
+        /// How many it has.
+        found: usize,
+        /// How many it may have.
+        most: usize,
+    },
     /// A corner does not begin with a whole number.
-    #[error("`{text}` is not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
+    #[error("{piece}: not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
     NotACorner {
-        /// What is written.
-        text: String,
+        /// Where it is written.
+        piece: Piece,
     },
     /// Texture coordinates are given without a number.
     #[error("texture coordinates take one to three numbers; here are none")]

@@ -51,19 +51,19 @@ fn a_file_need_not_end_its_last_line() {
 
 #[test]
 fn faults_are_named_with_their_line() {
-    let text = |text: &str| text.to_owned();
+    let piece = |column, bytes| Piece { column, bytes };
     let cases = [
-        ("v 0 0 0\nv 1 nan 0", 2, ObjFault::NotFinite { text: text("nan") }),
-        ("v 0 0 -inf", 1, ObjFault::NotFinite { text: text("-inf") }),
-        ("v 0 0 1e999", 1, ObjFault::NotFinite { text: text("1e999") }),
-        ("# one\nv 0 0,5 1", 2, ObjFault::NotANumber { text: text("0,5") }),
+        ("v 0 0 0\nv 1 nan 0", 2, ObjFault::NotFinite { piece: piece(5, 3) }),
+        ("v 0 0 -inf", 1, ObjFault::NotFinite { piece: piece(7, 4) }),
+        ("v 0 0 1e999", 1, ObjFault::NotFinite { piece: piece(7, 5) }),
+        ("# one\nv 0 0,5 1", 2, ObjFault::NotANumber { piece: piece(5, 3) }),
         ("v 0 0", 1, ObjFault::WrongNumberCount { found: 2 }),
         ("v 0 0 0 0 0", 1, ObjFault::WrongNumberCount { found: 5 }),
         ("v 0 0 0\nf 1 1", 2, ObjFault::TooFewCorners { found: 2 }),
         ("v 0 0 0\nf", 2, ObjFault::TooFewCorners { found: 0 }),
-        ("v 0 0 0\nf 1 1 x", 2, ObjFault::NotACorner { text: text("x") }),
-        ("v 0 0 0\nf 1 1 /1", 2, ObjFault::NotACorner { text: text("/1") }),
-        ("v 0 0 0\nf 1 1.5 1", 2, ObjFault::NotACorner { text: text("1.5") }),
+        ("v 0 0 0\nf 1 1 x", 2, ObjFault::NotACorner { piece: piece(7, 1) }),
+        ("v 0 0 0\nf 1 1 /1", 2, ObjFault::NotACorner { piece: piece(7, 2) }),
+        ("v 0 0 0\nf 1 1.5 1", 2, ObjFault::NotACorner { piece: piece(5, 3) }),
         ("v 0 0 0\nf 1 0 1", 2, ObjFault::VertexZero),
         ("v 0 0 0\nf 1 \\\n1 -2", 2, ObjFault::NoSuchVertex { vertex: -2, vertices: 1 }),
         ("f 1 2 1\nv 0 0 0", 1, ObjFault::NoSuchVertex { vertex: 2, vertices: 1 }),
@@ -73,6 +73,13 @@ fn faults_are_named_with_their_line() {
     for (text, line, expected) in cases {
         assert_eq!(fault(text), (line, expected), "{text}");
     }
+}
+
+#[test]
+fn a_face_of_too_many_corners_is_named_with_its_line() {
+    let face = |corners: usize| format!("v 0 0 0\nf{}", " 1".repeat(corners));
+    assert!(read(face(4096).as_bytes()).is_ok());
+    assert_eq!(fault(&face(4097)), (2, ObjFault::TooManyCorners { found: 4097, most: 4096 }));
 }
 
 #[test]

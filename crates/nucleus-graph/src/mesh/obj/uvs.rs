@@ -1,11 +1,11 @@
 //! Texture coordinates of an OBJ file, point by point. A mesh is read without them, for few scenes ask.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use super::lines::Lines;
-use super::{ObjError, ObjFault, Trouble, lossy, number, words};
+use super::{ObjError, ObjFault, Trouble, Word, number, words};
+use crate::files;
 
 /// The texture coordinates of each vertex; nothing for those that no face gives any. Where faces disagree, along
 /// a seam, the first of them counts.
@@ -14,9 +14,9 @@ use super::{ObjError, ObjFault, Trouble, lossy, number, words};
 /// When the file cannot be read, or a line that matters here is not as it should be; see [`ObjError`].
 pub fn read_obj_uvs(path: impl AsRef<Path>) -> Result<Vec<Option<[f64; 2]>>, ObjError> {
     let path = path.as_ref();
-    let uvs = File::open(path)
+    let uvs = files::open(path)
         .map_err(Trouble::from)
-        .and_then(|file| read(BufReader::with_capacity(1 << 18, file)));
+        .and_then(|(file, _)| read(BufReader::with_capacity(1 << 18, file)));
     uvs.map_err(|trouble| trouble.in_file(path))
 }
 
@@ -34,7 +34,7 @@ fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Trouble> {
     let mut lines = Lines::new(input);
     while let Some((line, statement)) = lines.next()? {
         let mut words = words(statement);
-        let result = match words.next() {
+        let result = match words.next().map(|word| word.bytes) {
             Some(b"v") => {
                 found.vertices += 1;
                 Ok(())
@@ -50,7 +50,7 @@ fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Trouble> {
 
 impl Uvs {
     /// One number or two, and a third for textures that fill space.
-    fn uv<'a>(&mut self, mut words: impl Iterator<Item = &'a [u8]>) -> Result<(), ObjFault> {
+    fn uv<'a>(&mut self, mut words: impl Iterator<Item = Word<'a>>) -> Result<(), ObjFault> {
         let mut uv = [0.0; 2];
         for (found, part) in uv.iter_mut().enumerate() {
             match words.next() {
@@ -63,15 +63,15 @@ impl Uvs {
         Ok(())
     }
 
-    fn face<'a>(&mut self, words: impl Iterator<Item = &'a [u8]>, line: u64) -> Result<(), ObjFault> {
+    fn face<'a>(&mut self, words: impl Iterator<Item = Word<'a>>, line: u64) -> Result<(), ObjFault> {
         for word in words {
-            let mut parts = word.split(|&byte| byte == b'/');
+            let mut parts = word.bytes.split(|&byte| byte == b'/');
             let (vertex, uv) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
             if uv.is_empty() {
                 continue;
             }
             let both = counted(vertex, self.vertices).zip(counted(uv, self.uvs.len()));
-            let (vertex, uv) = both.ok_or_else(|| ObjFault::NotACorner { text: lossy(word) })?;
+            let (vertex, uv) = both.ok_or_else(|| ObjFault::NotACorner { piece: word.piece() })?;
             if self.of_vertex.len() <= vertex {
                 self.of_vertex.resize(vertex + 1, None);
             }

@@ -4,10 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::attributes::{
-    Attribute, Choice, Component, NodeType, dyn_base, dynamic_constraint, n_base, n_cloth, n_particle,
-    nucleus, particle, surface_shape, transform,
+    Attribute, Choice, Component, NodeType, Selection, dyn_base, dynamic_constraint, n_base, n_cloth,
+    n_particle, nucleus, particle, surface_shape, transform,
 };
+use crate::compile::most_points;
 use crate::graph::{Creation, Graph, NodeId};
+use crate::memory;
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::source::Source;
@@ -232,11 +234,42 @@ impl Joiner<'_> {
                 None => return,
             },
         };
+        if !self.check_points(id, &components) {
+            return;
+        }
         if let Some(stranger) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
             self.refuse_stranger(id, nucleus, *stranger);
             return;
         }
         self.create(id, &Creation::Constraint { components, nucleus });
+    }
+
+    /// Whether the points that a constraint names can be there; says so if not. They are listed one by one afterwards, so a
+    /// range is held against its object first.
+    fn check_points(&mut self, id: NodeId, components: &[Component]) -> bool {
+        let before = self.findings.errors();
+        for (k, component) in components.iter().enumerate() {
+            let Component { object, selection: Selection::Points { first, last } } = component else {
+                continue;
+            };
+            let place = self.source.place(&format!("{}.components[{k}]", self.graph.node(id).name()));
+            let Some(node) = self.graph.find(object) else { continue };
+            let mesh = self.resolved.get(&(node, n_base::INPUT_MESH.row.name)).copied();
+            let most = most_points(self.graph, self.source, node, mesh);
+            if most.is_some_and(|most| u64::from(*last) >= most) {
+                self.findings.error(&place, format!("`{object}` has no point {last}")).help(match most {
+                    Some(most @ 1..) => format!("its points are numbered 0 to {}", most - 1),
+                    _ => "it has no points".to_owned(),
+                });
+                continue;
+            }
+            let count = u64::from(last - first) + 1;
+            if let Err(refused) = self.source.budget_mut().claim(count.saturating_mul(memory::HELD_POINT)) {
+                let error = self.findings.error(&place, format!("to hold {count} points takes {refused}"));
+                error.help(refused.help("hold fewer points"));
+            }
+        }
+        self.findings.errors() == before
     }
 
     fn effect(&mut self, id: NodeId) {

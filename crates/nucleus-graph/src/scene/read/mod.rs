@@ -22,12 +22,14 @@ mod value;
 mod wires;
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::io::Read;
 use std::path::Path;
 
 use crate::attributes::{Attribute, NodeType};
 use crate::compile;
+use crate::files;
 use crate::graph::{NodeId, Setting};
+use crate::memory::{self, Budget, Memory};
 
 use super::diagnostic::Diagnostic;
 use super::document::{Record, Scene, TimeSpan};
@@ -45,19 +47,62 @@ pub(super) use value::INTERPOLATIONS;
 pub fn read_scene(path: impl AsRef<Path>) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
     let path = path.as_ref();
     let mut findings = Findings::new(path.to_owned());
-    let message = match fs::read(path) {
-        Ok(bytes) => match String::from_utf8(bytes) {
-            Ok(text) => return read_scene_text(&text, path),
-            Err(error) => {
-                let at = error.utf8_error().valid_up_to();
-                findings.error(&(at..at), "this is not text: scenes are UTF-8");
-                return Err(findings.in_order());
-            }
-        },
-        Err(error) => format!("cannot read `{}`: {error}", path.display()),
-    };
-    findings.error(&(0..0), message);
+    match read_text(path, Memory::of_machine()) {
+        Ok(text) => return read_scene_text(&text, path),
+        Err(TextError::NotText { at, .. }) => {
+            findings.error(&(at..at), "this is not text: scenes are UTF-8");
+        }
+        Err(error) => {
+            findings.error(&(0..0), error.to_string());
+        }
+    }
     Err(findings.in_order())
+}
+
+/// The text of a scene file.
+///
+/// # Errors
+/// When it is not a regular file, cannot be read, is larger than `memory`, or is not UTF-8.
+pub fn read_text(path: &Path, memory: Memory) -> Result<String, TextError> {
+    let path_of = || path.display().to_string();
+    let unreadable = |cause| TextError::Unreadable { path: path_of(), cause };
+    let (mut file, bytes) = files::open(path).map_err(unreadable)?;
+    let refused = |refused| TextError::TooLarge { path: path_of(), why: format!("{refused}") };
+    Budget::new(memory).check(bytes).map_err(refused)?;
+    let mut all = Vec::new();
+    file.read_to_end(&mut all).map_err(unreadable)?;
+    let not_text = |at| TextError::NotText { path: path_of(), at };
+    String::from_utf8(all).map_err(|error| not_text(error.utf8_error().valid_up_to()))
+}
+
+/// Why a file has no text of a scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TextError {
+    /// It cannot be read.
+    #[error("cannot read `{path}`: {cause}")]
+    Unreadable {
+        /// The file.
+        path: String,
+        /// What the system says.
+        cause: std::io::Error,
+    },
+    /// It is larger than the memory that it may take.
+    #[error("`{path}` takes {why}")]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// How much it takes, and the limit.
+        why: String,
+    },
+    /// It is not UTF-8.
+    #[error("`{path}` is not text: scenes are UTF-8")]
+    NotText {
+        /// The file.
+        path: String,
+        /// How many bytes of it are.
+        at: usize,
+    },
 }
 
 /// Reads a scene from text. `file` is what diagnostics name, and where relative paths begin.
@@ -65,7 +110,25 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<(Scene, Vec<Diagnostic>), Ve
 /// # Errors
 /// All mistakes that can be found, with warnings among them, in the order of the text.
 pub fn read_scene_text(text: &str, file: &Path) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
+    read_scene_within(text, file, Memory::of_machine())
+}
+
+/// The same with a limit on the memory that the scene may take, from its text to its run.
+///
+/// # Errors
+/// As [`read_scene_text`]; what goes past the limit is a mistake at its place.
+pub fn read_scene_within(
+    text: &str,
+    file: &Path,
+    memory: Memory,
+) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut findings = Findings::new(file.to_owned());
+    if let Err(refused) = Budget::new(memory).check(values(text).saturating_mul(memory::VALUE)) {
+        let error = findings.error(&(0..0), format!("the scene is so long that to read it takes {refused}"));
+        error.help(refused.help("take parts of it out"));
+        return Err(findings.in_order());
+    }
+    let source = Source::within(file, memory);
     let root = match syntax::parse(text) {
         Ok(root) => root,
         Err(errors) => {
@@ -75,7 +138,7 @@ pub fn read_scene_text(text: &str, file: &Path) -> Result<(Scene, Vec<Diagnostic
             return Err(findings.in_order());
         }
     };
-    let read = read_root(&root, file, &mut findings);
+    let read = read_root(&root, source, &mut findings);
     if findings.errors() == 0
         && let Some((scene, _)) = read
     {
@@ -88,8 +151,13 @@ pub fn read_scene_text(text: &str, file: &Path) -> Result<(Scene, Vec<Diagnostic
     Err(findings.in_order())
 }
 
+/// How many values a text holds at most: each but the first stands behind one of these.
+fn values(text: &str) -> u64 {
+    text.bytes().filter(|byte| b",:([{".contains(byte)).count() as u64
+}
+
 /// The scene as far as it can be read, and the nodes on which something could not.
-fn read_root(root: &Node, file: &Path, findings: &mut Findings) -> Option<(Scene, BTreeSet<NodeId>)> {
+fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option<(Scene, BTreeSet<NodeId>)> {
     let mut fields = Fields::of_scene(root, findings)?;
     let time =
         time::read(fields.take_required("time", "`time: (start: 1, end: 120, fps: 24)`", findings), findings);
@@ -98,7 +166,6 @@ fn read_root(root: &Node, file: &Path, findings: &mut Findings) -> Option<(Scene
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
     let wires = wires::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
-    let mut source = Source::new(file);
     let (graph, broken) = nodes::read_nodes(nodes?, &wires, &mut source, findings);
     let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();

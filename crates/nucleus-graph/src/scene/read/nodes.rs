@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::attributes::{Attribute, Effect, Kind, Value as Held, n_base, time};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
+use crate::memory::NODE;
 use crate::scene::diagnostic::Severity;
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
@@ -32,6 +33,12 @@ pub(super) fn read_nodes(
         expected::<()>("`nodes`", "names and nodes, like {\"cloth1\": nCloth()}", node, findings);
         return (graph, broken);
     };
+    let claimed = source.budget_mut().claim((entries.len() as u64).saturating_mul(NODE));
+    if let Err(refused) = claimed {
+        let error = findings.error(&node.span, format!("{} nodes take {refused}", entries.len()));
+        error.help(refused.help("take some out"));
+        return (graph, broken);
+    }
     let (mut drafts, names) = drafts(entries, findings);
     // The order of nodes in a file must not matter to a run.
     drafts.sort_by_key(|draft| draft.name);

@@ -347,11 +347,12 @@ fn pins_hold_points_of_cloth_that_are_there() {
         )],
     );
     assert_eq!(said(&pinned("c1.e[0]"))[0].1, "only points can be named so far, not `e`");
-    // Found when it is compiled.
-    let (scene, _) = read_scene_text(&pinned("c1.vtx[0:9]"), Path::new("test.ron")).expect("it reads");
-    let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("there is no point 9");
-    assert_eq!(errors[0].message, "`c1` has no point 9");
-    assert_eq!(errors[0].help.as_deref(), Some("its points are numbered 0 to 8"));
+    // A range is held against its object before it becomes a list.
+    for last in [9, u32::MAX] {
+        let (range, message) = (format!("c1.vtx[0:{last}]"), format!("`c1` has no point {last}"));
+        let place = format!("\"{range}\"");
+        expect(&pinned(&range), &[(place.as_str(), message.as_str(), "its points are numbered 0 to 8")]);
+    }
     // Or together with a mistake elsewhere.
     let both = pinned("c1.vtx[9]").replace("end: 24", "end: 0");
     assert_eq!(said(&both).len(), 2);
@@ -417,4 +418,135 @@ fn checks_take_what_they_take() {
         said(&with_checks("[maxStretch(true)]"))[0].1,
         "`strain` of `maxStretch` takes a number, found true or false"
     );
+}
+
+/// What is said where a scene may take so many bytes.
+fn said_within(text: &str, bytes: u64) -> Vec<(String, Option<String>)> {
+    let memory = crate::memory::Memory(bytes);
+    let read = read_scene_within(text, Path::new("test.ron"), memory);
+    let found = match read {
+        Ok((scene, _)) => crate::compile::compile(&scene).map(|_| ()).expect_err("it is too large"),
+        Err(found) => found,
+    };
+    found.into_iter().map(|one| (one.message, one.help)).collect()
+}
+
+#[test]
+fn what_takes_too_much_memory_is_refused_with_its_place_and_figures() {
+    let scene = |nodes: &str| with_nodes(nodes);
+    let cloth = |mesh: &str| scene(&format!(r#""p": {mesh}, "c1": nCloth(inputMesh: "p")"#));
+    let all = 4096;
+    for mesh in [
+        format!("polyPlane(subdivisions: ({all}, {all}))"),
+        format!("polyCube(subdivisionsWidth: {all}, subdivisionsHeight: {all}, subdivisionsDepth: {all})"),
+        format!("polyCylinder(subdivisionsAxis: {all}, subdivisionsHeight: {all}, subdivisionsCaps: {all})"),
+        format!("polySphere(subdivisionsAxis: {all}, subdivisionsHeight: {all})"),
+    ] {
+        let found = said_within(&cloth(&mesh), 1_000_000_000);
+        assert_eq!(found.len(), 1, "{mesh}: {found:?}");
+        assert!(
+            found[0].0.starts_with("`c1`, of ") && found[0].0.ends_with("the limit is 1.0 GB"),
+            "{found:?}"
+        );
+        let help = found[0].1.as_deref().unwrap_or_default();
+        assert!(help.starts_with("make `p` coarser, or allow more: `--memory "), "{help}");
+    }
+    // Each would fit.
+    let two = r#""p": polyPlane(subdivisions: (100, 100)), "q": polyPlane(subdivisions: (100, 100)),
+        "c1": nCloth(inputMesh: "p"), "c2": nCloth(inputMesh: "q")"#;
+    let found = said_within(&scene(two), 40_000_000);
+    assert!(found.len() == 1 && found[0].0.contains(" with all before it; the limit is 40 MB"), "{found:?}");
+    // Nodes, and the text itself.
+    let nodes: String = (0..100).map(|k| format!("\"t{k}\": transform(), ")).collect();
+    assert!(said_within(&scene(&nodes), 200_000)[0].0.contains(" nodes take about "));
+    assert!(said_within(&scene(&nodes), 1_000)[0].0.contains("to read it takes about "));
+    let pinned = r#""p": polyPlane(subdivisions: (100, 100)), "c1": nCloth(inputMesh: "p"),
+        "pin": dynamicConstraint(components: ["c1.vtx[0:9999]"])"#;
+    assert!(said_within(&scene(pinned), 500_000)[0].0.starts_with("to hold 10000 points takes about 1.0 MB"));
+}
+
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    let made = std::process::Command::new("mkfifo").arg(folder.path().join("pipe")).status();
+    assert!(made.expect("there is a mkfifo").success());
+    for named in ["pipe", "/dev/zero"] {
+        for nodes in [
+            format!(r#""m": mesh(file: "{named}"), "c1": nCloth(inputMesh: "m")"#),
+            format!(r#""p": polyPlane(), "c1": nCloth(inputMesh: "p", massPerVertex: file("{named}"))"#),
+            format!(r#""p": polyPlane(), "c1": nCloth(inputMesh: "p", massMap: texture("{named}"))"#),
+            format!(r#""p": polyPlane(), "c1": nCloth(inputMesh: "p", startPositions: file("{named}"))"#),
+        ] {
+            let (scene, _) = read_scene_text(&with_nodes(&nodes), &file).expect("it reads");
+            let found = crate::compile::compile(&scene).map(|_| ()).expect_err("it is no file");
+            assert!(found[0].message.ends_with("it is a device or a pipe, not a file"), "{found:?}");
+        }
+    }
+    let found = read_scene(folder.path().join("pipe")).map(|_| ()).expect_err("it is no file");
+    assert!(found[0].message.contains("it is a device or a pipe"), "{found:?}");
+}
+
+/// A scene may name any file; what it holds is not to be had from a message.
+#[test]
+fn no_message_holds_what_a_file_holds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    for (text, name) in [("users:secret:1\n", "a.txt"), ("1 secret\n", "b.txt"), ("v 1 secret 2\n", "c.obj")]
+    {
+        fs::write(folder.path().join(name), text).expect("written");
+    }
+    fs::write(folder.path().join("d.ron"), "secret:x:0\n").expect("written");
+    fs::write(folder.path().join("e.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 secret\n").expect("written");
+    let of = |rest: &str| with_nodes(&format!(r#""p": polyPlane(), "c1": nCloth({rest})"#));
+    let in_file = |name: &str| of(&format!(r#"inputMesh: "p", massPerVertex: file("{name}")"#));
+    let mesh =
+        |name: &str| with_nodes(&format!(r#""m": mesh(file: "{name}"), "c1": nCloth(inputMesh: "m")"#));
+    for text in [
+        in_file("a.txt"),
+        in_file("b.txt"),
+        of(r#"inputMesh: "p", startPositions: file("c.obj")"#),
+        of(r#"inputMesh: "p", startPositions: file("a.txt")"#),
+        of(r#"inputMesh: "p", massMap: texture("a.txt")"#),
+        of(r#"inputMesh: "p", preset: "d.ron""#),
+        mesh("c.obj"),
+        mesh("e.obj"),
+    ] {
+        let found = match read_scene_text(&text, &file) {
+            Ok((scene, _)) => crate::compile::compile(&scene).map(|_| ()).expect_err("no such file"),
+            Err(found) => found,
+        };
+        assert!(!found.is_empty() && !format!("{found:?}").contains("secret"), "{found:?}");
+    }
+}
+
+#[test]
+fn widths_that_no_scene_can_mean_are_told_with_node_attribute_and_place() {
+    let found = |fields: &str| {
+        let text = with_nodes(&format!(
+            r#""p": polyPlane(width: 3, height: 4), "c1": nCloth(inputMesh: "p", {fields})"#
+        ));
+        let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it reads");
+        let found = match crate::compile::compile(&scene) {
+            Ok(program) => program.warnings().to_vec(),
+            Err(found) => found,
+        };
+        let place = |one: &Diagnostic| text[one.span.clone()].to_owned();
+        found.iter().map(|one| (one.severity, one.message.clone(), place(one))).collect::<Vec<_>>()
+    };
+    let wide = "which makes it wider than all objects together, which take 5.000 from corner to corner";
+    let far = "which makes it wider than";
+    assert_eq!(found("thickness: 5"), []);
+    let warned = |message: String, place: &str| vec![(Severity::Warning, message, place.to_owned())];
+    assert_eq!(found("thickness: 6"), warned(format!("`thickness` of `c1` is 6, {wide}"), "6"));
+    assert_eq!(
+        found("thickness: 1, selfCollideWidthScale: 7"),
+        warned(format!("`selfCollideWidthScale` of `c1` is 7, {wide}"), "7")
+    );
+    for field in ["thickness", "pushOutRadius"] {
+        let found = found(&format!("{field}: 1e30"));
+        assert_eq!((found[0].0, found[0].2.as_str()), (Severity::Error, "1e30"));
+        assert!(found[0].1.starts_with(&format!("`{field}` of `c1` is 1e30, {far}")), "{found:?}");
+    }
 }

@@ -220,12 +220,12 @@ pub static ROWS: [Extreme; 17] = [
         name: "nan-in-a-file",
         group: "Meshes",
         what: "a mesh file with a coordinate that is no number",
-        expect: "An error that names file, line and word.",
+        expect: "An error that names file, line and column.",
         trial: Trial::Refused {
             case: || {
                 free("nan.obj", "").scene(2).mesh("nan.obj", format!("{}v 1 nan 2\n", meshes::triangle()))
             },
-            names: &["nan.obj", "5", "`nan` is not a finite number"],
+            names: &["nan.obj", "5", "not a finite number"],
         },
         fails: None,
     },

@@ -1,0 +1,48 @@
+//! Files that a scene names. Only regular files are read: a device may never end, and a pipe may never begin. Messages about
+//! them give places, never contents: a scene may name any file that its reader can open.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
+use std::path::Path;
+
+/// Opens a regular file; gives its length too.
+pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
+    // Opening a pipe would wait for somebody to write to it.
+    let about = fs::metadata(path)?;
+    if about.is_dir() {
+        return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder, not a file"));
+    }
+    if !about.is_file() {
+        return Err(io::Error::new(ErrorKind::InvalidInput, "it is a device or a pipe, not a file"));
+    }
+    File::open(path).map(|file| (file, about.len()))
+}
+
+/// The length of a file in bytes; nothing where there is none, which is told when it is read.
+pub(crate) fn length(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |about| about.len())
+}
+
+/// Where something stands in a file, and how long it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece {
+    /// Its first character, counted from 1.
+    pub column: usize,
+    /// Its length in bytes.
+    pub bytes: usize,
+}
+
+impl std::fmt::Display for Piece {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "column {}, {} {}", self.column, self.bytes, if self.bytes == 1 { "byte" } else { "bytes" })
+    }
+}
+
+impl Piece {
+    /// A part of a line.
+    pub(crate) fn of(part: &[u8], line: &[u8]) -> Self {
+        let before = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize).min(line.len());
+        let column = String::from_utf8_lossy(&line[..before]).chars().count() + 1;
+        Self { column, bytes: part.len() }
+    }
+}
