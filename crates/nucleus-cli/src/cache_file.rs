@@ -49,9 +49,13 @@ pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
 pub fn is_cache(path: &Path) -> bool {
     use std::io::Read;
     let mut head = [0; 5];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
     // What a killed run has left has more behind its name.
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let named = [".mcap", ".mcap.part", ".mcap.resuming"].iter().any(|end| name.ends_with(end));
-    named || read.is_ok() && head == *b"\x89MCAP"
+    // A pipe would be waited for.
+    if named || !path.is_file() {
+        return named;
+    }
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == *b"\x89MCAP"
 }

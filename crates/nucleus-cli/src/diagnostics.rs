@@ -3,17 +3,23 @@
 use std::io::{IsTerminal, Write, stderr};
 use std::ops::Range;
 
-use anyhow::Result;
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label};
-use codespan_reporting::files::SimpleFile;
+use codespan_reporting::files::{Error, Files, SimpleFile};
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, ColorChoice};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use nucleus_graph::scene::{Diagnostic, Severity};
 
 use crate::figures;
 
+/// Lines that are longer are cut around the places that are shown.
+const LONGEST_LINE: usize = 400;
+/// Characters that are left on each side of a place.
+const AROUND: usize = 100;
+/// Diagnostics after these are counted alone.
+const MOST: usize = 100;
+
 /// Prints them all, each with its place in `text`, and a count.
-pub fn print(diagnostics: &[Diagnostic], text: &str) -> Result<()> {
+pub fn print(diagnostics: &[Diagnostic], text: &str) -> anyhow::Result<()> {
     if diagnostics.is_empty() {
         return Ok(());
     }
@@ -21,8 +27,11 @@ pub fn print(diagnostics: &[Diagnostic], text: &str) -> Result<()> {
     let choice = if stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let writer = BufferWriter::stderr(choice);
     let mut buffer = writer.buffer();
-    for diagnostic in diagnostics {
+    for diagnostic in diagnostics.iter().take(MOST) {
         show(diagnostic, text, &mut buffer)?;
+    }
+    if let Some(more) = diagnostics.len().checked_sub(MOST).filter(|more| *more > 0) {
+        writeln!(buffer, "... and {more} more")?;
     }
     writeln!(buffer, "{}", count(diagnostics))?;
     Ok(writer.print(&buffer)?)
@@ -42,9 +51,93 @@ pub fn count(diagnostics: &[Diagnostic]) -> String {
     }
 }
 
-fn show(diagnostic: &Diagnostic, text: &str, buffer: &mut Buffer) -> Result<()> {
+fn show(diagnostic: &Diagnostic, text: &str, buffer: &mut Buffer) -> anyhow::Result<()> {
+    match Excerpt::of(diagnostic, text) {
+        Some(Excerpt { text, diagnostic, before }) => show_in(&diagnostic, text, before, buffer),
+        None => show_in(diagnostic, text, [0, 0], buffer),
+    }
+}
+
+/// A diagnostic whose place is in a line too long to be shown: its place in a part of that line.
+struct Excerpt<'a> {
+    text: &'a str,
+    diagnostic: Diagnostic,
+    /// Lines before it, and characters before it in its line.
+    before: [usize; 2],
+}
+
+impl<'a> Excerpt<'a> {
+    /// Nothing where all lines that are shown are short.
+    fn of(diagnostic: &Diagnostic, text: &'a str) -> Option<Self> {
+        let span = place(&diagnostic.span, text)?;
+        let start = text[..span.start].rfind('\n').map_or(0, |end| end + 1);
+        let end = text[span.end..].find('\n').map_or(text.len(), |end| span.end + end);
+        if text[start..end].lines().all(|line| line.len() <= LONGEST_LINE) {
+            return None;
+        }
+        let from = boundary(text, span.start.saturating_sub(AROUND).max(start));
+        let first_line = text[span.start..span.end].find('\n').map_or(span.end, |end| span.start + end);
+        let shown_end = boundary(text, first_line.min(span.start + AROUND));
+        let to = boundary(text, (shown_end + AROUND).min(end));
+        let cut = text[from..to].lines().next().unwrap_or_default();
+        let mut own = diagnostic.clone();
+        own.span = span.start - from..(shown_end - from).min(cut.len());
+        own.notes.iter_mut().for_each(|note| note.span = None);
+        let before = [text[..start].matches('\n').count(), text[start..from].chars().count()];
+        Some(Self { text: cut, diagnostic: own, before })
+    }
+}
+
+/// The nearest place at or before a byte at which a character begins.
+fn boundary(text: &str, at: usize) -> usize {
+    (0..=at).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
+}
+
+/// A part of a file, with the lines and columns of the whole.
+struct Part<'a> {
+    file: SimpleFile<&'a str, &'a str>,
+    before: [usize; 2],
+}
+
+impl<'a> Files<'a> for Part<'a> {
+    type FileId = ();
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&self, (): ()) -> Result<&'a str, Error> {
+        Ok(self.file.name())
+    }
+
+    fn source(&self, (): ()) -> Result<&'a str, Error> {
+        Ok(self.file.source())
+    }
+
+    fn line_index(&self, (): (), byte: usize) -> Result<usize, Error> {
+        self.file.line_index((), byte)
+    }
+
+    fn line_number(&self, (): (), line: usize) -> Result<usize, Error> {
+        Ok(self.file.line_number((), line)? + self.before[0])
+    }
+
+    fn column_number(&self, (): (), line: usize, byte: usize) -> Result<usize, Error> {
+        let before = if line == 0 { self.before[1] } else { 0 };
+        Ok(self.file.column_number((), line, byte)? + before)
+    }
+
+    fn line_range(&self, (): (), line: usize) -> Result<Range<usize>, Error> {
+        self.file.line_range((), line)
+    }
+}
+
+fn show_in(
+    diagnostic: &Diagnostic,
+    text: &str,
+    before: [usize; 2],
+    buffer: &mut Buffer,
+) -> anyhow::Result<()> {
     let name = diagnostic.file.display().to_string();
-    let file = SimpleFile::new(&name, text);
+    let file = Part { file: SimpleFile::new(&name, text), before };
     let shown = match diagnostic.severity {
         Severity::Error => Shown::error(),
         Severity::Warning => Shown::warning(),
@@ -70,4 +163,30 @@ fn show(diagnostic: &Diagnostic, text: &str, buffer: &mut Buffer) -> Result<()> 
 /// A span that can be shown: not that of the file as a whole, and not beyond the text.
 fn place(span: &Range<usize>, text: &str) -> Option<Range<usize>> {
     (*span != (0..0) && span.start <= span.end && span.end <= text.len()).then(|| span.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn excerpt(text: &str, span: Range<usize>) -> Option<(String, String, [usize; 2])> {
+        let message = "wrong".to_owned();
+        let (severity, file, help) = (Severity::Error, "a.ron".into(), None);
+        let diagnostic = Diagnostic { severity, message, file, span, help, notes: Vec::new() };
+        Excerpt::of(&diagnostic, text)
+            .map(|cut| (cut.text.to_owned(), cut.text[cut.diagnostic.span.clone()].to_owned(), cut.before))
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        let text = format!("first\n{}HERE{}\nlast", "ä".repeat(100_000), "b".repeat(100_000));
+        let at = text.find("HERE").unwrap();
+        let (shown, marked, before) = excerpt(&text, at..at + 4).unwrap();
+        assert!(shown.len() <= LONGEST_LINE && marked == "HERE", "{shown}");
+        assert_eq!(before, [1, 100_000 - AROUND / 2]);
+        // A place that is itself too long.
+        let (shown, marked, _) = excerpt(&text, at..text.len() - 5).unwrap();
+        assert!(shown.len() <= LONGEST_LINE && marked.starts_with("HEREbb"), "{shown}");
+        assert_eq!(excerpt(&text, 0..5), None);
+    }
 }

@@ -40,6 +40,7 @@ mod whole_file;
 use std::process::ExitCode;
 
 use clap::Parser;
+use nucleus_graph::memory::Memory;
 
 use outcome::Outcome;
 use output::say;
@@ -50,11 +51,16 @@ use output::say;
 struct Arguments {
     #[command(subcommand)]
     command: commands::Command,
+    /// The memory that a scene may take by estimate, as `8G`; three quarters of the machine's if nothing is said.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = scene_file::parse_memory)]
+    memory: Option<Memory>,
 }
 
 fn main() -> ExitCode {
     interrupt::heed_file_size_limit();
-    match Arguments::parse().command.run() {
+    let Arguments { command, memory } = Arguments::parse();
+    memory.into_iter().for_each(scene_file::set_memory);
+    match command.run() {
         Ok(outcome) => having_told(outcome).into(),
         // Whoever reads our output has seen enough: `nucleus info x.mcap | head -3`.
         Err(error) if output::reader_has_gone(&error) => ExitCode::SUCCESS,

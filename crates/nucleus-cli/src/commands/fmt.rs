@@ -8,7 +8,7 @@ use clap::Args;
 use nucleus_graph::scene::{format_scene, read_scene_text};
 
 use crate::outcome::Outcome;
-use crate::{diagnostics, output};
+use crate::{diagnostics, output, scene_file};
 
 /// Writes scenes in canonical form: nodes by name, attributes in the order of their tables, comments kept.
 #[derive(Debug, Args)]
@@ -38,7 +38,7 @@ impl Fmt {
     }
 
     fn format(&self, path: &Path) -> Result<Outcome> {
-        let text = fs::read_to_string(path).with_context(|| format!("cannot read `{}`", path.display()))?;
+        let text = scene_file::text(path)?;
         let scene = match read_scene_text(&text, path) {
             Ok((scene, _)) => scene,
             Err(mistakes) => {

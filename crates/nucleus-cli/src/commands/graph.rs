@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use nucleus_graph::scene::read_scene;
+use nucleus_graph::scene::read_scene_text;
 
 use crate::outcome::Outcome;
-use crate::{diagnostics, output};
+use crate::{diagnostics, output, scene_file};
 
 /// Writes the nodes of a scene and all connections, those that the short form makes too, as a diagram.
 #[derive(Debug, Args)]
@@ -32,8 +32,8 @@ enum Format {
 impl Graph {
     /// Prints the diagram.
     pub fn run(self) -> Result<Outcome> {
-        let text = std::fs::read_to_string(&self.scene).unwrap_or_default();
-        let scene = match read_scene(&self.scene) {
+        let text = scene_file::text(&self.scene)?;
+        let scene = match read_scene_text(&text, &self.scene) {
             Ok((scene, _)) => scene,
             Err(mistakes) => {
                 diagnostics::print(&mistakes, &text)?;

@@ -47,6 +47,6 @@ fn what_is_no_scene_at_all_is_refused_by_name() {
     fs::write(folder.path().join("bytes.ron"), [0xff, 0xfe, 0x00]).unwrap();
     let check = |name: &str| nucleus(folder.path(), &["check", name]);
     assert_refused(&check("none.ron"), "cannot read `none.ron`: No such file");
-    assert_refused(&check("."), "`.` is a folder");
+    assert_refused(&check("."), "it is a folder, not a file");
     assert_refused(&check("bytes.ron"), "`bytes.ron` is not text");
 }
