@@ -1,43 +1,41 @@
 //! Bounce: what hit something leaves it with part of its speed, once the velocities of a step are known.
 
-use nalgebra::Vector3;
-
 use crate::collide::StepParts;
 use crate::collision::bounce::{Bounce, Hit};
 use crate::collision::mutual::Mutual;
 use crate::columns::Shared;
 use crate::frame::FrameInput;
 use crate::meet::motion;
-use crate::scalar::{Real, Row4, add, dot};
-use crate::schedule::Schedule;
+use crate::scalar::{Real, Row4, add};
+use crate::schedule::{Schedule, Span};
 use crate::solver::Solver;
 
 impl<R: Real> Solver<R> {
     /// Gives back, after the step, part of the speed to what hit something that bounces.
-    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, end: f64) {
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, span: Span) {
         // Slower than gravity makes things anew in every step nothing bounces.
         let slowest = R::from_f64(2.0 * frame.gravity.norm() * schedule.h);
         let rebound = Bounce { bounce: R::ZERO, slowest, h: R::from_f64(schedule.h) };
-        self.bounce_off_ground(frame, rebound);
+        self.bounce_off_ground(rebound, span);
         for cloth in 0..self.cloths.len() {
-            self.bounce_off_colliders(frame, rebound, end, cloth);
+            self.bounce_off_colliders(frame, rebound, span.to, cloth);
         }
         self.bounce_off_cloth(schedule, rebound);
     }
 
-    fn bounce_off_ground(&mut self, frame: &FrameInput, rebound: Bounce<R>) {
-        let Some(ground) = &frame.plane else { return };
-        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
-        let normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+    fn bounce_off_ground(&mut self, rebound: Bounce<R>, span: Span) {
         for cloth in 0..self.cloths.len() {
             let Some(terms) = self.ground_terms[cloth].filter(|terms| terms.bounces()) else { continue };
             for row in self.cloths[cloth].points() {
                 let (sides, hit) = (([row], [], &([R::ONE], [])), self.hit(row as usize));
                 let thickness = terms.thickness_at(&self.maps, sides, R::from_f64(terms.thickness));
                 let rebound = Bounce { bounce: terms.bounce_at(&self.maps, sides), ..rebound };
-                let height = self.heights[row as usize] + dot(normal, hit.displacement);
+                let Some(plane) = self.ground.in_step(span) else { return };
+                let height = plane.height_now(row, hit.displacement);
                 if rebound.bounce > R::ZERO && Bounce::touches(height, thickness) {
-                    self.set_velocity(row as usize, rebound.off(&hit, normal, [R::ZERO; 3]));
+                    let surface = plane.velocity(row, hit.displacement, rebound.h);
+                    let velocity = rebound.off(&hit, plane.normal(), surface);
+                    self.set_velocity(row as usize, velocity);
                 }
             }
         }

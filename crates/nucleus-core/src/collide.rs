@@ -2,14 +2,12 @@
 
 use std::sync::atomic::Ordering;
 
-use nalgebra::Vector3;
-
 use crate::collision::collider::ColliderState;
 use crate::collision::contact::Step;
+use crate::collision::ground::GroundContact;
 use crate::collision::maps::Maps;
 use crate::collision::mover::Mover;
 use crate::collision::pairs::PairList;
-use crate::collision::plane::Ground;
 use crate::collision::resolve::{Tally, hold_back, prove, release, resolve, stick};
 use crate::collision::terms::Terms;
 use crate::frame::FrameInput;
@@ -33,7 +31,7 @@ impl<R: Real> Solver<R> {
         watch: &mut dyn StepObserver,
     ) {
         watch.enter(Stage::FindPairs);
-        self.lift_from_ground(squeeze, frame, schedule, tally);
+        self.lift_from_ground(squeeze, schedule, span, tally);
         for cloth in 0..self.cloths.len() {
             if !self.can_touch(cloth) {
                 continue;
@@ -57,7 +55,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         if frame.plane.is_some() && self.ground_terms.iter().flatten().any(Terms::sticks) {
-            self.on_ground(1.0, frame, schedule, |ground, points| ground.stick(points));
+            self.on_ground(1.0, schedule, span, |ground, points| ground.stick(points));
         }
         for cloth in 0..self.cloths.len() {
             if self.terms_of(cloth).iter().flatten().any(Terms::sticks) {
@@ -168,8 +166,8 @@ impl<R: Real> Solver<R> {
         self.terms_of(cloth).iter().any(Option::is_some)
     }
 
-    fn lift_from_ground(&mut self, squeeze: f64, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) {
-        self.on_ground(squeeze, frame, schedule, |ground, points| {
+    fn lift_from_ground(&mut self, squeeze: f64, schedule: &Schedule<R>, span: Span, tally: &Tally) {
+        self.on_ground(squeeze, schedule, span, |ground, points| {
             tally.contacts.fetch_add(ground.lift(points), Ordering::Relaxed);
         });
     }
@@ -178,22 +176,20 @@ impl<R: Real> Solver<R> {
     fn on_ground(
         &mut self,
         squeeze: f64,
-        frame: &FrameInput,
         schedule: &Schedule<R>,
-        work: impl Fn(&Ground<'_, R>, std::ops::Range<u32>) + Sync,
+        span: Span,
+        work: impl Fn(&GroundContact<'_, R>, std::ops::Range<u32>) + Sync,
     ) {
-        let Some(ground) = &frame.plane else { return };
-        let Self { cloths, state, heights, ground_terms, maps, team, .. } = self;
-        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        let Self { cloths, state, ground, ground_terms, maps, team, .. } = self;
+        let Some(plane) = ground.in_step(span) else { return };
         let State { displacement, predicted, led, parted, start, .. } = state;
         let mover = Mover::new([displacement, led, parted], predicted);
         for (cloth, terms) in cloths.iter().zip(ground_terms) {
             let Some(terms) = *terms else { continue };
-            let ground = Ground {
+            let ground = GroundContact {
                 mover,
                 start,
-                height: heights,
-                normal: [normal.x, normal.y, normal.z].map(R::from_f64),
+                plane,
                 squeeze: R::from_f64(squeeze),
                 terms,
                 maps,

@@ -1,7 +1,6 @@
 //! The start of a frame: anchors move to where the points are, pins and colliders take up their motion, and
 //! rows take up the new anchors. From here to the end of the frame nothing is allocated that was not before.
 
-use crate::collision::plane;
 use crate::columns::Shared;
 use crate::frame::{FrameInput, Pin};
 use crate::scalar::{Real, Row4};
@@ -24,12 +23,7 @@ impl<R: Real> Solver<R> {
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);
         }
-        self.heights.clear();
-        if let Some(ground) = &frame.plane {
-            let normal = ground.normal.try_normalize(0.0).unwrap_or_else(nalgebra::Vector3::y);
-            self.up = [normal.x, normal.y, normal.z].map(R::from_f64);
-            plane::heights(&self.state.anchor, ground.origin, normal, &mut self.heights);
-        }
+        self.ground.begin_frame(frame.plane.as_ref(), &self.state.anchor);
     }
 
     fn move_anchors(&mut self) {

@@ -7,7 +7,7 @@ use crate::collision::narrow::shortest;
 use crate::collision::pairs::PairList;
 use crate::collision::terms::Terms;
 use crate::observe::Contact;
-use crate::scalar::{Real, dot};
+use crate::scalar::Real;
 use crate::solver::Solver;
 
 /// Share of the thickness up to which two elements touch. Passes keep them apart by all of it along a plane, to which
@@ -59,7 +59,7 @@ impl<R: Real> Solver<R> {
 
     /// Whether anything of this scene can touch anything.
     fn can_meet(&self) -> bool {
-        !self.heights.is_empty() || !self.pairs.is_empty() || self.mutual.is_some()
+        self.ground.is_there() || !self.pairs.is_empty() || self.mutual.is_some()
     }
 
     /// How contact stands at each place of the solver.
@@ -72,16 +72,13 @@ impl<R: Real> Solver<R> {
     }
 
     fn on_the_ground(&self, ladder: &mut Ladder) {
-        if self.heights.is_empty() {
-            return;
-        }
         let grounded = self.cloths.iter().zip(&self.ground_terms);
         for (cloth, terms) in grounded.filter_map(|(cloth, terms)| Some((cloth, terms.as_ref()?))) {
             for row in cloth.points() {
                 let thickness = self.kept(terms, [row], [R::ONE]);
-                let moved = self.state.displacement[row as usize].xyz();
-                let height = self.heights[row as usize] + dot(self.up, moved);
-                ladder.near(row, height.to_f64() / thickness);
+                if let Some(height) = self.ground.height_at_end(self.state.position(row)) {
+                    ladder.near(row, height / thickness);
+                }
             }
         }
     }

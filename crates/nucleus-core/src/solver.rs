@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::builder::ModelBuilder;
 use crate::collision::collider::ColliderState;
 use crate::collision::foresee::Cover;
+use crate::collision::ground::Ground;
 use crate::collision::maps::Maps;
 use crate::collision::mutual::Mutual;
 use crate::collision::pairs::PairList;
@@ -45,10 +46,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) mutual: Option<Mutual<R>>,
     /// Whether anything touched anything in the last frame.
     pub(crate) touches: bool,
-    /// Heights of anchors above the ground plane; empty where the scene uses none.
-    pub(crate) heights: Vec<R>,
-    /// The normal of the ground plane, where there is one.
-    pub(crate) up: [R; 3],
+    /// The ground plane.
+    pub(crate) ground: Ground<R>,
     pub(crate) team: Team,
 }
 
@@ -94,8 +93,7 @@ impl<R: Real> Solver<R> {
             cloths: models,
             colliders,
             state,
-            heights: Vec::new(),
-            up: [R::ZERO, R::ONE, R::ZERO],
+            ground: Ground::default(),
             team: Team::new(threads),
         };
         solver.anchor_rows();

@@ -137,7 +137,7 @@ impl<R: Real> Solver<R> {
         }
         watch.enter(Stage::Velocity);
         self.follow_positions(schedule);
-        self.bounce(frame, schedule, span.to);
+        self.bounce(frame, schedule, span);
         watch.step(span.to, self);
         ControlFlow::Continue(())
     }

@@ -3,8 +3,8 @@
 mod scenes;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, Moment, Pin, PointId,
-    ResistanceModel, Solver, StateView, StepObserver, Surface,
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, GroundPlane, Moment, Pin,
+    PointId, ResistanceModel, Solver, StateView, StepObserver, Surface,
 };
 use scenes::{
     INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
@@ -326,4 +326,48 @@ fn a_cloth_that_does_not_collide_has_no_collision_pass() {
     let bare = Solver::<f32>::new(one_cloth(grid(5, 5, Vec3::x(), Vec3::z()), lists), 1);
     let names: Vec<_> = bare.passes(&frame(3, physical(24.0))).iter().map(|pass| pass.name).collect();
     assert_eq!(names, ["predict", "stretch"]);
+}
+
+/// A sheet at rest on the ground, after `frames` frames in which the plane is where `plane_at` says for a share of them; the lowest height
+/// of any point above the plane, over the thickness, and the largest speed.
+fn carried_by_a_plane(frames: u32, plane_at: impl Fn(f64) -> GroundPlane) -> (f64, f64) {
+    let thickness = 0.005;
+    let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
+    sheet.positions.iter_mut().for_each(|p| p.y = thickness);
+    let builder = one_cloth(sheet, ClothLists { cross_links: false, ..ClothLists::ALL });
+    let mut solver: Solver = Solver::new(builder, 1);
+    let cloths = vec![ClothFrame { thickness, friction: 0.5, ..still() }];
+    let (mut least, mut fastest) = (f64::INFINITY, 0.0f64);
+    for frame_number in 0..=frames {
+        let plane = plane_at(f64::from(frame_number) / f64::from(frames));
+        let input = FrameInput { plane: Some(plane), cloths: cloths.clone(), ..frame(3, physical(48.0)) };
+        solver.step(&input, &mut ());
+        let up = plane.normal.normalize();
+        for point in 0..81 {
+            let place = solver.point(ClothId(0), point);
+            least = least.min((place - plane.origin).dot(&up) / thickness);
+        }
+        let mut velocities = Vec::new();
+        solver.velocities(ClothId(0), 1.0, &mut velocities);
+        fastest = velocities.iter().map(|v| f64::from(v[1].abs())).fold(fastest, f64::max);
+    }
+    (least, fastest)
+}
+
+#[test]
+fn a_ground_plane_that_rises_at_2_4_m_per_second_carries_a_sheet_along() {
+    let rise = |share: f64| GroundPlane { origin: Vec3::y() * share, ..ground(0.5) };
+    let (least, fastest) = carried_by_a_plane(10, rise);
+    assert!(least > 0.999, "the sheet comes to {least} of its thickness above the plane");
+    assert!((2.3..2.6).contains(&fastest), "it moves at {fastest} m/s where the plane rises at 2.4");
+}
+
+#[test]
+fn a_ground_plane_that_tilts_by_20_degrees_stays_below_a_sheet() {
+    let tilt = |share: f64| {
+        let angle = 20f64.to_radians() * share;
+        GroundPlane { normal: Vec3::new(angle.sin(), angle.cos(), 0.0), ..ground(0.5) }
+    };
+    let (least, _) = carried_by_a_plane(10, tilt);
+    assert!(least > 0.999, "the sheet comes to {least} of its thickness above the plane");
 }

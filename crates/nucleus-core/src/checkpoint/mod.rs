@@ -33,7 +33,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// What the bytes are; counted up whenever their layout changes.
-const KIND: [u8; 8] = *b"solver 3";
+const KIND: [u8; 8] = *b"solver 4";
 
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
@@ -125,8 +125,8 @@ impl<R: Real> Solver<R> {
 kept!([R: Real] Solver<R> {
     columns: [far, strayed],
     values: [terms, ground_terms, touches],
-    parts: [state, collider_states, mutual],
-    anew: [cloths, colliders, pairs, spans, windows, drifts, near, maps, heights, up, team],
+    parts: [state, collider_states, mutual, ground],
+    anew: [cloths, colliders, pairs, spans, windows, drifts, near, maps, team],
 });
 
 kept!([R: Real] State<R> {

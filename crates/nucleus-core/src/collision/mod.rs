@@ -12,7 +12,7 @@
 //! | what contacts move | [`mover`] |
 //! | cloth against itself and other cloth | [`mutual`] |
 //! | points inside a collider, and how they are led out | [`trapped`] |
-//! | the ground plane | [`plane`] |
+//! | the ground plane | [`ground`] |
 //! | stickiness | [`stick`] |
 //! | bounce, once velocities are known | [`bounce`] |
 //! | on which terms two objects meet, and maps of them | [`terms`], [`maps`] |
@@ -25,12 +25,12 @@ pub mod collider;
 pub mod contact;
 pub mod foresee;
 pub mod friction;
+pub mod ground;
 pub mod maps;
 pub mod mover;
 pub mod mutual;
 pub mod narrow;
 pub mod pairs;
-pub mod plane;
 pub mod resolve;
 pub mod search;
 pub mod skin;

@@ -28,11 +28,11 @@ node_table! {
     }
     "Ground Plane" {
         /// Adds an endless ground plane that everything collides with.
-        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::collision::plane");
+        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::collision::ground");
         /// Any point of the ground plane.
-        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::collision::plane");
+        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::collision::ground");
         /// The side of the ground plane on which things stay; its length does not matter.
-        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::collision::plane");
+        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::collision::ground");
         /// How much speed is kept when something bounces off the ground plane.
         PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::bounce");
         /// Friction of the ground plane, added to the other side's.
