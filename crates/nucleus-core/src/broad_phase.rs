@@ -53,8 +53,8 @@ impl<R: Real> Solver<R> {
         let foreseen = Foreseen { cover: near, drift: drifts[cloth] };
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             if let Some(terms) = &terms[cloth * colliders.len() + list.collider] {
-                let reach = R::from_f64(terms.thickness * terms.reach);
-                list.activate(&foreseen, window, reach, &cloths[cloth].blocks, team);
+                let thickness = R::from_f64(terms.thickness);
+                list.activate(&foreseen, window, thickness, terms.reach, &cloths[cloth].blocks, team);
             }
         }
     }

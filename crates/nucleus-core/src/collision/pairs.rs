@@ -52,7 +52,13 @@ pub struct Active {
     pub edge_edge: Vec<u32>,
     /// Of `face_point`.
     pub face_point: Vec<u32>,
+    /// Those of `point_face`, `edge_edge` and `face_point` that the motion bounds of the window do not certify: at the end of
+    /// a time step each of them needs a proof.
+    pub uncertified: [Vec<u32>; 3],
 }
+
+/// Share of the thickness above which a gap that holds through the window is a certificate: far above rounding error.
+const CERTIFIED: f64 = 0.02;
 
 impl<R: Real> PairList<R> {
     /// No pairs yet.
@@ -89,6 +95,7 @@ impl<R: Real> PairList<R> {
         self.active.runs.clear();
         self.active.edge_edge.clear();
         self.active.face_point.clear();
+        self.active.uncertified.iter_mut().for_each(Vec::clear);
     }
 
     /// Follows anchors that move to where the points are.
@@ -98,12 +105,14 @@ impl<R: Real> PairList<R> {
         self.face_point.iter_mut().for_each(|pair| pair.move_anchors(moved));
     }
 
-    /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it.
+    /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it: those that come
+    /// nearer than `reach` times the thickness.
     pub fn activate(
         &mut self,
         foreseen: &Foreseen<'_, R>,
         window: [f64; 2],
         thickness: R,
+        reach: f64,
         blocks: &Blocks,
         team: &Team,
     ) {
@@ -112,19 +121,25 @@ impl<R: Real> PairList<R> {
         let window = window.map(|time| (R::from_f64(share(time)), foreseen.gone(time)));
         let all = |pairs: usize| 0..pairs as u32;
         // Two tasks of about the same length; nobody else has what is theirs.
-        let Active { point_face: of_points, edge_edge: of_edges, face_point: of_faces, runs } = active;
-        let (points, elements) = (Mutex::new(&mut *of_points), Mutex::new((of_edges, of_faces)));
+        let Active { point_face: of_points, edge_edge: of_edges, face_point: of_faces, runs, uncertified } =
+            active;
+        let [points_open, edges_open, faces_open] = uncertified;
+        let points = Mutex::new((&mut *of_points, points_open));
+        let elements = Mutex::new(((of_edges, edges_open), (of_faces, faces_open)));
+        let reach = [thickness * R::from_f64(reach), thickness * R::from_f64(CERTIFIED)];
         team.phase(2, |task| match task {
             0 => {
                 let Ok(mut found) = points.lock() else { return };
                 let order = by_point.iter().map(|&key| key as u32);
-                pick(point_face, order, &mut found, foreseen, window, thickness, trapped);
+                let (found, open) = &mut *found;
+                pick(point_face, order, [found, open], foreseen, window, reach, trapped);
             }
             _ => {
                 let Ok(mut found) = elements.lock() else { return };
-                let (edges, faces) = &mut *found;
-                pick(edge_edge, all(edge_edge.len()), edges, foreseen, window, thickness, trapped);
-                pick(face_point, all(face_point.len()), faces, foreseen, window, thickness, trapped);
+                let ((edges, edges_open), (faces, faces_open)) = &mut *found;
+                let (edges, faces) = ([&mut **edges, &mut **edges_open], [&mut **faces, &mut **faces_open]);
+                pick(edge_edge, all(edge_edge.len()), edges, foreseen, window, reach, trapped);
+                pick(face_point, all(face_point.len()), faces, foreseen, window, reach, trapped);
             }
         });
         let place =
@@ -138,16 +153,25 @@ impl<R: Real> PairList<R> {
 fn pick<R: Real, const N: usize, const M: usize>(
     pairs: &[Pair<R, N, M>],
     order: impl Iterator<Item = u32>,
-    active: &mut Vec<u32>,
+    [active, uncertified]: [&mut Vec<u32>; 2],
     foreseen: &Foreseen<'_, R>,
     window: [(R, [R; 3]); 2],
-    thickness: R,
+    [reach, certified]: [R; 2],
     trapped: &Trapped,
 ) {
     active.clear();
+    uncertified.clear();
     let is_held = |pair: &Pair<R, N, M>| {
         trapped.points.is_empty() || !pair.points.iter().any(|&point| trapped.holds(point))
     };
-    let near = |pair: &Pair<R, N, M>| pair.least_gap(window, foreseen) < thickness && is_held(pair);
-    active.extend(order.filter(|&pair| near(&pairs[pair as usize])));
+    for index in order {
+        let pair = &pairs[index as usize];
+        let gap = pair.least_gap(window, foreseen);
+        if gap < reach && is_held(pair) {
+            active.push(index);
+            if gap <= certified {
+                uncertified.push(index);
+            }
+        }
+    }
 }

@@ -52,6 +52,8 @@ pub struct Meeting<R> {
     pub terms: u32,
     /// Whether the distance is less than the cloth's, because the two are neighbours at rest.
     pub limited: bool,
+    /// Whether motion bounds certify that the two keep a gap.
+    pub certified: bool,
     /// Whether one side is a free point, which can go farther in a step than anything is large.
     pub is_swept: bool,
     /// Whether they have been pushed apart with friction.
@@ -76,7 +78,7 @@ pub struct Near<R, const N: usize, const M: usize> {
     pub(super) meeting: Meeting<R>,
 }
 
-item!([R: Real] Meeting<R> { thickness: R, terms: u32, limited: bool, is_swept: bool, rubs: bool });
+item!([R: Real] Meeting<R> { thickness: R, terms: u32, limited: bool, certified: bool, is_swept: bool, rubs: bool });
 
 impl<R: Real, const N: usize, const M: usize> Item for Near<R, N, M> {
     const SIZE: usize = <Points<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + Meeting::<R>::SIZE;

@@ -18,6 +18,9 @@ impl<R: Real, const N: usize, const M: usize> Near<R, N, M> {
     /// if that proves it. What was not apart when the step began has nothing to lose.
     #[inline]
     pub fn prove(&mut self, step: &Motion<'_, R>) -> bool {
+        if self.meeting.certified {
+            return true;
+        }
         let now = self.now(step);
         self.gap(&now) > grain(&now) || self.may_pass(step) || self.prove_otherwise(step, now)
     }

@@ -23,7 +23,12 @@ pub struct Kept {
     pub thickness: f32,
     /// Whether that is less than the cloth's, because the two are neighbours at rest.
     pub limited: bool,
+    /// Whether the motion bounds certify that the two keep a gap while they hold.
+    pub certified: bool,
 }
+
+/// Share of the thickness above which a gap that holds through the span is a certificate: far above rounding error.
+const CERTIFIED: f32 = 0.02;
 
 impl Seen {
     /// Looks at some points.
@@ -78,7 +83,8 @@ impl Seen {
             return None;
         }
         let kept = thickness.min(at_rest * OF_REST_DISTANCE);
-        (least < kept * reach).then_some(Kept { thickness: kept, limited: kept < thickness })
+        let certified = least > kept * CERTIFIED;
+        (least < kept * reach).then_some(Kept { thickness: kept, limited: kept < thickness, certified })
     }
 }
 

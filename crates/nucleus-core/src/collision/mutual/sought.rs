@@ -245,6 +245,7 @@ impl<'a, R: Real> Pair<'a, R> {
             thickness: R::from_f64(f64::from(kept.thickness)),
             terms: ours * look.cloths.len() as u32 + theirs,
             limited: kept.limited,
+            certified: kept.certified,
             is_swept: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
             rubs: false,
         };
