@@ -25,9 +25,20 @@ pub struct Form {
     pub doc: &'static str,
     /// Names of its arguments.
     pub parameters: &'static [&'static str],
+    /// Which values they take.
+    pub values: Values,
     bound: Bound,
     limit: fn(&[f64]) -> f64,
     figure: fn(&Seen, &[f64]) -> Option<f64>,
+}
+
+/// Which values the arguments of a check take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Values {
+    /// Any number.
+    Numbers,
+    /// Whole numbers from 0.
+    Counts,
 }
 
 /// On which side of its limit a figure has to stay.
@@ -70,27 +81,66 @@ struct Seen<'a> {
 /// The check that only an audit can answer.
 const NO_CROSSING: &str = "noCrossing";
 
-static FORMS: [Form; 8] = [
+/// The check that limits unresolved pairs; a run without it is held to none.
+pub const MAX_UNRESOLVED: &str = "maxUnresolved";
+/// The check that limits points inside colliders; a run without it has to end with none.
+pub const MAX_TRAPPED: &str = "maxTrapped";
+/// The check that limits edges of cloth through faces; a run without it has to end with none.
+pub const MAX_TANGLED: &str = "maxTangled";
+/// The check that limits strain; a run without it warns of large strain.
+pub const MAX_STRETCH: &str = "maxStretch";
+
+static FORMS: [Form; 11] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
         parameters: &[],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
     },
     Form {
+        name: MAX_UNRESOLVED,
+        doc: "No frame leaves more pairs of elements unresolved than this. Without this check a run fails with the first.",
+        parameters: &["pairs"],
+        values: Values::Counts,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
+    },
+    Form {
+        name: MAX_TRAPPED,
+        doc: "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
+        parameters: &["points"],
+        values: Values::Counts,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.trapped as f64),
+    },
+    Form {
+        name: MAX_TANGLED,
+        doc: "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
+        parameters: &["edges"],
+        values: Values::Counts,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |seen, _| Some(seen.report.tangled as f64),
+    },
+    Form {
         name: NO_CROSSING,
         doc: "Nothing is inside anything at the end of a frame that was not so at the start: cloth in itself, in other cloth, in a collider. With `--audit` nothing passes through on the way either.",
         parameters: &[],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, _| seen.passed_through.map(|count| count as f64),
     },
     Form {
-        name: "maxStretch",
+        name: MAX_STRETCH,
         doc: "No link is longer than at rest by more than this share.",
         parameters: &["strain"],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
         figure: |seen, _| Some(seen.report.max_strain),
@@ -99,6 +149,7 @@ static FORMS: [Form; 8] = [
         name: "maxStretch99",
         doc: "99 % of the links are not longer than at rest by more than this share.",
         parameters: &["strain"],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
         figure: |seen, _| Some(seen.report.strain_99),
@@ -107,6 +158,7 @@ static FORMS: [Form; 8] = [
         name: "minGap",
         doc: "Nothing comes closer to a collider than this share of the thickness.",
         parameters: &["gap"],
+        values: Values::Numbers,
         bound: Bound::AtLeast,
         limit: |arguments| arguments[0],
         figure: |seen, _| Some(seen.report.min_gap),
@@ -115,6 +167,7 @@ static FORMS: [Form; 8] = [
         name: "finite",
         doc: "Every position and velocity is a finite number.",
         parameters: &[],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, _| Some(if seen.report.finite { 0.0 } else { 1.0 }),
@@ -123,6 +176,7 @@ static FORMS: [Form; 8] = [
         name: "untangledBy",
         doc: "From this frame on no edge of cloth goes through a face of cloth.",
         parameters: &["frame"],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.tangled as f64),
@@ -131,6 +185,7 @@ static FORMS: [Form; 8] = [
         name: "restsBy",
         doc: "From this frame on the root mean square speed, in m/s, is not above this.",
         parameters: &["frame", "speed"],
+        values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[1],
         figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then(|| seen.speed()),

@@ -33,6 +33,22 @@ fn one_unresolved_pair_is_a_penetration() {
 }
 
 #[test]
+fn a_scene_may_allow_a_count_in_each_frame() {
+    let count = |pairs_unresolved, trapped, tangled| StepReport {
+        pairs_unresolved,
+        trapped,
+        tangled,
+        ..StepReport::default()
+    };
+    let frames = [count(3, 5, 7), count(3, 5, 7), count(0, 0, 0)];
+    for (check, most) in [("maxUnresolved", 3.0), ("maxTrapped", 5.0), ("maxTangled", 7.0)] {
+        let outcome = judge(check, &[most], &frames);
+        assert_eq!((outcome.passed, outcome.worst), (true, Some((most, 2))), "{check}");
+        assert!(!judge(check, &[most - 1.0], &frames).passed, "{check}");
+    }
+}
+
+#[test]
 fn nan_never_passes_and_stays() {
     let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
     let outcome = judge("maxStretch", &[0.02], &[strain(f64::NAN), strain(0.0)]);

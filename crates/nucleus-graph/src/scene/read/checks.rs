@@ -1,12 +1,12 @@
 //! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
 
-use crate::checks::{Check, Form};
+use crate::checks::{Check, Form, Values};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::fields::{Fields, listed};
-use super::value::{found, number};
+use super::value::{found, number, whole_number};
 
 /// Reads what must hold.
 pub(super) fn read(node: &Node, findings: &mut Findings) -> Vec<Check> {
@@ -65,9 +65,22 @@ fn arguments(form: &Form, node: &Node, findings: &mut Findings) -> Option<Vec<f6
         .parameters
         .iter()
         .zip(values)
-        .map(|(parameter, value)| number(&label(parameter), value, findings))
+        .map(|(parameter, value)| match form.values {
+            Values::Numbers => number(&label(parameter), value, findings),
+            Values::Counts => count(&label(parameter), value, findings),
+        })
         .collect();
     values.into_iter().collect()
+}
+
+/// A whole number from 0.
+fn count(label: &str, node: &Node, findings: &mut Findings) -> Option<f64> {
+    let count = whole_number(label, node, findings)?;
+    if count < 0.0 {
+        findings.error(&node.span, format!("{label} takes a whole number from 0, found {count}"));
+        return None;
+    }
+    Some(count)
 }
 
 fn all_names() -> String {

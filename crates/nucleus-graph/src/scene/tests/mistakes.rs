@@ -420,6 +420,23 @@ fn checks_take_what_they_take() {
     );
 }
 
+#[test]
+fn checks_that_count_take_whole_numbers_from_zero() {
+    let found = |check: &str| {
+        let text = format!(
+            "Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])"
+        );
+        said(&text)[0].1.clone()
+    };
+    for (check, parameter) in [("maxUnresolved", "pairs"), ("maxTrapped", "points"), ("maxTangled", "edges")]
+    {
+        let of = format!("`{parameter}` of `{check}` takes a whole number");
+        assert_eq!(found(&format!("{check}(-1)")), format!("{of} from 0, found -1"));
+        assert_eq!(found(&format!("{check}(0.5)")), format!("{of}, found 0.5"));
+        assert_eq!(found(check), format!("`{check}` takes `{parameter}`"));
+    }
+}
+
 /// What is said where a scene may take so many bytes.
 fn said_within(text: &str, bytes: u64) -> Vec<(String, Option<String>)> {
     let memory = crate::memory::Memory(bytes);
