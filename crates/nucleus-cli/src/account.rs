@@ -112,17 +112,40 @@ pub struct Account {
     /// The smallest gap over thickness, and its frame; nothing if nothing ever came near.
     pub smallest_gap: Option<(f64, i32)>,
     /// Pairs of elements that were not kept apart, over all time steps.
-    pub pairs_unresolved: u64,
-    /// Points inside colliders: the most in a frame, and how many at the end.
-    pub trapped: [u64; 2],
-    /// The same for edges of cloth through faces of cloth.
-    pub tangled: [u64; 2],
+    pub pairs_unresolved: Count,
+    /// Points inside colliders.
+    pub trapped: Count,
+    /// Edges of cloth through faces of cloth.
+    pub tangled: Count,
     /// The first frame in which something was not a finite number.
     pub not_finite: Option<i32>,
     /// How much of what frames brought could not be used, over all frames.
     pub refused: u64,
     /// The first of that, and its frame.
     pub first_refused: Option<(Refused, i32)>,
+}
+
+/// Something that is counted in each frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Count {
+    /// Over all frames.
+    pub total: u64,
+    /// The most in a frame.
+    pub most: u64,
+    /// The first frame with that many.
+    pub frame: i32,
+    /// In the last frame.
+    pub end: u64,
+}
+
+impl Count {
+    fn add(&mut self, count: u64, frame: i32) {
+        if count > self.most {
+            (self.most, self.frame) = (count, frame);
+        }
+        self.total += count;
+        self.end = count;
+    }
 }
 
 impl Account {
@@ -145,9 +168,9 @@ impl Account {
         {
             self.smallest_gap = Some((gap, frame));
         }
-        self.pairs_unresolved += figures.pairs_unresolved;
-        self.trapped = [self.trapped[0].max(figures.trapped), figures.trapped];
-        self.tangled = [self.tangled[0].max(figures.tangled), figures.tangled];
+        self.pairs_unresolved.add(figures.pairs_unresolved, frame);
+        self.trapped.add(figures.trapped, frame);
+        self.tangled.add(figures.tangled, frame);
         self.refused += figures.refused;
         self.first_refused = self.first_refused.or(figures.first_refused.map(|what| (what, frame)));
         if !figures.finite {
@@ -193,7 +216,15 @@ mod tests {
     fn the_first_frame_that_is_not_finite_is_named() {
         let bad = StepReport { finite: false, pairs_unresolved: 2, ..StepReport::default() };
         let account = account(&[StepReport::default(), bad, bad]);
-        assert_eq!((account.not_finite, account.pairs_unresolved), (Some(3), 4));
+        assert_eq!((account.not_finite, account.pairs_unresolved.total), (Some(3), 4));
+    }
+
+    #[test]
+    fn counts_keep_their_first_worst_frame_and_the_last_one() {
+        let trapped = |trapped| StepReport { trapped, ..StepReport::default() };
+        let account = account(&[trapped(0), trapped(4), trapped(4), trapped(1)]);
+        assert_eq!(account.trapped, Count { total: 9, most: 4, frame: 3, end: 1 });
+        assert_eq!(account.tangled, Count::default());
     }
 
     #[test]

@@ -35,6 +35,7 @@ mod session;
 mod simulate;
 mod summary;
 mod threads;
+mod trouble;
 mod whole_file;
 
 use std::process::ExitCode;

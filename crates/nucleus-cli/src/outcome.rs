@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 /// Shown at the end of `nucleus --help`.
 pub const EXIT_CODES: &str = "\
-Exit codes: 0 all is well; 1 trouble was found (a check failed, a disk was full, a cache has lost frames); 2 it could not \
-start; 130 it was interrupted (Ctrl-C) and has closed its cache in order.";
+Exit codes: 0 all is well; 1 trouble was found (a check failed, contact left something unresolved, a disk was full, a cache \
+has lost frames); 2 it could not start; 130 it was interrupted (Ctrl-C) and has closed its cache in order.";
 
 /// The exit code of a command that could not start.
 pub const COULD_NOT_START: u8 = 2;

@@ -64,7 +64,7 @@ impl Progress {
     }
 }
 
-/// `12.4 ms/frame, strain 1.2 %, gap 0.98`.
+/// `12.4 ms/frame, strain 1.2 %, gap 0.98, 36 pairs unresolved`.
 fn state(account: &Account) -> String {
     let mut state = format!("{} ms/frame", figures::number(account.milliseconds()));
     if let Some((strain, _)) = account.worst_strain {
@@ -72,6 +72,10 @@ fn state(account: &Account) -> String {
     }
     if let Some((gap, _)) = account.smallest_gap {
         state += &format!(", gap {}", figures::number(gap));
+    }
+    let unresolved = account.pairs_unresolved.total;
+    if unresolved > 0 {
+        state += &format!(", {} unresolved", figures::count(unresolved as usize, "pair"));
     }
     state
 }

@@ -9,10 +9,11 @@ use nucleus_graph::checks::{self, Bound};
 use nucleus_graph::compile::{Object, ObjectKind};
 use serde_json::{Value, json};
 
-use crate::account::Account;
+use crate::account::{Account, Count};
 use crate::figures;
 use crate::outcome::Outcome;
 use crate::simulate::Ending;
+use crate::trouble;
 
 /// A run that has ended.
 pub struct Summary<'a> {
@@ -34,13 +35,23 @@ impl Summary<'_> {
     pub fn outcome(&self) -> Outcome {
         match self.ending {
             Ending::Interrupted | Ending::Stopped(_) => Outcome::Interrupted,
-            Ending::Done if self.is_clean() && self.checks.iter().all(|check| check.passed) => Outcome::Fine,
+            Ending::Done if self.is_clean() => Outcome::Fine,
             _ => Outcome::Trouble,
         }
     }
 
     fn is_clean(&self) -> bool {
         self.audit.is_none_or(|audit| audit.account().is_clean())
+            && self.checks.iter().all(|check| check.passed)
+            && self.unseparated().is_empty()
+    }
+
+    fn unseparated(&self) -> Vec<String> {
+        trouble::unseparated(&self.account, self.checks, self.audit.is_some())
+    }
+
+    fn warning(&self) -> Option<String> {
+        trouble::stretched(&self.account, self.checks)
     }
 
     /// For people.
@@ -56,22 +67,6 @@ impl Summary<'_> {
         if let Some((gap, frame)) = account.smallest_gap {
             writeln!(text, "smallest gap {} of the thickness, at frame {frame}", figures::number(gap))?;
         }
-        if account.pairs_unresolved > 0 {
-            let pairs = figures::count(account.pairs_unresolved as usize, "pair");
-            writeln!(
-                text,
-                "{pairs} of elements unresolved, over all time steps: they may have passed each other"
-            )?;
-        }
-        let [trapped, tangled] = [account.trapped, account.tangled];
-        if trapped[0] > 0 {
-            let points = figures::count(trapped[0] as usize, "point");
-            writeln!(text, "{points} inside a collider at the most, {} at the end", trapped[1])?;
-        }
-        if tangled[0] > 0 {
-            let edges = figures::count(tangled[0] as usize, "edge");
-            writeln!(text, "{edges} of cloth through cloth at the most, {} at the end", tangled[1])?;
-        }
         if let Some((what, frame)) = account.first_refused {
             let (what, count) =
                 (refused(what, self.objects), figures::count(account.refused as usize, "value"));
@@ -81,6 +76,10 @@ impl Summary<'_> {
             writeln!(text, "{}", check_line(outcome))?;
         }
         self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
+        let tolerated = trouble::tolerated(account, self.checks);
+        for line in tolerated.into_iter().chain(self.unseparated()).chain(self.warning()) {
+            writeln!(text, "{line}")?;
+        }
         text += &self.ending_line();
         if let Some((path, bytes)) = &self.recorded {
             let (path, size) = (path.display(), figures::bytes(*bytes));
@@ -141,9 +140,12 @@ impl Summary<'_> {
             "milliseconds_per_frame": account.milliseconds(),
             "worst_strain": at(account.worst_strain),
             "smallest_gap": at(account.smallest_gap),
-            "pairs_unresolved": account.pairs_unresolved,
-            "trapped": { "most": account.trapped[0], "end": account.trapped[1] },
-            "tangled": { "most": account.tangled[0], "end": account.tangled[1] },
+            "pairs_unresolved": account.pairs_unresolved.total,
+            "most_unresolved": most(&account.pairs_unresolved),
+            "trapped": lasting(&account.trapped),
+            "tangled": lasting(&account.tangled),
+            "not_separated": self.unseparated(),
+            "warning": self.warning(),
             "refused": account.refused,
             "first_refused": account.first_refused.map(|(what, _)| refused(what, self.objects)),
             "checks": checks,
@@ -152,6 +154,16 @@ impl Summary<'_> {
             "bytes": bytes,
         }})
     }
+}
+
+/// The worst frame of a count; nothing if it never was more than zero.
+fn most(count: &Count) -> Option<Value> {
+    (count.most > 0).then(|| json!({ "value": count.most, "frame": count.frame }))
+}
+
+fn lasting(count: &Count) -> Value {
+    let frame = (count.most > 0).then_some(count.frame);
+    json!({ "most": count.most, "frame": frame, "end": count.end })
 }
 
 /// `point 17 of `ball` was no usable position, and was held where it was`.

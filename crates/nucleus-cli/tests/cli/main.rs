@@ -15,3 +15,4 @@ mod run;
 mod sample;
 mod scenes;
 mod trade;
+mod trouble;
