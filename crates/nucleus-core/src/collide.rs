@@ -55,7 +55,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         if frame.plane.is_some() && self.ground_terms.iter().flatten().any(Terms::sticks) {
-            self.on_ground(1.0, schedule, span, |ground, points| ground.stick(points));
+            self.on_ground(1.0, schedule, span, |ground, points| ground.adhere(points));
         }
         for cloth in 0..self.cloths.len() {
             if self.terms_of(cloth).iter().flatten().any(Terms::sticks) {
@@ -168,7 +168,7 @@ impl<R: Real> Solver<R> {
 
     fn lift_from_ground(&mut self, squeeze: f64, schedule: &Schedule<R>, span: Span, tally: &Tally) {
         self.on_ground(squeeze, schedule, span, |ground, points| {
-            tally.contacts.fetch_add(ground.lift(points), Ordering::Relaxed);
+            tally.contacts.fetch_add(ground.resolve(points), Ordering::Relaxed);
         });
     }
 

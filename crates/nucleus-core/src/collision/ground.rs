@@ -1,7 +1,7 @@
-//! The ground plane: every point of a cloth stays above it by its thickness, with friction.
+//! The ground plane: a contact source that keeps every point of a cloth above it by its thickness, with friction.
 //!
-//! A plane has no far side to pass to and no edges, so a point needs no pair: its height is all there is to find. The plane
-//! moves within a frame from where the last one left it, as colliders do.
+//! The half-space below it has no far side and no edges, so a point needs no broad phase: its height is the gap. The plane
+//! moves within a frame from where the last one left it, as colliders do (§2.4).
 
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ impl<R: Real> Ground<R> {
         self.end.is_some()
     }
 
-    /// Height of a place above the plane when the frame is over, in metres; nothing without a plane.
+    /// Height of a place above the plane when the frame is over, in metres; `None` without a plane.
     pub fn height_at_end(&self, place: [f64; 3]) -> Option<f64> {
         self.end.map(|plane| plane.height(place))
     }
@@ -142,7 +142,7 @@ impl<R: Real> GroundStep<'_, R> {
     }
 }
 
-/// The plane as a cloth meets it in one step.
+/// Contact of one cloth with the plane in one time step.
 pub struct GroundContact<'a, R> {
     /// Positions of the points.
     pub mover: Mover<'a, R>,
@@ -152,40 +152,40 @@ pub struct GroundContact<'a, R> {
     pub plane: GroundStep<'a, R>,
     /// The share of every thickness that is kept.
     pub squeeze: R,
-    /// How the cloth meets it.
+    /// The contact material of the two.
     pub terms: Terms<R>,
-    /// What the cloth's points bring into a contact beyond their cloth.
+    /// Vertex maps of contact attributes.
     pub maps: &'a Maps<R>,
     /// Length of the step in seconds.
     pub h: R,
 }
 
 impl<R: Real> GroundContact<'_, R> {
-    /// Lifts the points of a run to the thickness; how many were pressed against it.
-    pub fn lift(&self, points: Range<u32>) -> u64 {
+    /// Pushes the points of a range to the thickness; returns how many it pushed.
+    pub fn resolve(&self, points: Range<u32>) -> u64 {
         let mut contacts = 0;
         for point in points {
             let row = self.mover.row(point);
             let gap = self.plane.height_now(point, row.xyz());
-            let kept = self.kept(point);
-            if gap < kept && row.0[3] > R::ZERO {
+            let thickness = self.thickness(point);
+            if gap < thickness && row.0[3] > R::ZERO {
                 contacts += 1;
-                self.lift_point(point, row, [kept, gap]);
+                self.push(point, row, [thickness, gap]);
             }
         }
         contacts
     }
 
-    /// Holds the points of a run to the plane by what sticks.
-    pub fn stick(&self, points: Range<u32>) {
+    /// Holds the points of a range to the plane by adhesion.
+    pub fn adhere(&self, points: Range<u32>) {
         let rows = points.map(|point| (self.mover.row(point), point));
         for (mut row, point) in rows.filter(|(row, _)| row.0[3] > R::ZERO) {
             let start = self.start[point as usize].xyz();
             let normal = self.plane.normal();
             let terms = &self.terms;
             let adhesion = Adhesion {
-                reach: self.kept(point) * R::from_f64(terms.reach),
-                thickness: self.kept(point),
+                reach: self.thickness(point) * R::from_f64(terms.reach),
+                thickness: self.thickness(point),
                 stickiness: terms.stickiness_at(self.maps, ([point], [], &([R::ONE], []))),
                 friction: terms.friction_at(self.maps, ([point], [], &([R::ONE], []))),
             };
@@ -199,19 +199,19 @@ impl<R: Real> GroundContact<'_, R> {
         }
     }
 
-    /// The height that a point is kept at.
+    /// The thickness that is kept at a point, in metres.
     #[inline(always)]
-    fn kept(&self, point: u32) -> R {
+    fn thickness(&self, point: u32) -> R {
         let most = R::from_f64(self.terms.thickness);
         self.terms.thickness_at(self.maps, ([point], [], &([R::ONE], [])), most) * self.squeeze
     }
 
-    fn lift_point(&self, point: u32, mut row: Row4<R>, [kept, gap]: [R; 2]) {
+    fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {
         let start = self.start[point as usize].xyz();
         let normal = self.plane.normal();
         let led = self.mover.led(point);
         let before = self.plane.height(0, point, start);
-        let mut push = Push::new(kept, [before, gap], dot(normal, led), self.h);
+        let mut push = Push::new(thickness, [before, gap], dot(normal, led), self.h);
         if self.terms.is_weak(self.maps) {
             push = push.times(self.terms.strength_at(self.maps, ([point], [], &([R::ONE], []))));
         }
