@@ -5,12 +5,13 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use crate::crossings::crossings;
+use crate::crossings::Motion;
 use crate::event::{Event, Overlapping, Pair};
 use crate::intersections::intersections;
 use crate::overlap::Overlap;
 use crate::passage::Passage;
 use crate::tangle::Tangle;
+use crate::window::Windows;
 use crate::world::{EdgeId, FaceId, Rules, World};
 
 /// Findings that are kept word for word. All are counted.
@@ -85,6 +86,8 @@ pub struct Auditor {
     world: World,
     rules: Rules,
     state: Vec<Vector3<f64>>,
+    /// What is known of the motions to come.
+    windows: Windows,
     tangle: Tangle,
     /// Overlaps that were reported, until they have come apart.
     reported: HashSet<(EdgeId, FaceId)>,
@@ -104,7 +107,16 @@ impl Auditor {
         let account =
             Account { tangled_at_start: count, tangled: count, inside: count, ..Account::default() };
         let (tangle, state) = (Tangle::new(&inside), start.to_vec());
-        Self { world, rules, state, tangle, reported: HashSet::new(), account, findings: Vec::new() }
+        Self {
+            world,
+            rules,
+            state,
+            windows: Windows::default(),
+            tangle,
+            reported: HashSet::new(),
+            account,
+            findings: Vec::new(),
+        }
     }
 
     /// Replaces the rules from the next motion on. What is inside each other by then and was not to be looked at so far
@@ -114,6 +126,7 @@ impl Auditor {
             return;
         }
         self.rules = rules;
+        self.windows.reset();
         let inside = intersections(&self.world, &self.rules, &self.state);
         let news: Vec<Overlapping> = inside
             .iter()
@@ -148,6 +161,7 @@ impl Auditor {
         // A tangle is still followed along the straight way, which is the best guess there is.
         if self.tangle.is_empty() {
             self.state.copy_from_slice(positions);
+            self.windows.reset();
         } else {
             self.move_to(positions, false);
         }
@@ -157,7 +171,8 @@ impl Auditor {
     /// Takes up a state, and returns the events on the way that carry no tangle on. With `seen` nothing that they
     /// lead to is news any more.
     fn move_to(&mut self, positions: &[Vector3<f64>], seen: bool) -> Vec<Event> {
-        let mut events = crossings(&self.world, &self.rules, &self.state, positions);
+        let motion = Motion::new(&self.world, &self.rules, [&self.state, positions]);
+        let mut events = self.windows.crossings(&motion);
         self.state.copy_from_slice(positions);
         if events.is_empty() && self.tangle.is_empty() {
             return events;

@@ -30,6 +30,13 @@ impl Bounds {
         self
     }
 
+    /// Larger by a distance along every axis, rounded to nearest.
+    pub fn grown(mut self, by: f64) -> Self {
+        self.least.iter_mut().for_each(|least| *least -= by);
+        self.most.iter_mut().for_each(|most| *most += by);
+        self
+    }
+
     /// Round both.
     pub fn and(mut self, other: &Self) -> Self {
         for axis in 0..3 {
@@ -41,7 +48,10 @@ impl Bounds {
 
     /// Whether they have a point in common, their surfaces included.
     pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.least[axis] <= other.most[axis] && other.least[axis] <= self.most[axis])
+        let along =
+            |axis: usize| (self.least[axis] <= other.most[axis]) & (other.least[axis] <= self.most[axis]);
+        // Without branches, which nothing could predict.
+        along(0) & along(1) & along(2)
     }
 
     /// Twice the middle along an axis; nought where the box is endless.

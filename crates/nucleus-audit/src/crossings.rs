@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use crate::bounds::Bounds;
 use crate::event::{Event, Pair};
 use crate::passage::{Kind, Passage, passage};
-use crate::tree::Tree;
-use crate::world::{EdgeId, FaceId, Rules, World};
+use crate::window::Windows;
+use crate::world::{Rules, World};
 
 /// The pairs that do not stay apart while all points go straight from `before` to `after`, in order.
 /// Positions are those of all bodies one after the other.
@@ -19,74 +19,62 @@ pub fn crossings(
     before: &[Vector3<f64>],
     after: &[Vector3<f64>],
 ) -> Vec<Event> {
-    assert!(before.len() == world.points() && after.len() == world.points(), "a position for every point");
-    let motion = Motion { world, rules, before, after, stack: Vec::new(), events: Vec::new() };
-    motion.points_and_faces().edges().sorted()
+    Windows::default().crossings(&Motion::new(world, rules, [before, after]))
 }
 
-struct Motion<'a> {
-    world: &'a World,
-    rules: &'a Rules,
-    before: &'a [Vector3<f64>],
-    after: &'a [Vector3<f64>],
-    stack: Vec<u32>,
-    events: Vec<Event>,
+/// All points on their straight ways from one state to the next.
+pub struct Motion<'a> {
+    pub world: &'a World,
+    pub rules: &'a Rules,
+    pub before: &'a [Vector3<f64>],
+    pub after: &'a [Vector3<f64>],
 }
 
-impl Motion<'_> {
-    fn swept<const N: usize>(&self, points: &[u32; N]) -> Bounds {
+impl<'a> Motion<'a> {
+    pub fn new(world: &'a World, rules: &'a Rules, [before, after]: [&'a [Vector3<f64>]; 2]) -> Self {
+        let count = world.points();
+        assert!(before.len() == count && after.len() == count, "a position for every point");
+        Self { world, rules, before, after }
+    }
+
+    /// The box that an element sweeps.
+    pub fn swept<const N: usize>(&self, points: &[u32; N]) -> Bounds {
         let ends = |&point: &u32| [&self.before[point as usize], &self.after[point as usize]];
         Bounds::of(points.iter().flat_map(ends))
     }
 
-    fn points_and_faces(mut self) -> Self {
-        let world = self.world;
-        let boxes: Vec<Bounds> = world.triangles().iter().map(|corners| self.swept(corners)).collect();
-        let tree = Tree::new(self.rules.concerned(world, world.triangles()), &boxes);
-        let mut stack = std::mem::take(&mut self.stack);
-        for point in 0..world.points() as u32 {
-            let bounds = self.swept(&[point]);
-            tree.meeting(&bounds, &boxes, &mut stack, |face| {
-                let [a, b, c] = world.triangles()[face as usize];
-                if self.rules.apply(world, &[point], &[a, b, c]) {
-                    self.test(Kind::PointFace, [point, a, b, c], Pair::PointFace(point, FaceId(face)));
-                }
-            });
+    /// The points of a pair, in the order of [`Kind`]; nothing where it need not stay apart.
+    pub fn elements(&self, pair: Pair) -> Option<(Kind, [u32; 4])> {
+        match pair {
+            Pair::PointFace(point, face) => {
+                let corners @ [a, b, c] = self.world.triangles()[face.0 as usize];
+                let apply = self.rules.apply(self.world, &[point], &corners);
+                apply.then_some((Kind::PointFace, [point, a, b, c]))
+            }
+            Pair::EdgeEdge(one, other) => {
+                let [ends @ [a, b], others @ [c, d]] =
+                    [one, other].map(|edge| self.world.edges()[edge.0 as usize]);
+                let apply = self.rules.apply(self.world, &ends, &others);
+                apply.then_some((Kind::EdgeEdge, [a, b, c, d]))
+            }
         }
-        self.stack = stack;
-        self
     }
 
-    fn edges(mut self) -> Self {
-        let world = self.world;
-        let boxes: Vec<Bounds> = world.edges().iter().map(|ends| self.swept(ends)).collect();
-        let concerned = self.rules.concerned(world, world.edges());
-        let tree = Tree::new(concerned.clone(), &boxes);
-        let mut stack = std::mem::take(&mut self.stack);
-        for edge in concerned {
-            let [a, b] = world.edges()[edge as usize];
-            tree.meeting(&boxes[edge as usize], &boxes, &mut stack, |other| {
-                let [c, d] = world.edges()[other as usize];
-                if other > edge && self.rules.apply(world, &[a, b], &[c, d]) {
-                    self.test(Kind::EdgeEdge, [a, b, c, d], Pair::EdgeEdge(EdgeId(edge), EdgeId(other)));
-                }
-            });
-        }
-        self.stack = stack;
-        self
+    /// What candidates do, of those that do not stay apart.
+    pub fn passages(&self, candidates: impl Iterator<Item = Pair>) -> Vec<Event> {
+        candidates.filter_map(|pair| self.passage(pair)).collect()
     }
 
-    fn test(&mut self, kind: Kind, points: [u32; 4], pair: Pair) {
+    fn passage(&self, pair: Pair) -> Option<Event> {
+        let (kind, points) = self.elements(pair)?;
+        let [a, b, c, d] = points;
+        let meet = match kind {
+            Kind::PointFace => self.swept(&[a]).meets(&self.swept(&[b, c, d])),
+            Kind::EdgeEdge => self.swept(&[a, b]).meets(&self.swept(&[c, d])),
+        };
         let [before, after] =
             [self.before, self.after].map(|state| points.map(|point| state[point as usize]));
-        let passage = passage(kind, &before, &after);
-        if passage != Passage::Apart {
-            self.events.push(Event { pair, passage });
-        }
-    }
-
-    fn sorted(mut self) -> Vec<Event> {
-        self.events.sort_by_key(|event| event.pair);
-        self.events
+        let passage = if meet { passage(kind, &before, &after) } else { Passage::Apart };
+        (passage != Passage::Apart).then_some(Event { pair, passage })
     }
 }

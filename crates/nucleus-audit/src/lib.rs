@@ -1,8 +1,8 @@
 //! Has anything passed through anything? An answer that shares nothing with the solver.
 //!
 //! ```text
-//! before, after ─▶ swept boxes ─tree─▶ pairs of elements ─filter─▶ few ─exact─▶ Event
-//! after         ─▶ boxes       ─tree─▶ edges and faces   ─exact─────────────▶ Overlap
+//! before, after ─▶ motion bounds ─tree─▶ pairs of elements ─certify─▶ few ─exact─▶ Event
+//! after         ─▶ boxes         ─tree─▶ edges and faces   ─exact──────────────▶ Overlap
 //! ```
 //!
 //! | You want to know...                                      | Read                   |
@@ -11,6 +11,7 @@
 //! | what there is to meet: bodies and their elements         | [`Body`], [`World`]    |
 //! | which pairs pass through each other during a motion      | [`crossings`]          |
 //! | which edges are inside which faces in a state            | [`intersections`]      |
+//! | what is certified apart for several steps at once        | `window`               |
 //! | whether one pair does                                    | [`passage()`]          |
 //! | how that is decided where rounding could deceive         | `exact`                |
 //!
@@ -36,7 +37,9 @@ mod overlap;
 mod passage;
 mod sturm;
 mod tangle;
+mod threads;
 mod tree;
+mod window;
 mod world;
 
 pub use auditor::{Account, Auditor, Finding, Moment, What};

@@ -16,6 +16,9 @@ const HALVINGS: u32 = 24;
 /// Spans that are looked at before integers decide.
 const SPANS: u32 = 96;
 
+/// Pays for the rounding of what slack comes to along an axis.
+const SLACK_ROUNDING: f64 = 1.0 + 1e-12;
+
 /// The two ways in which surfaces pass through each other (N2.3-3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
@@ -55,13 +58,19 @@ pub fn passage(kind: Kind, before: &Corners, after: &Corners) -> Passage {
         return Passage::Undecided;
     }
     let vectors = [before, after].map(|corners| vectors(kind, corners));
-    if has_plane_between(kind, &vectors) {
+    if has_plane_between(kind, &vectors, 0.0) {
         return Passage::Apart;
     }
     match by_bisection(kind, &vectors) {
         Some(passage) => passage,
         None => exact::passage(kind, before, after),
     }
+}
+
+/// Whether a plane is proven to keep a pair apart while its points go from one set of places to the other, and each
+/// pair of points may be nearer to each other by `slack` along every axis at any time.
+pub fn are_kept_apart(kind: Kind, [before, after]: [&Corners; 2], slack: f64) -> bool {
+    has_plane_between(kind, &[vectors(kind, before), vectors(kind, after)], slack)
 }
 
 /// The vectors of [`Coplanarity`].
@@ -74,26 +83,35 @@ fn vectors(kind: Kind, corners: &Corners) -> [Vector3<f64>; 3] {
 
 /// Whether some plane that is carried along with the first element, without turning, keeps the two apart.
 /// What is linear in time has its extremes at the ends.
-fn has_plane_between(kind: Kind, vectors: &[[Vector3<f64>; 3]; 2]) -> bool {
+fn has_plane_between(kind: Kind, vectors: &[[Vector3<f64>; 3]; 2], slack: f64) -> bool {
     let [first, second, third] = std::array::from_fn(|k| 0.5 * (vectors[0][k] + vectors[1][k]));
+    // From middle to middle: good for most pairs that are only neighbours.
+    let middles = match kind {
+        Kind::PointFace => third - (first + second) / 3.0,
+        Kind::EdgeEdge => third + 0.5 * (second - first),
+    };
+    let is_between = |axis: &Vector3<f64>| is_between(kind, vectors, axis, slack);
+    if is_between(&middles) {
+        return true;
+    }
     let normal = first.cross(&second);
-    if is_between(kind, vectors, &normal) {
+    if is_between(&normal) {
         return true;
     }
     match kind {
         Kind::PointFace => {
             // Through the edges, at right angles to the face.
             let sides = [first, second, second - first];
-            sides.iter().any(|side| is_between(kind, vectors, &normal.cross(side)))
+            sides.iter().any(|side| is_between(&normal.cross(side)))
         }
         Kind::EdgeEdge => [first, second].iter().any(|edge| {
-            let across = edge.cross(&(third + 0.5 * (second - first)));
-            is_between(kind, vectors, &edge.cross(&across))
+            let across = edge.cross(&middles);
+            is_between(&edge.cross(&across))
         }),
     }
 }
 
-fn is_between(kind: Kind, vectors: &[[Vector3<f64>; 3]; 2], axis: &Vector3<f64>) -> bool {
+fn is_between(kind: Kind, vectors: &[[Vector3<f64>; 3]; 2], axis: &Vector3<f64>, slack: f64) -> bool {
     let mut least = f64::INFINITY;
     let mut most = f64::NEG_INFINITY;
     let mut reach = 0.0_f64;
@@ -110,7 +128,8 @@ fn is_between(kind: Kind, vectors: &[[Vector3<f64>; 3]; 2], axis: &Vector3<f64>)
         most = all.iter().fold(most, |most, height| most.max(*height));
     }
     // Vectors are rounded once, each height five times, their sums twice: below 32 roundings.
-    let error = 32.0 * f64::EPSILON * axis.amax() * reach + f64::MIN_POSITIVE;
+    let rounding = 32.0 * f64::EPSILON * axis.amax() * reach + f64::MIN_POSITIVE;
+    let error = rounding + SLACK_ROUNDING * slack * (axis.x.abs() + axis.y.abs() + axis.z.abs());
     least > error || most < -error
 }
 

@@ -205,6 +205,11 @@ impl Rules {
         self.held[point] = true;
     }
 
+    /// Whether a point goes where it is told.
+    pub(crate) fn holds(&self, point: usize) -> bool {
+        self.held.get(point).copied().unwrap_or(false)
+    }
+
     /// Whether two elements with these points are to be kept apart. Elements that share a point touch there
     /// for ever; what they do beyond it shows at their other elements.
     pub(crate) fn apply<const A: usize, const B: usize>(
@@ -213,12 +218,15 @@ impl Rules {
         a: &[u32; A],
         b: &[u32; B],
     ) -> bool {
+        // Most candidates are neighbours in a mesh.
+        if a.iter().any(|point| b.contains(point)) {
+            return false;
+        }
         let bodies = [world.body_of(a[0]), world.body_of(b[0])];
         let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
-        let held = |point: &u32| self.held.get(*point as usize).copied().unwrap_or(false);
-        let share_a_point = a.iter().any(|point| b.contains(point));
+        let held = |point: &u32| self.holds(*point as usize);
         let are_held = a.iter().all(held) && b.iter().all(held);
-        !(share_a_point || are_held || self.ignored.contains(&pair))
+        !(are_held || self.ignored.contains(&pair))
     }
 
     /// The elements of which anything is asked at all.

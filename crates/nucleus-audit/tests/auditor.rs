@@ -290,4 +290,25 @@ proptest! {
         }
         prop_assert_eq!(found, all);
     }
+
+    #[test]
+    fn what_is_kept_from_step_to_step_hides_nothing(
+        start in crumpled(), drift in crumpled(), leaps in prop::collection::vec((0..40_usize, 0..18_usize, -0.5..0.5_f64), 0..6),
+    ) {
+        let world = World::new(vec![sheet("a", 3).0, sheet("b", 3).0]);
+        let mut auditor = Auditor::new(world.clone(), Rules::default(), &start);
+        let (mut state, mut all) = (start, 0);
+        for step in 0..40 {
+            let mut next: Vec<_> = state.iter().zip(&drift).map(|(place, drift)| place + 0.02 * drift).collect();
+            for &(_, point, by) in leaps.iter().filter(|(at, ..)| *at == step) {
+                // One point is lost for good.
+                next[point].y += if point == 17 { f64::NAN } else { by };
+            }
+            all += crossings(&world, &Rules::default(), &state, &next).len() as u64;
+            auditor.see(Moment { frame: 1, substep: step as u32 }, &next);
+            let Account { crossings, touches, undecided, excused, .. } = auditor.account();
+            prop_assert_eq!(crossings + touches + undecided + excused, all, "step {}", step);
+            state = next;
+        }
+    }
 }

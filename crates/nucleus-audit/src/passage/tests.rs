@@ -23,7 +23,7 @@ fn anywhere() -> impl Strategy<Value = Corners> {
 
 fn certified(kind: Kind, before: &Corners, after: &Corners) -> Option<Passage> {
     let vectors = [before, after].map(|corners| vectors(kind, corners));
-    if has_plane_between(kind, &vectors) { Some(Passage::Apart) } else { by_bisection(kind, &vectors) }
+    if has_plane_between(kind, &vectors, 0.0) { Some(Passage::Apart) } else { by_bisection(kind, &vectors) }
 }
 
 /// Without the time, which is for people.
