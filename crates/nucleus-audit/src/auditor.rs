@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use crate::crossings::Motion;
 use crate::event::{Event, Overlapping, Pair};
+use crate::ground::{Ground, Plane};
 use crate::intersections::intersections;
 use crate::overlap::Overlap;
 use crate::passage::Passage;
@@ -33,6 +34,8 @@ pub enum What {
     Passage(Event),
     /// An edge is inside a face in a state, and was not seen to get there.
     Overlap(Overlapping),
+    /// A vertex was above the ground plane and is below it.
+    Ground(u32),
 }
 
 /// Something that should not have been.
@@ -57,6 +60,8 @@ pub struct Account {
     pub undecided: u64,
     /// Edges found inside faces that were not seen to get there.
     pub overlaps: u64,
+    /// Vertices that went from above the ground plane to below it.
+    pub below_ground: u64,
     /// Pairs of edge and face that were inside each other at the start.
     pub tangled_at_start: u64,
     /// Those of them, and of what they were dragged into, that were so when last looked.
@@ -70,7 +75,7 @@ pub struct Account {
 impl Account {
     /// Findings of all kinds together.
     pub fn found(&self) -> u64 {
-        self.crossings + self.touches + self.undecided + self.overlaps
+        self.crossings + self.touches + self.undecided + self.overlaps + self.below_ground
     }
 
     /// Whether nothing was found.
@@ -89,6 +94,7 @@ pub struct Auditor {
     /// What is known of the motions to come.
     windows: Windows,
     tangle: Tangle,
+    ground: Ground,
     /// Overlaps that were reported, until they have come apart.
     reported: HashSet<(EdgeId, FaceId)>,
     account: Account,
@@ -113,6 +119,7 @@ impl Auditor {
             state,
             windows: Windows::default(),
             tangle,
+            ground: Ground::default(),
             reported: HashSet::new(),
             account,
             findings: Vec::new(),
@@ -136,6 +143,25 @@ impl Auditor {
         self.account.tangled_at_start += news.len() as u64;
         self.tangle.add(&news);
         self.count_state(&inside);
+    }
+
+    /// Looks at the ground plane on the way to the next state, which is taken up afterwards: which vertices of a body
+    /// were above it and are below it now? `planes` are those at the start and the end of the motion; nothing where the
+    /// body meets none. Below means by more than 1e-6 of the largest coordinate of the body and of the plane's origin.
+    ///
+    /// # Panics
+    /// When there are not as many positions as points.
+    pub fn see_ground(
+        &mut self,
+        moment: Moment,
+        body: usize,
+        planes: Option<[Plane; 2]>,
+        positions: &[Vector3<f64>],
+    ) {
+        let states = [self.state.as_slice(), positions];
+        let passed = self.ground.passed((&self.world, &self.rules), body, planes, states);
+        self.account.below_ground += passed.len() as u64;
+        passed.into_iter().for_each(|point| self.keep(Finding { moment, what: What::Ground(point) }));
     }
 
     /// Takes up the next state: looks at the straight motion to it, and at the state itself where the motion gives
@@ -294,6 +320,10 @@ impl fmt::Display for Described<'_> {
                         self.edge(f, b)
                     }
                 }
+            }
+            What::Ground(point) => {
+                self.element(f, "point", &[point])?;
+                write!(f, " went through the ground plane")
             }
             What::Overlap(Overlapping { edge, face, .. }) => {
                 self.edge(f, edge)?;

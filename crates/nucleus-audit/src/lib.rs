@@ -10,6 +10,7 @@
 //! | how a run is watched, and what is said of it             | [`Auditor`]            |
 //! | what there is to meet: bodies and their elements         | [`Body`], [`World`]    |
 //! | which pairs pass through each other during a motion      | [`crossings`]          |
+//! | which vertices pass through the ground plane             | [`Plane`]              |
 //! | which edges are inside which faces in a state            | [`intersections`]      |
 //! | what is certified apart for several steps at once        | `window`               |
 //! | whether one pair does                                    | [`passage()`]          |
@@ -32,6 +33,7 @@ mod crossings;
 mod estimate;
 mod event;
 mod exact;
+mod ground;
 mod intersections;
 mod overlap;
 mod passage;
@@ -45,6 +47,7 @@ mod world;
 pub use auditor::{Account, Auditor, Finding, Moment, What};
 pub use crossings::crossings;
 pub use event::{Event, Overlapping, Pair};
+pub use ground::Plane;
 pub use intersections::intersections;
 pub use overlap::{Overlap, overlap};
 pub use passage::{Kind, Passage, passage};

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use nalgebra::{Rotation3, Vector3};
 use nucleus_audit::{
-    Account, Auditor, Body, EdgeId, FaceId, Moment, Overlap, Pair, Passage, Rules, World, crossings,
+    Account, Auditor, Body, EdgeId, FaceId, Moment, Overlap, Pair, Passage, Plane, Rules, World, crossings,
     intersections,
 };
 use proptest::prelude::*;
@@ -221,6 +221,67 @@ fn a_face_without_area_and_an_edge_without_length_do_no_harm() {
     assert!(clean.account().is_clean(), "{:?}", clean.findings());
     let through = run(&world, &Rules::default(), &[state(0.2), state(-0.1)]);
     assert!(through.account().crossings > 0);
+}
+
+/// A level plane at some height, with a normal that is not of unit length.
+fn level(height: f64) -> Plane {
+    Plane::new(Vector3::new(0.0, height, -7.0), Vector3::y() * 2.0).expect("it has a direction")
+}
+
+/// What is found of a sheet at the heights, while a plane rises from height to height.
+fn over_a_plane(rules: Rules, sheets: &[f64], planes: &[f64]) -> Auditor {
+    let (body, start) = sheet("sheet", 3);
+    let at = |height: f64| moved(&start, [0.0, height, 0.0]);
+    let mut auditor = Auditor::new(World::new(vec![body]), rules, &at(sheets[0]));
+    for (frame, (sheet, planes)) in (2..).zip(sheets[1..].iter().zip(planes.windows(2))) {
+        let moment = Moment { frame, substep: 1 };
+        auditor.see_ground(moment, 0, Some([level(planes[0]), level(planes[1])]), &at(*sheet));
+        auditor.see(moment, &at(*sheet));
+    }
+    auditor
+}
+
+#[test]
+fn a_plane_that_rises_through_vertices_at_rest_is_found_and_named() {
+    let auditor = over_a_plane(Rules::default(), &[0.1; 4], &[0.0, 0.05, 0.2, 0.3]);
+    assert_eq!(auditor.account().below_ground, 9, "each vertex once");
+    assert!(!auditor.account().is_clean());
+    let first = auditor.describe(&auditor.findings()[0]).to_string();
+    assert_eq!(first, "frame 3, substep 1: point sheet.vtx[0] went through the ground plane");
+}
+
+#[test]
+fn vertices_that_rest_on_a_rising_plane_have_not_passed_through_it() {
+    let heights = [0.0, 0.1, 0.3, 0.7];
+    // Single precision at a coordinate of 7 m is good for less than a millionth of that.
+    let rounded = heights.map(|height| height - 5e-7);
+    assert!(over_a_plane(Rules::default(), &rounded, &heights).account().is_clean());
+    let sunk = heights.map(|height| height - 1e-5 * f64::from(height > 0.1));
+    assert_eq!(over_a_plane(Rules::default(), &sunk, &heights).account().below_ground, 9);
+}
+
+#[test]
+fn vertices_that_begin_below_a_plane_or_are_held_do_not_pass_through_it() {
+    let begins_below = over_a_plane(Rules::default(), &[-0.1, -0.2, 0.1, -0.1], &[0.0; 4]);
+    assert_eq!(begins_below.account().below_ground, 9, "only once they were above it");
+    let mut held = Rules::default();
+    (0..9).for_each(|point| held.hold(point));
+    assert!(over_a_plane(held, &[0.1; 3], &[0.0, 0.2, 0.2]).account().is_clean());
+}
+
+#[test]
+fn a_plane_that_tilts_passes_the_vertices_that_it_has_come_to() {
+    let slope = Plane::new(Vector3::zeros(), Vector3::new(-1.0, 1.0, 0.0)).expect("it has a direction");
+    let (body, start) = sheet("sheet", 3);
+    let world = World::new(vec![body]);
+    let places = moved(&start, [0.0, 0.1, 0.0]);
+    for (share, passed) in [(0.05, 0), (0.15, 3), (1.0, 6)] {
+        let mut auditor = Auditor::new(world.clone(), Rules::default(), &places);
+        let planes = [level(0.0), level(0.0).towards(&slope, share)];
+        auditor.see_ground(Moment::default(), 0, Some(planes), &places);
+        assert_eq!(auditor.account().below_ground, passed, "after {share} of the way");
+    }
+    assert_eq!(Plane::new(Vector3::zeros(), Vector3::zeros()), None);
 }
 
 /// Whether two elements are among those by which an edge can get out of a face.

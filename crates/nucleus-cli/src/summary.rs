@@ -223,9 +223,13 @@ fn audit_lines(audit: &Audit) -> String {
                 (account.undecided, "could not be told apart"),
             ];
             let said = kinds.iter().filter(|(count, _)| *count > 0);
-            let said: Vec<_> = said
+            let mut said: Vec<_> = said
                 .map(|(count, what)| format!("{} {what}", figures::count(*count as usize, "pair")))
                 .collect();
+            if account.below_ground > 0 {
+                let points = figures::count(account.below_ground as usize, "point");
+                said.push(format!("{points} went through the ground plane"));
+            }
             format!("audit of {motions}: {}\n", said.join(", "))
         }
     };
@@ -247,6 +251,7 @@ fn audit_json(audit: &Audit) -> Value {
         "overlaps": account.overlaps,
         "touches": account.touches,
         "undecided": account.undecided,
+        "below_ground": account.below_ground,
         "tangled_at_start": account.tangled_at_start,
         "tangled": account.tangled,
         "inside": account.inside,

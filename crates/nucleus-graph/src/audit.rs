@@ -1,5 +1,6 @@
 //! A run under audit: whether anything passes through anything, found apart from the solver.
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
@@ -7,6 +8,10 @@ use nucleus_audit::{Account, Auditor, Body, Moment, Rules, World};
 use nucleus_core::{self as core, Stage, StateView, StepObserver};
 
 use crate::compile::{Object, ObjectKind};
+
+pub(crate) use ground::Grounds;
+
+mod ground;
 
 /// How closely a run is audited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,6 +34,8 @@ pub struct Audit {
     /// Whether the state has been looked at in the substep that is running.
     stepped: bool,
     positions: Vec<Vector3<f64>>,
+    /// Where the ground plane of each nucleus was left.
+    grounds: Grounds,
 }
 
 impl Audit {
@@ -46,13 +53,26 @@ impl Audit {
         read(&objects, &world, (state, 1.0), &mut positions);
         let rules = rules(&world);
         let auditor = Auditor::new(world, rules, &positions);
-        Self { auditor, objects, closeness, frame: 0, stepped: false, positions }
+        let grounds = Grounds::default();
+        Self { auditor, objects, closeness, frame: 0, stepped: false, positions, grounds }
     }
 
     /// Begins a frame.
     pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&World) -> Rules) {
         self.frame = frame;
         self.auditor.set_rules(rules(self.auditor.world()));
+    }
+
+    /// Where the ground planes are, to be told of what the frame brings while it is solved.
+    pub(crate) fn take_grounds(&mut self) -> Grounds {
+        let mut grounds = std::mem::take(&mut self.grounds);
+        grounds.begin_frame();
+        grounds
+    }
+
+    /// Where the frame has left the ground planes.
+    pub(crate) fn keep_grounds(&mut self, grounds: Grounds) {
+        self.grounds = grounds;
     }
 
     /// What has been found so far.
@@ -66,20 +86,30 @@ impl Audit {
     }
 
     /// Takes up a state within a substep.
-    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView) {
+    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView, grounds: &Grounds) {
         if self.closeness == Closeness::Steps {
             self.stepped = true;
             read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
-            self.auditor.see(Moment { frame: self.frame, substep }, &self.positions);
+            let now = Moment { frame: self.frame, substep };
+            self.see_grounds(now, share, grounds);
+            self.auditor.see(now, &self.positions);
+        }
+    }
+
+    fn see_grounds(&mut self, now: Moment, share: f64, grounds: &Grounds) {
+        for (body, object) in self.objects.iter().enumerate() {
+            if let ObjectKind::Cloth(cloth) = *object {
+                self.auditor.see_ground(now, body, grounds.of(cloth, share), &self.positions);
+            }
         }
     }
 
     /// Takes up the end of a substep.
-    fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: core::Moment, state: &dyn StateView, grounds: &Grounds) {
         let now = Moment { frame: self.frame, substep: moment.substep };
         let share = f64::from(moment.substep) / f64::from(moment.substeps);
         if !std::mem::take(&mut self.stepped) {
-            self.step(share, moment.substep, state);
+            self.step(share, moment.substep, state, grounds);
             self.stepped = false;
         }
         match self.closeness {
@@ -87,6 +117,7 @@ impl Audit {
             Closeness::Steps => self.auditor.look(now),
             Closeness::Frames => {
                 read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+                self.see_grounds(now, share, grounds);
                 self.auditor.follow(now, &self.positions);
             }
         }
@@ -118,26 +149,31 @@ fn read(
 /// Shows each state to an audit first, then to another observer.
 pub(crate) struct Audited<'a> {
     audit: &'a mut Audit,
+    grounds: &'a RefCell<Grounds>,
     watch: &'a mut dyn StepObserver,
     /// The substep that is running.
     substep: u32,
 }
 
 impl<'a> Audited<'a> {
-    pub(crate) fn new(audit: &'a mut Audit, watch: &'a mut dyn StepObserver) -> Self {
-        Self { audit, watch, substep: 1 }
+    pub(crate) fn new(
+        audit: &'a mut Audit,
+        grounds: &'a RefCell<Grounds>,
+        watch: &'a mut dyn StepObserver,
+    ) -> Self {
+        Self { audit, grounds, watch, substep: 1 }
     }
 }
 
 impl StepObserver for Audited<'_> {
     fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
-        self.audit.substep(moment, state);
+        self.audit.substep(moment, state, &self.grounds.borrow());
         self.watch.substep(moment, state);
         self.substep = moment.substep + 1;
     }
 
     fn step(&mut self, share: f64, state: &dyn StateView) {
-        self.audit.step(share, self.substep, state);
+        self.audit.step(share, self.substep, state, &self.grounds.borrow());
         self.watch.step(share, state);
     }
 

@@ -1,12 +1,14 @@
 //! The loop over frames: evaluates the animation, calls the solvers.
 
+use std::cell::RefCell;
+
 use nucleus_audit::World;
 use nucleus_core::{
     ClothId, FrameInput, Moment, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport,
 };
 
 use crate::attributes::nucleus;
-use crate::audit::{Audit, Audited, Closeness};
+use crate::audit::{Audit, Audited, Closeness, Grounds};
 use crate::compile::{Grips, Object, Program};
 
 use plan::Leap;
@@ -103,30 +105,34 @@ impl<R: Real> Simulation<R> {
     ) -> FrameReport {
         let frame = self.next_frame();
         let Some(mut audit) = self.audit.take() else {
-            return FrameReport { frame, report: self.solve(frame, change, watch), passed_through: None };
+            let report = self.solve(frame, change, watch, &RefCell::default());
+            return FrameReport { frame, report, passed_through: None };
         };
         let pins = self.next_pins();
         audit.begin_frame(frame, |world| self.program.kept_apart(frame, &pins, world));
         let before = audit.account().found();
-        let report = self.solve(frame, change, &mut Audited::new(&mut audit, watch));
+        let grounds = RefCell::new(audit.take_grounds());
+        let report = self.solve(frame, change, &mut Audited::new(&mut audit, &grounds, watch), &grounds);
+        audit.keep_grounds(grounds.into_inner());
         let passed_through = Some(audit.account().found() - before);
         self.audit = Some(audit);
         FrameReport { frame, report, passed_through }
     }
 
-    /// Solves everything up to a frame.
+    /// Solves everything up to a frame, and tells `grounds` where that puts the ground planes.
     fn solve(
         &mut self,
         frame: i64,
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
         watch: &mut dyn StepObserver,
+        grounds: &RefCell<Grounds>,
     ) -> StepReport {
         let leaps = self.plan(frame);
         let total = leaps.iter().map(|leap| leap.substeps).sum();
         let mut done = 0;
         let mut report: Option<StepReport> = None;
         for leap in leaps {
-            let seen = self.leap(&leap, change, &mut Watched { watch: &mut *watch, done, total });
+            let seen = self.leap(&leap, change, &mut Watched { watch: &mut *watch, grounds, done, total });
             if seen.stopped {
                 return seen;
             }
@@ -149,6 +155,7 @@ impl<R: Real> Simulation<R> {
     ) -> StepReport {
         if leap.begins_anew {
             self.runs[leap.universe] = Run::new(&self.program, leap.universe, self.threads);
+            watched.grounds.borrow_mut().begin_anew(leap.universe);
         }
         let (before, rest) = self.runs.split_at_mut(leap.universe);
         let Some((run, after)) = rest.split_first_mut() else { return StepReport::default() };
@@ -157,6 +164,10 @@ impl<R: Real> Simulation<R> {
         let position = |cloth, point: PointId| solver.point(cloth, point.index());
         let mut input = stretch.input(&mut run.grips, &position);
         change(&run.solver, &mut input);
+        let first_cloth = self.program.universes()[leap.universe].cloths().start;
+        let span = [watched.done, watched.done + leap.substeps];
+        let span = span.map(|substep| f64::from(substep) / f64::from(watched.total.max(1)));
+        watched.grounds.borrow_mut().take(leap.universe, first_cloth, &input, span);
         if before.is_empty() && after.is_empty() && watched.total == leap.substeps {
             return run.solver.step(&input, watched.watch);
         }
@@ -249,6 +260,7 @@ impl<R: Real> Run<R> {
 /// Whoever watches a frame, and how much of it is over.
 struct Watched<'a> {
     watch: &'a mut dyn StepObserver,
+    grounds: &'a RefCell<Grounds>,
     done: u32,
     total: u32,
 }

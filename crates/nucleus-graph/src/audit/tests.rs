@@ -1,11 +1,12 @@
 use std::path::Path;
 
+use nucleus_audit::Plane;
 use nucleus_core::{ClothId, ColliderId};
 
 use super::*;
 use crate::Simulation;
 use crate::checks::Judge;
-use crate::compile::{Program, compile};
+use crate::compile::{Grips, Program, compile};
 use crate::scene::read_scene_text;
 
 fn program(nodes: &str) -> Program {
@@ -53,7 +54,7 @@ fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
         let moment = core::Moment { substep: 1, substeps: 1 };
-        audit.substep(moment, &Level { start: run.state(), height });
+        audit.substep(moment, &Level { start: run.state(), height }, &Grounds::default());
     }
     audit.account()
 }
@@ -82,7 +83,8 @@ fn what_is_shown_within_a_substep_is_followed() {
     audit.begin_frame(2, rules);
     let level = |height: f64| Level { start: run.state(), height };
     let mut watch = ();
-    let mut audited = Audited::new(&mut audit, &mut watch);
+    let grounds = RefCell::default();
+    let mut audited = Audited::new(&mut audit, &grounds, &mut watch);
     audited.step(0.5, &level(-1.5));
     audited.step(1.0, &level(1.4));
     audited.substep(core::Moment { substep: 1, substeps: 1 }, &level(1.4));
@@ -153,4 +155,28 @@ fn an_audit_changes_nothing() {
         run.solver().state_hash()
     };
     assert_eq!(hash(None), hash(Some(Closeness::Steps)));
+}
+
+#[test]
+fn a_ground_plane_goes_from_where_the_last_span_left_it_to_where_the_next_puts_it() {
+    let level = |height: f64| Plane::new(Vector3::y() * height, Vector3::y());
+    let program = program(r#""c": nCloth(inputMesh: "sheet")"#);
+    let mut input =
+        program.stretch(0, [1.0, 2.0], 1.0, false).input(&mut Grips::default(), &|_, _| Vector3::zeros());
+    let mut put = |grounds: &mut Grounds, height: f64, span: [f64; 2]| {
+        let (origin, normal) = (Vector3::y() * height, Vector3::y());
+        input.plane = Some(core::GroundPlane { origin, normal, bounce: 0.0, friction: 0.0, stickiness: 0.0 });
+        grounds.take(0, 0, &input, span);
+    };
+    let mut grounds = Grounds::default();
+    let at = |grounds: &Grounds, share: f64| grounds.of(ClothId(0), share).map(|[_, now]| now);
+    put(&mut grounds, 1.0, [0.0, 1.0]);
+    assert_eq!(at(&grounds, 0.0), level(1.0), "a plane that appears is there from the start");
+    grounds.begin_frame();
+    assert_eq!(at(&grounds, 0.0), level(1.0), "it has not been moved yet");
+    put(&mut grounds, 2.0, [0.0, 0.5]);
+    assert_eq!([0.0, 0.25, 0.5].map(|share| at(&grounds, share)), [1.0, 1.5, 2.0].map(level));
+    put(&mut grounds, 4.0, [0.5, 1.0]);
+    assert_eq!([0.5, 0.75, 1.0].map(|share| at(&grounds, share)), [2.0, 3.0, 4.0].map(level));
+    assert_eq!(grounds.of(ClothId(1), 1.0), None, "there is one cloth");
 }
