@@ -1,6 +1,6 @@
 //! Standard output and standard error, which may be closed or full at any time.
 //!
-//! A command whose result is a text [`print`]s it, and ends where that fails. A command whose result is a file
+//! A command whose result is a text [`print()`]s it, and ends where that fails. A command whose result is a file
 //! [`tell`]s of it: it goes on to its end whether anybody reads that or not, and [`lost`] says so then.
 
 use std::fmt;
@@ -23,7 +23,7 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints one JSON value on a line of its own.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_json(value: &serde_json::Value) -> Result<()> {
     print(&format!("{value}\n"))
 }
@@ -42,10 +42,10 @@ fn told(written: io::Result<()>) {
     }
 }
 
-/// What has come of a text that was [`print`]ed, if it is the result of the command, or else told.
+/// What has come of a text that was [`print()`]ed, if it is the result of the command, or else told.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn put(written: io::Result<()>, is_result: bool) -> Result<()> {
     match is_result {
         true => written.map_err(|error| NotPrinted(error).into()),

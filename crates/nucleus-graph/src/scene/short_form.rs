@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::attributes::{dyn_base, n_base, nucleus};
+use crate::attributes::{dyn_base, n_base, n_particle, nucleus};
 use crate::graph::{Connection, Creation, Graph, NodeId};
 
 /// How a graph is written in short.
@@ -29,10 +29,13 @@ impl ShortForm {
             graph.iter().filter_map(|(id, _)| of_type(id)).collect();
         loop {
             let (again, done) = again(graph, &creations);
-            let odd = odd(graph, &again, &creations, &done);
+            let mut odd = odd(graph, &again, &creations, &done);
+            let short = Self::new(graph, creations, &again);
+            odd.extend(short.particles_wired_by_hand(graph));
             if odd.is_empty() {
-                return Self::new(graph, creations, &again);
+                return short;
             }
+            creations = short.creations;
             creations.retain(|id, _| !odd.contains(id));
         }
     }
@@ -61,6 +64,13 @@ impl ShortForm {
     pub(super) fn is_wired(&self, name: &str) -> bool {
         let mut plugs = self.by_hand.iter().flatten();
         plugs.any(|plug| plug.split('.').next() == Some(name))
+    }
+
+    /// Particles that reading does not join to a nucleus, because a connection by hand begins or ends at them.
+    fn particles_wired_by_hand(&self, graph: &Graph) -> Vec<NodeId> {
+        let is_particles = |id: NodeId| graph.node(id).node_type().is_a(&n_particle::N_PARTICLE);
+        let joined = self.creations.keys().copied().filter(|&id| is_particles(id));
+        joined.filter(|&id| self.is_wired(graph.node(id).name())).collect()
     }
 
     /// The node that an attribute names; as `joined` its nucleus, whether that has to be written or not.
@@ -129,7 +139,7 @@ fn odd(
 ) -> BTreeSet<NodeId> {
     let there: BTreeSet<[String; 2]> = graph.connections().map(|wire| plugs(graph, wire)).collect();
     let mut odd = BTreeSet::new();
-    for &id in creations.keys() {
+    for (&id, creation) in creations {
         let made = |graph: &Graph, by: &str| {
             let by = graph.find(by);
             graph
@@ -153,12 +163,24 @@ fn odd(
             });
         own.push(twin);
         let wires = own.iter().flat_map(|node| again.arriving(*node).chain(again.leaving(*node)));
-        let wired = wires.into_iter().all(|wire| there.contains(&plugs(again, wire)));
+        // A creation also gives its nucleus the clock, which the graph may have taken away.
+        let clock = nucleus_of(creation).and_then(|id| again.find(graph.node(id).name())).into_iter();
+        let clock =
+            clock.flat_map(|nucleus| again.arriving(nucleus)).filter(|wire| wire.from.node == again.clock());
+        let wired = wires.chain(clock).all(|wire| there.contains(&plugs(again, wire)));
         if !same || !wired || !done.contains(&id) {
             odd.insert(id);
         }
     }
     odd
+}
+
+/// The nucleus that an object or a constraint joins.
+fn nucleus_of(creation: &Creation) -> Option<NodeId> {
+    match creation {
+        Creation::Object { nucleus, .. } | Creation::Constraint { nucleus, .. } => Some(*nucleus),
+        Creation::Effect { .. } => None,
+    }
 }
 
 fn plugs(graph: &Graph, wire: &Connection) -> [String; 2] {

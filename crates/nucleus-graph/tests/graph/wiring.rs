@@ -340,3 +340,28 @@ prop_state_machine! {
     #[test]
     fn any_sequence_of_changes_keeps_the_graph_whole(sequential 1..40 => Whole);
 }
+
+#[test]
+fn a_nucleus_whose_clock_was_taken_away_is_written_without_one() {
+    let mut graph = Graph::new();
+    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
+    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
+    let particles = graph.add("b", of("nParticle")).expect("a free name");
+    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let clock = graph.connections().find(|wire| wire.to.node == nucleus && wire.from.node == graph.clock());
+    let Connection { from, to } = *clock.expect("creating an object gives its nucleus the clock");
+    assert!(graph.disconnect(from, to));
+    reads_back(&graph);
+}
+
+#[test]
+fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
+    let mut graph = Graph::new();
+    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
+    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
+    let particles = graph.add("b", of("nParticle")).expect("a free name");
+    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let [from, to] = ["b.meshTriangleSize", "a.evaluations"].map(|plug| graph.plug(plug).expect("a plug"));
+    graph.connect(from, to).expect("two numbers");
+    reads_back(&graph);
+}
