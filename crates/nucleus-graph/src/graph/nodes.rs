@@ -83,8 +83,9 @@ impl Graph {
         attribute: &'static Attribute,
         setting: Setting,
     ) -> Result<(), GraphError> {
+        self.put(node, attribute, setting)?;
         self.keep_if_made(node);
-        self.put(node, attribute, setting)
+        Ok(())
     }
 
     /// The same, where a creation command sets what it has made.
@@ -94,7 +95,19 @@ impl Graph {
         attribute: &'static Attribute,
         setting: Setting,
     ) -> Result<(), GraphError> {
-        let Node { name, node_type, settings, .. } = self.node_mut(node);
+        self.check_setting(node, attribute, &setting)?;
+        self.node_mut(node).settings.insert(attribute.name, setting);
+        Ok(())
+    }
+
+    /// Refuses an attribute that the node's type does not have, or that cannot hold a setting.
+    fn check_setting(
+        &self,
+        node: NodeId,
+        attribute: &'static Attribute,
+        setting: &Setting,
+    ) -> Result<(), GraphError> {
+        let Node { name, node_type, .. } = self.node(node);
         if node_type.attribute(attribute.name) != Some(attribute) {
             let (node, node_type) = (name.clone(), node_type.name);
             return Err(GraphError::NoAttribute { node, node_type, attribute: attribute.name });
@@ -102,7 +115,6 @@ impl Graph {
         if !setting.fits(attribute) {
             return Err(GraphError::NotAdmitted { node: name.clone(), attribute: attribute.name });
         }
-        settings.insert(attribute.name, setting);
         Ok(())
     }
 
@@ -115,19 +127,11 @@ impl Graph {
         node: NodeId,
         preset: &[(&'static Attribute, Setting)],
     ) -> Result<(), GraphError> {
+        preset.iter().try_for_each(|(row, setting)| self.check_setting(node, row, setting))?;
         self.keep_if_made(node);
-        let Node { name, node_type, preset: taken, .. } = self.node_mut(node);
+        let taken = &mut self.node_mut(node).preset;
         taken.clear();
-        for (row, setting) in preset {
-            if node_type.attribute(row.name) != Some(row) {
-                let (node, node_type) = (name.clone(), node_type.name);
-                return Err(GraphError::NoAttribute { node, node_type, attribute: row.name });
-            }
-            if !setting.fits(row) {
-                return Err(GraphError::NotAdmitted { node: name.clone(), attribute: row.name });
-            }
-            taken.insert(row.name, setting.clone());
-        }
+        taken.extend(preset.iter().map(|(row, setting)| (row.name, setting.clone())));
         Ok(())
     }
 

@@ -365,3 +365,22 @@ fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
     graph.connect(from, to).expect("two numbers");
     reads_back(&graph);
 }
+
+#[test]
+fn a_setting_that_is_refused_leaves_what_a_constraint_was_created_from() {
+    let mut graph = Graph::new();
+    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
+    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
+    let particles = graph.add("b", of("nParticle")).expect("a free name");
+    let constraint = graph.add("c", of("dynamicConstraint")).expect("a free name");
+    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let components = vec![Component { object: "b".to_owned(), selection: Selection::AllPoints }];
+    graph.create(constraint, &Creation::Constraint { components, nucleus }).expect("it has a member");
+    let before = graph.clone();
+    let (member, node) = graph.iter().find(|(_, node)| node.made_by() == Some(constraint)).expect("a member");
+    let row = node.node_type().attribute("componentIndices").expect("it lists points");
+    let curve = Curve::new(vec![Key { frame: 1.0, value: 0.0, tangent: Tangent::Auto }]);
+    let keyed = Setting::Keyed(curve.expect("one key"));
+    assert!(graph.set(member, row, keyed).is_err(), "a list of points has no keys");
+    assert_eq!(graph, before);
+}
