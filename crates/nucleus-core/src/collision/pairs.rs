@@ -105,8 +105,8 @@ impl<R: Real> PairList<R> {
         self.face_point.iter_mut().for_each(|pair| pair.move_anchors(moved));
     }
 
-    /// Picks the pairs that can touch within a window of the span, given what is foreseen for each point in it: those that come
-    /// nearer than `reach` times the thickness.
+    /// Picks the pairs whose gap along their plane can fall below `reach` times the thickness within a window of the span, by
+    /// the motion bounds of the points. Marks those that the bounds do not certify.
     pub fn activate(
         &mut self,
         foreseen: &Foreseen<'_, R>,

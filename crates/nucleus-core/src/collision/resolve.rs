@@ -57,7 +57,7 @@ pub fn resolve<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team,
     }
 }
 
-/// How many active pairs are open and how many inseparable at the end of the step. What motion bounds certify needs no proof.
+/// How many active pairs are open and how many inseparable at the end of the step. Pairs that motion bounds certify are skipped.
 pub fn prove<R: Real>(list: &mut PairList<R>, step: &Step<'_, R>, team: &Team) -> [u64; 2] {
     let PairList { point_face, edge_edge, face_point, active, .. } = list;
     let [points, edges, faces] = &active.uncertified;

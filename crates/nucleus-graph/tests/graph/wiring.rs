@@ -341,13 +341,22 @@ prop_state_machine! {
     fn any_sequence_of_changes_keeps_the_graph_whole(sequential 1..40 => Whole);
 }
 
+fn type_named(name: &str) -> &'static NodeType {
+    node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's")
+}
+
+/// A nucleus `a` with particles `b`.
+fn particles_of_a_nucleus() -> (Graph, NodeId) {
+    let mut graph = Graph::new();
+    let nucleus = graph.add("a", type_named("nucleus")).expect("a free name");
+    let particles = graph.add("b", type_named("nParticle")).expect("a free name");
+    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    (graph, nucleus)
+}
+
 #[test]
 fn a_nucleus_whose_clock_was_taken_away_is_written_without_one() {
-    let mut graph = Graph::new();
-    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
-    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
-    let particles = graph.add("b", of("nParticle")).expect("a free name");
-    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let (mut graph, nucleus) = particles_of_a_nucleus();
     let clock = graph.connections().find(|wire| wire.to.node == nucleus && wire.from.node == graph.clock());
     let Connection { from, to } = *clock.expect("creating an object gives its nucleus the clock");
     assert!(graph.disconnect(from, to));
@@ -356,11 +365,7 @@ fn a_nucleus_whose_clock_was_taken_away_is_written_without_one() {
 
 #[test]
 fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
-    let mut graph = Graph::new();
-    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
-    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
-    let particles = graph.add("b", of("nParticle")).expect("a free name");
-    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let (mut graph, _) = particles_of_a_nucleus();
     let [from, to] = ["b.meshTriangleSize", "a.evaluations"].map(|plug| graph.plug(plug).expect("a plug"));
     graph.connect(from, to).expect("two numbers");
     reads_back(&graph);
@@ -368,12 +373,8 @@ fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
 
 #[test]
 fn a_setting_that_is_refused_leaves_what_a_constraint_was_created_from() {
-    let mut graph = Graph::new();
-    let of = |name: &str| node_types().iter().copied().find(|of| of.name == name).expect("a type of Maya's");
-    let nucleus = graph.add("a", of("nucleus")).expect("a free name");
-    let particles = graph.add("b", of("nParticle")).expect("a free name");
-    let constraint = graph.add("c", of("dynamicConstraint")).expect("a free name");
-    graph.create(particles, &Creation::Object { mesh: None, nucleus }).expect("it joins the nucleus");
+    let (mut graph, nucleus) = particles_of_a_nucleus();
+    let constraint = graph.add("c", type_named("dynamicConstraint")).expect("a free name");
     let components = vec![Component { object: "b".to_owned(), selection: Selection::AllPoints }];
     graph.create(constraint, &Creation::Constraint { components, nucleus }).expect("it has a member");
     let before = graph.clone();
