@@ -116,7 +116,7 @@ fn cloth_that_is_pinched_and_let_go_of_goes_on_as_if_it_had_not_stopped() {
         "rb": nRigid(inputMesh: "b", thickness: 0.3)"#;
     // They close on each other, and leave no room.
     let run = assert_resumes_always("pinch", nodes, 15);
-    assert!(ever(&run, |report| report.trapped), "points are inside");
+    assert!(ever(&run, |report| report.depenetrating), "points are inside");
     assert!(ever(&run, |report| report.pairs_unresolved), "pairs are let go");
 }
 
@@ -128,7 +128,7 @@ fn sheets_that_begin_inside_each_other_go_on_being_worked_apart() {
         "q": polyPlane(width: 40, height: 40, subdivisions: (9, 9), ty: 31, rx: 8, ry: 20),
         "d": nCloth(inputMesh: "q", thickness: 0.5, collisionLayer: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface")"#;
     let run = assert_resumes_always("tangle", nodes, 24);
-    assert!(ever(&run, |report| report.tangled), "they are inside each other");
+    assert!(ever(&run, |report| report.intersections), "they are inside each other");
 }
 
 #[test]

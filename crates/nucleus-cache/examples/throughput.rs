@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use nucleus_cache::{ObjectInfo, ObjectKind, Packing, Playback, Recorded, Recorder, RunInfo, Source};
-use nucleus_core::{ClothId, ColliderId, Faces, Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, Faces, StateView, StepObserver, SubstepIndex};
 use serde_json::json;
 
 /// Shapes that the sheet goes through, again and again: making them would take longer than writing them.
@@ -101,7 +101,7 @@ fn write(
     let begin = clock();
     for frame in 1..=run.end {
         let shape = &shapes[frame as usize % SHAPES];
-        recorder.frame(frame)?.substep(Moment { substep: 1, substeps: 1 }, shape);
+        recorder.frame(frame)?.substep(SubstepIndex { substep: 1, substeps: 1 }, shape);
         recorder.end_frame(&())?;
     }
     let recorded = recorder.finish()?;

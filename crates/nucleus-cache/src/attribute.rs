@@ -1,7 +1,7 @@
 //! What is recorded of each point besides its place: the bytes of the messages on `/<object>/contacts` and
 //! `/<object>/strain`. Everything is little-endian.
 
-use nucleus_core::Contact;
+use nucleus_core::ContactState;
 
 use crate::points::{HEAD, Stamp};
 use crate::run::RunInfo;
@@ -59,14 +59,20 @@ impl Attribute {
 }
 
 /// Appends contacts, a byte each.
-pub(crate) fn write_contacts(contacts: &[Contact], out: &mut Vec<u8>) {
+pub(crate) fn write_contacts(contacts: &[ContactState], out: &mut Vec<u8>) {
     out.extend(contacts.iter().map(|&contact| contact as u8));
 }
 
 /// Contacts from their bytes; `None` if one is none that is known.
-pub(crate) fn read_contacts(bytes: &[u8]) -> Option<Vec<Contact>> {
+pub(crate) fn read_contacts(bytes: &[u8]) -> Option<Vec<ContactState>> {
     let contact = |&byte: &u8| {
-        let known = [Contact::Free, Contact::Touching, Contact::Pinched, Contact::Trapped, Contact::Tangled];
+        let known = [
+            ContactState::Free,
+            ContactState::Touching,
+            ContactState::Compressed,
+            ContactState::Depenetrating,
+            ContactState::Intersecting,
+        ];
         known.into_iter().find(|&contact| contact as u8 == byte)
     };
     bytes.iter().map(contact).collect()

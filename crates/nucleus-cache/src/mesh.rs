@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, Write};
 
-use nucleus_core::{Faces, Moment};
+use nucleus_core::{Faces, SubstepIndex};
 
 use crate::object::ObjectInfo;
 use crate::open_error::ReadError;
@@ -20,7 +20,7 @@ use crate::topology;
 impl<W: Write + Seek> FrameRecorder<'_, W> {
     /// Gives an object another mesh from `moment` of this frame on, with as many points as `rest` has; those are in scene
     /// units. It is said before the substep is shown that has it. What goes wrong is told by [`Recorder::end_frame`].
-    pub fn change_mesh(&mut self, moment: Moment, object: &str, faces: Faces, rest: Vec<[f32; 3]>) {
+    pub fn change_mesh(&mut self, moment: SubstepIndex, object: &str, faces: Faces, rest: Vec<[f32; 3]>) {
         if self.recorder.trouble.is_none() {
             self.recorder.trouble = self.recorder.change_mesh(moment, object, faces, rest).err();
         }
@@ -30,7 +30,7 @@ impl<W: Write + Seek> FrameRecorder<'_, W> {
 impl<W: Write + Seek> Recorder<W> {
     fn change_mesh(
         &mut self,
-        moment: Moment,
+        moment: SubstepIndex,
         name: &str,
         faces: Faces,
         rest: Vec<[f32; 3]>,

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use nucleus_core::Contact;
+use nucleus_core::ContactState;
 use serde_json::Value;
 
 use crate::attribute::{self, Attribute};
@@ -249,7 +249,7 @@ impl<R: Read + Seek> Playback<R> {
     ///
     /// # Errors
     /// As [`positions`](Self::positions).
-    pub fn contacts(&mut self, object: usize, moment: usize) -> Result<Option<Vec<Contact>>, ReadError> {
+    pub fn contacts(&mut self, object: usize, moment: usize) -> Result<Option<Vec<ContactState>>, ReadError> {
         let frame = self.moments.get(moment).map_or(0, |moment| moment.frame);
         let Some(bytes) = self.attribute(object, moment, &attribute::CONTACTS)? else { return Ok(None) };
         attribute::read_contacts(bytes).map(Some).ok_or(ReadError::Damaged { frame })

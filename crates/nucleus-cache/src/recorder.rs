@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Seek, Write};
 use std::path::Path;
 
-use nucleus_core::{ClothId, Contact, Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, ContactState, StateView, StepObserver, SubstepIndex};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -60,7 +60,7 @@ pub struct Recorder<W: Write + Seek = File> {
     // Reused for every message.
     values: Vec<[f32; 3]>,
     strain: Vec<f32>,
-    contacts: Vec<Vec<Contact>>,
+    contacts: Vec<Vec<ContactState>>,
     /// Points that touch and that are pinched at the end of the frame, where that is known.
     rungs: Option<[usize; 2]>,
     pub(crate) message: Vec<u8>,
@@ -328,7 +328,7 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// A moment of the frame that is being recorded.
-    pub(crate) fn stamp(&self, Moment { substep, substeps }: Moment) -> Stamp {
+    pub(crate) fn stamp(&self, SubstepIndex { substep, substeps }: SubstepIndex) -> Stamp {
         let frame = self.last_frame;
         Stamp { frame, substep, substeps, time: self.run.time(frame, substep, substeps) }
     }
@@ -359,7 +359,7 @@ impl<W: Write + Seek> Recorder<W> {
         if self.run.contacts {
             state.contacts(&mut self.contacts);
             self.rungs = Some(
-                [Contact::Touching, Contact::Pinched]
+                [ContactState::Touching, ContactState::Compressed]
                     .map(|rung| self.contacts.iter().flatten().filter(|&&found| found == rung).count()),
             );
         }
@@ -427,7 +427,7 @@ pub struct FrameRecorder<'a, W: Write + Seek = File> {
 }
 
 impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
-    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         let RunInfo { detail, start, end, .. } = self.recorder.run;
         let wanted = match detail {
             Detail::Substeps => true,

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use nucleus_core::{Refused, StepReport};
+use nucleus_core::{InvalidInput, StepReport};
 use nucleus_graph::FrameReport;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ pub struct FrameFigures {
     pub refused: u64,
     /// The first of that.
     #[serde(skip)]
-    pub first_refused: Option<Refused>,
+    pub first_refused: Option<InvalidInput>,
 }
 
 impl FrameFigures {
@@ -46,12 +46,12 @@ impl FrameFigures {
             strain_99: self.strain_99,
             min_gap: self.min_gap.unwrap_or(f64::INFINITY),
             contacts: self.contacts,
-            pairs: self.pairs,
+            candidate_pairs: self.pairs,
             broad_phases: self.broad_phases,
             pairs_reverted: self.pairs_reverted,
             pairs_unresolved: self.pairs_unresolved,
-            trapped: self.trapped,
-            tangled: self.tangled,
+            depenetrating: self.trapped,
+            intersections: self.tangled,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()
@@ -64,16 +64,23 @@ impl FrameFigures {
     /// The figures of a frame from its report.
     pub fn new(frame: i32, report: &StepReport) -> Self {
         let StepReport {
-            max_strain, strain_99, min_gap, min_cloth_gap, contacts, pairs, broad_phases, ..
+            max_strain,
+            strain_99,
+            min_gap,
+            min_cloth_gap,
+            contacts,
+            candidate_pairs: pairs,
+            broad_phases,
+            ..
         } = *report;
         let StepReport {
             pairs_reverted,
             pairs_unresolved,
-            trapped,
-            tangled,
+            depenetrating: trapped,
+            intersections: tangled,
             kinetic_energy,
             finite,
-            refused,
+            sanitized: refused,
             ..
         } = *report;
         let [min_gap, min_cloth_gap] = [min_gap, min_cloth_gap].map(|gap| gap.is_finite().then_some(gap));
@@ -122,7 +129,7 @@ pub struct Account {
     /// How much of what frames brought could not be used, over all frames.
     pub refused: u64,
     /// The first of that, and its frame.
-    pub first_refused: Option<(Refused, i32)>,
+    pub first_refused: Option<(InvalidInput, i32)>,
 }
 
 /// Something that is counted in each frame.
@@ -221,7 +228,7 @@ mod tests {
 
     #[test]
     fn counts_keep_their_first_worst_frame_and_the_last_one() {
-        let trapped = |trapped| StepReport { trapped, ..StepReport::default() };
+        let trapped = |depenetrating| StepReport { depenetrating, ..StepReport::default() };
         let account = account(&[trapped(0), trapped(4), trapped(4), trapped(1)]);
         assert_eq!(account.trapped, Count { total: 9, most: 4, frame: 3, end: 1 });
         assert_eq!(account.tangled, Count::default());

@@ -21,7 +21,7 @@ pub enum Outcome {
     /// It ran and found trouble.
     Trouble,
     /// It could not start, and has said why.
-    Refused,
+    InvalidInput,
     /// It was asked to end, and did so in order.
     Interrupted,
 }
@@ -31,7 +31,7 @@ impl From<Outcome> for ExitCode {
         match outcome {
             Outcome::Fine => Self::SUCCESS,
             Outcome::Trouble => Self::from(1),
-            Outcome::Refused => Self::from(COULD_NOT_START),
+            Outcome::InvalidInput => Self::from(COULD_NOT_START),
             Outcome::Interrupted => Self::from(INTERRUPTED),
         }
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use nucleus_cache::{RecordError, Recorder};
-use nucleus_core::{Moment, Stage, StateView, StepObserver};
+use nucleus_core::{Stage, StateView, StepObserver, SubstepIndex};
 use nucleus_graph::checks::Judge;
 use nucleus_graph::{FrameReport, Simulation};
 
@@ -125,7 +125,7 @@ fn advance(
 struct UntilAsked<'a>(&'a mut dyn StepObserver);
 
 impl StepObserver for UntilAsked<'_> {
-    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         self.0.substep(moment, state);
     }
 
@@ -133,8 +133,8 @@ impl StepObserver for UntilAsked<'_> {
         self.0.step(share, state);
     }
 
-    fn go_on(&self) -> ControlFlow<()> {
-        if interrupt::asked() { ControlFlow::Break(()) } else { self.0.go_on() }
+    fn should_continue(&self) -> ControlFlow<()> {
+        if interrupt::asked() { ControlFlow::Break(()) } else { self.0.should_continue() }
     }
 
     fn enter(&mut self, stage: Stage) {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use nucleus_core::Refused;
+use nucleus_core::InvalidInput;
 use nucleus_graph::audit::Audit;
 use nucleus_graph::checks::{self, Bound};
 use nucleus_graph::compile::{Object, ObjectKind};
@@ -167,25 +167,27 @@ fn lasting(count: &Count) -> Value {
 }
 
 /// `point 17 of `ball` was no usable position, and was held where it was`.
-fn refused(what: Refused, objects: &[Object]) -> String {
+fn refused(what: InvalidInput, objects: &[Object]) -> String {
     let name = |kind: ObjectKind| {
         objects.iter().find(|object| object.kind == kind).map_or("an object", |object| object.name.as_str())
     };
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
     match what {
-        Refused::ColliderPoint(id, point) => {
+        InvalidInput::ColliderPoint(id, point) => {
             let (ball, point) = (name(collider(id)), point.0);
             format!("point {point} of `{ball}` was no usable position, and was held where it was")
         }
-        Refused::ColliderMotion(id) => {
+        InvalidInput::ColliderMotion(id) => {
             format!("`{}` was given the wrong number of points, and stood still", name(collider(id)))
         }
-        Refused::Pin(id, point) => {
+        InvalidInput::Pin(id, point) => {
             format!("point {} of `{}` was held nowhere, and stayed where it was", point.0, name(cloth(id)))
         }
-        Refused::Cloth(id) => format!("an attribute of `{}` was no usable number", name(cloth(id))),
-        Refused::Collider(id) => format!("an attribute of `{}` was no usable number", name(collider(id))),
-        Refused::Duration => "it had no length, and was passed over".to_owned(),
+        InvalidInput::Cloth(id) => format!("an attribute of `{}` was no usable number", name(cloth(id))),
+        InvalidInput::Collider(id) => {
+            format!("an attribute of `{}` was no usable number", name(collider(id)))
+        }
+        InvalidInput::Duration => "it had no length, and was passed over".to_owned(),
         _ => "a setting of the solver was no usable number".to_owned(),
     }
 }
@@ -278,8 +280,8 @@ mod tests {
             object("silk", ObjectKind::Cloth(ClothId(0))),
             object("ball", ObjectKind::Collider(ColliderId(0))),
         ];
-        let said = refused(Refused::ColliderPoint(ColliderId(0), PointId(17)), &objects);
+        let said = refused(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects);
         assert_eq!(said, "point 17 of `ball` was no usable position, and was held where it was");
-        assert!(refused(Refused::Cloth(ClothId(0)), &objects).contains("`silk`"));
+        assert!(refused(InvalidInput::Cloth(ClothId(0)), &objects).contains("`silk`"));
     }
 }

@@ -155,7 +155,11 @@ mod tests {
 
     #[test]
     fn points_in_colliders_and_edges_through_faces_are_trouble_only_at_the_last_frame() {
-        let inside = |trapped, tangled| StepReport { trapped, tangled, ..StepReport::default() };
+        let inside = |trapped, tangled| StepReport {
+            depenetrating: trapped,
+            intersections: tangled,
+            ..StepReport::default()
+        };
         let separated = account(&[inside(9, 0), inside(0, 0)]);
         assert!(unseparated(&separated, &[], false).is_empty());
         let said = tolerated(&separated, &[]);

@@ -4,14 +4,14 @@
 //! nearly all of this crate each time. What [`Compiled`] holds is of `f32` or of `f64` and not generic; what is public
 //! of the solver hands its work on to it.
 
-use crate::builder::ModelBuilder;
-use crate::checkpoint::RestoreError;
-use crate::frame::FrameInput;
-use crate::observe::{Contact, StepObserver};
-use crate::passes::PassCost;
-use crate::report::StepReport;
-use crate::scalar::Real;
+use crate::input::frame::FrameInput;
+use crate::math::Real;
+use crate::model::builder::ModelBuilder;
+use crate::output::observer::{ContactState, StepObserver};
+use crate::output::passes::PassCost;
+use crate::output::report::StepReport;
 use crate::solver::Solver;
+use crate::state::checkpoint::RestoreError;
 
 /// All of the solver's work that takes long to compile.
 pub trait Compiled: Sized {
@@ -36,7 +36,7 @@ pub trait Compiled: Sized {
         Self: Real;
 
     /// How contact stands at the points of each cloth.
-    fn rungs(solver: &Solver<Self>, out: &mut Vec<Vec<Contact>>)
+    fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>)
     where
         Self: Real;
 
@@ -70,8 +70,8 @@ macro_rules! compiled {
                 solver.take_step(frame, watch)
             }
 
-            fn rungs(solver: &Solver<Self>, out: &mut Vec<Vec<Contact>>) {
-                solver.rungs_of_cloths(out);
+            fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>) {
+                solver.list_contact_states(out);
             }
 
             fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost> {

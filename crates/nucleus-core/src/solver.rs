@@ -2,20 +2,20 @@
 
 use nalgebra::Vector3;
 
-use crate::builder::ModelBuilder;
-use crate::collision::collider::ColliderState;
-use crate::collision::foresee::Cover;
-use crate::collision::ground::Ground;
-use crate::collision::maps::Maps;
-use crate::collision::mutual::Mutual;
-use crate::collision::pairs::PairList;
-use crate::collision::terms::Terms;
-use crate::ids::{ClothId, ColliderId, PointId};
+use crate::contact::cloth::Mutual;
+use crate::contact::collider::ColliderState;
+use crate::contact::foresee::Cover;
+use crate::contact::ground::Ground;
+use crate::contact::maps::Maps;
+use crate::contact::pairs::PairList;
+use crate::contact::terms::Terms;
+use crate::input::ids::{ClothId, ColliderId, PointId};
+use crate::math::{Real, Row4};
+use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
-use crate::observe::{Contact, StateView};
-use crate::scalar::{Real, Row4};
+use crate::output::observer::{ContactState, StateView};
+use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
-use crate::team::Team;
 
 /// Everything needed to advance a scene by a frame; [`Solver::step`] does it.
 pub struct Solver<R: Real = f32> {
@@ -42,13 +42,13 @@ pub struct Solver<R: Real = f32> {
     pub(crate) ground_terms: Vec<Option<Terms<R>>>,
     /// What points bring into a contact beyond their cloth.
     pub(crate) maps: Maps<R>,
-    /// Contact among cloths; none where no two can ever meet.
+    /// ContactState among cloths; none where no two can ever meet.
     pub(crate) mutual: Option<Mutual<R>>,
     /// Whether anything touched anything in the last frame.
     pub(crate) touches: bool,
     /// The ground plane.
     pub(crate) ground: Ground<R>,
-    pub(crate) team: Team,
+    pub(crate) pool: ThreadPool,
 }
 
 impl<R: Real> Solver<R> {
@@ -94,7 +94,7 @@ impl<R: Real> Solver<R> {
             colliders,
             state,
             ground: Ground::default(),
-            team: Team::new(threads),
+            pool: ThreadPool::new(threads),
         };
         solver.anchor_rows();
         solver
@@ -134,8 +134,8 @@ impl<R: Real> StateView for Solver<R> {
         self.column(cloth, out, |row| self.state.seen_velocity(row).map(|x| x * units_per_metre));
     }
 
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
-        R::rungs(self, out);
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        R::contact_states(self, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

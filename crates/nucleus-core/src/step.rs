@@ -3,21 +3,21 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::Ordering;
 
-use crate::air::{self, Breeze};
-use crate::collision::resolve::Tally;
-use crate::columns::Shared;
 use crate::constraints::damp::{self, Damping};
-use crate::frame::FrameInput;
-use crate::observe::{Moment, Stage, StepObserver};
-use crate::predict::{self, Columns, Drive, gravity_kick};
-use crate::refuse::Refused;
-use crate::relax;
-use crate::report::StepReport;
-use crate::scalar::{Real, Row4};
-use crate::schedule::{Direction, Round, Schedule, Span};
+use crate::constraints::sweep;
+use crate::contact::resolve::Tally;
+use crate::input::frame::FrameInput;
+use crate::input::validation::InvalidInput;
+use crate::integrate::aerodynamics::{self, AirForces};
+use crate::integrate::predict::{self, Columns, Drive, gravity_kick};
+use crate::integrate::velocities;
+use crate::math::{Real, Row4};
+use crate::output::observer::{Stage, StepObserver, SubstepIndex};
+use crate::output::report::StepReport;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::schedule::{Direction, Pass, Schedule, Span};
 use crate::solver::Solver;
 use crate::state::State;
-use crate::velocity;
 
 /// A time step: what is done in it, which it is, and when.
 struct Step<'a, R> {
@@ -36,17 +36,17 @@ impl<R: Real> Solver<R> {
     }
 
     pub(crate) fn take_step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-        let (frame, refused) = self.usable(frame);
-        let report = match refused.first {
-            Some(Refused::Duration) => self.pass_over(watch),
+        let (frame, sanitized) = self.usable(frame);
+        let report = match sanitized.first {
+            Some(InvalidInput::Duration) => self.pass_over(watch),
             _ => self.solve(&frame, watch),
         };
-        StepReport { refused, ..report }
+        StepReport { sanitized, ..report }
     }
 
     /// A frame in which no time passes: all stays as it is.
     fn pass_over(&mut self, watch: &mut dyn StepObserver) -> StepReport {
-        watch.substep(Moment { substep: 1, substeps: 1 }, self);
+        watch.substep(SubstepIndex { substep: 1, substeps: 1 }, self);
         StepReport::default()
     }
 
@@ -72,7 +72,7 @@ impl<R: Real> Solver<R> {
     ) -> ControlFlow<()> {
         watch.enter(Stage::FrameStart);
         self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
-        let fastest = self.fastest(frame);
+        let max_speed = self.max_speed(frame);
         // What is held or lies on something would tremble under sweeps that turn: not converged, each way has a
         // balance of its own. Only what flies freely can be stirred for long.
         let is_free = frame.pins.is_empty() && !self.touches;
@@ -83,23 +83,23 @@ impl<R: Real> Solver<R> {
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
                 let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(frame, schedule, span, &fastest);
+                let parts = self.parts(frame, schedule, span, &max_speed);
                 if parts == 1 {
                     let now = Step { schedule, index: step, span, direction };
-                    self.advance(frame, &now, &fastest, tally, watch)?;
+                    self.advance(frame, &now, &max_speed, tally, watch)?;
                     continue;
                 }
                 let split = schedule.split(frame, parts);
                 for part in 0..parts {
                     let (index, span) = (step * parts + part, span.part(part, parts));
                     let now = Step { schedule: &split, index, span, direction };
-                    self.advance(frame, &now, &fastest, tally, watch)?;
+                    self.advance(frame, &now, &max_speed, tally, watch)?;
                 }
             }
             self.damp(frame, schedule);
             self.set_time(f64::from(substep) / f64::from(schedule.substeps));
-            watch.enter(Stage::Watch);
-            watch.substep(Moment { substep, substeps: schedule.substeps }, self);
+            watch.enter(Stage::Observe);
+            watch.substep(SubstepIndex { substep, substeps: schedule.substeps }, self);
         }
         ControlFlow::Continue(())
     }
@@ -109,41 +109,41 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         now: &Step<'_, R>,
-        fastest: &[f64],
+        max_speed: &[f64],
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) -> ControlFlow<()> {
         let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
-        self.keep_start(frame, schedule.h);
-        self.predict(frame, schedule, fastest, index); // gravity, wind, drag; inertia
-        for round in &schedule.rounds {
-            watch.go_on()?;
+        self.store_step_start(frame, schedule.h);
+        self.predict(frame, schedule, max_speed, index); // gravity, wind, drag; inertia
+        for round in &schedule.passes {
+            watch.should_continue()?;
             match round {
-                Round::Relax(sweeps) => {
-                    watch.enter(Stage::Relax);
-                    relax::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
+                Pass::Constraints(sweeps) => {
+                    watch.enter(Stage::Constraints);
+                    sweep::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
                 }
-                Round::MeetEachOther => {
+                Pass::ClothContact => {
                     self.stick_to_cloth(frame, schedule, span, tally);
                     self.meet(1.0, frame, schedule, span, tally, watch);
                 }
-                Round::Collide => {
+                Pass::ColliderContact => {
                     self.stick_to_colliders(frame, schedule, span, tally);
                     self.meet_colliders(1.0, frame, schedule, span, tally, watch);
                 }
-                Round::Settle => self.settle(frame, schedule, span, tally, watch), // the last word
+                Pass::Safeguard => self.settle(frame, schedule, span, tally, watch), // the last word
             }
         }
         watch.enter(Stage::Velocity);
-        self.follow_positions(schedule);
+        self.update_velocities(schedule);
         self.bounce(frame, schedule, span);
         watch.step(span.to, self);
         ControlFlow::Continue(())
     }
 
     /// Keeps the places that points have before a time step moves them, where they can meet anything.
-    fn keep_start(&mut self, frame: &FrameInput, h: f64) {
+    fn store_step_start(&mut self, frame: &FrameInput, h: f64) {
         // Of the last step, and of what may be no more: a plane that is keyed off.
         self.state.led.clear();
         self.state.parted.clear();
@@ -157,7 +157,7 @@ impl<R: Real> Solver<R> {
     }
 
     /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.
-    fn fastest(&self, frame: &FrameInput) -> Vec<f64> {
+    fn max_speed(&self, frame: &FrameInput) -> Vec<f64> {
         let of_cloth = |points: Range<u32>| {
             let rows = &self.state.velocity[points.start as usize..points.end as usize];
             let speeds = rows.iter().map(|row| row.xyz().map(R::to_f64));
@@ -169,43 +169,48 @@ impl<R: Real> Solver<R> {
 
     /// Normals for the air, once per substep.
     fn find_normals(&mut self) {
-        let Self { cloths, state, team, .. } = self;
+        let Self { cloths, state, pool, .. } = self;
         let (anchor, displacement) = (&state.anchor, &state.displacement);
         let position = |row: u32| {
             let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
             [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
         };
-        let normals = Shared::new(&mut state.normal);
+        let normals = DisjointSlice::new(&mut state.normal);
         for cloth in cloths.iter() {
-            team.phase(cloth.triangles.len(), |block| {
+            pool.parallel_for(cloth.triangles.len(), |block| {
                 // SAFETY: blocks do not overlap.
                 #[allow(unsafe_code)]
                 unsafe {
-                    air::find_normals(normals, cloth.blocks.range(block), &cloth.triangles[block], position);
+                    aerodynamics::find_normals(
+                        normals,
+                        cloth.blocks.range(block),
+                        &cloth.triangles[block],
+                        position,
+                    );
                 }
             });
         }
     }
 
-    fn predict(&mut self, frame: &FrameInput, schedule: &Schedule<R>, fastest: &[f64], step: u32) {
-        let Self { cloths, state, team, .. } = self;
+    fn predict(&mut self, frame: &FrameInput, schedule: &Schedule<R>, max_speed: &[f64], step: u32) {
+        let Self { cloths, state, pool, .. } = self;
         let columns = Columns {
-            displacement: Shared::new(&mut state.displacement),
-            velocity: Shared::new(&mut state.velocity),
-            predicted: Shared::new(&mut state.predicted),
+            displacement: DisjointSlice::new(&mut state.displacement),
+            velocity: DisjointSlice::new(&mut state.velocity),
+            predicted: DisjointSlice::new(&mut state.predicted),
             normal: &state.normal,
         };
-        for ((cloth, settings), &fastest) in cloths.iter().zip(&frame.cloths).zip(fastest) {
-            let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, fastest);
-            let breeze = Breeze::new(frame, settings, cloth.weight, schedule.h);
+        for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(max_speed) {
+            let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, max_speed);
+            let air_forces = AirForces::new(frame, settings, cloth.weight, schedule.h);
             let drive = Drive {
                 gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
                 impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
-                breeze: breeze.filter(|_| !cloth.triangles.is_empty()),
+                air_forces: air_forces.filter(|_| !cloth.triangles.is_empty()),
                 factors: &[],
                 h: R::from_f64(schedule.h),
             };
-            team.phase(cloth.blocks.len(), |block| {
+            pool.parallel_for(cloth.blocks.len(), |block| {
                 let points = cloth.blocks.range(block);
                 let drive = Drive { factors: cloth.air_factors(&points), ..drive };
                 // SAFETY: blocks do not overlap.
@@ -217,17 +222,17 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    fn follow_positions(&mut self, schedule: &Schedule<R>) {
-        let Self { cloths, state, team, .. } = self;
+    fn update_velocities(&mut self, schedule: &Schedule<R>) {
+        let Self { cloths, state, pool, .. } = self;
         let (displacement, predicted) =
-            (Shared::new(&mut state.displacement), Shared::new(&mut state.predicted));
-        let (led, velocity) = ([&state.led[..], &state.parted[..]], Shared::new(&mut state.velocity));
+            (DisjointSlice::new(&mut state.displacement), DisjointSlice::new(&mut state.predicted));
+        let (led, velocity) = ([&state.led[..], &state.parted[..]], DisjointSlice::new(&mut state.velocity));
         let h = R::from_f64(schedule.h);
         for cloth in cloths.iter() {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
-            team.phase(cloth.blocks.len(), |block| unsafe {
-                velocity::follow_positions(
+            pool.parallel_for(cloth.blocks.len(), |block| unsafe {
+                velocities::update_velocities(
                     [displacement, predicted, velocity],
                     led,
                     cloth.blocks.range(block),
@@ -238,15 +243,15 @@ impl<R: Real> Solver<R> {
     }
 
     fn damp(&mut self, frame: &FrameInput, schedule: &Schedule<R>) {
-        let Self { cloths, state, team, .. } = self;
+        let Self { cloths, state, pool, .. } = self;
         let substep = schedule.h * f64::from(schedule.steps);
-        let velocity = Shared::new(&mut state.velocity);
+        let velocity = DisjointSlice::new(&mut state.velocity);
         for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
             let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
             if !damping.is_felt() {
                 continue;
             }
-            relax::over_list(team, &cloth.blocks, &cloth.stretch, |part| {
+            sweep::over_list(pool, &cloth.blocks, &cloth.stretch, |part| {
                 let (links, factors) = (cloth.stretch.part(part), cloth.shares.damp.part(part));
                 // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
                 #[allow(unsafe_code)]

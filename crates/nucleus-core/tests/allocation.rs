@@ -7,7 +7,7 @@ mod scenes;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use nucleus_core::{ClothFrame, Moment, Solver, StateView, StepObserver};
+use nucleus_core::{ClothFrame, Solver, StateView, StepObserver, SubstepIndex};
 
 static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
 
@@ -35,7 +35,7 @@ static COUNTING: Counting = Counting;
 struct Seen([usize; 3]);
 
 impl StepObserver for Seen {
-    fn substep(&mut self, moment: Moment, _state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, _state: &dyn StateView) {
         self.0[moment.substep as usize - 1] = ALLOCATIONS.load(Ordering::Relaxed);
     }
 }

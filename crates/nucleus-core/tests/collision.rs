@@ -3,8 +3,8 @@
 mod scenes;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Contact, FrameInput, GroundPlane, Moment, Pin,
-    PointId, ResistanceModel, Solver, StateView, StepObserver, Surface,
+    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ContactState, FrameInput, GroundPlane, Pin,
+    PointId, ResistanceModel, Solver, StateView, StepObserver, SubstepIndex, Surface,
 };
 use scenes::{
     INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
@@ -76,7 +76,7 @@ fn points_over_a_table_touch_it_and_those_beyond_its_edge_are_free() {
     let mut contacts = Vec::new();
     solver.contacts(&mut contacts);
     assert!(
-        contacts[CLOTH.index()].iter().all(|&contact| contact == Contact::Free),
+        contacts[CLOTH.index()].iter().all(|&contact| contact == ContactState::Free),
         "before the first frame"
     );
     for _ in 0..6 {
@@ -85,7 +85,7 @@ fn points_over_a_table_touch_it_and_those_beyond_its_edge_are_free() {
     solver.contacts(&mut contacts);
     for (point, &contact) in sheet.positions.iter().zip(&contacts[CLOTH.index()]) {
         if (point.x - 0.5).abs() > 0.2 {
-            let expected = if point.x < 0.5 { Contact::Touching } else { Contact::Free };
+            let expected = if point.x < 0.5 { ContactState::Touching } else { ContactState::Free };
             assert_eq!(contact, expected, "{point}");
         }
     }
@@ -104,7 +104,7 @@ struct Wrong {
 }
 
 impl StepObserver for Wrong {
-    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         self.steps += 1;
         let time = f64::from(self.steps) / f64::from(moment.substeps) / 24.0;
         let centre = Vec3::new(0.5, -0.5, self.from + self.speed * time);
@@ -337,7 +337,7 @@ fn carried_by_a_plane(frames: u32, plane_at: impl Fn(f64) -> GroundPlane) -> (f6
     let builder = one_cloth(sheet, ClothLists { cross_links: false, ..ClothLists::ALL });
     let mut solver: Solver = Solver::new(builder, 1);
     let cloths = vec![ClothFrame { thickness, friction: 0.5, ..still() }];
-    let (mut least, mut fastest) = (f64::INFINITY, 0.0f64);
+    let (mut least, mut max_speed) = (f64::INFINITY, 0.0f64);
     for frame_number in 0..=frames {
         let plane = plane_at(f64::from(frame_number) / f64::from(frames));
         let input = FrameInput { plane: Some(plane), cloths: cloths.clone(), ..frame(3, physical(48.0)) };
@@ -349,17 +349,17 @@ fn carried_by_a_plane(frames: u32, plane_at: impl Fn(f64) -> GroundPlane) -> (f6
         }
         let mut velocities = Vec::new();
         solver.velocities(ClothId(0), 1.0, &mut velocities);
-        fastest = velocities.iter().map(|v| f64::from(v[1].abs())).fold(fastest, f64::max);
+        max_speed = velocities.iter().map(|v| f64::from(v[1].abs())).fold(max_speed, f64::max);
     }
-    (least, fastest)
+    (least, max_speed)
 }
 
 #[test]
 fn a_ground_plane_that_rises_at_2_4_m_per_second_carries_a_sheet_along() {
     let rise = |share: f64| GroundPlane { origin: Vec3::y() * share, ..ground(0.5) };
-    let (least, fastest) = carried_by_a_plane(10, rise);
+    let (least, max_speed) = carried_by_a_plane(10, rise);
     assert!(least > 0.999, "the sheet comes to {least} of its thickness above the plane");
-    assert!((2.3..2.6).contains(&fastest), "it moves at {fastest} m/s where the plane rises at 2.4");
+    assert!((2.3..2.6).contains(&max_speed), "it moves at {max_speed} m/s where the plane rises at 2.4");
 }
 
 #[test]

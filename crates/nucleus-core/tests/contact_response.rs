@@ -4,8 +4,8 @@ mod scenes;
 
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces, FrameInput,
-    GroundPlane, Mass, ModelBuilder, PointFactors, PushOut, ResistanceModel, SelfCollision, Solver, Start,
-    StateView, Surface,
+    GroundPlane, Mass, ModelBuilder, PushOut, ResistanceModel, SelfCollision, Solver, Start, StateView,
+    Surface, VertexMaps,
 };
 use scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, pins, still};
 
@@ -294,7 +294,7 @@ fn the_thickness_of_each_point_counts() {
     let thickness: Vec<f64> = sheet.positions.iter().map(factor).collect();
     let mut lifted = sheet.clone();
     lifted.positions.iter_mut().for_each(|p| p.y += 0.1);
-    let factors = PointFactors { thickness: thickness.clone(), ..PointFactors::default() };
+    let factors = VertexMaps { thickness: thickness.clone(), ..VertexMaps::default() };
     let cloth = Cloth { factors, ..Cloth::new(lifted, Mass::PerArea(0.2), ClothLists::NONE) };
     let floor = cuboid(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(2.0, 0.0, 2.0));
     let settings = ClothFrame { thickness: THICKNESS, self_collision: SelfCollision::OFF, ..still() };
@@ -331,7 +331,7 @@ fn cloth_on_cloth_rests_at_the_thickness_of_the_points_that_touch() {
     let table = grid(2, 2, Vec3::z() * 2.0, Vec3::x() * 2.0);
     let held = pins(&table, 0..4);
     let beads = beads(vec![Vec3::new(0.5, 0.1, 0.6), Vec3::new(1.5, 0.1, 1.4)]);
-    let factors = PointFactors { thickness: vec![0.5, 3.0], ..PointFactors::default() };
+    let factors = VertexMaps { thickness: vec![0.5, 3.0], ..VertexMaps::default() };
     let beads = Cloth { factors, ..Cloth::new(beads, Mass::PerPoint(0.1), ClothLists::NONE) };
     let mut solver = solver(vec![Cloth::new(table, Mass::PerPoint(1.0), LINKS), beads], Vec::new());
     let table = ClothFrame { thickness: 0.002, ..still() };
@@ -346,7 +346,7 @@ fn cloth_on_cloth_rests_at_the_thickness_of_the_points_that_touch() {
 }
 
 /// Two beads that differ in a map, and where they are after some frames at a box that reaches up to 0 and down to -0.2.
-fn two_at_a_box(factors: PointFactors, settings: ClothFrame, start: [f64; 2], gravity: f64) -> [f64; 2] {
+fn two_at_a_box(factors: VertexMaps, settings: ClothFrame, start: [f64; 2], gravity: f64) -> [f64; 2] {
     let slab = cuboid(Vec3::new(-1.0, -0.2, -1.0), Vec3::new(1.0, 0.0, 1.0));
     let [y, speed] = start;
     let positions = vec![Vec3::new(-0.31, y, 0.11), Vec3::new(0.33, y, 0.17)];
@@ -369,18 +369,18 @@ fn two_at_a_box(factors: PointFactors, settings: ClothFrame, start: [f64; 2], gr
 fn stickiness_bounce_and_collide_strength_of_each_point_count() {
     let map = || vec![0.0, 1.0];
     let sticky = ClothFrame { stickiness: 1.0, ..bead_settings() };
-    let factors = PointFactors { stickiness: map(), ..PointFactors::default() };
+    let factors = VertexMaps { stickiness: map(), ..VertexMaps::default() };
     let [falls, hangs] = two_at_a_box(factors, sticky, [-0.2 - THICKNESS, 0.0], -9.81);
     assert!(falls < -1.0 && (hangs + 0.2 + THICKNESS).abs() < 1e-4, "{falls} and {hangs}");
 
     let elastic = ClothFrame { bounce: 1.0, ..bead_settings() };
-    let factors = PointFactors { bounce: map(), ..PointFactors::default() };
+    let factors = VertexMaps { bounce: map(), ..VertexMaps::default() };
     let [stays, returns] = two_at_a_box(factors, elastic, [0.25, -1.0], 0.0);
     // Down for 0.24 s, up for the rest of the half second.
     assert!((stays - THICKNESS).abs() < 1e-4, "{stays}");
     assert!((returns - THICKNESS - 0.26).abs() < 0.01, "{returns}");
 
-    let factors = PointFactors { collide_strength: map(), ..PointFactors::default() };
+    let factors = VertexMaps { collide_strength: map(), ..VertexMaps::default() };
     let [passes, stops] = two_at_a_box(factors, bead_settings(), [0.25, -1.0], 0.0);
     assert!((passes + 0.25).abs() < 1e-6 && (stops - THICKNESS).abs() < 1e-4, "{passes} and {stops}");
 }

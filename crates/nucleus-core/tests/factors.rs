@@ -4,7 +4,7 @@ mod scenes;
 
 use nucleus_core::{
     BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
-    Mass, ModelBuilder, Pin, PointFactors, PointId, ResistanceModel, Solver, Start, StateView, Surface,
+    Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, Start, StateView, Surface, VertexMaps,
 };
 use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, still};
 
@@ -31,7 +31,7 @@ fn on_the_first(factor: f64) -> Vec<f64> {
 }
 
 /// Where the points of two sheets are after some frames, each held at two corners.
-fn swung(factors: PointFactors, settings: &ClothFrame, mass: f64, resistance: ResistanceModel) -> Vec<Vec3> {
+fn swung(factors: VertexMaps, settings: &ClothFrame, mass: f64, resistance: ResistanceModel) -> Vec<Vec3> {
     let surface = two_sheets();
     let held = [0, SIDE as usize - 1].into_iter().flat_map(|k| [k, k + PATCH]);
     let input = FrameInput {
@@ -55,38 +55,34 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
 }
 
 /// A column, and what of the cloth the same factor everywhere amounts to.
-type Column = (&'static str, fn(Vec<f64>) -> PointFactors, fn(&mut ClothFrame, &mut f64, f64));
+type Column = (&'static str, fn(Vec<f64>) -> VertexMaps, fn(&mut ClothFrame, &mut f64, f64));
 
 const COLUMNS: [Column; 9] = [
-    ("mass", |mass| PointFactors { mass, ..PointFactors::default() }, |_, mass, f| *mass *= f),
+    ("mass", |mass| VertexMaps { mass, ..VertexMaps::default() }, |_, mass, f| *mass *= f),
     (
         "stretch",
-        |stretch| PointFactors { stretch, ..PointFactors::default() },
+        |stretch| VertexMaps { stretch, ..VertexMaps::default() },
         |cloth, _, f| cloth.stretch_resistance *= f,
     ),
     (
         "compression",
-        |compression| PointFactors { compression, ..PointFactors::default() },
+        |compression| VertexMaps { compression, ..VertexMaps::default() },
         |cloth, _, f| cloth.compression_resistance *= f,
     ),
-    (
-        "bend",
-        |bend| PointFactors { bend, ..PointFactors::default() },
-        |cloth, _, f| cloth.bend_resistance *= f,
-    ),
+    ("bend", |bend| VertexMaps { bend, ..VertexMaps::default() }, |cloth, _, f| cloth.bend_resistance *= f),
     (
         "rest length",
-        |rest_length| PointFactors { rest_length, ..PointFactors::default() },
+        |rest_length| VertexMaps { rest_length, ..VertexMaps::default() },
         |cloth, _, f| cloth.rest_length_scale *= f,
     ),
-    ("damp", |damp| PointFactors { damp, ..PointFactors::default() }, |cloth, _, f| cloth.damp *= f),
-    ("drag", |drag| PointFactors { drag, ..PointFactors::default() }, |cloth, _, f| cloth.drag *= f),
+    ("damp", |damp| VertexMaps { damp, ..VertexMaps::default() }, |cloth, _, f| cloth.damp *= f),
+    ("drag", |drag| VertexMaps { drag, ..VertexMaps::default() }, |cloth, _, f| cloth.drag *= f),
     (
         "tangential drag",
-        |tangential_drag| PointFactors { tangential_drag, ..PointFactors::default() },
+        |tangential_drag| VertexMaps { tangential_drag, ..VertexMaps::default() },
         |cloth, _, f| cloth.tangential_drag *= f,
     ),
-    ("lift", |lift| PointFactors { lift, ..PointFactors::default() }, |cloth, _, f| cloth.lift *= f),
+    ("lift", |lift| VertexMaps { lift, ..VertexMaps::default() }, |cloth, _, f| cloth.lift *= f),
 ];
 
 /// Resistances of which a substep gets less than one evaluation in Classic: half of one is half as strong.
@@ -108,15 +104,15 @@ fn lively() -> ClothFrame {
 #[test]
 fn each_point_is_as_if_all_of_the_cloth_had_its_factor() {
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
-        let plain = swung(PointFactors::default(), &lively(), 0.2, resistance);
+        let plain = swung(VertexMaps::default(), &lively(), 0.2, resistance);
         for (name, column, scale) in COLUMNS {
             let varied = swung(column(on_the_first(0.5)), &lively(), 0.2, resistance);
             let (mut settings, mut mass) = (lively(), 0.2);
             scale(&mut settings, &mut mass, 0.5);
-            let scaled = swung(PointFactors::default(), &settings, mass, resistance);
+            let scaled = swung(VertexMaps::default(), &settings, mass, resistance);
             let first = farthest(&varied[..PATCH], &scaled[..PATCH]);
             let second = farthest(&varied[PATCH..], &plain[PATCH..]);
-            // Gravity is rounded to a grain that goes by the fastest point of the cloth.
+            // Gravity is rounded to a grain that goes by the max_speed point of the cloth.
             assert!(first < 1e-9 && second < 1e-9, "{name}, {resistance:?}: {first:e}, {second:e}");
             let told_apart = farthest(&scaled[..PATCH], &plain[..PATCH]);
             assert!(told_apart > 1e-6, "{name}, {resistance:?} does nothing here: {told_apart:e}");
@@ -127,7 +123,7 @@ fn each_point_is_as_if_all_of_the_cloth_had_its_factor() {
 #[test]
 fn a_column_of_ones_changes_no_bit() {
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
-        let plain = swung(PointFactors::default(), &lively(), 0.2, resistance);
+        let plain = swung(VertexMaps::default(), &lively(), 0.2, resistance);
         for (name, column, _) in COLUMNS {
             assert_eq!(swung(column(on_the_first(1.0)), &lively(), 0.2, resistance), plain, "{name}");
         }
@@ -135,7 +131,7 @@ fn a_column_of_ones_changes_no_bit() {
 }
 
 /// How long the links of a hanging strip are, from the top down, when it has come to rest.
-fn hanging(factors: PointFactors) -> Vec<f64> {
+fn hanging(factors: VertexMaps) -> Vec<f64> {
     let rows = 11;
     let strip = grid(2, rows, Vec3::x() * 0.1, -Vec3::y());
     let cloth = ClothFrame { stretch_damp: 5.0, ..still() };
@@ -167,7 +163,7 @@ fn of_rows(factor: impl Fn(usize) -> f64) -> Vec<f64> {
 #[test]
 fn a_strip_that_is_heavy_below_stretches_by_the_weight_that_hangs_on_each_link() {
     let heavy = |row: usize| if row > 5 { 3.0 } else { 1.0 };
-    let lengths = hanging(PointFactors { mass: of_rows(heavy), ..PointFactors::default() });
+    let lengths = hanging(VertexMaps { mass: of_rows(heavy), ..VertexMaps::default() });
     for (link, (length, strain)) in lengths.iter().zip(strains(heavy, |_| 1.0)).enumerate() {
         assert!((length / 0.1 - 1.0 - strain).abs() < 0.01 * strain, "link {link}: {length}, {strain}");
     }
@@ -178,7 +174,7 @@ fn a_strip_that_is_soft_below_stretches_more_there() {
     let soft = |row: usize| if row > 5 { 0.25 } else { 1.0 };
     // A link takes the mean of its two ends.
     let of_link = |link: usize| (soft(link) + soft(link + 1)) / 2.0;
-    let lengths = hanging(PointFactors { stretch: of_rows(soft), ..PointFactors::default() });
+    let lengths = hanging(VertexMaps { stretch: of_rows(soft), ..VertexMaps::default() });
     for (link, (length, strain)) in lengths.iter().zip(strains(|_| 1.0, of_link)).enumerate() {
         assert!((length / 0.1 - 1.0 - strain).abs() < 0.01 * strain, "link {link}: {length}, {strain}");
     }
@@ -190,8 +186,7 @@ fn a_link_without_a_share_is_not_there() {
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
         // The upper links have a half, the lower ones nothing.
         let column: Vec<f64> = (0..6).map(|point| if point < 2 { 1.0 } else { 0.0 }).collect();
-        let factors =
-            PointFactors { stretch: column.clone(), compression: column, ..PointFactors::default() };
+        let factors = VertexMaps { stretch: column.clone(), compression: column, ..VertexMaps::default() };
         let mut builder = ModelBuilder::new();
         let cloth = Cloth { factors, ..Cloth::new(surface.clone(), Mass::PerArea(1.0), LINKS) };
         builder.cloth(cloth).expect("a good mesh");
@@ -214,14 +209,13 @@ fn refused(cloth: impl Fn(Cloth) -> Cloth) -> BuildError {
 
 #[test]
 fn factors_that_do_not_fit_are_refused_by_name() {
-    let none = PointFactors::default;
-    let said =
-        |factors: PointFactors| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
-    let few = said(PointFactors { drag: vec![1.0; 3], ..none() });
+    let none = VertexMaps::default;
+    let said = |factors: VertexMaps| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
+    let few = said(VertexMaps { drag: vec![1.0; 3], ..none() });
     assert_eq!(few, "there are 3 factors on drag, but 4 points");
-    let weightless = said(PointFactors { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
+    let weightless = said(VertexMaps { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
     assert_eq!(weightless, "the factor on mass of point 2 must be between 0.000001 and 1000000, not 0");
-    let no_number = said(PointFactors { bend: vec![1.0, f64::NAN, 0.0, 1.0], ..none() });
+    let no_number = said(VertexMaps { bend: vec![1.0, f64::NAN, 0.0, 1.0], ..none() });
     assert_eq!(no_number, "the factor on bend of point 1 must be between 0 and 1, not NaN");
 }
 
@@ -287,7 +281,7 @@ fn slid(floor: Floor, factor: f64) -> f64 {
     };
     let mut builder = ModelBuilder::new();
     let sheet = lying(grid(5, 5, Vec3::x() * 0.2, Vec3::z() * 0.2), 0.0101, 0.1);
-    let factors = PointFactors { friction: vec![factor; 25], ..PointFactors::default() };
+    let factors = VertexMaps { friction: vec![factor; 25], ..VertexMaps::default() };
     let mass = Mass::PerArea(0.2);
     builder.cloth(Cloth { factors, ..Cloth::new(sheet, mass, LINKS) }).expect("a good mesh");
     let cloth = ClothFrame { thickness: 0.005, friction: 0.4, ..still() };

@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use nalgebra::{Rotation3, Vector3};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
-    ModelBuilder, Moment, Pin, ResistanceModel, SelfCollision, Solver, Start, StateView, StepObserver,
-    StepReport,
+    ModelBuilder, Pin, ResistanceModel, SelfCollision, Solver, Start, StateView, StepObserver, StepReport,
+    SubstepIndex,
 };
 use proptest::prelude::*;
 use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, still};
@@ -207,10 +207,10 @@ fn cloth_in_contact_far_away_changes_not_one_bit() {
     }
 }
 
-struct Count(Vec<Moment>);
+struct Count(Vec<SubstepIndex>);
 
 impl StepObserver for Count {
-    fn substep(&mut self, moment: Moment, _state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, _state: &dyn StateView) {
         self.0.push(moment);
     }
 }
@@ -221,17 +221,17 @@ fn an_observer_sees_every_substep_once() {
     let mut solver = Solver::<f32>::new(one_cloth(grid(3, 3, Vec3::x(), Vec3::z()), LINKS), 1);
     let mut seen = Count(Vec::new());
     solver.step(&frame(7, physical(96.0)), &mut seen);
-    assert_eq!(seen.0, (1..=7).map(|substep| Moment { substep, substeps: 7 }).collect::<Vec<_>>());
+    assert_eq!(seen.0, (1..=7).map(|substep| SubstepIndex { substep, substeps: 7 }).collect::<Vec<_>>());
 }
 
 #[test]
 fn an_observer_can_end_a_frame_between_time_steps() {
     struct UntilSubstep(u32, Count);
     impl StepObserver for UntilSubstep {
-        fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+        fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
             self.1.substep(moment, state);
         }
-        fn go_on(&self) -> ControlFlow<()> {
+        fn should_continue(&self) -> ControlFlow<()> {
             if self.1.0.len() as u32 == self.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         }
     }
@@ -251,7 +251,7 @@ fn an_observer_can_end_a_frame_between_time_steps() {
 fn pins_and_colliders_move_along_straight_lines_inside_a_frame() {
     struct Watch(Vec<(f64, f32)>);
     impl StepObserver for Watch {
-        fn substep(&mut self, _moment: Moment, state: &dyn StateView) {
+        fn substep(&mut self, _moment: SubstepIndex, state: &dyn StateView) {
             let mut out = Vec::new();
             state.collider_positions(nucleus_core::ColliderId(0), 1.0, &mut out);
             self.0.push((state.point(CLOTH, 0).x, out[0][1]));

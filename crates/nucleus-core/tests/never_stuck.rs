@@ -65,12 +65,12 @@ fn cloth_pinched_between_two_boxes_goes_on_and_recovers_when_they_part() {
         assert!(reports.iter().all(|report| report.finite));
         let closed = &reports[30];
         // With less than two thicknesses between the boxes there is no place to be in.
-        assert_eq!(closed.trapped > 0, gap <= 0.0, "gap {gap}: {closed:?}");
+        assert_eq!(closed.depenetrating > 0, gap <= 0.0, "gap {gap}: {closed:?}");
         let last = reports.last().expect("frames");
         // Where the boxes went into each other a fold may stay; it lies still.
         assert!(last.strain_99 < 0.01 || gap < 0.0, "gap {gap}: {last:?}");
         assert!(last.kinetic_energy < 1e-2, "gap {gap}: {last:?}");
-        assert_eq!((last.trapped, last.pairs_reverted), (0, 0), "gap {gap}: {last:?}");
+        assert_eq!((last.depenetrating, last.pairs_reverted), (0, 0), "gap {gap}: {last:?}");
     }
 }
 
@@ -100,13 +100,13 @@ fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
     let input = FrameInput { cloths, colliders, ..frame(3, physical(96.0)) };
     let mut solver = Solver::<f32>::new(builder, 1);
     let first = solver.step(&input, &mut ());
-    assert_eq!(first.trapped, 81, "{first:?}");
+    assert_eq!(first.depenetrating, 81, "{first:?}");
     // Points are led at 1 m/s. What they pull along is of that speed too, and nothing may be much faster.
     let energy = 0.2 * 0.2 * 0.2 * 2.0 * 2.0 / 2.0;
     for frame in 0..6 {
         let report = solver.step(&input, &mut ());
         assert!(report.finite && report.kinetic_energy < energy, "frame {frame}, {energy} J: {report:?}");
-        assert_eq!(report.trapped == 0, frame > 0, "frame {frame}: {report:?}");
+        assert_eq!(report.depenetrating == 0, frame > 0, "frame {frame}: {report:?}");
     }
     assert!((0..81).all(|k| solver.point(ClothId(0), k).norm() > 0.3 * INSCRIBED), "a point is inside");
 }
@@ -116,8 +116,7 @@ fn two_in_empty_space(surfaces: [Surface; 2], crossover_push: f64, strength: &[f
     let mut builder = ModelBuilder::new();
     for (surface, strength) in surfaces.into_iter().zip([strength, &[]]) {
         let mass = Mass::PerArea(0.2);
-        let factors =
-            nucleus_core::PointFactors { collide_strength: strength.to_vec(), ..Default::default() };
+        let factors = nucleus_core::VertexMaps { collide_strength: strength.to_vec(), ..Default::default() };
         let cloth = Cloth { factors, ..Cloth::new(surface, mass, LINKS) };
         builder.cloth(cloth).expect("a good mesh");
     }
@@ -142,9 +141,9 @@ fn at_a_slant(flipped: bool, strength: &[f64]) -> Vec<StepReport> {
 fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face() {
     for flipped in [false, true] {
         let reports = at_a_slant(flipped, &[]);
-        assert!(reports[0].tangled > 20, "{:?}", reports[0]);
+        assert!(reports[0].intersections > 20, "{:?}", reports[0]);
         let last = reports.last().expect("frames");
-        assert_eq!((last.tangled, last.pairs_unresolved), (0, 0), "flipped {flipped}: {last:?}");
+        assert_eq!((last.intersections, last.pairs_unresolved), (0, 0), "flipped {flipped}: {last:?}");
         // They are led at a few decimetres a second, and nothing stops them here.
         assert!(reports.iter().all(|report| report.finite && report.kinetic_energy < 0.2 * 2.0 * 0.5 * 0.5));
         assert!(last.max_strain < 0.05, "flipped {flipped}: {last:?}");
@@ -155,7 +154,7 @@ fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face(
 fn points_that_a_map_lets_pass_are_no_tangle() {
     let tangled = |strength: f64| {
         let reports = at_a_slant(false, &[strength; 169]);
-        [reports[0].tangled, reports[0].pairs_unresolved]
+        [reports[0].intersections, reports[0].pairs_unresolved]
     };
     assert_eq!([0.0, 0.5].map(tangled), [[0; 2]; 2]);
     assert!(tangled(1.0)[0] > 20, "{:?}", tangled(1.0));
@@ -169,7 +168,7 @@ fn crossover_push_works_sheets_apart_sooner() {
         let mut strip = grid(4, 13, Vec3::x() * 0.25, Vec3::y());
         strip.positions.iter_mut().for_each(|p| *p += Vec3::new(0.39, -4.5 / 12.0, 0.46));
         let reports = two_in_empty_space([level, strip], push, &[]);
-        reports.iter().position(|report| report.tangled == 0).expect("they come apart")
+        reports.iter().position(|report| report.intersections == 0).expect("they come apart")
     };
     let [alone, pushed] = [0.0, 0.5].map(apart_after);
     assert!(2 * pushed < alone, "after {pushed} frames, {alone} without");

@@ -2,7 +2,9 @@
 
 mod scenes;
 
-use nucleus_core::{ClothId, ColliderId, FARTHEST, FrameInput, PointId, Refused, Solver, StateView};
+use nucleus_core::{
+    ClothId, ColliderId, FrameInput, InvalidInput, MAX_COORDINATE, PointId, Solver, StateView,
+};
 use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 
 /// The ball's points when it has risen so far.
@@ -12,7 +14,7 @@ fn ball(height: f64) -> Vec<Vec3> {
 
 /// A solver over some frames; `plant` may spoil what the sixth brings. The hash of its state at the end, and what was
 /// refused.
-fn run(mut plant: impl FnMut(&mut FrameInput)) -> (u64, u64, Option<Refused>, bool) {
+fn run(mut plant: impl FnMut(&mut FrameInput)) -> (u64, u64, Option<InvalidInput>, bool) {
     let (builder, mut usual) = drape(9, 24.0);
     let mut solver: Solver = Solver::new(builder, 1);
     let moved = |frame: u32| ball(0.01 * f64::from(frame));
@@ -24,8 +26,8 @@ fn run(mut plant: impl FnMut(&mut FrameInput)) -> (u64, u64, Option<Refused>, bo
             plant(&mut input);
         }
         let report = solver.step(&input, &mut ());
-        count += report.refused.count;
-        first = first.or(report.refused.first);
+        count += report.sanitized.count;
+        first = first.or(report.sanitized.first);
         finite &= report.finite;
     }
     (solver.state_hash(), count, first, finite)
@@ -39,12 +41,12 @@ fn a_good_frame_is_refused_nothing() {
 
 #[test]
 fn a_collider_point_that_is_no_number_stays_where_it_was() {
-    for bad in [f64::NAN, f64::INFINITY, -2.0 * FARTHEST] {
+    for bad in [f64::NAN, f64::INFINITY, -2.0 * MAX_COORDINATE] {
         let held = run(|input| input.colliders[0].end[17] = ball(0.04)[17]);
         let planted = run(|input| input.colliders[0].end[17].z = bad);
         assert_eq!(planted.0, held.0, "as if the point had been held, bit for bit");
         assert_eq!(planted.1, 1);
-        assert_eq!(planted.2, Some(Refused::ColliderPoint(ColliderId(0), PointId(17))));
+        assert_eq!(planted.2, Some(InvalidInput::ColliderPoint(ColliderId(0), PointId(17))));
         assert!(planted.3);
     }
 }
@@ -52,17 +54,17 @@ fn a_collider_point_that_is_no_number_stays_where_it_was() {
 #[test]
 fn a_collider_with_the_wrong_number_of_points_stands_still() {
     let (_, count, first, finite) = run(|input| input.colliders[0].end.truncate(3));
-    assert_eq!((count, first, finite), (1, Some(Refused::ColliderMotion(ColliderId(0))), true));
+    assert_eq!((count, first, finite), (1, Some(InvalidInput::ColliderMotion(ColliderId(0))), true));
 }
 
 #[test]
 fn attributes_that_are_no_numbers_are_named_and_left_out() {
     let (_, _, first, finite) = run(|input| input.cloths[0].thickness = f64::NAN);
-    assert_eq!((first, finite), (Some(Refused::Cloth(ClothId(0))), true));
+    assert_eq!((first, finite), (Some(InvalidInput::Cloth(ClothId(0))), true));
     let (_, _, first, finite) = run(|input| input.gravity.x = f64::NAN);
-    assert_eq!((first, finite), (Some(Refused::Setting), true));
+    assert_eq!((first, finite), (Some(InvalidInput::Setting), true));
     let (_, _, first, finite) = run(|input| input.colliders[0].friction = f64::INFINITY);
-    assert_eq!((first, finite), (Some(Refused::Collider(ColliderId(0))), true));
+    assert_eq!((first, finite), (Some(InvalidInput::Collider(ColliderId(0))), true));
 }
 
 #[test]
@@ -74,7 +76,7 @@ fn a_frame_without_a_length_changes_nothing() {
         let before = solver.state_hash();
         let report = solver.step(&FrameInput { duration, ..input }, &mut ());
         assert_eq!(solver.state_hash(), before);
-        assert_eq!(report.refused.first, Some(Refused::Duration));
+        assert_eq!(report.sanitized.first, Some(InvalidInput::Duration));
     }
 }
 
@@ -89,7 +91,7 @@ fn a_pin_that_is_no_number_holds_its_point_where_it_is() {
     input.pins[0].start.x = f64::NAN;
     input.pins[0].end.y = f64::INFINITY;
     let report = solver.step(&input, &mut ());
-    assert_eq!(report.refused.first, Some(Refused::Pin(ClothId(0), PointId(20))));
+    assert_eq!(report.sanitized.first, Some(InvalidInput::Pin(ClothId(0), PointId(20))));
     let after = solver.point(ClothId(0), 20);
     assert!(report.finite && after == place, "{after}");
 }

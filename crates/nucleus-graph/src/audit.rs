@@ -105,7 +105,7 @@ impl Audit {
     }
 
     /// Takes up the end of a substep.
-    fn substep(&mut self, moment: core::Moment, state: &dyn StateView, grounds: &Grounds) {
+    fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView, grounds: &Grounds) {
         let now = Moment { frame: self.frame, substep: moment.substep };
         let share = f64::from(moment.substep) / f64::from(moment.substeps);
         if !std::mem::take(&mut self.stepped) {
@@ -166,7 +166,7 @@ impl<'a> Audited<'a> {
 }
 
 impl StepObserver for Audited<'_> {
-    fn substep(&mut self, moment: core::Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView) {
         self.audit.substep(moment, state, &self.grounds.borrow());
         self.watch.substep(moment, state);
         self.substep = moment.substep + 1;
@@ -177,8 +177,8 @@ impl StepObserver for Audited<'_> {
         self.watch.step(share, state);
     }
 
-    fn go_on(&self) -> ControlFlow<()> {
-        self.watch.go_on()
+    fn should_continue(&self) -> ControlFlow<()> {
+        self.watch.should_continue()
     }
 
     fn enter(&mut self, stage: Stage) {

@@ -116,7 +116,7 @@ static FORMS: [Form; 11] = [
         values: Values::Counts,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.trapped as f64),
+        figure: |seen, _| Some(seen.report.depenetrating as f64),
     },
     Form {
         name: MAX_TANGLED,
@@ -125,7 +125,7 @@ static FORMS: [Form; 11] = [
         values: Values::Counts,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.tangled as f64),
+        figure: |seen, _| Some(seen.report.intersections as f64),
     },
     Form {
         name: NO_CROSSING,
@@ -179,7 +179,9 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.tangled as f64),
+        figure: |seen, arguments| {
+            (seen.frame as f64 >= arguments[0]).then_some(seen.report.intersections as f64)
+        },
     },
     Form {
         name: "restsBy",

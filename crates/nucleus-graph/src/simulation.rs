@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use nucleus_audit::World;
 use nucleus_core::{
-    ClothId, FrameInput, Moment, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport,
+    ClothId, FrameInput, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport, SubstepIndex,
 };
 
 use crate::attributes::nucleus;
@@ -140,7 +140,7 @@ impl<R: Real> Simulation<R> {
             report = Some(report.map_or(seen, |before| worst(&before, &seen, leap.is_new_time)));
         }
         if total == 0 {
-            watch.substep(Moment { substep: 1, substeps: 1 }, self.state());
+            watch.substep(SubstepIndex { substep: 1, substeps: 1 }, self.state());
         }
         self.frame = frame;
         report.unwrap_or_default()
@@ -272,17 +272,17 @@ fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
         strain_99: a.strain_99.max(b.strain_99),
         min_gap: a.min_gap.min(b.min_gap),
         min_cloth_gap: a.min_cloth_gap.min(b.min_cloth_gap),
-        limited: if in_a_row { b.limited } else { a.limited + b.limited },
+        rest_limited: if in_a_row { b.rest_limited } else { a.rest_limited + b.rest_limited },
         contacts: a.contacts + b.contacts,
-        pairs: a.pairs + b.pairs,
+        candidate_pairs: a.candidate_pairs + b.candidate_pairs,
         broad_phases: a.broad_phases + b.broad_phases,
         pairs_reverted: a.pairs_reverted + b.pairs_reverted,
         pairs_unresolved: a.pairs_unresolved + b.pairs_unresolved,
-        trapped: if in_a_row { b.trapped } else { a.trapped + b.trapped },
-        tangled: if in_a_row { b.tangled } else { a.tangled + b.tangled },
+        depenetrating: if in_a_row { b.depenetrating } else { a.depenetrating + b.depenetrating },
+        intersections: if in_a_row { b.intersections } else { a.intersections + b.intersections },
         kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         finite: a.finite && b.finite,
-        refused: if a.refused.count > 0 { a.refused } else { b.refused },
+        sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
         stopped: a.stopped || b.stopped,
     }
 }

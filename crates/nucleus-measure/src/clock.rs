@@ -2,18 +2,18 @@
 
 use std::time::{Duration, Instant};
 
-use nucleus_core::{Moment, Stage, StateView, StepObserver};
+use nucleus_core::{Stage, StateView, StepObserver, SubstepIndex};
 
 /// The stages of a frame with the names that the tables give them.
 pub const STAGES: [(Stage, &str); 9] = [
     (Stage::FrameStart, "start"),
     (Stage::Normals, "normals"),
     (Stage::Predict, "predict"),
-    (Stage::Relax, "relax"),
-    (Stage::FindPairs, "pairs"),
-    (Stage::Collide, "collide"),
+    (Stage::Constraints, "relax"),
+    (Stage::BroadPhase, "pairs"),
+    (Stage::Contact, "collide"),
     (Stage::Velocity, "velocity"),
-    (Stage::Watch, "watch"),
+    (Stage::Observe, "watch"),
     (Stage::Report, "report"),
 ];
 
@@ -98,7 +98,7 @@ impl StageClock {
 }
 
 impl StepObserver for StageClock {
-    fn substep(&mut self, _moment: Moment, _state: &dyn StateView) {}
+    fn substep(&mut self, _moment: SubstepIndex, _state: &dyn StateView) {}
 
     fn enter(&mut self, stage: Stage) {
         self.turn(Some(stage), Instant::now());
@@ -114,13 +114,16 @@ mod tests {
         let (mut clock, start) = (StageClock::default(), Instant::now());
         let at = |ms| start + Duration::from_millis(ms);
         clock.turn(Some(Stage::Predict), at(0));
-        clock.turn(Some(Stage::Relax), at(1));
+        clock.turn(Some(Stage::Constraints), at(1));
         clock.turn(Some(Stage::Predict), at(7));
         clock.turn(None, at(8));
-        clock.turn(Some(Stage::Relax), at(100)); // what lies between frames counts for none
+        clock.turn(Some(Stage::Constraints), at(100)); // what lies between frames counts for none
         clock.turn(None, at(102));
         let share = |stage| clock.shares()[STAGES.iter().position(|(named, _)| *named == stage).unwrap()];
-        assert_eq!((share(Stage::Predict), share(Stage::Relax), share(Stage::Collide)), (0.2, 0.8, 0.0));
+        assert_eq!(
+            (share(Stage::Predict), share(Stage::Constraints), share(Stage::Contact)),
+            (0.2, 0.8, 0.0)
+        );
     }
 
     #[test]

@@ -42,7 +42,7 @@ fn a_row_that_fails_says_why_and_no_two_have_one_name() {
 #[test]
 fn every_scene_of_the_table_is_a_file_that_can_be_read() {
     for row in rows() {
-        let (Trial::Runs { case, .. } | Trial::Refused { case, .. }) = row.trial;
+        let (Trial::Runs { case, .. } | Trial::InvalidInput { case, .. }) = row.trial;
         let compiled = case().compile().expect("meshes can be written");
         assert_eq!(compiled.program.is_some(), matches!(row.trial, Trial::Runs { .. }), "{}", row.name);
     }

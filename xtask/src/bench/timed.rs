@@ -53,8 +53,8 @@ impl Timed {
             all.spent.wall += spent.wall;
             all.spent.processor += spent.processor;
             all.searches += f64::from(account.broad_phases);
-            all.pairs += account.pairs as f64;
-            all.most_pairs = all.most_pairs.max(account.pairs);
+            all.pairs += account.candidate_pairs as f64;
+            all.most_pairs = all.most_pairs.max(account.candidate_pairs);
             all.contacts += account.contacts as f64;
             seen(run.state());
         }

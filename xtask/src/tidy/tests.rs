@@ -115,9 +115,10 @@ fn an_attribute_that_names_no_module_is_found_at_its_line() {
         ];
         found(&page, &more)
     };
-    let good = ["nucleus_core::air", "nucleus_core::collision", "nucleus_core::collision::stick"];
+    let good =
+        ["nucleus_core::integrate::aerodynamics", "nucleus_core::contact", "nucleus_core::contact::stick"];
     assert_eq!(with(good), [""; 0]);
-    for bad in ["nucleus_core::collision::slip", "stick", "nucleus_cora::air"] {
+    for bad in ["nucleus_core::contact::slip", "stick", "nucleus_cora::air"] {
         let problems = with([good[0], bad, good[2]]);
         let place = format!("crates/nucleus-graph/src/attributes/n_cloth.rs:2: `{bad}` is no module");
         assert!(problems.len() == 1 && problems[0].starts_with(&place), "{problems:?}");

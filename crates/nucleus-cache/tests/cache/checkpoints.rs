@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Cursor;
 
 use nucleus_cache::{Detail, Kept, Playback, RecordError, Recorder, RunInfo, compare};
-use nucleus_core::{Moment, StepObserver};
+use nucleus_core::{StepObserver, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared, state_bytes as bytes};
 
@@ -22,7 +22,7 @@ fn record<W: std::io::Write + std::io::Seek>(
     for frame in from + 1..=last {
         let mut observer = recorder.frame(frame)?;
         for substep in 1..=SUBSTEPS {
-            observer.substep(Moment { substep, substeps: SUBSTEPS }, &Falling { frame, substep });
+            observer.substep(SubstepIndex { substep, substeps: SUBSTEPS }, &Falling { frame, substep });
         }
         recorder.end_frame(&serde_json::json!({ "max_strain": 0.5 }))?;
         if recorder.wants_checkpoint() {
@@ -141,7 +141,10 @@ fn frames_that_do_not_come_out_as_before_are_refused_and_nothing_is_touched() {
     let mut recorder = Recorder::resume(&path, true, &run_info(), falling::objects(), old, kept).unwrap();
     let frame = START + 4;
     let elsewhere = Falling { frame: frame + 1, substep: SUBSTEPS };
-    recorder.frame(frame).unwrap().substep(Moment { substep: SUBSTEPS, substeps: SUBSTEPS }, &elsewhere);
+    recorder
+        .frame(frame)
+        .unwrap()
+        .substep(SubstepIndex { substep: SUBSTEPS, substeps: SUBSTEPS }, &elsewhere);
     let error = recorder.end_frame(&serde_json::json!({})).unwrap_err();
     assert!(matches!(error, RecordError::Differs { frame: found, .. } if found == frame), "{error}");
     assert!(fs::read(&path).unwrap() == whole);

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use nucleus_cache::{Detail, Difference, Playback, Recorder, RunInfo, compare};
-use nucleus_core::{Moment, StepObserver};
+use nucleus_core::{StepObserver, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
 
@@ -23,7 +23,7 @@ fn astray(from: i32) -> Playback<Cursor<Vec<u8>>> {
     for frame in START + 1..=END {
         let mut observer = recorder.frame(frame).unwrap();
         let state = Falling { frame: if frame >= from { frame - 1 } else { frame }, substep: SUBSTEPS };
-        observer.substep(Moment { substep: SUBSTEPS, substeps: SUBSTEPS }, &state);
+        observer.substep(SubstepIndex { substep: SUBSTEPS, substeps: SUBSTEPS }, &state);
         recorder.end_frame(&()).unwrap();
     }
     recorder.finish().unwrap();

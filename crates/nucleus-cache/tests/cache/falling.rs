@@ -8,7 +8,7 @@ use nucleus_cache::{
     Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, RecordError, Recorded, Recorder, RunInfo,
     Source,
 };
-use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, ContactState, Faces, StateView, StepObserver, SubstepIndex};
 
 pub const START: i32 = 10;
 pub const END: i32 = 18;
@@ -51,9 +51,10 @@ impl StateView for Falling {
         out.clear();
         out.extend((0..4).map(|k| [0.0, -(self.frame as f32), k as f32].map(|x| x * units as f32)));
     }
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
-        let first = if self.frame >= SHOVE { Contact::Trapped } else { Contact::Free };
-        *out = vec![vec![first, Contact::Touching, Contact::Pinched, Contact::Tangled]];
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        let first = if self.frame >= SHOVE { ContactState::Depenetrating } else { ContactState::Free };
+        *out =
+            vec![vec![first, ContactState::Touching, ContactState::Compressed, ContactState::Intersecting]];
     }
     fn collider_positions(&self, _: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
         let shoved = if self.frame >= SHOVE { 1.0 } else { 0.0 };
@@ -116,7 +117,7 @@ pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, last: i32) -> Result<
     for frame in START + 1..=last {
         let mut observer = recorder.frame(frame)?;
         for substep in 1..=SUBSTEPS {
-            observer.substep(Moment { substep, substeps: SUBSTEPS }, &Falling { frame, substep });
+            observer.substep(SubstepIndex { substep, substeps: SUBSTEPS }, &Falling { frame, substep });
         }
         recorder.end_frame(&serde_json::json!({ "max_strain": 0.5, "min_gap": f64::INFINITY }))?;
         checkpoint(recorder, frame)?;

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Cursor;
 
 use nucleus_cache::{Detail, Difference, Kept, Playback, ReadError, RecordError, Recorder, RunInfo, compare};
-use nucleus_core::{Faces, Moment};
+use nucleus_core::{Faces, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
 use crate::torn::{CHECKPOINT, CLOTH, record, recorded, run_info, tears, torn};
@@ -129,7 +129,7 @@ fn a_torn_run_differs_from_a_whole_one_where_it_tears() {
 
 #[test]
 fn meshes_that_cannot_be_and_objects_that_are_not_there_are_refused() {
-    let moment = Moment { substep: 1, substeps: 1 };
+    let moment = SubstepIndex { substep: 1, substeps: 1 };
     let refusal = |name: &str, corner: u32| {
         let mut recorder =
             Recorder::to_writer(Shared::default(), &falling::run_info(), falling::objects()).unwrap();

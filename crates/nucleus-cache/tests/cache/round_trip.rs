@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use nucleus_cache::{Detail, Playback, RunInfo};
 
-use nucleus_core::Contact;
+use nucleus_core::ContactState;
 
 use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS};
 
@@ -44,8 +44,15 @@ fn contacts_and_strain_come_back_where_they_were_recorded() {
     assert_eq!(cache.run(), &falling::with_all_channels());
     for moment in 1..cache.moments().len() {
         let contacts = cache.contacts(0, moment).unwrap().unwrap();
-        let first = if cache.moments()[moment].frame >= SHOVE { Contact::Trapped } else { Contact::Free };
-        assert_eq!(contacts, [first, Contact::Touching, Contact::Pinched, Contact::Tangled]);
+        let first = if cache.moments()[moment].frame >= SHOVE {
+            ContactState::Depenetrating
+        } else {
+            ContactState::Free
+        };
+        assert_eq!(
+            contacts,
+            [first, ContactState::Touching, ContactState::Compressed, ContactState::Intersecting]
+        );
         // The cloth is recorded in centimetres, a hundred times as large as it says it is at rest.
         assert_eq!(cache.strain(0, moment).unwrap().unwrap(), [99.0; 4]);
     }

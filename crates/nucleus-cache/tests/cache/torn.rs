@@ -4,7 +4,7 @@ use std::io::{Seek, Write};
 
 use nalgebra::Vector3;
 use nucleus_cache::{Detail, ObjectInfo, RecordError, Recorder, RunInfo};
-use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, ContactState, Faces, StateView, StepObserver, SubstepIndex};
 
 use crate::falling::{self, Falling, START, SUBSTEPS, Shared};
 
@@ -47,8 +47,8 @@ impl StateView for Torn {
     fn velocities(&self, _: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = vec![[0.0, -1.0, 0.0]; self.points()];
     }
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
-        *out = vec![vec![Contact::Pinched; self.points()]];
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        *out = vec![vec![ContactState::Compressed; self.points()]];
     }
     fn collider_positions(&self, collider: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
         self.0.collider_positions(collider, units, out);
@@ -66,7 +66,7 @@ pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, from: i32, last: i32)
     for frame in from + 1..=last {
         let mut observer = recorder.frame(frame)?;
         for substep in 1..=SUBSTEPS {
-            let moment = Moment { substep, substeps: SUBSTEPS };
+            let moment = SubstepIndex { substep, substeps: SUBSTEPS };
             if TEARS.contains(&(frame, substep)) {
                 let ObjectInfo { faces, rest, .. } = torn(tears(frame, substep));
                 observer.change_mesh(moment, CLOTH, faces, rest);

@@ -21,7 +21,7 @@ impl Check {
         let file = scene_file::open(&self.scene, None)?;
         let count = diagnostics::count(&file.diagnostics);
         match file.told()? {
-            None => Ok(Outcome::Refused),
+            None => Ok(Outcome::InvalidInput),
             Some(_) => {
                 output::print(&format!("`{}` can run: {count}\n", self.scene.display()))?;
                 Ok(Outcome::Fine)

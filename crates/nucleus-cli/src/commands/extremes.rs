@@ -94,7 +94,7 @@ impl Extremes {
 /// Writes each scene with its meshes into a folder of its own.
 fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
     for row in rows {
-        let (Trial::Runs { case, .. } | Trial::Refused { case, .. }) = row.trial;
+        let (Trial::Runs { case, .. } | Trial::InvalidInput { case, .. }) = row.trial;
         let folder = folder.join(row.name);
         let written = fs::create_dir_all(&folder).and_then(|()| case().write(&folder, row.name));
         written.with_context(|| format!("cannot write to `{}`", folder.display()))?;

@@ -30,7 +30,7 @@ impl Fmt {
         let mut worst = Outcome::Fine;
         for path in &self.scenes {
             let outcome = self.format(path)?;
-            if matches!((worst, outcome), (_, Outcome::Refused) | (Outcome::Fine, _)) {
+            if matches!((worst, outcome), (_, Outcome::InvalidInput) | (Outcome::Fine, _)) {
                 worst = outcome;
             }
         }
@@ -43,7 +43,7 @@ impl Fmt {
             Ok((scene, _)) => scene,
             Err(mistakes) => {
                 diagnostics::print(&mistakes, &text)?;
-                return Ok(Outcome::Refused);
+                return Ok(Outcome::InvalidInput);
             }
         };
         let formatted = format_scene(&scene, &text);

@@ -37,7 +37,7 @@ impl Graph {
             Ok((scene, _)) => scene,
             Err(mistakes) => {
                 diagnostics::print(&mistakes, &text)?;
-                return Ok(Outcome::Refused);
+                return Ok(Outcome::InvalidInput);
             }
         };
         output::print(&match self.format {

@@ -54,7 +54,7 @@ impl Info {
 
     fn scene(&self) -> Result<Outcome> {
         let Some((scene, program, _)) = scene_file::open(&self.file, None)?.told()? else {
-            return Ok(Outcome::Refused);
+            return Ok(Outcome::InvalidInput);
         };
         let info = scene_info::SceneInfo::of(&scene, &program);
         match self.json {

@@ -38,7 +38,7 @@ impl Play {
                 let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
                 match run.run()? {
-                    ended @ (Outcome::Refused | Outcome::Interrupted) => return Ok(ended),
+                    ended @ (Outcome::InvalidInput | Outcome::Interrupted) => return Ok(ended),
                     // What went wrong is best seen.
                     Outcome::Fine | Outcome::Trouble => cache,
                 }

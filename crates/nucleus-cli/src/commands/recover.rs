@@ -34,7 +34,7 @@ impl Recover {
         let mut cache = cache_file::open(&self.file)?;
         if let Some(scene) = &self.scene {
             let Some((_, program, text)) = scene_file::open(scene, None)?.told()? else {
-                return Ok(Outcome::Refused);
+                return Ok(Outcome::InvalidInput);
             };
             let simulation = Simulation::new(&program, 1);
             let run = recording::of_scene(&simulation, (scene, &text))?;

@@ -53,7 +53,7 @@ impl Resume {
     pub fn run(self) -> Result<Outcome> {
         let mut old = Continued::open(&self.cache)?;
         let Some((program, scene_path, text)) = old.scene(self.scene.as_deref(), self.to)? else {
-            return Ok(Outcome::Refused);
+            return Ok(Outcome::InvalidInput);
         };
         let (start, end) = recording::frames(&program)?;
         let compared = self.kept(&old, end)?;

@@ -107,7 +107,7 @@ impl Run {
     /// Runs it.
     pub fn run(self) -> Result<Outcome> {
         let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
-            return Ok(Outcome::Refused);
+            return Ok(Outcome::InvalidInput);
         };
         let (read, is_from) = (program.clone(), self.from.is_some());
         let (scene, program) = match &self.from {

@@ -92,7 +92,7 @@ impl Trade {
     /// Runs what is to be run, and tells what was found.
     pub fn run(self) -> Result<Outcome> {
         let Some((mut scene, _, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
-            return Ok(Outcome::Refused);
+            return Ok(Outcome::InvalidInput);
         };
         if self.frames.is_none() {
             let frames = (SECONDS * scene.time.fps).ceil() as i64;
@@ -127,7 +127,7 @@ impl Trade {
             Watch {
                 side_by_side: threads::count(self.jobs),
                 tell: &mut |progress| bar.show(progress),
-                go_on: &|| !interrupt::asked(),
+                should_continue: &|| !interrupt::asked(),
             },
         );
         bar.end();

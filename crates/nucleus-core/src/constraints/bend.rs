@@ -5,11 +5,11 @@
 //! singular shape, and cannot turn or shift the cloth. What is bent at rest keeps the length of its vector. Far from flat
 //! a hinge is stiffer along c, so that its moment grows with the angle.
 
-use crate::columns::Shared;
-use crate::scalar::{Lanes, Real, Row4};
+use crate::math::{Lanes, Real, Row4};
+use crate::parallel::disjoint::DisjointSlice;
 
-use super::hinge::{HingeGroup, LEAST_COSINE};
-use super::shares::Portion;
+use super::hinge::{HingeGroup, MIN_COSINE};
+use super::row_map::Portion;
 
 /// How strongly a sweep acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,13 +27,14 @@ pub struct BendStrength<R> {
 #[allow(unsafe_code)]
 #[inline]
 pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
-    points: Shared<'_, Row4<R>>,
+    points: DisjointSlice<'_, Row4<R>>,
     groups: impl Iterator<Item = (&'a HingeGroup<R, N>, P)>,
     strength: &BendStrength<R>,
 ) {
     let (share, compliance) = (R::Lanes::splat(strength.share), R::Lanes::splat(strength.compliance));
-    let (zero, one, tiny) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::TINY));
-    let least = R::Lanes::splat(R::from_f64(LEAST_COSINE * LEAST_COSINE));
+    let (zero, one, tiny) =
+        (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::MIN_DENOMINATOR));
+    let least = R::Lanes::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
     for (group, portion) in groups {
         // SAFETY: the caller's promise.
         let x = group.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));

@@ -3,11 +3,11 @@
 //! `stretchDamp` acts along the links only, `damp` in all directions. Both are given by pairs, equal and
 //! opposite, so they change no momentum: a cloth that flies or falls as one is not slowed.
 
-use crate::columns::Shared;
-use crate::frame::COUNT_PERIOD;
-use crate::scalar::{Real, Row4, dot};
+use crate::input::frame::COUNT_PERIOD;
+use crate::math::{Real, Row4, dot};
+use crate::parallel::disjoint::DisjointSlice;
 
-use super::shares::ShareGroup;
+use super::row_map::ShareGroup;
 use super::stretch::LinkGroup;
 
 /// What damps a cloth in a substep.
@@ -53,7 +53,7 @@ pub struct DampStrength<R> {
 /// No other task of the phase touches the points of `groups`.
 #[allow(unsafe_code)]
 pub unsafe fn relax<R: Real>(
-    velocity: Shared<'_, Row4<R>>,
+    velocity: DisjointSlice<'_, Row4<R>>,
     points: &[Row4<R>],
     groups: &[LinkGroup<R>],
     factors: &[ShareGroup<R>],
@@ -74,7 +74,7 @@ pub unsafe fn relax<R: Real>(
             let (mut v_a, mut v_b) = unsafe { (velocity.get(a), velocity.get(b)) };
             let d: [R; 3] = std::array::from_fn(|axis| group.span[axis][lane] + (x_b[axis] - x_a[axis]));
             let relative: [R; 3] = std::array::from_fn(|axis| v_b.0[axis] - v_a.0[axis]);
-            let along = strength.along * dot(relative, d) / (dot(d, d) + R::TINY);
+            let along = strength.along * dot(relative, d) / (dot(d, d) + R::MIN_DENOMINATOR);
             for axis in 0..3 {
                 let taken = (strength.all * relative[axis] + along * d[axis]) / total;
                 v_a.0[axis] += x_a[3] * taken;

@@ -23,9 +23,9 @@
 
 use nalgebra::Vector3;
 
+use crate::math::Real;
+use crate::model::surface::Surface;
 use crate::model::{Row, Seam, fan_triangles, seams, triangle_area};
-use crate::scalar::Real;
-use crate::surface::Surface;
 
 /// `N` points that bend, between points of the solver, before they are laid out.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,7 @@ pub struct HingeGroup<R, const N: usize> {
 }
 
 /// A hinge gets no stiffer than twice, beyond 120°: folded shut it would be rigid, and spring open in one step.
-pub const LEAST_COSINE: f64 = 0.5;
+pub const MIN_COSINE: f64 = 0.5;
 
 /// The rows of a mesh, by how many points they have.
 #[derive(Debug, Clone, Default)]
@@ -185,9 +185,9 @@ pub fn held(length: f64, rest: f64, fold: f64) -> f64 {
     let most = 1.0 / fold.sqrt();
     let half_angle = |length: f64| (length / most).clamp(0.0, 1.0).asin();
     let sum = |half: f64| -most * most * half.cos() - rest * most * half;
-    let turn = LEAST_COSINE.acos();
+    let turn = MIN_COSINE.acos();
     let stiffest = most * turn.sin();
-    let beyond = if length > stiffest { (square(length) - square(stiffest)) / LEAST_COSINE } else { 0.0 };
+    let beyond = if length > stiffest { (square(length) - square(stiffest)) / MIN_COSINE } else { 0.0 };
     sum(half_angle(length).min(turn)) - sum(half_angle(rest).min(turn)) + beyond
 }
 
@@ -256,7 +256,7 @@ fn sorted<const N: usize>(mut points: [u32; N]) -> [u32; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::Faces;
+    use crate::model::surface::Faces;
 
     type Faced = fn(u32, u32) -> Vec<Vec<u32>>;
 

@@ -4,6 +4,7 @@
 pub mod bend;
 pub mod damp;
 pub mod hinge;
-pub mod shares;
+pub mod row_map;
 pub mod shear;
 pub mod stretch;
+pub mod sweep;

@@ -4,10 +4,10 @@
 //! of `shearResistance`; what makes them shear is which points they join.
 
 use super::stretch::LinkRow;
-use crate::factors::mean;
+use crate::math::Real;
+use crate::model::surface::Surface;
+use crate::model::vertex_maps::mean;
 use crate::model::{Link, shear_links};
-use crate::scalar::Real;
-use crate::surface::Surface;
 
 /// The cross links of a mesh, between the solver's places of its points.
 ///

@@ -4,11 +4,11 @@
 //! Macklin et al. 2016, eq. 18. Every sweep starts from no multiplier: in a time step there is one sweep
 //! (Physical), or there is no compliance (Classic).
 
-use crate::columns::Shared;
+use crate::math::{Lanes, Real, Row4};
 use crate::model::{Link, Row};
-use crate::scalar::{Lanes, Real, Row4};
+use crate::parallel::disjoint::DisjointSlice;
 
-use super::shares::Portion;
+use super::row_map::Portion;
 
 /// Four links side by side. 28 bytes a link in `f32`.
 #[derive(Debug, Clone, Copy)]
@@ -105,7 +105,7 @@ impl<R: Real> LinkGroup<R> {
             let [a, b] = self.ends.map(|end| points[end[lane] as usize].0);
             let d: [R; 3] = std::array::from_fn(|axis| self.span[axis][lane] + (b[axis] - a[axis]));
             let rest = self.rest_length[lane] * rest_scale;
-            if rest > R::ZERO { crate::scalar::dot(d, d).sqrt() / rest - R::ONE } else { R::ZERO }
+            if rest > R::ZERO { crate::math::dot(d, d).sqrt() / rest - R::ONE } else { R::ZERO }
         })
     }
 }
@@ -117,14 +117,14 @@ impl<R: Real> LinkGroup<R> {
 #[allow(unsafe_code)]
 #[inline]
 pub unsafe fn relax<'a, R: Real, P: Portion<R>>(
-    points: Shared<'_, Row4<R>>,
+    points: DisjointSlice<'_, Row4<R>>,
     groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
     strength: &LinkStrength<R>,
 ) {
     let both = |sides: Sides<R>| (R::Lanes::splat(sides.above), R::Lanes::splat(sides.below));
     let (share_above, share_below) = both(strength.share);
     let (compliance_above, compliance_below) = both(strength.compliance);
-    let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::TINY));
+    let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::MIN_DENOMINATOR));
     for (group, portion) in groups {
         // SAFETY: the caller's promise.
         let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));

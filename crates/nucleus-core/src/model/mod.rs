@@ -1,32 +1,34 @@
 //! What is fixed once a scene is compiled: the lists of each cloth, laid out to be swept.
 
+pub mod builder;
 mod order;
-mod outside;
+mod row_maps;
 mod rows;
-mod shares;
+pub mod surface;
 mod topology;
+pub mod vertex_maps;
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 pub use order::{Order, by_halves};
-pub use outside::Outside;
+pub use row_maps::{Factors, Shares};
 pub use rows::{Blocks, Part, Row, RowList};
-pub use shares::{Factors, Shares};
 pub use topology::{
     Link, Seam, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area, triangle_edges,
 };
 
-use crate::air::AirFactors;
-use crate::builder::{Cloth, Collider, Mass};
-use crate::collision::skin::{Skin, by_place};
 use crate::constraints::hinge::{self, HingeGroup};
 use crate::constraints::shear;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
-use crate::factors::mean;
-use crate::scalar::Real;
-use crate::surface::Surface;
+use crate::contact::pseudonormals::Outside;
+use crate::contact::skin::{Skin, by_place};
+use crate::integrate::aerodynamics::AirFactors;
+use crate::math::Real;
+use crate::model::builder::{Cloth, Collider, Mass};
+use crate::model::surface::Surface;
+use crate::model::vertex_maps::mean;
 
 /// One cloth: where its points are in the columns of the state, and its lists.
 #[derive(Debug, Clone)]

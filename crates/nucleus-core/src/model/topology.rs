@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::surface::Surface;
+use crate::model::surface::Surface;
 
 /// Two points to be kept at a distance, and how much cloth the link stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ struct Line {
 }
 
 /// The edges of the mesh as links, each once, sorted by ends, and where `with_cross_links` the cross links after
-/// them: both diagonals of each quad (`addCrossLinks`), and of larger polygons every line between two points that
+/// them: both diagonals of each quad (`addCrossLinks`), and of max polygons every line between two points that
 /// are not neighbours. A triangle has none.
 ///
 /// A stiffness K of the cloth in N/m becomes one of K strip / l² of a link, where the strip is the area of cloth

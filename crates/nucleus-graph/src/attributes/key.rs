@@ -159,13 +159,13 @@ impl<T> Key<T> {
         Self { row, read_as: PhantomData }
     }
 
-    /// Refused below this.
+    /// InvalidInput below this.
     pub(super) const fn min(mut self, min: f64) -> Self {
         self.row.range.min = Some(min);
         self
     }
 
-    /// Refused above this.
+    /// InvalidInput above this.
     pub(super) const fn max(mut self, max: f64) -> Self {
         self.row.range.max = Some(max);
         self

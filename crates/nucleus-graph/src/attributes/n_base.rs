@@ -58,25 +58,25 @@ node_table! {
     }
     "Collisions" {
         /// How far the surface reaches out; two objects touch at the sum of theirs. Worked out from the size of the mesh when left out.
-        THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::collision::terms");
+        THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::contact::terms");
         /// How much speed is kept in a contact; the larger of the two sides counts.
-        BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::bounce");
+        BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::bounce");
         /// Resistance to sliding; the values of both sides are added.
-        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::friction");
+        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::friction");
         /// Resistance to coming apart after a contact; the values of both sides are added, and at 1 they never part. With a friction of 1 they do not slide either.
-        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::collision::stick");
+        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::stick");
         /// How much of a collision is carried out; the values of both sides are multiplied. 1 and above: all, nothing passes. Below 1 things may pass through each other; at 0 there is no collision.
-        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::collision::terms");
+        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::terms");
         /// Up to which elements it collides: points, edges or faces.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::self_collision");
         /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
         SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::self_collision");
         /// Takes part in collisions with other objects.
-        COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::collision::terms");
+        COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::terms");
         /// Takes part in collisions with itself.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::self_collision");
         /// Which objects it meets, and which of the two gives way.
-        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::collision::terms");
+        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::terms");
         /// Colour in which Maya draws the thickness.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]);
     }
@@ -88,9 +88,9 @@ node_table! {
         /// Factor on the rest length of every link.
         REST_LENGTH_SCALE: f64 = float("restLengthScale", "rlsc", 1.0).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::stretch");
         /// A force on every point of this object alone.
-        LOCAL_FORCE: [f64; 3] = vector("localForce", "lfcr", [0.0, 0.0, 0.0], ["lfcx", "lfcy", "lfcz"]).unit("N").solved("nucleus_core::predict");
+        LOCAL_FORCE: [f64; 3] = vector("localForce", "lfcr", [0.0, 0.0, 0.0], ["lfcx", "lfcy", "lfcz"]).unit("N").solved("nucleus_core::integrate::predict");
         /// Wind that only this object feels, added to the solver's.
-        LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("nucleus_core::air");
+        LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
     }
     "Wind Field Generation" {
         /// How much the wind closes in again behind this object.
@@ -128,13 +128,13 @@ node_table! {
         /// No effect is given more iterations than this, whatever its resistance.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0);
         /// Share of the way by which points of other objects go, in a substep, to the outer side of the surface; below 0 to the inner. For scenes that start with one object in another.
-        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::push_out");
+        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::push_out");
         /// Points farther from the surface than this are not pushed out. Left out, it is four times the thickness.
-        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::push_out");
+        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::push_out");
         /// How much faster cloths are worked apart where they pass through each other: 0 half an edge length in 1/24 s, 1 ten times that. The values of both sides are added.
-        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::mutual::tangle");
+        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::tangle");
         /// Brings points that got to the wrong side back. The solver always does so for cloth, whatever is set here.
-        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("nucleus_core::collision::mutual::tangle");
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("nucleus_core::contact::cloth::tangle");
     }
     "Initial State" {
         /// Initial positions in world space, in place of those of the input mesh; how the cloth is at rest is still the mesh's to say.
@@ -156,49 +156,49 @@ node_table! {
     }
     "Collision Properties Maps" {
         /// Texture that varies thickness.
-        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1).solved("nucleus_core::factors");
+        THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1).solved("nucleus_core::model::vertex_maps");
         /// Factor on thickness at each point.
-        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv").solved("nucleus_core::factors");
+        THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies bounce.
-        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0).solved("nucleus_core::factors");
+        BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on bounce at each point.
-        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv").solved("nucleus_core::factors");
+        BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies friction.
-        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("nucleus_core::factors");
+        FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on friction at each point.
-        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("nucleus_core::factors");
+        FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies stickiness.
-        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0).solved("nucleus_core::factors");
+        STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on stickiness at each point.
-        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv").solved("nucleus_core::factors");
+        STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies collide strength.
-        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0).solved("nucleus_core::factors");
+        COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on collide strength at each point.
-        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv").solved("nucleus_core::factors");
+        COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv").solved("nucleus_core::model::vertex_maps");
         /// Whether thickness is varied by nothing, by point, or by a texture.
-        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether bounce is varied by nothing, by point, or by a texture.
-        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether friction is varied by nothing, by point, or by a texture.
-        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether stickiness is varied by nothing, by point, or by a texture.
-        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether collide strength is varied by nothing, by point, or by a texture.
-        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Dynamic Properties Maps" {
         /// Texture that varies damp.
-        DAMP_MAP: f64 = texture("dampMap", "admp", 0.0).solved("nucleus_core::factors");
+        DAMP_MAP: f64 = texture("dampMap", "admp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on damp at each point.
-        DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv").solved("nucleus_core::factors");
+        DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies mass.
-        MASS_MAP: f64 = texture("massMap", "mamp", 1.0).solved("nucleus_core::factors");
+        MASS_MAP: f64 = texture("massMap", "mamp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on mass at each point.
-        MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv").solved("nucleus_core::factors");
+        MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv").solved("nucleus_core::model::vertex_maps");
         /// Whether damp is varied by nothing, by point, or by a texture.
-        DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether mass is varied by nothing, by point, or by a texture.
-        MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Force Field Maps" {
         /// Texture that varies field magnitude.

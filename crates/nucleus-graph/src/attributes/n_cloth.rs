@@ -54,15 +54,15 @@ node_table! {
         /// Takes speed out of links that grow longer or shorter.
         STRETCH_DAMP: f64 = float("stretchDamp", "sdmp", 0.1).min(0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::damp");
         /// Does not feel the solver's gravity.
-        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::predict");
+        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::integrate::predict");
         /// Does not feel the solver's wind.
-        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::air");
+        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::integrate::aerodynamics");
         /// Force of the air at right angles to the motion.
-        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("nucleus_core::air");
+        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("nucleus_core::integrate::aerodynamics");
         /// Force of the air against the motion, as far as the surface faces it.
-        DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::air");
+        DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::integrate::aerodynamics");
         /// Share of `drag` that also acts along the surface.
-        TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::air");
+        TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::aerodynamics");
     }
     "Wind Field Generation" {
         /// Lets parts of the object keep the wind from other parts.
@@ -98,9 +98,9 @@ node_table! {
         /// Links all corners of faces with more than three.
         ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("nucleus_core::constraints::stretch").fixed();
         /// `crossoverPush` of the object against itself.
-        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::mutual::tangle");
+        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::tangle");
         /// `trappedCheck` of the object against itself: always done, whatever is set here.
-        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("nucleus_core::collision::mutual::tangle");
+        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("nucleus_core::contact::cloth::tangle");
     }
     "Nucleus (open)" {
         /// Physical: stiffness of the cloth against being stretched, Young's modulus times its thickness. Below 0 it comes from `stretchResistance`, 500 N/m for 1.
@@ -120,17 +120,17 @@ node_table! {
     }
     "Dynamic Properties Maps" {
         /// Texture that varies stretch.
-        STRETCH_MAP: f64 = texture("stretchMap", "stmp", 1.0).solved("nucleus_core::factors");
+        STRETCH_MAP: f64 = texture("stretchMap", "stmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on stretch at each point.
-        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv").solved("nucleus_core::factors");
+        STRETCH_PER_VERTEX: Vec<f64> = floats("stretchPerVertex", "spv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies compression.
-        COMPRESSION_MAP: f64 = texture("compressionMap", "cmmp", 1.0).solved("nucleus_core::factors");
+        COMPRESSION_MAP: f64 = texture("compressionMap", "cmmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on compression at each point.
-        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv").solved("nucleus_core::factors");
+        COMPRESSION_PER_VERTEX: Vec<f64> = floats("compressionPerVertex", "cmpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies bend.
-        BEND_MAP: f64 = texture("bendMap", "bemp", 0.0).solved("nucleus_core::factors");
+        BEND_MAP: f64 = texture("bendMap", "bemp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on bend at each point.
-        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("nucleus_core::factors");
+        BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies bend angle dropoff.
         BEND_ANGLE_DROPOFF_MAP: f64 = texture("bendAngleDropoffMap", "badm", 0.0);
         /// Factor on bend angle dropoff at each point.
@@ -152,21 +152,21 @@ node_table! {
         /// Factor on input attract at each point.
         INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv");
         /// Texture that varies rest length scale.
-        REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("nucleus_core::factors");
+        REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on rest length scale at each point.
-        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv").solved("nucleus_core::factors");
+        REST_LENGTH_SCALE_PER_VERTEX: Vec<f64> = floats("restLengthScalePerVertex", "rlpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies lift.
-        LIFT_MAP: f64 = texture("liftMap", "lfmp", 1.0).solved("nucleus_core::factors");
+        LIFT_MAP: f64 = texture("liftMap", "lfmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on lift at each point.
-        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv").solved("nucleus_core::factors");
+        LIFT_PER_VERTEX: Vec<f64> = floats("liftPerVertex", "lfpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies drag.
-        DRAG_MAP: f64 = texture("dragMap", "drmp", 1.0).solved("nucleus_core::factors");
+        DRAG_MAP: f64 = texture("dragMap", "drmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on drag at each point.
-        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv").solved("nucleus_core::factors");
+        DRAG_PER_VERTEX: Vec<f64> = floats("dragPerVertex", "drpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies tangential drag.
-        TANGENTIAL_DRAG_MAP: f64 = texture("tangentialDragMap", "tdmp", 1.0).solved("nucleus_core::factors");
+        TANGENTIAL_DRAG_MAP: f64 = texture("tangentialDragMap", "tdmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on tangential drag at each point.
-        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("nucleus_core::factors");
+        TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies wrinkle.
         WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0);
         /// Factor on wrinkle at each point.
@@ -174,11 +174,11 @@ node_table! {
         /// How high the wrinkles of the wrinkle map stand.
         WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0);
         /// Whether stretch is varied by nothing, by point, or by a texture.
-        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether compression is varied by nothing, by point, or by a texture.
-        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether bend is varied by nothing, by point, or by a texture.
-        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether bend angle dropoff is varied by nothing, by point, or by a texture.
         BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES);
         /// Whether restitution angle is varied by nothing, by point, or by a texture.
@@ -190,13 +190,13 @@ node_table! {
         /// Whether input attract is varied by nothing, by point, or by a texture.
         INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES);
         /// Whether rest length scale is varied by nothing, by point, or by a texture.
-        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether lift is varied by nothing, by point, or by a texture.
-        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether drag is varied by nothing, by point, or by a texture.
-        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether tangential drag is varied by nothing, by point, or by a texture.
-        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::factors").fixed();
+        TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether wrinkle is varied by nothing, by point, or by a texture.
         WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES);
     }

@@ -87,11 +87,11 @@ node_table! {
         /// How little they swing about it: 0 freely, 1 not at all.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0);
         /// Does not feel the solver's gravity.
-        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::predict");
+        IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::integrate::predict");
         /// Does not feel the solver's wind.
-        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::air");
+        IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::integrate::aerodynamics");
         /// Force of the air against the motion, the same in all directions; on a light particle it does more.
-        DRAG: f64 = float("drag", "drg", 0.01).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::air");
+        DRAG: f64 = float("drag", "drg", 0.01).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::integrate::aerodynamics");
         /// Factor on mass, by particle.
         MASS_SCALE: Cow<'static, [RampPoint]> = ramp("massScale", "mssc", FULL);
         /// What the mass ramp is read by.
@@ -111,7 +111,7 @@ node_table! {
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness")]);
         /// Size in collisions, as a multiple of the radius.
-        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::collision::terms");
+        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::terms");
         /// Size towards each other, as a multiple of the size in collisions.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::self_collision");
         /// Factor on friction, by particle.
@@ -215,7 +215,7 @@ node_table! {
     }
     "Particle Size" {
         /// Radius of each particle: two touch at the sum of theirs.
-        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::collision::terms").fixed();
+        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::contact::terms").fixed();
         /// Factor on radius, by particle.
         RADIUS_SCALE: Cow<'static, [RampPoint]> = ramp("radiusScale", "rdc", FULL);
         /// What the radius ramp is read by.

@@ -14,37 +14,37 @@ node_table! {
     }
     "Gravity and Wind" {
         /// Acceleration of free fall; metres are scene units times `spaceScale`.
-        GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("nucleus_core::predict");
+        GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("nucleus_core::integrate::predict");
         /// Where things fall to; its length does not matter.
-        GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("nucleus_core::predict");
+        GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("nucleus_core::integrate::predict");
         /// How much there is of the air that drags and lifts: 0 is a vacuum, 1 ordinary air.
-        AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::air");
+        AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::integrate::aerodynamics");
         /// How fast the air moves.
-        WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("nucleus_core::air");
+        WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
         /// Where the wind blows to; its length does not matter.
-        WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("nucleus_core::air");
+        WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("nucleus_core::integrate::aerodynamics");
         /// How unsteady the wind is.
         WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0);
     }
     "Ground Plane" {
         /// Adds an endless ground plane that everything collides with.
-        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::collision::ground");
+        USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::contact::ground");
         /// Any point of the ground plane.
-        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::collision::ground");
+        PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::contact::ground");
         /// The side of the ground plane on which things stay; its length does not matter.
-        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::collision::ground");
+        PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::contact::ground");
         /// How much speed is kept when something bounces off the ground plane.
-        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::bounce");
+        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::bounce");
         /// Friction of the ground plane, added to the other side's.
-        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::collision::friction");
+        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::friction");
         /// Stickiness of the ground plane, added to the other side's.
-        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::collision::stick");
+        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::stick");
     }
     "Solver Attributes" {
         /// Reads directions and the ground plane in the space of this node's own transform.
         USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("nucleus_graph::compile");
         /// Objects whose collision layers are this far apart, or farther, do not meet.
-        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::collision::terms");
+        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::contact::terms");
         /// Parts that a frame is solved in; the shortest time the solver knows.
         SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("nucleus_core::schedule");
         /// Collision passes in 1/24 s, shared among the substeps.

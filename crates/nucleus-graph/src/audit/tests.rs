@@ -53,7 +53,7 @@ fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
     let mut audit = Audit::new(run.objects(), closeness, run.state(), rules);
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
-        let moment = core::Moment { substep: 1, substeps: 1 };
+        let moment = core::SubstepIndex { substep: 1, substeps: 1 };
         audit.substep(moment, &Level { start: run.state(), height }, &Grounds::default());
     }
     audit.account()
@@ -87,7 +87,7 @@ fn what_is_shown_within_a_substep_is_followed() {
     let mut audited = Audited::new(&mut audit, &grounds, &mut watch);
     audited.step(0.5, &level(-1.5));
     audited.step(1.0, &level(1.4));
-    audited.substep(core::Moment { substep: 1, substeps: 1 }, &level(1.4));
+    audited.substep(core::SubstepIndex { substep: 1, substeps: 1 }, &level(1.4));
     let account = audit.account();
     assert_eq!((account.motions, account.overlaps), (2, 0), "the end of the substep is no motion of its own");
     assert!(account.crossings > 0, "it leapt down and up again");

@@ -36,8 +36,8 @@ fn one_unresolved_pair_is_a_penetration() {
 fn a_scene_may_allow_a_count_in_each_frame() {
     let count = |pairs_unresolved, trapped, tangled| StepReport {
         pairs_unresolved,
-        trapped,
-        tangled,
+        depenetrating: trapped,
+        intersections: tangled,
         ..StepReport::default()
     };
     let frames = [count(3, 5, 7), count(3, 5, 7), count(0, 0, 0)];
@@ -66,7 +66,7 @@ fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
 
 #[test]
 fn what_is_still_tangled_by_its_frame_fails() {
-    let tangled = |tangled| StepReport { tangled, ..StepReport::default() };
+    let tangled = |tangled| StepReport { intersections: tangled, ..StepReport::default() };
     assert!(judge("untangledBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
     let outcome = judge("untangledBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
     assert_eq!((outcome.passed, outcome.worst), (false, Some((1.0, 3))));

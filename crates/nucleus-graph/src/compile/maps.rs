@@ -5,7 +5,7 @@
 //! compression too, unless there is a compression map. A map that is the same everywhere is the attribute with
 //! another value, to the bit, and costs what that costs.
 
-use nucleus_core::PointFactors;
+use nucleus_core::VertexMaps;
 
 use crate::attributes::{Choice, Key, n_base, n_cloth};
 use crate::graph::NodeId;
@@ -73,7 +73,7 @@ pub(super) struct Scales {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Maps {
     pub(super) scales: Scales,
-    pub(super) factors: PointFactors,
+    pub(super) factors: VertexMaps,
 }
 
 /// One map: a factor for all, and factors for each where they differ.
@@ -163,7 +163,7 @@ impl Compiler<'_> {
             bounce: bounce.scale,
             collide_strength: collide_strength.scale,
         };
-        let factors = PointFactors {
+        let factors = VertexMaps {
             mass: mass.factors,
             stretch: stretch.factors,
             compression: compression.factors,

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, FARTHEST, Faces, Mass, PointFactors, SelfCollision,
-    Start, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, MAX_COORDINATE, Mass, SelfCollision, Start,
+    Surface, VertexMaps,
 };
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
@@ -39,10 +39,10 @@ impl Compiler<'_> {
         let size = Size { points: vectors.len() as u64, corners: 0 };
         self.claim(node, node, size, Cost::CLOTH)?;
         let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).collect();
-        let is_far = |position: &Vector3<f64>| self.whole.units.point(*position).amax() > FARTHEST;
+        let is_far = |position: &Vector3<f64>| self.whole.units.point(*position).amax() > MAX_COORDINATE;
         if let Some(point) = positions.iter().position(is_far) {
             let message =
-                format!("`{}` of `{name}` is more than {FARTHEST:e} m at point {point}", key.row.name);
+                format!("`{}` of `{name}` is more than {MAX_COORDINATE:e} m at point {point}", key.row.name);
             self.findings.error(&place, message);
             return None;
         }
@@ -76,7 +76,7 @@ impl Compiler<'_> {
         let mass = self.start.get(id, &n_particle::POINT_MASS);
         let start = Start { velocities, ..Start::default() };
         let cloth =
-            Cloth { surface, mass: Mass::PerPoint(mass), lists, factors: PointFactors::default(), start };
+            Cloth { surface, mass: Mass::PerPoint(mass), lists, factors: VertexMaps::default(), start };
         match self.whole.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.whole.first_cloth + cloth.0));

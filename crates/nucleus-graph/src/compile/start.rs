@@ -2,7 +2,7 @@
 //! world space, in scene units. What it is at rest is the mesh's to say: cloth that starts stretched pulls back.
 
 use nalgebra::Vector3;
-use nucleus_core::{FARTHEST, Start};
+use nucleus_core::{MAX_COORDINATE, Start};
 
 use crate::attributes::{Key, Painting, Value, n_base};
 use crate::graph::NodeId;
@@ -50,12 +50,12 @@ impl Compiler<'_> {
         let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {
             vectors.into_iter().map(|vector| self.whole.units.point(vector.into())).collect()
         };
-        let is_far = |metres: &Vector3<f64>| metres.amax() > FARTHEST;
+        let is_far = |metres: &Vector3<f64>| metres.amax() > MAX_COORDINATE;
         let found = vectors.map(metres).and_then(|column| match column.iter().position(is_far) {
             _ if !column.is_empty() && column.len() != points => {
                 Err(format!("{label} has {} vectors, but `{mesh}` has {points} points", column.len()))
             }
-            Some(point) => Err(format!("{label} is more than {FARTHEST:e} m at point {point}")),
+            Some(point) => Err(format!("{label} is more than {MAX_COORDINATE:e} m at point {point}")),
             None => Ok(column),
         });
         found

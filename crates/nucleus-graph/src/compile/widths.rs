@@ -1,7 +1,7 @@
 //! Widths that no scene can mean: larger than everything that is there.
 
 use nalgebra::Vector3;
-use nucleus_core::FARTHEST;
+use nucleus_core::MAX_COORDINATE;
 
 use crate::attributes::{Key, n_base, n_cloth, n_particle};
 use crate::graph::NodeId;
@@ -61,8 +61,8 @@ impl Compiler<'_> {
         let place = self.scene.source.place(&format!("{name}.{}", key.row.name));
         let label = format!("`{}` of `{name}`", key.row.name);
         let help = "widths are in scene units, thickness mostly a hundredth of the object";
-        if self.whole.units.length(width) > FARTHEST {
-            let message = format!("{label} is {value:e}, which makes it wider than {FARTHEST:e} m");
+        if self.whole.units.length(width) > MAX_COORDINATE {
+            let message = format!("{label} is {value:e}, which makes it wider than {MAX_COORDINATE:e} m");
             self.findings.error(&place, message).help(help);
         } else if is_bounded && extent > 0.0 && width > extent {
             let message = format!(

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use nucleus_core::{ClothId, Moment};
+use nucleus_core::{ClothId, SubstepIndex};
 
 use super::*;
 use crate::compile::{ObjectKind, compile};
@@ -29,7 +29,7 @@ fn program(nucleus: &str, scale: f64) -> Program {
 struct Counter(Vec<u32>);
 
 impl StepObserver for Counter {
-    fn substep(&mut self, moment: Moment, _state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, _state: &dyn StateView) {
         self.0.push(moment.substep);
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, ColliderId, Contact, Moment, Real, Stage, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, ContactState, Real, Stage, StateView, StepObserver, SubstepIndex};
 
 use crate::compile::{Program, Universe};
 
@@ -49,7 +49,7 @@ impl StateView for View<'_> {
         part.velocities(id, self.units(units_per_metre, universe), out);
     }
 
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         out.clear();
         let mut own = Vec::new();
         for (part, universe) in self.parts.iter().zip(self.program.universes()) {
@@ -90,7 +90,7 @@ impl<R: Real> StateView for Simulation<R> {
         self.view().velocities(cloth, units_per_metre, out);
     }
 
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         self.view().contacts(out);
     }
 
@@ -142,9 +142,9 @@ impl<'a> Merge<'a> {
 }
 
 impl StepObserver for Merge<'_> {
-    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         let parts = self.parts(state);
-        let moment = Moment { substep: self.done + moment.substep, substeps: self.total };
+        let moment = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
         self.watch.substep(moment, &View { program: self.program, parts });
     }
 
@@ -154,8 +154,8 @@ impl StepObserver for Merge<'_> {
         self.watch.step(share, &View { program: self.program, parts });
     }
 
-    fn go_on(&self) -> ControlFlow<()> {
-        self.watch.go_on()
+    fn should_continue(&self) -> ControlFlow<()> {
+        self.watch.should_continue()
     }
 
     fn enter(&mut self, stage: Stage) {

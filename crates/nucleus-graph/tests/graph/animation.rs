@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use nucleus_core::{Moment, StateView, StepObserver};
+use nucleus_core::{StateView, StepObserver, SubstepIndex};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{ObjectKind, Program, compile};
 use nucleus_graph::scene::read_scene_text;
@@ -67,7 +67,7 @@ fn evaluations_may_be_finer_or_coarser_than_frames() {
 struct Shown(Vec<(u32, u32)>);
 
 impl StepObserver for Shown {
-    fn substep(&mut self, moment: Moment, _: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, _: &dyn StateView) {
         self.0.push((moment.substep, moment.substeps));
     }
 }

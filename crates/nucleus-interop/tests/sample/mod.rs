@@ -6,7 +6,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
-use nucleus_core::{ClothId, ColliderId, Moment, StateView, StepObserver};
+use nucleus_core::{ClothId, ColliderId, StateView, StepObserver, SubstepIndex};
 
 pub const START: i32 = 3;
 pub const END: i32 = 12;
@@ -49,7 +49,7 @@ fn record(path: &Path, tears: bool) {
         let mut observer = recorder.frame(frame).unwrap();
         for substep in 1..=SUBSTEPS {
             let time = (frame - START - 1) as f32 + substep as f32 / SUBSTEPS as f32;
-            let moment = Moment { substep, substeps: SUBSTEPS };
+            let moment = SubstepIndex { substep, substeps: SUBSTEPS };
             if tears && (frame, substep) == (TORN, 1) {
                 let rest = torn(positions("ns:sheet|1", 0.0));
                 observer.change_mesh(moment, "ns:sheet|1", torn_faces().iter().copied().collect(), rest);

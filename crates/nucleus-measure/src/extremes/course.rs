@@ -41,12 +41,12 @@ pub struct Course {
 
 impl Course {
     /// Runs a program on one thread. `tamper` changes what frames bring; `stored` is what the start holds in joules,
-    /// besides what falls and is stretched. After each frame `go_on` says whether there is to be another.
+    /// besides what falls and is stretched. After each frame `should_continue` says whether there is to be another.
     pub fn of<R: Real>(
         program: &Program,
         tamper: Option<Tamper>,
         stored: f64,
-        go_on: &dyn Fn(&Self) -> bool,
+        should_continue: &dyn Fn(&Self) -> bool,
     ) -> Self {
         let mut simulation = Simulation::<R>::new(program, 1);
         let points = cloths(program);
@@ -74,7 +74,7 @@ impl Course {
             course.evaluations += evaluations;
             let energy = book.end(simulation.solver());
             course.frames.push(Seen { frame, report: seen.report, energy });
-            if !go_on(&course) {
+            if !should_continue(&course) {
                 course.given_up = Some(frame);
                 break;
             }

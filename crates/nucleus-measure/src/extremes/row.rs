@@ -42,7 +42,7 @@ pub enum Trial {
         warns: &'static [&'static str],
     },
     /// It is refused when it is read, in these words.
-    Refused {
+    InvalidInput {
         /// The scene.
         case: fn() -> Case,
         /// What the message has to name.

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 
-use nucleus_core::Refused;
+use nucleus_core::InvalidInput;
 use nucleus_graph::scene::Severity;
 
 use super::case::Case;
@@ -152,7 +152,7 @@ pub fn judge(extreme: &Extreme, nominals: &Nominals, patience: Patience) -> io::
     let mut outcome = Outcome { extreme: *extreme, figures: Vec::new(), reported: Vec::new() };
     // A solver that panics has failed its row, not the table.
     let judged = catch_unwind(AssertUnwindSafe(|| match &extreme.trial {
-        Trial::Refused { case, names } => outcome.refused(&case(), names),
+        Trial::InvalidInput { case, names } => outcome.refused(&case(), names),
         Trial::Runs { .. } => outcome.runs(nominals, patience),
     }));
     match judged {
@@ -232,10 +232,10 @@ impl Outcome {
         };
         let nominal = nominals.of(&nominal())?;
         let is_cheap = |course: &Course| cost.of(course) / cost.of(&nominal) <= MOST_COST;
-        let go_on = |course: &Course| {
+        let should_continue = |course: &Course| {
             course.seconds < patience.seconds() || (patience == Patience::Long && is_cheap(course))
         };
-        let run = || Course::of::<f32>(program, case.tamper, stored, &go_on);
+        let run = || Course::of::<f32>(program, case.tamper, stored, &should_continue);
         let mut course = run();
         // A busy machine makes a run dear, though never cheap: what is a little too dear is run again.
         let by_far = cost.of(&course) / cost.of(&nominal) > 2.0 * MOST_COST;
@@ -320,13 +320,13 @@ impl Outcome {
     /// What the solver counted, in words.
     fn counts(&mut self, course: &Course) {
         let counts = [
-            (course.sum(|seen| seen.report.refused.count), "inputs refused"),
+            (course.sum(|seen| seen.report.sanitized.count), "inputs refused"),
             (course.sum(|seen| seen.report.pairs_reverted), "pairs reverted"),
             (course.sum(|seen| seen.report.pairs_unresolved), "pairs unresolved"),
         ];
         let words = counts.iter().filter(|(count, _)| *count > 0);
         self.reported.extend(words.map(|(count, what)| format!("{count} {what}")));
-        let first = course.frames.iter().find_map(|seen| Some((seen.frame, seen.report.refused.first?)));
+        let first = course.frames.iter().find_map(|seen| Some((seen.frame, seen.report.sanitized.first?)));
         if let Some((frame, what)) = first {
             self.reported.push(format!("frame {frame}: {}", named(what)));
         }
@@ -343,14 +343,14 @@ fn without_folder(said: &str) -> String {
 }
 
 /// What was refused, in words.
-fn named(what: Refused) -> String {
+fn named(what: InvalidInput) -> String {
     match what {
-        Refused::ColliderPoint(_, point) => format!("point {} of the collider", point.0),
-        Refused::ColliderMotion(_) => "the collider's motion".to_owned(),
-        Refused::Pin(_, point) => format!("the pin of point {}", point.0),
-        Refused::Cloth(_) => "an attribute of the cloth".to_owned(),
-        Refused::Collider(_) => "an attribute of the collider".to_owned(),
-        Refused::Duration => "the length of the frame".to_owned(),
+        InvalidInput::ColliderPoint(_, point) => format!("point {} of the collider", point.0),
+        InvalidInput::ColliderMotion(_) => "the collider's motion".to_owned(),
+        InvalidInput::Pin(_, point) => format!("the pin of point {}", point.0),
+        InvalidInput::Cloth(_) => "an attribute of the cloth".to_owned(),
+        InvalidInput::Collider(_) => "an attribute of the collider".to_owned(),
+        InvalidInput::Duration => "the length of the frame".to_owned(),
         _ => "a setting of the solver".to_owned(),
     }
 }

@@ -84,13 +84,13 @@ pub struct Kept {
     pub end: Vec<Vec<[f32; 3]>>,
 }
 
-/// Runs a program in `R` and holds it against `wanted`. Ends early, with nothing, if `go_on` says so.
+/// Runs a program in `R` and holds it against `wanted`. Ends early, with nothing, if `should_continue` says so.
 pub fn follow<R: Real>(
     subject: &Subject,
     setting: &Setting,
     program: &Program,
     wanted: Option<&Trajectory>,
-    go_on: &dyn Fn() -> bool,
+    should_continue: &dyn Fn() -> bool,
 ) -> Option<(Run, Kept)> {
     let mut simulation: Simulation<R> = Simulation::new(program, 1);
     let bits = 8 * size_of::<R>() as u32;
@@ -113,7 +113,7 @@ pub fn follow<R: Real>(
     let mut path = (bits == 64).then(|| Trajectory::new(&points));
     let mut reference = Vec::new();
     for frame in 0..asked {
-        if !go_on() {
+        if !should_continue() {
             return None;
         }
         let (spent, seen) = Spent::by(Clock::Thread, || simulation.advance(&mut ()).report);
@@ -128,7 +128,7 @@ pub fn follow<R: Real>(
             [found.rms, found.max]
         });
         run.contact.add(&seen);
-        run.pairs += seen.pairs;
+        run.pairs += seen.candidate_pairs;
         run.searches += u64::from(seen.broad_phases);
         run.frames.push(Frame {
             apart,

@@ -40,7 +40,7 @@ pub struct Watch<'a> {
     /// Is told how far it is.
     pub tell: &'a mut dyn FnMut(&Progress),
     /// Whether to go on.
-    pub go_on: &'a (dyn Fn() -> bool + Sync),
+    pub should_continue: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// What came of a sweep.
@@ -208,11 +208,11 @@ fn work_through(
     let (next, milli) = (AtomicUsize::new(0), AtomicU64::new(0));
     let (sender, receiver) = channel();
     let workers = watch.side_by_side.clamp(1, tasks.len().max(1));
-    let go_on = watch.go_on;
+    let should_continue = watch.should_continue;
     thread::scope(|scope| {
         for _ in 0..workers {
             let sender = sender.clone();
-            scope.spawn(|| worker(subject, &tasks, wanted, &next, &milli, go_on, sender));
+            scope.spawn(|| worker(subject, &tasks, wanted, &next, &milli, should_continue, sender));
         }
         drop(sender);
         loop {
@@ -232,7 +232,7 @@ fn work_through(
         Ok::<(), TradeError>(())
     })?;
     done.before += tasks.iter().map(|task| task.work).sum::<f64>();
-    if go_on() { Ok(()) } else { Err(TradeError::Interrupted) }
+    if should_continue() { Ok(()) } else { Err(TradeError::Interrupted) }
 }
 
 /// Takes task after task until there is none, or until it is to end.
@@ -242,14 +242,14 @@ fn worker(
     wanted: Option<&Trajectory>,
     next: &AtomicUsize,
     milli: &AtomicU64,
-    go_on: &(dyn Fn() -> bool + Sync),
+    should_continue: &(dyn Fn() -> bool + Sync),
     sender: Sender<(Run, Kept)>,
 ) {
     while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
         let each = (1e3 * task.work / subject.frames().max(1) as f64) as u64;
         let pulse = || {
             milli.fetch_add(each, Ordering::Relaxed);
-            go_on()
+            should_continue()
         };
         let finished = match task.bits {
             64 => follow::<f64>(subject, &task.setting, &task.program, wanted, &pulse),

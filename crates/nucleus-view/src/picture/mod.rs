@@ -81,6 +81,6 @@ fn floor_below(all: &Bounds, interest: &Bounds) -> f32 {
 
 /// Whether a point can be drawn at all: finite, and near enough that squares of it stay finite.
 fn is_drawable(point: &[f32; 3]) -> bool {
-    const FARTHEST: f32 = 1e9;
-    point.iter().all(|x| x.abs() <= FARTHEST) // a NaN is not <= anything
+    const MAX_COORDINATE: f32 = 1e9;
+    point.iter().all(|x| x.abs() <= MAX_COORDINATE) // a NaN is not <= anything
 }

@@ -10,7 +10,9 @@ use nalgebra::Vector3;
 use nucleus_cache::{
     Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo, Source,
 };
-use nucleus_core::{ClothId, ColliderId, Contact, Faces, Moment, StateView, StepObserver, StepReport};
+use nucleus_core::{
+    ClothId, ColliderId, ContactState, Faces, StateView, StepObserver, StepReport, SubstepIndex,
+};
 
 pub const FRAMES: i32 = 24;
 /// The first frame in which the ball has moved.
@@ -84,7 +86,7 @@ pub fn step(recorder: &mut Recorder, sample: Sample, frame: i32) {
         let time = (frame - 2) as f32 + substep as f32 / SUBSTEPS as f32;
         let time = if sample.late { time - 1.0 } else { time };
         let broken = sample.broken && frame > FRAMES / 2;
-        let moment = Moment { substep, substeps: SUBSTEPS };
+        let moment = SubstepIndex { substep, substeps: SUBSTEPS };
         if sample.torn && (frame, substep) == (FRAMES / 2, 1) {
             watching.change_mesh(moment, "flag", half_grid(), rest());
         }
@@ -110,10 +112,10 @@ impl StateView for State {
         }
     }
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
-    fn contacts(&self, out: &mut Vec<Vec<Contact>>) {
-        let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { Contact::Touching } else { Contact::Free };
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { ContactState::Touching } else { ContactState::Free };
         *out = vec![(0..SIDE * SIDE).map(at_hoist).collect()];
-        out[0][0] = Contact::Tangled;
+        out[0][0] = ContactState::Intersecting;
     }
     fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = if collider == BALL { sphere().1 } else { cube().1 };

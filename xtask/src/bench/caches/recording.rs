@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use nucleus_cache::{Detail, FrameRecorder, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
-use nucleus_core::{Moment, StateView, StepObserver};
+use nucleus_core::{StateView, StepObserver, SubstepIndex};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, compile};
 use nucleus_graph::scene::read_scene_text;
@@ -44,7 +44,7 @@ struct Way {
 struct Timed<'a>(Vec<(FrameRecorder<'a>, &'a mut Duration)>);
 
 impl StepObserver for Timed<'_> {
-    fn substep(&mut self, moment: Moment, state: &dyn StateView) {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         for (recorder, spent) in &mut self.0 {
             let begin = now();
             recorder.substep(moment, state);

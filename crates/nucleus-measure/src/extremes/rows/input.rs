@@ -17,14 +17,14 @@ const RESTS: Option<Recovery> = Some(Recovery { from: 90, speed: 0.4, strain: 0.
 /// How many things were refused.
 macro_rules! refused {
     ($count:expr) => {
-        at_least("inputs refused", $count, |course, _| course.sum(|seen| seen.report.refused.count) as f64)
+        at_least("inputs refused", $count, |course, _| course.sum(|seen| seen.report.sanitized.count) as f64)
     };
 }
 
 /// How many more than these there were.
 macro_rules! no_more_refused {
     ($count:expr) => {
-        at_most("inputs refused ", $count, |course, _| course.sum(|seen| seen.report.refused.count) as f64)
+        at_most("inputs refused ", $count, |course, _| course.sum(|seen| seen.report.sanitized.count) as f64)
     };
 }
 

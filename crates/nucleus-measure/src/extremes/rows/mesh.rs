@@ -196,7 +196,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "an empty mesh",
         expect: "An error that names the file.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || free("empty.obj", "").scene(2).mesh("empty.obj", String::new()),
             names: &["empty.obj", "no vert"],
         },
@@ -207,7 +207,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "a mesh all of whose faces lie on a line",
         expect: "An error that names the mesh.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 let text = meshes::points(3) + "f 1 2 3\n";
                 free("line.obj", "").scene(2).mesh("line.obj", text)
@@ -221,7 +221,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "a mesh file with a coordinate that is no number",
         expect: "An error that names file, line and column.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 free("nan.obj", "").scene(2).mesh("nan.obj", format!("{}v 1 nan 2\n", meshes::triangle()))
             },
@@ -234,7 +234,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "a mesh file with a face that names a point that is not there",
         expect: "An error that names file, line and point.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 free("short.obj", "").scene(2).mesh("short.obj", format!("{}f 1 2 9\n", meshes::triangle()))
             },
@@ -247,7 +247,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "a mesh file with a point 1e300 m away",
         expect: "An error that names the sheet, a point of it, and how far is too far.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 free("far.obj", "").scene(2).mesh("far.obj", format!("{}v 1e300 0 0\n", meshes::triangle()))
             },
@@ -260,7 +260,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "a sheet with `scale: (0, 0, 0)`",
         expect: "An error that names the sheet: it has no area.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 let case = free("triangle.obj", "").scene(2).mesh("triangle.obj", meshes::triangle());
                 case.replace("mesh(", "mesh(scale: (0, 0, 0), ")
@@ -274,7 +274,7 @@ pub static ROWS: [Extreme; 17] = [
         group: "Meshes",
         what: "`pointMass: 0`",
         expect: "An error that names the attribute. In Maya such a point is pinned: hold it by a constraint instead.",
-        trial: Trial::Refused {
+        trial: Trial::InvalidInput {
             case: || {
                 let case = free("triangle.obj", "").scene(2).mesh("triangle.obj", meshes::triangle());
                 case.replace("pointMass: 0.2", "pointMass: 0")

@@ -1,0 +1,141 @@
+//! Sweeps: each list of a round once, blocks side by side, then what crosses them, colour by colour.
+
+use crate::constraints::hinge::HingeGroup;
+use crate::constraints::row_map::{ShareGroup, Whole};
+use crate::constraints::stretch::{LinkGroup, LinkStrength};
+use crate::constraints::{bend, stretch};
+use crate::math::{Real, Row4};
+use crate::model::{Blocks, ClothModel, Part, RowList};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::{Direction, Effect, Sweep};
+use crate::solver::Solver;
+
+/// Does the sweeps of a round. Inner rows of all lists come first, block by block, while the block is in the
+/// core's cache; then cross rows, list by list. Backward, all of that from the last to the first, in cloths that
+/// turn.
+pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>], direction: Direction) {
+    let Solver { cloths, state, pool, .. } = solver;
+    let points = DisjointSlice::new(&mut state.displacement);
+    for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
+        let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
+        let backward = direction == Direction::Backward && cloth.turns;
+        let sweeper = Sweeper { points, cloth, backward };
+        if backward {
+            of_cloth.iter().rev().for_each(|sweep| sweeper.cross(pool, &sweep.effect));
+            pool.parallel_for(cloth.blocks.len(), |block| {
+                of_cloth.iter().rev().for_each(|sweep| sweeper.inner(block, &sweep.effect));
+            });
+        } else {
+            pool.parallel_for(cloth.blocks.len(), |block| {
+                of_cloth.iter().for_each(|sweep| sweeper.inner(block, &sweep.effect));
+            });
+            of_cloth.iter().for_each(|sweep| sweeper.cross(pool, &sweep.effect));
+        }
+    }
+}
+
+/// Sweeps the lists of one cloth in one direction.
+///
+/// Safety of all its passes: inner rows of two blocks, and cross rows of one colour, share no point; the lists are
+/// laid out so, and tests hold them to it.
+struct Sweeper<'a, R: Real> {
+    points: DisjointSlice<'a, Row4<R>>,
+    cloth: &'a ClothModel<R>,
+    backward: bool,
+}
+
+impl<R: Real> Sweeper<'_, R> {
+    fn inner(&self, block: usize, effect: &Effect<R>) {
+        let (cloth, part) = (self.cloth, Part::Inner(block));
+        match effect {
+            Effect::Stretch(strength) => self.links(&cloth.stretch, &cloth.shares.stretch, part, strength),
+            Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), part, strength),
+            Effect::Bend(strength) => {
+                self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
+                self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
+            }
+        }
+    }
+
+    fn cross(&self, pool: &ThreadPool, effect: &Effect<R>) {
+        let (cloth, backward) = (self.cloth, self.backward);
+        match effect {
+            Effect::Stretch(strength) => over_cross(pool, &cloth.stretch, backward, |part| {
+                self.links(&cloth.stretch, &cloth.shares.stretch, part, strength);
+            }),
+            Effect::Shear(strength) => over_cross(pool, &cloth.shear, backward, |part| {
+                self.links(&cloth.shear, &RowList::default(), part, strength);
+            }),
+            Effect::Bend(strength) => {
+                over_cross(pool, &cloth.bend, backward, |part| {
+                    self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
+                });
+                over_cross(pool, &cloth.fold, backward, |part| {
+                    self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
+                });
+            }
+        }
+    }
+
+    /// Where there are shares they lie as the rows do.
+    #[allow(unsafe_code)]
+    fn links(
+        &self,
+        rows: &RowList<LinkGroup<R>>,
+        shares: &RowList<ShareGroup<R>>,
+        part: Part,
+        strength: &LinkStrength<R>,
+    ) {
+        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        // SAFETY: see above.
+        unsafe {
+            match (self.backward, shares.len() > 0) {
+                (false, false) => stretch::relax(self.points, rows.map(whole), strength),
+                (true, false) => stretch::relax(self.points, rows.rev().map(whole), strength),
+                (false, true) => stretch::relax(self.points, rows.zip(shares), strength),
+                (true, true) => stretch::relax(self.points, rows.zip(shares).rev(), strength),
+            }
+        }
+    }
+
+    #[allow(unsafe_code)]
+    fn hinges<const N: usize>(
+        &self,
+        rows: &RowList<HingeGroup<R, N>>,
+        shares: &RowList<ShareGroup<R>>,
+        part: Part,
+        strength: &bend::BendStrength<R>,
+    ) {
+        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        // SAFETY: see above.
+        unsafe {
+            match (self.backward, shares.len() > 0) {
+                (false, false) => bend::relax(self.points, rows.map(whole), strength),
+                (true, false) => bend::relax(self.points, rows.rev().map(whole), strength),
+                (false, true) => bend::relax(self.points, rows.zip(shares), strength),
+                (true, true) => bend::relax(self.points, rows.zip(shares).rev(), strength),
+            }
+        }
+    }
+}
+
+/// A group that gets all of a sweep's strength.
+fn whole<G>(group: &G) -> (&G, Whole) {
+    (group, Whole)
+}
+
+/// Does `work` on all parts of a list once: inner rows, then cross rows.
+pub fn over_list<G: Sync>(pool: &ThreadPool, blocks: &Blocks, list: &RowList<G>, work: impl Fn(Part) + Sync) {
+    pool.parallel_for(blocks.len(), |block| work(Part::Inner(block)));
+    over_cross(pool, list, false, work);
+}
+
+/// Does `work` on the cross rows of a list, colour by colour.
+fn over_cross<G: Sync>(pool: &ThreadPool, list: &RowList<G>, backward: bool, work: impl Fn(Part) + Sync) {
+    let count = list.cross_colours();
+    for k in 0..count {
+        let colour = if backward { count - 1 - k } else { k };
+        pool.parallel_for(list.cross_tasks(colour), |task| work(Part::Cross(colour, task)));
+    }
+}

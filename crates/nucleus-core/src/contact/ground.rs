@@ -1,0 +1,272 @@
+//! The ground plane: a contact source that keeps every point of a cloth above it by its thickness, with friction.
+//!
+//! The half-space below it has no far side and no edges, so a point needs no broad phase: its height is the gap. The plane
+//! moves within a frame from where the last one left it, as colliders do (§2.4).
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::friction::{Push, rub};
+use super::maps::Maps;
+use super::mover::Mover;
+use super::stick::Adhesion;
+use super::terms::Terms;
+use crate::input::frame::GroundPlane;
+use crate::math::{Real, Row4, add, dot, scale, sub};
+use crate::schedule::Span;
+use crate::state::checkpoint::{item, kept};
+
+/// A point of a plane in metres, and its unit normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    origin: [f64; 3],
+    normal: [f64; 3],
+}
+
+item!([] Plane { origin: [f64; 3], normal: [f64; 3] });
+
+impl Plane {
+    /// The plane of a frame.
+    fn new(ground: &GroundPlane) -> Self {
+        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        Self { origin: ground.origin.into(), normal: normal.into() }
+    }
+
+    /// Height of a place above it, in metres.
+    fn height(&self, place: [f64; 3]) -> f64 {
+        dot(self.normal, sub(place, self.origin))
+    }
+}
+
+/// The ground plane in a frame.
+#[derive(Debug, Clone)]
+pub struct Ground<R> {
+    /// Where it ends the frame.
+    end: Option<Plane>,
+    /// Where it starts the frame.
+    start: Option<Plane>,
+    /// Height of each anchor above the plane at the start and at the end of the frame, in metres; empty without a plane.
+    heights: [Vec<R>; 2],
+}
+
+kept!([R: Real] Ground<R> { columns: [], values: [end], parts: [], anew: [start, heights] });
+
+impl<R: Real> Default for Ground<R> {
+    fn default() -> Self {
+        Self { end: None, start: None, heights: [Vec::new(), Vec::new()] }
+    }
+}
+
+impl<R: Real> Ground<R> {
+    /// Takes up the plane of a frame. It starts where the last frame left it; one that appears, or turns over at once, is there
+    /// from the start.
+    pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]]) {
+        let now = ground.map(Plane::new);
+        let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
+        self.start = now.map(|now| self.end.filter(|last| !turns_over(last)).unwrap_or(now));
+        self.end = now;
+        for (heights, plane) in self.heights.iter_mut().zip([self.start, self.end]) {
+            heights.clear();
+            let of = |plane: Plane| anchors.iter().map(move |&anchor| R::from_f64(plane.height(anchor)));
+            heights.extend(plane.into_iter().flat_map(of));
+        }
+    }
+
+    /// Whether the frame has a plane.
+    pub fn is_there(&self) -> bool {
+        self.end.is_some()
+    }
+
+    /// Height of a place above the plane when the frame is over, in metres; `None` without a plane.
+    pub fn height_at_end(&self, place: [f64; 3]) -> Option<f64> {
+        self.end.map(|plane| plane.height(place))
+    }
+
+    /// The plane in a time step.
+    pub fn in_step(&self, now: Span) -> Option<GroundStep<'_, R>> {
+        let (from, to) = (self.start?, self.end?);
+        let ends = [now.from, now.to].map(|time| {
+            let normal: [f64; 3] =
+                std::array::from_fn(|k| from.normal[k] * (1.0 - time) + to.normal[k] * time);
+            let length = dot(normal, normal).sqrt();
+            // At rest it is where it is, to the last bit.
+            let share = if from == to { [1.0, 0.0] } else { [(1.0 - time) / length, time / length] };
+            let share = share.map(R::from_f64);
+            End { normal: normal.map(|x| R::from_f64(x / length)), share }
+        });
+        let travel = sub(to.origin, from.origin).map(|x| R::from_f64(x * (now.to - now.from)));
+        Some(GroundStep { heights: [&self.heights[0], &self.heights[1]], ends, travel })
+    }
+}
+
+/// The plane at a moment: its normal, and shares of the heights at both ends of the frame.
+#[derive(Debug, Clone, Copy)]
+struct End<R> {
+    normal: [R; 3],
+    share: [R; 2],
+}
+
+/// The plane in one time step.
+#[derive(Debug, Clone, Copy)]
+pub struct GroundStep<'a, R> {
+    heights: [&'a [R]; 2],
+    ends: [End<R>; 2],
+    /// Motion of its origin in the step, in metres.
+    travel: [R; 3],
+}
+
+impl<R: Real> GroundStep<'_, R> {
+    #[inline(always)]
+    fn height(&self, end: usize, point: u32, displacement: [R; 3]) -> R {
+        let End { normal, share } = self.ends[end];
+        let point = point as usize;
+        self.heights[0][point] * share[0] + self.heights[1][point] * share[1] + dot(normal, displacement)
+    }
+
+    /// Height of a point above the plane when the step is over, in metres, given its displacement then.
+    #[inline(always)]
+    pub fn height_now(&self, point: u32, displacement: [R; 3]) -> R {
+        self.height(1, point, displacement)
+    }
+
+    /// The plane's normal when the step is over.
+    pub fn normal(&self) -> [R; 3] {
+        self.ends[1].normal
+    }
+
+    /// The velocity with which the plane rises at a point in a step of length `h`, in m/s, given the point's displacement.
+    pub fn velocity(&self, point: u32, displacement: [R; 3], h: R) -> [R; 3] {
+        let rise = self.height(0, point, displacement) - self.height(1, point, displacement);
+        scale(self.normal(), rise / h)
+    }
+}
+
+/// Contact of one cloth with the plane in one time step.
+pub struct GroundContact<'a, R> {
+    /// Positions of the points.
+    pub mover: Mover<'a, R>,
+    /// Displacements at the start of the step.
+    pub start: &'a [Row4<R>],
+    /// The plane.
+    pub plane: GroundStep<'a, R>,
+    /// The share of every thickness that is kept.
+    pub squeeze: R,
+    /// The contact material of the two.
+    pub terms: Terms<R>,
+    /// Vertex maps of contact attributes.
+    pub maps: &'a Maps<R>,
+    /// Length of the step in seconds.
+    pub h: R,
+}
+
+impl<R: Real> GroundContact<'_, R> {
+    /// Pushes the points of a range to the thickness; returns how many it pushed.
+    pub fn resolve(&self, points: Range<u32>) -> u64 {
+        let mut contacts = 0;
+        for point in points {
+            let row = self.mover.row(point);
+            let gap = self.plane.height_now(point, row.xyz());
+            let thickness = self.thickness(point);
+            if gap < thickness && row.0[3] > R::ZERO {
+                contacts += 1;
+                self.push(point, row, [thickness, gap]);
+            }
+        }
+        contacts
+    }
+
+    /// Holds the points of a range to the plane by adhesion.
+    pub fn adhere(&self, points: Range<u32>) {
+        let rows = points.map(|point| (self.mover.row(point), point));
+        for (mut row, point) in rows.filter(|(row, _)| row.0[3] > R::ZERO) {
+            let start = self.start[point as usize].xyz();
+            let normal = self.plane.normal();
+            let terms = &self.terms;
+            let adhesion = Adhesion {
+                reach: self.thickness(point) * R::from_f64(terms.reach),
+                thickness: self.thickness(point),
+                stickiness: terms.stickiness_at(self.maps, ([point], [], &([R::ONE], []))),
+                friction: terms.friction_at(self.maps, ([point], [], &([R::ONE], []))),
+            };
+            let gaps = [self.plane.height(0, point, start), self.plane.height(1, point, row.xyz())];
+            let motion = sub(sub(row.xyz(), start), self.plane.travel);
+            let along = sub(motion, scale(normal, dot(normal, motion)));
+            let [before, now] = gaps.map(|gap| scale(normal, gap));
+            let held = adhesion.hold(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
+            (0..3).for_each(|axis| row.0[axis] += held[axis]);
+            self.mover.push(point, row, [R::ZERO; 3]);
+        }
+    }
+
+    /// The thickness that is kept at a point, in metres.
+    #[inline(always)]
+    fn thickness(&self, point: u32) -> R {
+        let most = R::from_f64(self.terms.thickness);
+        self.terms.thickness_at(self.maps, ([point], [], &([R::ONE], [])), most) * self.squeeze
+    }
+
+    fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {
+        let start = self.start[point as usize].xyz();
+        let normal = self.plane.normal();
+        let led = self.mover.led(point);
+        let before = self.plane.height(0, point, start);
+        let mut push = Push::new(thickness, [before, gap], dot(normal, led), self.h);
+        if self.terms.is_weak(self.maps) {
+            push = push.times(self.terms.strength_at(self.maps, ([point], [], &([R::ONE], []))));
+        }
+        let motion = sub(sub(row.xyz(), start), self.plane.travel);
+        let friction = self.terms.friction_at(self.maps, ([point], [], &([R::ONE], [])));
+        let [rub, given_back] = rub([motion, led], normal, friction * push.length());
+        let moved = add(scale(normal, push.length()), rub);
+        (0..3).for_each(|axis| row.0[axis] += moved[axis]);
+        self.mover.push(point, row, add(scale(normal, push.led), given_back));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(origin: [f64; 3], normal: [f64; 3]) -> GroundPlane {
+        let (origin, normal) = (origin.into(), normal.into());
+        GroundPlane { origin, normal, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
+    }
+
+    fn half_way() -> Span {
+        Span { from: 0.0, to: 0.5, end_of_substep: 1.0 }
+    }
+
+    #[test]
+    fn a_plane_moves_within_a_frame_from_where_the_last_one_left_it() {
+        let mut ground = Ground::<f64>::default();
+        let up = [0.0, 1.0, 0.0];
+        ground.begin_frame(Some(&plane([0.0; 3], up)), &[[0.0, 1.0, 0.0]]);
+        let step = ground.in_step(half_way()).expect("a plane");
+        assert_eq!(step.height_now(0, [0.0; 3]), 1.0, "one that appears is there from the start");
+        ground.begin_frame(Some(&plane([0.0, 0.2, 0.0], up)), &[[0.0, 1.0, 0.0]]);
+        let step = ground.in_step(half_way()).expect("a plane");
+        assert!((step.height_now(0, [0.0; 3]) - 0.9).abs() < 1e-12);
+        assert!((step.velocity(0, [0.0; 3], 0.5)[1] - 0.2).abs() < 1e-12, "it rises by 0.1 m in 0.5 s");
+    }
+
+    #[test]
+    fn a_plane_that_tilts_is_halfway_tilted_in_the_middle_of_the_frame() {
+        let mut ground = Ground::<f64>::default();
+        let (at, slope) = ([[1.0, 0.0, 0.0]], 0.3f64);
+        ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &at);
+        ground.begin_frame(Some(&plane([0.0; 3], [-slope.sin(), slope.cos(), 0.0])), &at);
+        let step = ground.in_step(half_way()).expect("a plane");
+        let expected = (slope / 2.0).sin();
+        assert!((step.height_now(0, [0.0; 3]) + expected).abs() < 1e-12, "below it by the sine of the angle");
+    }
+
+    #[test]
+    fn a_plane_that_turns_over_is_there_at_once() {
+        let mut ground = Ground::<f64>::default();
+        ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &[[0.0, 1.0, 0.0]]);
+        ground.begin_frame(Some(&plane([0.0; 3], [0.0, -1.0, 0.0])), &[[0.0, 1.0, 0.0]]);
+        let step = ground.in_step(half_way()).expect("a plane");
+        assert_eq!(step.height_now(0, [0.0; 3]), -1.0);
+    }
+}

@@ -1,0 +1,284 @@
+//! What a frame brings: everything that may change from frame to frame. Metres, kilograms, seconds.
+//!
+//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so whatever
+//! moves comes as two states, one for the start of the frame and one for its end.
+
+use nalgebra::Vector3;
+
+use crate::input::ids::{ClothId, PointId};
+
+/// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
+pub const COUNT_PERIOD: f64 = 1.0 / 24.0;
+
+/// How the number of a resistance is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ResistanceModel {
+    /// The paper's reading: a resistance is a count of evaluations in 1/24 s, shared among substeps.
+    /// How stiff that makes the cloth depends on mesh and substeps.
+    Classic,
+    /// A resistance is a stiffness that depends on neither mesh nor substeps.
+    Physical {
+        /// The budget: evaluations in 1/24 s, each spent as a small time step with one sweep over
+        /// every list. More only lessens the error.
+        evaluations: f64,
+    },
+}
+
+/// One frame's input to the solver.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameInput {
+    /// Simulated time of the frame in seconds (1/24 at 24 frames per second and `timeScale` 1).
+    pub duration: f64,
+    /// Substeps in the frame, at least 1. The paper's smallest unit of time.
+    pub substeps: u32,
+    /// Collision passes in 1/24 s (`maxCollisionIterations`).
+    pub collision_iterations: f64,
+    /// How resistances are read.
+    pub resistance: ResistanceModel,
+    /// Acceleration of gravity in m/s².
+    pub gravity: Vector3<f64>,
+    /// Velocity of the wind in m/s.
+    pub wind: Vector3<f64>,
+    /// `airDensity`: 0 is a vacuum, 1 is usual.
+    pub air_density: f64,
+    /// The ground plane, where the scene uses one.
+    pub plane: Option<GroundPlane>,
+    /// One entry per cloth, by [`ClothId`].
+    pub cloths: Vec<ClothFrame>,
+    /// One entry per collider, by [`ColliderId`](crate::ColliderId).
+    pub colliders: Vec<ColliderFrame>,
+    /// Two cloths whose `collisionLayer` differs by this much or more pass through each other
+    /// (`collisionLayerRange`).
+    pub layer_range: f64,
+    /// Collision passes of cloth with itself and other cloth in 1/24 s (`maxSelfCollisionIterations`).
+    pub self_collision_iterations: f64,
+    /// Points that are held in this frame; a point that is named by none moves freely.
+    pub pins: Vec<Pin>,
+}
+
+/// An infinite plane that cloth rests on (`usePlane`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundPlane {
+    /// A point of the plane in metres.
+    pub origin: Vector3<f64>,
+    /// Its normal; need not be of unit length.
+    pub normal: Vector3<f64>,
+    /// `planeBounce`: 0 none, 1 all.
+    pub bounce: f64,
+    /// `planeFriction`, added to the cloth's own.
+    pub friction: f64,
+    /// `planeStickiness`, added to the cloth's own.
+    pub stickiness: f64,
+}
+
+/// Stiffnesses of a cloth as a laboratory gives them. Where there is one, the resistance beside it has no say; nought
+/// is none at all. Only the Physical reading has them: in the Classic one stiffness is a consequence.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stiffness {
+    /// Against being longer than at rest, in N/m: Young's modulus times the thickness of the cloth.
+    pub stretch: Option<f64>,
+    /// Against being shorter than at rest, in N/m.
+    pub compression: Option<f64>,
+    /// Against shear, in N/m, on top of what stretch resists through cross links.
+    pub shear: Option<f64>,
+    /// Against bending, in N·m: moment for a width, over curvature.
+    pub bend: Option<f64>,
+}
+
+/// The attributes of one cloth in one frame. A resistance counts evaluations in 1/24 s (Classic) or
+/// stands for a stiffness (Physical); see [`ResistanceModel`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClothFrame {
+    /// Resistance of links longer than at rest.
+    pub stretch_resistance: f64,
+    /// Resistance of links shorter than at rest.
+    pub compression_resistance: f64,
+    /// Resistance of the cross links of quads.
+    pub shear_resistance: f64,
+    /// Resistance of the angle between faces.
+    pub bend_resistance: f64,
+    /// Physical stiffnesses that stand in for what the resistances come to.
+    pub stiffness: Stiffness,
+    /// Factor on all rest lengths.
+    pub rest_length_scale: f64,
+    /// Damping of the relative velocity along links.
+    pub stretch_damp: f64,
+    /// Averaging of velocities between linked points.
+    pub damp: f64,
+    /// Air drag along the normal, per 1/24 s.
+    pub drag: f64,
+    /// Share of `drag` that also acts along the surface, 0 to 1.
+    pub tangential_drag: f64,
+    /// Air force at right angles to the motion.
+    pub lift: f64,
+    /// Whether the solver's gravity acts on this cloth.
+    pub feels_gravity: bool,
+    /// Whether the solver's wind acts on this cloth.
+    pub feels_wind: bool,
+    /// Force on every point in newtons (`localForce`).
+    pub local_force: Vector3<f64>,
+    /// Wind for this cloth alone, in m/s (`localWind`).
+    pub local_wind: Vector3<f64>,
+    /// Whether it meets colliders and the plane.
+    pub collide: bool,
+    /// Thickness in metres; two things touch at the sum of theirs.
+    pub thickness: f64,
+    /// Friction; the two sides' values are added.
+    pub friction: f64,
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    pub stickiness: f64,
+    /// Bounce, 0 to 1; the max of the two sides counts.
+    pub bounce: f64,
+    /// How much of a collision is carried out; the two sides' values are multiplied. At 1 and above nothing passes, below
+    /// it things may, at 0 there is no collision.
+    pub collide_strength: f64,
+    /// How it moves points of other objects to its own side.
+    pub push_out: PushOut,
+    /// How much faster than by itself the solver works it and other cloth apart where they pass through each other; the
+    /// two sides' values are added.
+    pub crossover_push: f64,
+    /// The same where it passes through itself.
+    pub self_crossover_push: f64,
+    /// Which of its elements meet other cloth (`collisionFlag`).
+    pub elements: Elements,
+    /// `collisionLayer`: of two cloths the one in the lower layer is the heavier, and at a difference of one
+    /// is not moved by the other at all.
+    pub layer: f64,
+    /// How it meets itself.
+    pub self_collision: SelfCollision,
+}
+
+/// Which elements of a mesh meet the points of another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Elements {
+    /// Points alone.
+    Points,
+    /// Edges too.
+    Edges,
+    /// Faces too.
+    Faces,
+}
+
+/// How an object moves points of others to a side of its surface (`pushOut`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PushOut {
+    /// Share of the way that points go in a substep, 0 to 1; below nought to the inner side.
+    pub share: f64,
+    /// Metres from the surface within which points are moved (`pushOutRadius`).
+    pub radius: f64,
+}
+
+impl PushOut {
+    /// None.
+    pub const OFF: Self = Self { share: 0.0, radius: 0.0 };
+}
+
+/// How a cloth meets itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfCollision {
+    /// Whether it does (`selfCollide`).
+    pub on: bool,
+    /// Thickness of each side in metres: `thickness` times `selfCollideWidthScale`.
+    pub thickness: f64,
+    /// Which elements meet its points (`selfCollisionFlag`).
+    pub elements: Elements,
+    /// Whether its edges meet each other too, so that nothing at all can pass (`selfCollisionFlag` full surface).
+    pub edges: bool,
+}
+
+impl SelfCollision {
+    /// None.
+    pub const OFF: Self = Self { on: false, thickness: 0.0, elements: Elements::Faces, edges: true };
+}
+
+impl Default for ClothFrame {
+    /// Maya's defaults of an nCloth, except `thickness`, which Maya computes from the mesh.
+    fn default() -> Self {
+        Self {
+            stretch_resistance: 20.0,
+            compression_resistance: 10.0,
+            shear_resistance: 0.0,
+            bend_resistance: 0.1,
+            stiffness: Stiffness::default(),
+            rest_length_scale: 1.0,
+            stretch_damp: 0.1,
+            damp: 0.0,
+            drag: 0.05,
+            tangential_drag: 0.0,
+            lift: 0.05,
+            feels_gravity: true,
+            feels_wind: true,
+            local_force: Vector3::zeros(),
+            local_wind: Vector3::zeros(),
+            collide: true,
+            thickness: 0.0,
+            friction: 0.1,
+            stickiness: 0.0,
+            bounce: 0.0,
+            collide_strength: 1.0,
+            push_out: PushOut::OFF,
+            crossover_push: 0.0,
+            self_crossover_push: 0.0,
+            elements: Elements::Faces,
+            layer: 0.0,
+            self_collision: SelfCollision::OFF,
+        }
+    }
+}
+
+/// One collider in one frame: where its points start and end, and how it feels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColliderFrame {
+    /// Positions at the start of the frame in metres, in the mesh's order. Empty: as the frame before ended.
+    pub start: Vec<Vector3<f64>>,
+    /// Positions at the end of the frame in metres, in the mesh's order. Empty: it does not move.
+    pub end: Vec<Vector3<f64>>,
+    /// Whether anything meets it in this frame.
+    pub collide: bool,
+    /// Thickness in metres.
+    pub thickness: f64,
+    /// Friction; the two sides' values are added.
+    pub friction: f64,
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    pub stickiness: f64,
+    /// Bounce, 0 to 1; the max of the two sides counts.
+    pub bounce: f64,
+    /// How much of a collision is carried out, as of a cloth.
+    pub collide_strength: f64,
+    /// How it moves points of other objects to its own side.
+    pub push_out: PushOut,
+    /// Whether points that are inside it, where it is closed, are led out; otherwise they stay in (`trappedCheck`).
+    pub trapped_check: bool,
+}
+
+impl Default for ColliderFrame {
+    /// Maya's defaults of an nRigid, except that it stays where it is and nothing meets it, and `friction` and
+    /// `thickness`, which are nought.
+    fn default() -> Self {
+        Self {
+            start: Vec::new(),
+            end: Vec::new(),
+            collide: false,
+            thickness: 0.0,
+            friction: 0.0,
+            stickiness: 0.0,
+            bounce: 0.0,
+            collide_strength: 1.0,
+            push_out: PushOut::OFF,
+            trapped_check: true,
+        }
+    }
+}
+
+/// A point that is held and carried along a straight line during the frame (a transform constraint).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pin {
+    /// The cloth the point belongs to.
+    pub cloth: ClothId,
+    /// The point, in the mesh's order.
+    pub point: PointId,
+    /// Where it is at the start of the frame, in metres.
+    pub start: Vector3<f64>,
+    /// Where it is at the end of the frame, in metres.
+    pub end: Vector3<f64>,
+}

@@ -1,0 +1,294 @@
+//! The door: what comes in here is checked once, and refused with the element named.
+//! From [`ModelBuilder::finish`] on, nothing can be invalid.
+
+use nalgebra::Vector3;
+
+use crate::input::ids::{ClothId, ColliderId};
+use crate::input::validation::{MAX_COORDINATE, is_usable};
+use crate::model::point_masses;
+use crate::model::surface::Surface;
+use crate::model::vertex_maps::VertexMaps;
+
+/// How the mass of a cloth is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mass {
+    /// Kilograms at every point, as Maya's `pointMass` means it.
+    PerPoint(f64),
+    /// Kilograms per square metre, shared out by the area round each point; does not depend on the mesh.
+    PerArea(f64),
+}
+
+/// Which lists a cloth can ever need. A list that is off is never built and never visited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClothLists {
+    /// Links along edges (stretch or compression resistance is ever non-zero).
+    pub stretch: bool,
+    /// Cross links of quads among them, so that stretch resistance holds shear too (`addCrossLinks`).
+    pub cross_links: bool,
+    /// Cross links of quads once more (shear resistance is ever non-zero).
+    pub shear: bool,
+    /// Bending between faces (bend resistance is ever non-zero).
+    pub bend: bool,
+    /// Drag, lift or wind is ever felt.
+    pub air: bool,
+    /// Damping of relative velocities is ever non-zero.
+    pub damp: bool,
+    /// It ever meets itself.
+    pub self_collision: bool,
+}
+
+impl ClothLists {
+    /// Everything on.
+    pub const ALL: Self = Self {
+        stretch: true,
+        cross_links: true,
+        shear: true,
+        bend: true,
+        air: true,
+        damp: true,
+        self_collision: true,
+    };
+    /// Everything off: free points.
+    pub const NONE: Self = Self {
+        stretch: false,
+        cross_links: false,
+        shear: false,
+        bend: false,
+        air: false,
+        damp: false,
+        self_collision: false,
+    };
+}
+
+/// A mesh that becomes cloth. Its shape is how it is at rest, and where it starts unless `start` says otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cloth {
+    /// The mesh at the start, in metres. Faces may be empty: then the points are free.
+    pub surface: Surface,
+    /// How heavy it is.
+    pub mass: Mass,
+    /// The lists it can ever need.
+    pub lists: ClothLists,
+    /// Where its attributes differ from point to point.
+    pub factors: VertexMaps,
+    /// How it starts, where that is not at rest as the mesh is.
+    pub start: Start,
+}
+
+/// How a cloth starts, point by point in the mesh's order. What it is at rest is still the mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Start {
+    /// In metres; empty for where the mesh has its points.
+    pub positions: Vec<Vector3<f64>>,
+    /// In m/s; empty for none.
+    pub velocities: Vec<Vector3<f64>>,
+}
+
+impl Cloth {
+    /// A cloth that is the same everywhere and starts at rest as its mesh is.
+    pub fn new(surface: Surface, mass: Mass, lists: ClothLists) -> Self {
+        Self { surface, mass, lists, factors: VertexMaps::default(), start: Start::default() }
+    }
+
+    /// Where its points start, in metres.
+    pub fn positions(&self) -> &[Vector3<f64>] {
+        if self.start.positions.is_empty() { &self.surface.positions } else { &self.start.positions }
+    }
+
+    /// The mass of each point in kilograms, in the mesh's order: what the solver goes by.
+    pub fn point_masses(&self) -> Vec<f64> {
+        point_masses(self)
+    }
+}
+
+/// A mesh that others collide with (an nRigid): given in world space, moved by [`ColliderFrame`](crate::ColliderFrame).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collider {
+    /// The mesh at the start, in metres.
+    pub surface: Surface,
+}
+
+/// What is wrong with an object, and with which element of it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A position is NaN or infinite.
+    #[error("point {point} is not a finite position")]
+    NotFinite {
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A position is farther than [`MAX_COORDINATE`] from the origin.
+    #[error("point {point} is more than {MAX_COORDINATE:e} m from the origin")]
+    TooFar {
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A face names a point that does not exist.
+    #[error("face {face} names point {point}, but there are only {points} points")]
+    FaceOutOfRange {
+        /// The face.
+        face: usize,
+        /// The point it names.
+        point: u32,
+        /// How many there are.
+        points: usize,
+    },
+    /// A face has fewer than three corners or names a point twice.
+    #[error("face {face} has fewer than three different points")]
+    DegenerateFace {
+        /// The face.
+        face: usize,
+    },
+    /// The mesh has faces, but none of them has any area.
+    #[error("the mesh has no area")]
+    NoArea,
+    /// The mesh has no points at all.
+    #[error("the mesh has no points")]
+    NoPoints,
+    /// A column of the start is not as long as the mesh has points.
+    #[error("there are {given} {what} to start from, but {points} points")]
+    StartCount {
+        /// `positions` or `velocities`.
+        what: &'static str,
+        /// How many were given.
+        given: usize,
+        /// How many points the mesh has.
+        points: usize,
+    },
+    /// A position or velocity to start from cannot be reckoned with.
+    #[error("point {point} cannot start so: its {what} is not finite, or more than {MAX_COORDINATE:e}")]
+    BadStart {
+        /// `position` or `velocity`.
+        what: &'static str,
+        /// The point, in the mesh's order.
+        point: usize,
+    },
+    /// A column of factors is not as long as the mesh has points.
+    #[error("there are {factors} factors on {column}, but {points} points")]
+    FactorCount {
+        /// What it is a factor on.
+        column: &'static str,
+        /// How many there are.
+        factors: usize,
+        /// How many points the mesh has.
+        points: usize,
+    },
+    /// A factor is not a number, or out of range.
+    #[error("the factor on {column} of point {point} must be between {least} and {most}, not {factor}")]
+    BadFactor {
+        /// What it is a factor on.
+        column: &'static str,
+        /// The point, in the mesh's order.
+        point: usize,
+        /// What was given.
+        factor: f64,
+        /// The least it may be.
+        least: f64,
+        /// The most it may be.
+        most: f64,
+    },
+    /// The mass is not a positive number.
+    #[error("the mass must be above zero and finite, not {mass}")]
+    BadMass {
+        /// What was given.
+        mass: f64,
+    },
+}
+
+/// Collects the objects of one solver.
+#[derive(Debug, Clone, Default)]
+pub struct ModelBuilder {
+    pub(crate) cloths: Vec<Cloth>,
+    pub(crate) colliders: Vec<Collider>,
+}
+
+impl ModelBuilder {
+    /// An empty solver.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a cloth.
+    ///
+    /// # Errors
+    /// When the mesh is empty, without area, not finite or names points it does not have, or the mass is
+    /// not positive; see [`BuildError`].
+    pub fn cloth(&mut self, cloth: Cloth) -> Result<ClothId, BuildError> {
+        check_surface(&cloth.surface)?;
+        let (Mass::PerPoint(mass) | Mass::PerArea(mass)) = cloth.mass;
+        if !(mass > 0.0 && mass.is_finite()) {
+            return Err(BuildError::BadMass { mass });
+        }
+        cloth.factors.check(cloth.surface.positions.len())?;
+        check_start(&cloth.start, cloth.surface.positions.len())?;
+        self.cloths.push(cloth);
+        Ok(ClothId(self.cloths.len() as u32 - 1))
+    }
+
+    /// The cloths, by their ids.
+    pub fn cloths(&self) -> &[Cloth] {
+        &self.cloths
+    }
+
+    /// Where the points of a cloth start, in metres.
+    pub fn positions(&self, cloth: ClothId) -> &[Vector3<f64>] {
+        self.cloths[cloth.index()].positions()
+    }
+
+    /// Adds a collider.
+    ///
+    /// # Errors
+    /// When the mesh is empty, without area, not finite or names points it does not have; see [`BuildError`].
+    pub fn collider(&mut self, collider: Collider) -> Result<ColliderId, BuildError> {
+        check_surface(&collider.surface)?;
+        self.colliders.push(collider);
+        Ok(ColliderId(self.colliders.len() as u32 - 1))
+    }
+}
+
+/// Refuses a start that is not one of every point.
+fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
+    for (column, [one, what]) in
+        [(&start.positions, ["position", "positions"]), (&start.velocities, ["velocity", "velocities"])]
+    {
+        if !column.is_empty() && column.len() != points {
+            return Err(BuildError::StartCount { what, given: column.len(), points });
+        }
+        if let Some(point) = column.iter().position(|given| !is_usable(given)) {
+            return Err(BuildError::BadStart { what: one, point });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what no pass could work with.
+fn check_surface(surface: &Surface) -> Result<(), BuildError> {
+    let points = surface.positions.len();
+    if points == 0 {
+        return Err(BuildError::NoPoints);
+    }
+    if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(BuildError::NotFinite { point });
+    }
+    if let Some(point) = surface.positions.iter().position(|p| !is_usable(p)) {
+        return Err(BuildError::TooFar { point });
+    }
+    for (face, corners) in surface.faces.iter().enumerate() {
+        if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {
+            return Err(BuildError::FaceOutOfRange { face, point, points });
+        }
+        let repeats = (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
+        if corners.len() < 3 || repeats {
+            return Err(BuildError::DegenerateFace { face });
+        }
+    }
+    let area = |[a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|point| surface.positions[point as usize]);
+        (b - a).cross(&(c - a)).norm()
+    };
+    if !surface.faces.is_empty() && !surface.faces.triangles().map(area).any(|area| area > 0.0) {
+        return Err(BuildError::NoArea);
+    }
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! Attributes that differ from point to point: a factor on each, column by column.
+//!
+//! An empty column is 1 everywhere: nothing is kept for it and no pass looks at it. A link or hinge takes the mean
+//! over its points. How strongly a sweep acts is told as a share, 0 to 1, of what the cloth's own attribute says:
+//! in the Classic reading there is no evaluation that does more than all.
+
+use crate::model::builder::BuildError;
+
+/// Factors on attributes, point by point in the mesh's order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct VertexMaps {
+    /// On the mass; above nought.
+    pub mass: Vec<f64>,
+    /// Share of the resistance against being longer than at rest.
+    pub stretch: Vec<f64>,
+    /// Share of the resistance against being shorter than at rest.
+    pub compression: Vec<f64>,
+    /// Share of the resistance against bending.
+    pub bend: Vec<f64>,
+    /// On the rest length of links.
+    pub rest_length: Vec<f64>,
+    /// On `damp`.
+    pub damp: Vec<f64>,
+    /// On `drag`.
+    pub drag: Vec<f64>,
+    /// On `tangential_drag`.
+    pub tangential_drag: Vec<f64>,
+    /// On `lift`.
+    pub lift: Vec<f64>,
+    /// On `thickness`; here and below, where an element touches, the mean by how near each of its points is.
+    pub thickness: Vec<f64>,
+    /// On `friction`.
+    pub friction: Vec<f64>,
+    /// On `stickiness`.
+    pub stickiness: Vec<f64>,
+    /// On `bounce`.
+    pub bounce: Vec<f64>,
+    /// On `collide_strength`.
+    pub collide_strength: Vec<f64>,
+}
+
+/// Smaller shares than this are none: so soft a link is not there.
+const LEAST_SHARE: f64 = 1e-6;
+
+impl VertexMaps {
+    /// Every column, with the least and the most it may hold.
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 14] {
+        const ANY: [f64; 2] = [0.0, 1e6];
+        const SHARE: [f64; 2] = [0.0, 1.0];
+        [
+            ("mass", &self.mass, [1e-6, 1e6]),
+            ("stretch", &self.stretch, SHARE),
+            ("compression", &self.compression, SHARE),
+            ("bend", &self.bend, SHARE),
+            ("rest length", &self.rest_length, ANY),
+            ("damp", &self.damp, ANY),
+            ("drag", &self.drag, ANY),
+            ("tangential drag", &self.tangential_drag, ANY),
+            ("lift", &self.lift, ANY),
+            ("thickness", &self.thickness, ANY),
+            ("friction", &self.friction, ANY),
+            ("stickiness", &self.stickiness, ANY),
+            ("bounce", &self.bounce, ANY),
+            ("collide strength", &self.collide_strength, ANY),
+        ]
+    }
+
+    /// Refuses columns that are not as long as the mesh has points, and factors that are out of range.
+    pub(crate) fn check(&self, points: usize) -> Result<(), BuildError> {
+        for (column, factors, [least, most]) in self.columns() {
+            if !factors.is_empty() && factors.len() != points {
+                return Err(BuildError::FactorCount { column, factors: factors.len(), points });
+            }
+            let bad = |factor: &f64| !(least..=most).contains(factor);
+            if let Some(point) = factors.iter().position(bad) {
+                return Err(BuildError::BadFactor { column, point, factor: factors[point], least, most });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The mean of a column over some points; 1 where there is no column.
+pub(crate) fn mean(column: &[f64], points: impl ExactSizeIterator<Item = usize>) -> f64 {
+    let count = points.len() as f64;
+    if column.is_empty() { 1.0 } else { points.map(|point| column[point]).sum::<f64>() / count }
+}
+
+/// The same for shares.
+pub(crate) fn mean_share(column: &[f64], points: impl ExactSizeIterator<Item = usize>) -> f64 {
+    let share = mean(column, points);
+    if share < LEAST_SHARE { 0.0 } else { share.min(1.0) }
+}

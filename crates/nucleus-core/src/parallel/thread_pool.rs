@@ -1,0 +1,293 @@
+//! A thread pool: a parallel loop has a fixed number of tasks, and idle threads claim them one by one.
+//!
+//! What a task computes never depends on which thread runs it or when, so any number of threads gives the same bits.
+//! A loop takes a few microseconds, which is too short to wake a sleeping thread. Workers therefore spin for a while
+//! between loops, then yield their core, then sleep.
+//!
+//! A task that panics does not end the loop: the caller waits for all other tasks, which borrow from it, and then
+//! resumes the panic.
+
+#![allow(unsafe_code)]
+
+use std::any::Any;
+use std::cell::UnsafeCell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// The closure of a loop without its lifetime: see the safety notes where it is called.
+type Work = *const (dyn Fn(usize) + Sync);
+
+/// How often a worker polls for the next loop before it yields its core, and before it sleeps.
+const SPINS_BEFORE_YIELD: u32 = 2_000;
+const SPINS_BEFORE_SLEEP: u32 = 4_000;
+
+/// One word holds the number of the loop, how many tasks it has and which is next, so that one exchange claims a task.
+const TASK_BITS: u32 = 20;
+const TASK_MASK: u64 = (1 << TASK_BITS) - 1;
+
+struct DisjointSlice {
+    /// loop << 40 | tasks << 20 | next task.
+    ticket: AtomicU64,
+    /// Tasks of this loop that are finished.
+    finished: AtomicUsize,
+    work: UnsafeCell<Option<Work>>,
+    /// A loop is running.
+    is_busy: AtomicBool,
+    /// What the first task that panicked panicked with.
+    panic: Mutex<Option<Box<dyn Any + Send>>>,
+    closing: AtomicBool,
+    sleepers: Mutex<usize>,
+    wake: Condvar,
+}
+
+// SAFETY: `work` is written only by the caller that holds `is_busy`, while no task is open (see `ThreadPool::phase`), and read
+// only by holders of a claimed, unfinished task; the claim's acquire orders the read after the write.
+unsafe impl Sync for DisjointSlice {}
+// SAFETY: the pointer in `work` is to a `Sync` closure that outlives the loop.
+unsafe impl Send for DisjointSlice {}
+
+/// Threads that run parallel loops together.
+pub struct ThreadPool {
+    shared: Arc<DisjointSlice>,
+    workers: Vec<JoinHandle<()>>,
+}
+
+impl ThreadPool {
+    /// A pool of `threads` in all, the caller's own among them; zero counts as one.
+    pub fn new(threads: usize) -> Self {
+        let shared = Arc::new(DisjointSlice {
+            ticket: AtomicU64::new(0),
+            finished: AtomicUsize::new(0),
+            work: UnsafeCell::new(None),
+            is_busy: AtomicBool::new(false),
+            panic: Mutex::new(None),
+            closing: AtomicBool::new(false),
+            sleepers: Mutex::new(0),
+            wake: Condvar::new(),
+        });
+        let spawn = |_| {
+            let shared = Arc::clone(&shared);
+            std::thread::Builder::new().name("nucleus".into()).spawn(move || shared.serve())
+        };
+        // A machine that refuses a thread only makes the pool smaller; the result is the same.
+        let workers = (1..threads).map_while(|k| spawn(k).ok()).collect();
+        Self { shared, workers }
+    }
+
+    /// Runs `work(0)` to `work(tasks - 1)`, in any order and in parallel, and returns when all are done.
+    ///
+    /// # Panics
+    /// With what a task panicked with, after all other tasks are done.
+    pub fn parallel_for(&self, tasks: usize, work: impl Fn(usize) + Sync) {
+        assert!((tasks as u64) < TASK_MASK, "a loop has at most a million tasks");
+        // A task may begin a loop of its own: it runs on the thread of the task.
+        if self.workers.is_empty() || tasks <= 1 || self.shared.is_busy.swap(true, Ordering::Acquire) {
+            return (0..tasks).for_each(work);
+        }
+        self.shared.open(tasks, &work);
+        while self.shared.do_one_task() {}
+        let mut spins = 0;
+        while self.shared.finished.load(Ordering::Acquire) < tasks {
+            pause(&mut spins);
+        }
+        let panic = self.shared.panic.lock().unwrap_or_else(PoisonError::into_inner).take();
+        self.shared.is_busy.store(false, Ordering::Release);
+        if let Some(panic) = panic {
+            resume_unwind(panic);
+        }
+    }
+}
+
+impl Drop for ThreadPool {
+    fn drop(&mut self) {
+        self.shared.closing.store(true, Ordering::SeqCst);
+        self.shared.wake_sleepers();
+        for worker in self.workers.drain(..) {
+            // A worker catches the panics of its tasks, and cannot panic itself.
+            let _ = worker.join();
+        }
+    }
+}
+
+impl DisjointSlice {
+    /// Opens the tasks of a loop; called by who holds `is_busy`.
+    fn open(&self, tasks: usize, work: &(dyn Fn(usize) + Sync)) {
+        // SAFETY: every task of the loop before is finished, so nobody reads `work` now; and `ThreadPool::phase` neither
+        // returns nor unwinds before every task of this loop is finished, so the closure outlives all its readers.
+        unsafe { *self.work.get() = Some(std::mem::transmute::<&(dyn Fn(usize) + Sync), Work>(work)) };
+        self.finished.store(0, Ordering::Relaxed);
+        let number = (self.ticket.load(Ordering::Relaxed) >> (2 * TASK_BITS)) + 1;
+        let ticket = (number << (2 * TASK_BITS)) | ((tasks as u64) << TASK_BITS);
+        self.ticket.store(ticket, Ordering::SeqCst);
+        self.wake_sleepers();
+    }
+
+    /// Claims the next open task, if there is one, and does it.
+    fn do_one_task(&self) -> bool {
+        let mut ticket = self.ticket.load(Ordering::Acquire);
+        loop {
+            let (tasks, next) = ((ticket >> TASK_BITS) & TASK_MASK, ticket & TASK_MASK);
+            if next >= tasks {
+                return false;
+            }
+            match self.ticket.compare_exchange_weak(ticket, ticket + 1, Ordering::AcqRel, Ordering::Acquire) {
+                Ok(_) => break self.run(next as usize),
+                Err(now) => ticket = now,
+            }
+        }
+    }
+
+    fn run(&self, task: usize) -> bool {
+        // SAFETY: the claimed task is not finished, so its loop is still open and `work` points to its closure.
+        let work = unsafe { (*self.work.get()).map(|work| &*work) };
+        // The caller resumes the panic, so nobody sees what the task left half done without knowing of it.
+        if let Some(work) = work
+            && let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(task)))
+        {
+            self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(panic);
+        }
+        self.finished.fetch_add(1, Ordering::Release);
+        true
+    }
+
+    /// The loop of a worker thread: run open tasks, else spin, else sleep.
+    fn serve(&self) {
+        let mut spins = 0;
+        while !self.closing.load(Ordering::Relaxed) {
+            if self.do_one_task() {
+                spins = 0;
+            } else if spins < SPINS_BEFORE_SLEEP {
+                pause(&mut spins);
+            } else {
+                self.sleep();
+                spins = 0;
+            }
+        }
+    }
+
+    fn has_open_task(&self) -> bool {
+        let ticket = self.ticket.load(Ordering::SeqCst);
+        (ticket & TASK_MASK) < ((ticket >> TASK_BITS) & TASK_MASK)
+    }
+
+    fn sleep(&self) {
+        let Ok(mut sleepers) = self.sleepers.lock() else { return };
+        *sleepers += 1;
+        // Checked under the lock that the waker takes, so that no loop is missed between check and sleep.
+        while !self.has_open_task() && !self.closing.load(Ordering::SeqCst) {
+            match self.wake.wait(sleepers) {
+                Ok(guard) => sleepers = guard,
+                Err(_) => return,
+            }
+        }
+        *sleepers -= 1;
+    }
+
+    fn wake_sleepers(&self) {
+        if let Ok(sleepers) = self.sleepers.lock()
+            && *sleepers > 0
+        {
+            self.wake.notify_all();
+        }
+    }
+}
+
+/// Waits a moment: spins at first, then yields the core.
+fn pause(spins: &mut u32) {
+    *spins += 1;
+    if *spins < SPINS_BEFORE_YIELD {
+        std::hint::spin_loop();
+    } else {
+        std::thread::yield_now();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_task_of_every_loop_runs_exactly_once() {
+        for threads in [1, 2, 3, 8] {
+            let pool = ThreadPool::new(threads);
+            for tasks in [0, 1, 2, 7, 100] {
+                for _ in 0..50 {
+                    let done: Vec<AtomicUsize> = (0..tasks).map(|_| AtomicUsize::new(0)).collect();
+                    pool.parallel_for(tasks, |task| {
+                        done[task].fetch_add(1, Ordering::Relaxed);
+                    });
+                    assert!(done.iter().all(|count| count.load(Ordering::Relaxed) == 1));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pool_that_slept_wakes_for_the_next_loop() {
+        let pool = ThreadPool::new(2);
+        for _ in 0..3 {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            let count = AtomicUsize::new(0);
+            pool.parallel_for(64, |_| {
+                count.fetch_add(1, Ordering::Relaxed);
+            });
+            assert_eq!(count.load(Ordering::Relaxed), 64);
+        }
+    }
+
+    /// Runs a loop of 64 tasks of which some panic, each with its number; how many others ran, and with what the loop
+    /// panicked.
+    fn panicking(pool: &ThreadPool, panics: fn(usize) -> bool) -> (usize, Option<usize>) {
+        let ran = AtomicUsize::new(0);
+        let run = || {
+            pool.parallel_for(64, |task| {
+                // Not `panic!`, which would print.
+                if panics(task) {
+                    resume_unwind(Box::new(task));
+                }
+                ran.fetch_add(1, Ordering::Relaxed);
+            });
+        };
+        let panic = catch_unwind(AssertUnwindSafe(run)).err();
+        (ran.into_inner(), panic.map(|panic| *panic.downcast().expect("the number of the task")))
+    }
+
+    #[test]
+    fn a_panic_in_a_task_reaches_the_caller_and_the_pool_goes_on() {
+        for threads in [1, 2, 4] {
+            let pool = ThreadPool::new(threads);
+            for _ in 0..50 {
+                assert_eq!(panicking(&pool, |task| task == 63), (63, Some(63)), "{threads} threads");
+                let (_, panic) = panicking(&pool, |_| true);
+                assert!(panic.is_some(), "{threads} threads");
+                assert_eq!(panicking(&pool, |_| false), (64, None), "{threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn a_loop_that_panics_ends_after_all_its_other_tasks() {
+        let pool = ThreadPool::new(4);
+        for panics in [|task| task == 0, |task| task % 2 == 0] {
+            for _ in 0..50 {
+                let of_others = (0..64).filter(|&task| !panics(task)).count();
+                assert_eq!(panicking(&pool, panics).0, of_others);
+            }
+        }
+    }
+
+    #[test]
+    fn a_task_may_run_a_loop_of_its_own() {
+        for threads in [1, 2, 4] {
+            let (pool, count) = (ThreadPool::new(threads), AtomicUsize::new(0));
+            pool.parallel_for(8, |_| {
+                pool.parallel_for(8, |_| {
+                    count.fetch_add(1, Ordering::Relaxed);
+                });
+            });
+            assert_eq!(count.into_inner(), 64);
+        }
+    }
+}

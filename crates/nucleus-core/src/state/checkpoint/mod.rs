@@ -1,0 +1,166 @@
+//! All that a solver carries from one frame into the next, as bytes: a solver that is made from them goes on with the
+//! same bits as one that never stopped.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | how numbers, columns and lists become bytes | `item.rs` |
+//! | what is kept of each struct, and what is made anew | `kept!` beside the struct, by the rules in `kept.rs` |
+//! | the small values among them | `values.rs` |
+//! | which model a checkpoint belongs to | `fingerprint.rs` |
+//! | what keeps damaged bytes from doing harm | `fits.rs`, and the seal in `seal.rs` |
+//!
+//! **Invariant:** `kept!` and `item!` name every field of a struct. Whoever adds one, a multiplier, the age of a particle
+//! or the place of a random stream, has to say what becomes of it, or it does not compile.
+
+mod fingerprint;
+mod fits;
+mod item;
+mod kept;
+mod seal;
+mod values;
+
+pub(crate) use item::item;
+pub use item::{Item, Reader};
+pub(crate) use kept::{Kept, kept, load_column};
+pub use seal::{RestoreError, sealed, unsealed};
+
+use crate::contact::cloth::Mutual;
+use crate::contact::collider::ColliderState;
+use crate::contact::pairs::PairList;
+use crate::math::Real;
+use crate::model::builder::ModelBuilder;
+use crate::solver::Solver;
+use crate::state::State;
+
+/// What the bytes are; counted up whenever their layout changes.
+const KIND: [u8; 8] = *b"solver 4";
+
+impl<R: Real> Solver<R> {
+    /// All that the next frame depends on, besides the model and what the frame brings.
+    pub fn save(&self) -> Vec<u8> {
+        R::save(self)
+    }
+
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        (R::SIZE as u8).put(&mut bytes);
+        self.fingerprint().put(&mut bytes);
+        Kept::save(self, &mut bytes);
+        self.save_pairs(&mut bytes);
+        sealed(KIND, &bytes)
+    }
+
+    /// Pairs with a collider that moves hold for this frame alone: all are found anew in the next, but for the points that
+    /// are trapped.
+    fn save_pairs(&self, out: &mut Vec<u8>) {
+        let hold = !self.collider_states.iter().any(|collider| collider.moves);
+        hold.put(out);
+        for list in &self.pairs {
+            if hold {
+                list.save(out);
+            } else {
+                list.span.put(out);
+                list.trapped.put(out);
+            }
+        }
+    }
+
+    fn load_pairs(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        let hold = bool::take(from)?;
+        for list in &mut self.pairs {
+            if hold {
+                list.load(from)?;
+            } else {
+                list.span = Item::take(from)?;
+                list.trapped = Item::take(from)?;
+            }
+        }
+        Some(())
+    }
+
+    /// A solver that goes on from where one of the same model was saved, with the same bits. `threads` is the number of
+    /// cores to use; it may be another.
+    ///
+    /// # Errors
+    /// When the bytes are damaged, of another version, or of another model.
+    pub fn restored(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
+        R::restore(builder, threads, bytes)
+    }
+
+    pub(crate) fn restore(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
+        let mut solver = Self::build(builder, threads);
+        let mut from = Reader::new(unsealed(KIND, bytes)?);
+        let scalar = u8::take(&mut from).ok_or(RestoreError::Damaged)?;
+        if usize::from(scalar) != R::SIZE {
+            return Err(RestoreError::Scalar { found: 8 * u32::from(scalar), wanted: 8 * R::SIZE as u32 });
+        }
+        if u64::take(&mut from).ok_or(RestoreError::Damaged)? != solver.fingerprint() {
+            return Err(RestoreError::OtherModel);
+        }
+        let read = solver.load(&mut from).and_then(|()| solver.load_pairs(&mut from));
+        read.filter(|()| from.is_at_end()).ok_or(RestoreError::Damaged)?;
+        if !solver.fits() {
+            return Err(RestoreError::Damaged);
+        }
+        solver.make_rest_anew();
+        Ok(solver)
+    }
+
+    /// What follows from what was kept.
+    fn make_rest_anew(&mut self) {
+        for collider in &mut self.collider_states {
+            let (start, end, now) = (collider.start.clone(), collider.end.clone(), collider.now);
+            collider.begin_frame(&start, &end);
+            collider.now = now;
+        }
+        self.pairs.iter_mut().for_each(PairList::sort_by_point);
+        if let Some(Mutual { bodies, .. }) = &mut self.mutual {
+            bodies.refit();
+        }
+        self.anchor_rows();
+    }
+}
+
+// Pairs are kept beside the rest, where they hold.
+kept!([R: Real] Solver<R> {
+    columns: [far, strayed],
+    values: [terms, ground_terms, touches],
+    parts: [state, collider_states, mutual, ground],
+    anew: [cloths, colliders, pairs, spans, windows, drifts, near, maps, pool],
+});
+
+kept!([R: Real] State<R> {
+    columns: [anchor, displacement, velocity],
+    values: [],
+    parts: [],
+    anew: [start, led, parted, step_length, predicted, normal, inverse_mass],
+});
+
+kept!([R: Real] PairList<R> {
+    columns: [],
+    values: [span, point_face, edge_edge, face_point, trapped],
+    parts: [],
+    anew: [cloth, collider, by_point, active, searched, again, tasks],
+});
+
+kept!([R: Real] Mutual<R> {
+    columns: [strayed, began_at],
+    values: [terms, span],
+    parts: [bodies, paths, active, tangle],
+    anew: [room, held],
+});
+
+impl<R: Real> PairList<R> {
+    /// Sets `by_point`.
+    fn sort_by_point(&mut self) {
+        let keys = (0..).zip(&self.point_face).map(|(index, pair)| u64::from(pair.points[0]) << 32 | index);
+        self.by_point = keys.collect();
+        self.by_point.sort_unstable();
+    }
+}
+
+/// A collider's state is in good order if its places are.
+fn is_sound(collider: &ColliderState) -> bool {
+    let usable = |column: &[nalgebra::Vector3<f64>]| column.iter().all(crate::input::validation::is_usable);
+    usable(&collider.start) && usable(&collider.end)
+}
