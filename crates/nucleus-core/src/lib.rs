@@ -34,9 +34,10 @@ mod solver;
 mod state;
 mod step;
 
+pub use constraints::pressure::PASCALS_PER_PRESSURE;
 pub use input::frame::{
-    COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane, Pin, PushOut,
-    ResistanceModel, SelfCollision, Stiffness,
+    BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane,
+    InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
 };
 pub use input::ids::{ClothId, ColliderId, PointId};
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};

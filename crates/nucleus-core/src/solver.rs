@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::constraints::pressure::Chamber;
+use crate::constraints::shape::UNTURNED;
 use crate::contact::cloth::Mutual;
 use crate::contact::collider::ColliderState;
 use crate::contact::foresee::Cover;
@@ -67,7 +69,9 @@ impl<R: Real> Solver<R> {
             let first = models.last().map_or(0, |last| last.points().start + last.blocks.columns());
             models.push(ClothModel::new(cloth, first, collides || meets));
         }
-        let state = State::new(&cloths, &models);
+        let mut state = State::new(&cloths, &models);
+        let pool = ThreadPool::new(threads);
+        prepare_wholes(&mut models, &mut state, &pool);
         // What goes on from a state may lie on something; whether it does is only known after a frame.
         let touches = cloths.iter().any(|cloth| !cloth.start.positions.is_empty());
         let maps = Maps::new(&cloths, &models, state.anchor.len());
@@ -94,7 +98,7 @@ impl<R: Real> Solver<R> {
             colliders,
             state,
             ground: Ground::default(),
-            pool: ThreadPool::new(threads),
+            pool,
         };
         solver.anchor_rows();
         solver
@@ -122,6 +126,20 @@ impl<R: Real> Solver<R> {
         let first = model.points().start;
         out.clear();
         out.extend(model.order.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
+    }
+}
+
+/// Gives chambers and shells their places in the state.
+fn prepare_wholes<R: Real>(models: &mut [ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
+    for model in models {
+        model.shape.first = state.rotations.len();
+        state.rotations.resize(model.shape.first + model.shape.shells(), UNTURNED);
+        if model.pressure.is_on() {
+            model.pressure.first = state.chambers.len();
+            let chambers = model.pressure.first + model.pressure.chambers();
+            state.chambers.resize(chambers, Chamber { start_volume: 0.0, volume: 0.0, amount: 0.0 });
+            model.pressure.start(&model.blocks, state, pool);
+        }
     }
 }
 

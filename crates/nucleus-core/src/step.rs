@@ -4,13 +4,13 @@ use std::ops::{ControlFlow, Range};
 use std::sync::atomic::Ordering;
 
 use crate::constraints::damp::{self, Damping};
-use crate::constraints::sweep;
+use crate::constraints::{sweep, whole};
 use crate::contact::resolve::Tally;
 use crate::input::frame::FrameInput;
 use crate::input::validation::InvalidInput;
 use crate::integrate::aerodynamics::{self, AirForces};
 use crate::integrate::predict::{self, Columns, Drive, gravity_kick};
-use crate::integrate::velocities;
+use crate::integrate::{gusts, velocities};
 use crate::math::{Real, Row4};
 use crate::output::observer::{Stage, StepObserver, SubstepIndex};
 use crate::output::report::StepReport;
@@ -79,6 +79,8 @@ impl<R: Real> Solver<R> {
         for substep in 1..=schedule.substeps {
             watch.enter(Stage::Normals);
             self.find_normals();
+            let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
+            gusts::find_all(&self.cloths, &mut self.state, frame, time, &self.pool);
             self.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
@@ -116,6 +118,7 @@ impl<R: Real> Solver<R> {
         let Step { schedule, index, span, direction } = *now;
         watch.enter(Stage::Predict);
         self.store_step_start(frame, schedule.h);
+        whole::drag_to_input_meshes(&self.cloths, &mut self.state, frame, schedule.h, &self.pool);
         self.predict(frame, schedule, max_speed, index); // gravity, wind, drag; inertia
         for round in &schedule.passes {
             watch.should_continue()?;
@@ -123,6 +126,11 @@ impl<R: Real> Solver<R> {
                 Pass::Constraints(sweeps) => {
                     watch.enter(Stage::Constraints);
                     sweep::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
+                }
+                Pass::Whole(at) => {
+                    watch.enter(Stage::Constraints);
+                    let (whole, now) = (&schedule.wholes[*at], [span.to, schedule.h]);
+                    whole::relax(whole, &self.cloths, &mut self.state, frame, now, &self.pool);
                 }
                 Pass::ClothContact => {
                     self.stick_to_cloth(frame, schedule, span, tally);
@@ -135,6 +143,7 @@ impl<R: Real> Solver<R> {
                 Pass::Safeguard => self.settle(frame, schedule, span, tally, watch), // the last word
             }
         }
+        whole::remember_deformation(&mut self.cloths, &self.state, frame, &self.pool);
         watch.enter(Stage::Velocity);
         self.update_velocities(schedule);
         self.bounce(frame, schedule, span);
@@ -199,6 +208,7 @@ impl<R: Real> Solver<R> {
             velocity: DisjointSlice::new(&mut state.velocity),
             predicted: DisjointSlice::new(&mut state.predicted),
             normal: &state.normal,
+            gust: &state.gust,
         };
         for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(max_speed) {
             let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, max_speed);

@@ -25,6 +25,8 @@ use nalgebra::Vector3;
 
 use crate::math::Real;
 use crate::model::surface::Surface;
+
+use super::angle::{AngleRow, bisector, spans};
 use crate::model::{Row, Seam, fan_triangles, seams, triangle_area};
 
 /// `N` points that bend, between points of the solver, before they are laid out.
@@ -158,6 +160,20 @@ fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
 }
 
 impl<R: Real, const N: usize> HingeRow<R, N> {
+    /// The signed angle of the hinge in the mesh that it was made from; `point` gives the mesh's point of a row.
+    pub fn angle(&self, surface: &Surface, point: impl Fn(u32) -> usize) -> AngleRow<R, N> {
+        let x = self.points.map(|row| surface.positions[point(row)]);
+        let c: Vector3<f64> = x.iter().zip(&self.weights).map(|(x, w)| x * w.to_f64()).sum();
+        let n = bisector(spans(x.map(Into::into)));
+        let sign = if c.dot(&Vector3::from(n)) < 0.0 { -1.0 } else { 1.0 };
+        AngleRow::new(self.points, self.rest.to_f64() * sign)
+    }
+
+    /// Whether the hinge is bent at rest.
+    pub fn is_bent(&self) -> bool {
+        self.rest > R::ZERO
+    }
+
     fn new(surface: &Surface, points: [u32; N], weights: [f64; N], place: impl Fn(u32) -> u32) -> Self {
         let x = points.map(|point| position(surface, point));
         let vector: Vector3<f64> = (0..N).map(|k| x[k] * weights[k]).sum();

@@ -1,9 +1,10 @@
 //! Sweeps: each list of a round once, blocks side by side, then what crosses them, colour by colour.
 
+use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
 use crate::constraints::row_map::{ShareGroup, Whole};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
-use crate::constraints::{bend, stretch};
+use crate::constraints::{angle, bend, stretch};
 use crate::math::{Real, Row4};
 use crate::model::{Blocks, ClothModel, Part, RowList};
 use crate::parallel::disjoint::DisjointSlice;
@@ -51,9 +52,9 @@ impl<R: Real> Sweeper<'_, R> {
         match effect {
             Effect::Stretch(strength) => self.links(&cloth.stretch, &cloth.shares.stretch, part, strength),
             Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), part, strength),
-            Effect::Bend(strength) => {
-                self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
-                self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
+            Effect::Bend(strength, angles) => {
+                self.hinges((&cloth.bend, &cloth.bend_angles), &cloth.shares.bend, part, (strength, angles));
+                self.hinges((&cloth.fold, &cloth.fold_angles), &cloth.shares.fold, part, (strength, angles));
             }
         }
     }
@@ -67,12 +68,22 @@ impl<R: Real> Sweeper<'_, R> {
             Effect::Shear(strength) => over_cross(pool, &cloth.shear, backward, |part| {
                 self.links(&cloth.shear, &RowList::default(), part, strength);
             }),
-            Effect::Bend(strength) => {
+            Effect::Bend(strength, angles) => {
                 over_cross(pool, &cloth.bend, backward, |part| {
-                    self.hinges(&cloth.bend, &cloth.shares.bend, part, strength);
+                    self.hinges(
+                        (&cloth.bend, &cloth.bend_angles),
+                        &cloth.shares.bend,
+                        part,
+                        (strength, angles),
+                    );
                 });
                 over_cross(pool, &cloth.fold, backward, |part| {
-                    self.hinges(&cloth.fold, &cloth.shares.fold, part, strength);
+                    self.hinges(
+                        (&cloth.fold, &cloth.fold_angles),
+                        &cloth.shares.fold,
+                        part,
+                        (strength, angles),
+                    );
                 });
             }
         }
@@ -102,12 +113,34 @@ impl<R: Real> Sweeper<'_, R> {
     #[allow(unsafe_code)]
     fn hinges<const N: usize>(
         &self,
-        rows: &RowList<HingeGroup<R, N>>,
+        (rows, angles): (&RowList<HingeGroup<R, N>>, &RowList<AngleGroup<R>>),
         shares: &RowList<ShareGroup<R>>,
         part: Part,
-        strength: &bend::BendStrength<R>,
+        (strength, angle_strength): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
         let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        if !angles.part(part).is_empty() {
+            let rows = rows.zip(angles.part(part));
+            // SAFETY: see above.
+            unsafe {
+                match (self.backward, shares.len() > 0) {
+                    (false, false) => {
+                        angle::relax(self.points, rows.map(|row| (row, Whole)), strength, angle_strength)
+                    }
+                    (true, false) => angle::relax(
+                        self.points,
+                        rows.rev().map(|row| (row, Whole)),
+                        strength,
+                        angle_strength,
+                    ),
+                    (false, true) => angle::relax(self.points, rows.zip(shares), strength, angle_strength),
+                    (true, true) => {
+                        angle::relax(self.points, rows.zip(shares).rev(), strength, angle_strength)
+                    }
+                }
+            }
+            return;
+        }
         // SAFETY: see above.
         unsafe {
             match (self.backward, shares.len() > 0) {

@@ -54,6 +54,44 @@ pub struct FrameInput {
     pub self_collision_iterations: f64,
     /// Points that are held in this frame; a point that is named by none moves freely.
     pub pins: Vec<Pin>,
+    /// `windNoise`: gusts as a multiple of the wind's speed; 0 is a steady wind.
+    pub wind_noise: f64,
+    /// Input meshes that attract or drag a cloth, at most one per cloth.
+    pub input_meshes: Vec<InputMesh>,
+}
+
+impl Default for FrameInput {
+    /// One frame at 24 frames per second in a vacuum without gravity, with no objects.
+    fn default() -> Self {
+        Self {
+            duration: COUNT_PERIOD,
+            substeps: 1,
+            collision_iterations: 4.0,
+            resistance: ResistanceModel::Classic,
+            gravity: Vector3::zeros(),
+            wind: Vector3::zeros(),
+            air_density: 0.0,
+            plane: None,
+            cloths: Vec::new(),
+            colliders: Vec::new(),
+            layer_range: 4.0,
+            self_collision_iterations: 4.0,
+            pins: Vec::new(),
+            wind_noise: 0.0,
+            input_meshes: Vec::new(),
+        }
+    }
+}
+
+/// Positions of a cloth's live input mesh in one frame, in metres, point by point in the mesh's order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InputMesh {
+    /// The cloth.
+    pub cloth: ClothId,
+    /// Positions at the start of the frame.
+    pub start: Vec<Vector3<f64>>,
+    /// Positions at the end of the frame.
+    pub end: Vec<Vector3<f64>>,
 }
 
 /// An infinite plane that cloth rests on (`usePlane`).
@@ -146,6 +184,99 @@ pub struct ClothFrame {
     pub layer: f64,
     /// How it meets itself.
     pub self_collision: SelfCollision,
+    /// Rest angles, their scale, and which bends stay.
+    pub bending: Bending,
+    /// Strain above which links lengthen permanently (`restitutionTension` over the stretch resistance);
+    /// infinite for none.
+    pub yield_strain: f64,
+    /// Gas inside the mesh, or pressure set by hand.
+    pub pressure: Pressure,
+    /// `rigidity`: the mesh moves as one rigid body.
+    pub rigidity: f64,
+    /// `deformResistance`: the mesh keeps its shape.
+    pub deform_resistance: f64,
+    /// Attraction to the input mesh.
+    pub input_attract: InputAttract,
+}
+
+/// How a hinge measures its angle (`bendSolver`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BendSolver {
+    /// The size of the angle alone: a crease has no side.
+    Simple,
+    /// The angle with its sign, up to 180° either way.
+    Signed,
+    /// The same, and a hinge that is folded past 180° is pushed back the way it came.
+    FlipTracking,
+}
+
+/// What else bending knows beside its resistance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bending {
+    /// Factor on rest angles (`bendAngleScale`): 0 is flat, 1 as modelled.
+    pub angle_scale: f64,
+    /// Share of the resistance that grows with the angle (`bendAngleDropoff`), 0 to 1.
+    pub angle_dropoff: f64,
+    /// How angles are measured.
+    pub solver: BendSolver,
+    /// Sine of half the angle beyond which bends become permanent (`restitutionAngle`); infinite for none.
+    pub yield_sine: f64,
+}
+
+impl Bending {
+    /// Maya's defaults, but for the sign of angles, which costs a little and matters only to cloth that is bent at rest.
+    pub const DEFAULT: Self =
+        Self { angle_scale: 1.0, angle_dropoff: 0.0, solver: BendSolver::Simple, yield_sine: f64::INFINITY };
+}
+
+/// Pressure inside a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pressure {
+    /// None.
+    Off,
+    /// A gauge pressure set by hand.
+    Manual {
+        /// In pascals, along the faces' normals.
+        pascals: f64,
+        /// Damping of the volume's rate of change, in Pa·s.
+        damping: f64,
+    },
+    /// An ideal gas: gauge pressure `bulk` (n V_0 / V - 1) with n times the air that fills the volume at the start.
+    Gas {
+        /// n at the start, less one (`startPressure`).
+        start: f64,
+        /// Bulk modulus in pascals (`incompressibility`).
+        bulk: f64,
+        /// Start volumes of air pumped in per second (`pumpRate`).
+        pump: f64,
+        /// Share of the air that stays inside, 0 to 1 (`airTightness`).
+        tightness: f64,
+        /// Damping of the volume's rate of change, in Pa·s.
+        damping: f64,
+        /// Whether openings are closed (`sealHoles`); else air streams through them.
+        sealed: bool,
+    },
+}
+
+/// Attraction of a cloth to its live input mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputAttract {
+    /// `inputMeshAttract`: 0 none, 1 firm.
+    pub strength: f64,
+    /// `inputAttractDamp`: 0 springs, 1 does not overshoot.
+    pub damp: f64,
+    /// `inputMotionDrag`: how fast velocities take up those of the input mesh.
+    pub motion_drag: f64,
+}
+
+impl InputAttract {
+    /// None.
+    pub const OFF: Self = Self { strength: 0.0, damp: 0.0, motion_drag: 0.0 };
+
+    /// Whether there is any.
+    pub fn is_on(&self) -> bool {
+        self.strength > 0.0 || self.motion_drag > 0.0
+    }
 }
 
 /// Which elements of a mesh meet the points of another.
@@ -222,6 +353,12 @@ impl Default for ClothFrame {
             elements: Elements::Faces,
             layer: 0.0,
             self_collision: SelfCollision::OFF,
+            bending: Bending::DEFAULT,
+            yield_strain: f64::INFINITY,
+            pressure: Pressure::Off,
+            rigidity: 0.0,
+            deform_resistance: 0.0,
+            input_attract: InputAttract::OFF,
         }
     }
 }

@@ -6,6 +6,7 @@
 //! | a point of a collider | it stays where it was |
 //! | an end of a pin's way | the other end; without one, the point is held where it is |
 //! | gravity, wind, a force | left out |
+//! | an input mesh | left out |
 //! | any other attribute | takes its default |
 //! | the length of the frame | the frame is not solved |
 
@@ -13,7 +14,7 @@ use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
-use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, ResistanceModel};
+use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pressure, ResistanceModel};
 use crate::input::ids::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::solver::Solver;
@@ -32,6 +33,8 @@ pub enum InvalidInput {
     ColliderMotion(ColliderId),
     /// Where a pin holds a point.
     Pin(ClothId, PointId),
+    /// Positions of the input mesh of a cloth: not as many as it has points, or not finite. It attracts nothing in this frame.
+    InputMesh(ClothId),
     /// An attribute of a cloth.
     Cloth(ClothId),
     /// An attribute of a collider.
@@ -86,6 +89,11 @@ impl<R: Real> Solver<R> {
             self.mend_collider(id, collider, &mut refusals);
         }
         self.mend_pins(&mut frame, &mut refusals);
+        let meshes = std::mem::take(&mut frame.input_meshes);
+        let (usable, other): (Vec<_>, Vec<_>) =
+            meshes.into_iter().partition(|mesh| self.is_mesh_usable(mesh));
+        other.iter().for_each(|mesh| refusals.add(InvalidInput::InputMesh(mesh.cloth)));
+        frame.input_meshes = usable;
         (Cow::Owned(frame), refusals)
     }
 
@@ -102,6 +110,13 @@ impl<R: Real> Solver<R> {
             && !frame.cloths.iter().any(|cloth| mend_cloth(&mut cloth.clone()))
             && frame.colliders.iter().zip(&self.collider_states).all(whole)
             && frame.pins.iter().all(|pin| is_usable(&pin.start) && is_usable(&pin.end))
+            && frame.input_meshes.iter().all(|mesh| self.is_mesh_usable(mesh))
+    }
+
+    fn is_mesh_usable(&self, mesh: &InputMesh) -> bool {
+        let points = self.cloths[mesh.cloth.index()].points().len();
+        let usable = |column: &[Vector3<f64>]| column.len() == points && column.iter().all(is_usable);
+        usable(&mesh.start) && usable(&mesh.end)
     }
 
     fn mend_collider(&self, id: ColliderId, collider: &mut ColliderFrame, refusals: &mut Sanitized) {
@@ -147,7 +162,13 @@ fn is_duration(duration: f64) -> bool {
 
 /// A frame without its long columns.
 fn settings_of(frame: &FrameInput) -> FrameInput {
-    FrameInput { cloths: Vec::new(), colliders: Vec::new(), pins: Vec::new(), ..*frame }
+    FrameInput {
+        cloths: Vec::new(),
+        colliders: Vec::new(),
+        pins: Vec::new(),
+        input_meshes: Vec::new(),
+        ..*frame
+    }
 }
 
 fn collider_settings(collider: &ColliderFrame) -> ColliderFrame {
@@ -157,7 +178,11 @@ fn collider_settings(collider: &ColliderFrame) -> ColliderFrame {
 /// Leaves out what cannot be used; whether there was anything.
 fn mend_settings(frame: &mut FrameInput) -> bool {
     let mut mended = mend_vectors([&mut frame.gravity, &mut frame.wind]);
-    mended |= mend_numbers([(&mut frame.air_density, 0.0), (&mut frame.collision_iterations, 1.0)]);
+    mended |= mend_numbers([
+        (&mut frame.air_density, 0.0),
+        (&mut frame.collision_iterations, 1.0),
+        (&mut frame.wind_noise, 0.0),
+    ]);
     if let ResistanceModel::Physical { evaluations } = &mut frame.resistance {
         mended |= mend_numbers([(evaluations, 1.0)]);
     }
@@ -198,8 +223,27 @@ fn mend_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.push_out.radius, usual.push_out.radius),
         (&mut cloth.crossover_push, usual.crossover_push),
         (&mut cloth.self_crossover_push, usual.self_crossover_push),
+        (&mut cloth.bending.angle_scale, usual.bending.angle_scale),
+        (&mut cloth.bending.angle_dropoff, usual.bending.angle_dropoff),
+        (&mut cloth.rigidity, usual.rigidity),
+        (&mut cloth.deform_resistance, usual.deform_resistance),
+        (&mut cloth.input_attract.strength, 0.0),
+        (&mut cloth.input_attract.damp, 0.0),
+        (&mut cloth.input_attract.motion_drag, 0.0),
     ]);
-    vectors | numbers
+    let never = [&mut cloth.yield_strain, &mut cloth.bending.yield_sine].into_iter().filter(|x| x.is_nan());
+    let yields = never.map(|x| *x = f64::INFINITY).count() > 0;
+    vectors | numbers | yields | mend_pressure(&mut cloth.pressure)
+}
+
+fn mend_pressure(pressure: &mut Pressure) -> bool {
+    match pressure {
+        Pressure::Off => false,
+        Pressure::Manual { pascals, damping } => mend_numbers([(pascals, 0.0), (damping, 0.0)]),
+        Pressure::Gas { start, bulk, pump, tightness, damping, .. } => {
+            mend_numbers([(start, 0.0), (bulk, 0.0), (pump, 0.0), (tightness, 1.0), (damping, 0.0)])
+        }
+    }
 }
 
 fn mend_collider_settings(collider: &mut ColliderFrame) -> bool {

@@ -82,6 +82,12 @@ impl AirForces {
 }
 
 impl<R: Real> Air<R> {
+    /// The same with a gust on top of the wind, in m/s.
+    #[inline(always)]
+    pub fn gusting(&self, gust: [R; 3]) -> Self {
+        Self { wind: std::array::from_fn(|axis| self.wind[axis] + gust[axis]), ..*self }
+    }
+
     /// A velocity after the step.
     #[inline(always)]
     pub fn slow(&self, velocity: [R; 4], normal: [R; 3]) -> [R; 4] {

@@ -4,8 +4,10 @@
 //! |---|---|
 //! | external forces change velocities, velocities move points | [`predict`] |
 //! | drag, lift and wind, implicit per time step | [`aerodynamics`] |
+//! | wind that varies in space and time | [`gusts`] |
 //! | velocities follow the position corrections of constraints and contacts | [`velocities`] |
 
 pub mod aerodynamics;
+pub mod gusts;
 pub mod predict;
 pub mod velocities;

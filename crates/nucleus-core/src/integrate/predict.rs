@@ -33,6 +33,8 @@ pub struct Columns<'a, R> {
     pub predicted: DisjointSlice<'a, Row4<R>>,
     /// Normals, where air is felt.
     pub normal: &'a [Row4<R>],
+    /// What gusts add to the wind in m/s; empty in a steady wind.
+    pub gust: &'a [Row4<R>],
 }
 
 /// Moves a run of points. A pinned point goes on along its line.
@@ -64,7 +66,12 @@ pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>,
             let own: Option<Air<R>> =
                 drive.factors.get(k).zip(drive.air_forces).map(|(factors, air)| air.at(factors));
             let normal = columns.normal[points.start as usize + k];
-            fast = Row4(own.as_ref().unwrap_or(air).slow(fast.to_array(), normal.xyz())).lanes();
+            let air = own.as_ref().unwrap_or(air);
+            let slowed = match columns.gust.get(points.start as usize + k) {
+                Some(gust) => air.gusting(gust.xyz()).slow(fast.to_array(), normal.xyz()),
+                None => air.slow(fast.to_array(), normal.xyz()),
+            };
+            fast = Row4(slowed).lanes();
         }
         let moved = Row4((place + fast * h).to_array());
         *v = Row4(fast.to_array());

@@ -35,10 +35,24 @@ pub struct ClothLists {
     pub damp: bool,
     /// It ever meets itself.
     pub self_collision: bool,
+    /// Hinges that are bent at rest know which way (`bendSolver` above Simple).
+    pub signed_bend: bool,
+    /// All hinges know which way they bend: an angle scale, a dropoff, flip tracking or bends that stay.
+    pub bend_angles: bool,
+    /// Pressure is ever non-zero.
+    pub pressure: bool,
+    /// Openings are closed for the pressure.
+    pub seals_holes: bool,
+    /// Rigidity or deform resistance is ever non-zero.
+    pub shape: bool,
+    /// Unconnected parts of the mesh keep their shapes each on its own (`usePolygonShells`).
+    pub shells: bool,
+    /// Links or bends can stay as they are deformed.
+    pub plastic: bool,
 }
 
 impl ClothLists {
-    /// Everything on.
+    /// Everything that cloth has by default.
     pub const ALL: Self = Self {
         stretch: true,
         cross_links: true,
@@ -47,6 +61,13 @@ impl ClothLists {
         air: true,
         damp: true,
         self_collision: true,
+        signed_bend: false,
+        bend_angles: false,
+        pressure: false,
+        seals_holes: false,
+        shape: false,
+        shells: false,
+        plastic: false,
     };
     /// Everything off: free points.
     pub const NONE: Self = Self {
@@ -57,6 +78,13 @@ impl ClothLists {
         air: false,
         damp: false,
         self_collision: false,
+        signed_bend: false,
+        bend_angles: false,
+        pressure: false,
+        seals_holes: false,
+        shape: false,
+        shells: false,
+        plastic: false,
     };
 }
 

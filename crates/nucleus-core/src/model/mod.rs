@@ -16,10 +16,14 @@ pub use order::{Order, by_halves};
 pub use row_maps::{Factors, Shares};
 pub use rows::{Blocks, Part, Row, RowList};
 pub use topology::{
-    Link, Seam, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area, triangle_edges,
+    Link, Seam, components, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area,
+    triangle_edges,
 };
 
-use crate::constraints::hinge::{self, HingeGroup};
+use crate::constraints::angle::AngleGroup;
+use crate::constraints::hinge::{self, HingeGroup, HingeRow};
+use crate::constraints::pressure::PressureModel;
+use crate::constraints::shape::ShapeModel;
 use crate::constraints::shear;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::contact::pseudonormals::Outside;
@@ -45,6 +49,18 @@ pub struct ClothModel<R> {
     pub bend: RowList<HingeGroup<R, 4>>,
     /// Hinges between quads.
     pub fold: RowList<HingeGroup<R, 6>>,
+    /// Signed angles of `bend` and of `fold`; empty where only the size of an angle matters.
+    pub bend_angles: RowList<AngleGroup<R>>,
+    /// See `bend_angles`.
+    pub fold_angles: RowList<AngleGroup<R>>,
+    /// What its pressure pushes.
+    pub pressure: PressureModel,
+    /// The shapes that it is pulled back to.
+    pub shape: ShapeModel,
+    /// Whether links and bends can stay as they are deformed.
+    pub plastic: bool,
+    /// Factors on the attraction to the input mesh, by the user's points; empty where it is the same everywhere.
+    pub attract: Vec<f64>,
     /// The triangles that touch each block, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// What can touch; empty where the scene has no collider.
@@ -78,6 +94,12 @@ impl<R: Real> ClothModel<R> {
             shear: RowList::default(),
             bend: RowList::default(),
             fold: RowList::default(),
+            bend_angles: RowList::default(),
+            fold_angles: RowList::default(),
+            pressure: PressureModel::default(),
+            shape: ShapeModel::default(),
+            plastic: cloth.lists.plastic,
+            attract: cloth.factors.input_attract.clone(),
             triangles: Vec::new(),
             skin: Skin::default(),
             turns: cloth.lists.cross_links || surface.faces.iter().any(|face| face.len() % 2 == 1),
@@ -108,6 +130,25 @@ impl<R: Real> ClothModel<R> {
             shares.fold = factors.of_hinges(&rows.of_six, &model.blocks);
             model.bend = RowList::new(&rows.of_four, &model.blocks);
             model.fold = RowList::new(&rows.of_six, &model.blocks);
+            let is_bent =
+                rows.of_four.iter().any(HingeRow::is_bent) || rows.of_six.iter().any(HingeRow::is_bent);
+            if cloth.lists.bend_angles || cloth.lists.signed_bend && is_bent {
+                let four: Vec<_> = rows.of_four.iter().map(|row| row.angle(surface, point)).collect();
+                let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(surface, point)).collect();
+                model.bend_angles = RowList::new(&four, &model.blocks);
+                model.fold_angles = RowList::new(&six, &model.blocks);
+            }
+        }
+        if cloth.lists.pressure {
+            model.pressure = PressureModel::new(surface, place, &model.blocks, cloth.lists.seals_holes);
+        }
+        if cloth.lists.shape {
+            model.shape = ShapeModel::new(
+                surface,
+                place,
+                [&point_masses(cloth), &cloth.factors.deform],
+                cloth.lists.shells,
+            );
         }
         if cloth.lists.air {
             model.air = factors.of_air(model.points());
@@ -205,7 +246,11 @@ fn mean_length(surface: &Surface) -> f64 {
 }
 
 /// Each block's triangles: all that touch one of its points, so that a block's normals need no other's work.
-fn triangles_by_block(surface: &Surface, place: impl Fn(u32) -> u32, blocks: &Blocks) -> Vec<Vec<[u32; 3]>> {
+pub fn triangles_by_block(
+    surface: &Surface,
+    place: impl Fn(u32) -> u32,
+    blocks: &Blocks,
+) -> Vec<Vec<[u32; 3]>> {
     let mut by_block = vec![Vec::new(); blocks.len()];
     for triangle in surface.faces.triangles() {
         let triangle = triangle.map(&place);

@@ -174,6 +174,37 @@ pub fn seams(surface: &Surface) -> Vec<Seam> {
     seams
 }
 
+/// The unconnected parts of a mesh, each its points in rising order, the part of the lowest point first. A point of no face
+/// is in none.
+pub fn components(surface: &Surface) -> Vec<Vec<u32>> {
+    let points = surface.positions.len();
+    let mut parent: Vec<u32> = (0..points as u32).collect();
+    fn root(parent: &mut [u32], mut point: u32) -> u32 {
+        while parent[point as usize] != point {
+            parent[point as usize] = parent[parent[point as usize] as usize];
+            point = parent[point as usize];
+        }
+        point
+    }
+    let mut in_face = vec![false; points];
+    for face in surface.faces.iter() {
+        let first = root(&mut parent, face[0]);
+        face.iter().for_each(|&point| in_face[point as usize] = true);
+        face[1..].iter().fold(first, |first, &point| {
+            let other = root(&mut parent, point);
+            let (low, high) = (first.min(other), first.max(other));
+            parent[high as usize] = low;
+            low
+        });
+    }
+    let mut parts: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
+    for point in (0..points as u32).filter(|&point| in_face[point as usize]) {
+        let root = root(&mut parent, point);
+        parts.entry(root).or_default().push(point);
+    }
+    parts.into_values().collect()
+}
+
 /// A face cut into triangles, a fan round its first corner.
 pub fn fan_triangles(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])

@@ -37,6 +37,10 @@ pub struct VertexMaps {
     pub bounce: Vec<f64>,
     /// On `collide_strength`.
     pub collide_strength: Vec<f64>,
+    /// On the attraction to the input mesh.
+    pub input_attract: Vec<f64>,
+    /// Share of `rigidity` and `deformResistance`.
+    pub deform: Vec<f64>,
 }
 
 /// Smaller shares than this are none: so soft a link is not there.
@@ -44,7 +48,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 impl VertexMaps {
     /// Every column, with the least and the most it may hold.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 14] {
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 16] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
         [
@@ -62,6 +66,8 @@ impl VertexMaps {
             ("stickiness", &self.stickiness, ANY),
             ("bounce", &self.bounce, ANY),
             ("collide strength", &self.collide_strength, ANY),
+            ("input attract", &self.input_attract, ANY),
+            ("deform resistance", &self.deform, SHARE),
         ]
     }
 

@@ -2,11 +2,12 @@
 
 use crate::constraints::damp::Damping;
 use crate::contact::terms::Terms;
-use crate::input::frame::{ClothFrame, FrameInput, PushOut};
+use crate::input::frame::{BendSolver, ClothFrame, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
+use crate::integrate::gusts;
 use crate::math::Real;
 use crate::model::ClothModel;
-use crate::schedule::{Effect, Pass, Schedule};
+use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
 
 /// One list of rows, or one pass over all points, and what a frame spends on it.
@@ -48,6 +49,7 @@ impl<R: Real> Solver<R> {
         for name in ["stretch", "compress", "shear", "bend"] {
             passes.push(self.sweeps_of(name, &schedule));
         }
+        passes.extend(self.whole_passes(frame, &schedule));
         let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
             let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
             cloth.damps && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
@@ -60,6 +62,40 @@ impl<R: Real> Solver<R> {
         passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
         passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
         passes
+    }
+
+    /// Effects on whole cloths, and what of a deformation stays.
+    fn whole_passes(&self, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 5] {
+        let steps = f64::from(schedule.substeps * schedule.steps);
+        let cost = |name, wanted: fn(&WholeEffect) -> bool, length: fn(&ClothModel<R>) -> usize| {
+            let sweeps: Vec<_> = schedule.wholes.iter().filter(|whole| wanted(&whole.effect)).collect();
+            let evaluations: usize = sweeps.iter().map(|whole| length(&self.cloths[whole.cloth])).sum();
+            let mut cloths: Vec<usize> = sweeps.iter().map(|whole| whole.cloth).collect();
+            cloths.dedup();
+            let rows: usize = cloths.iter().map(|&cloth| length(&self.cloths[cloth])).sum();
+            PassCost { name, rows, sweeps: evaluations as f64 / rows.max(1) as f64 * steps }
+        };
+        let of = |uses: &dyn Fn(&ClothModel<R>, &ClothFrame) -> usize| -> usize {
+            self.cloths.iter().zip(&frame.cloths).map(|(cloth, settings)| uses(cloth, settings)).sum()
+        };
+        let yields = |cloth: &ClothModel<R>, settings: &ClothFrame| {
+            let links = cloth.plastic && settings.yield_strain.is_finite();
+            let bends =
+                settings.bending.yield_sine <= 1.0 || settings.bending.solver == BendSolver::FlipTracking;
+            let links = if links { cloth.stretch.len() + cloth.shear.len() } else { 0 };
+            links + if bends { cloth.bend_angles.len() + cloth.fold_angles.len() } else { 0 }
+        };
+        let gusty = |cloth: &ClothModel<R>, settings: &ClothFrame| match gusts::is_gusty(frame) {
+            true if settings.feels_wind && !cloth.triangles.is_empty() => cloth.points().len(),
+            _ => 0,
+        };
+        [
+            cost("pressure", |effect| *effect == WholeEffect::Pressure, |cloth| cloth.pressure.rows()),
+            cost("shape", |effect| matches!(effect, WholeEffect::Shape(_)), |cloth| cloth.shape.rows()),
+            cost("attract", |effect| matches!(effect, WholeEffect::Attract(_)), |cloth| cloth.points().len()),
+            PassCost { name: "yield", rows: of(&yields), sweeps: steps },
+            PassCost { name: "gusts", rows: of(&gusty), sweeps: f64::from(schedule.substeps) },
+        ]
     }
 
     /// What is spent on contact: with colliders, among what moves, with the ground, and on what contact does besides.
@@ -149,6 +185,6 @@ fn named<R: Real>(effect: &Effect<R>, name: &str) -> bool {
         Effect::Stretch(strength) if strength.share.above == R::ZERO => name == "compress",
         Effect::Stretch(_) => name == "stretch",
         Effect::Shear(_) => name == "shear",
-        Effect::Bend(_) => name == "bend",
+        Effect::Bend(..) => name == "bend",
     }
 }

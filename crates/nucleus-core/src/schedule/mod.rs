@@ -7,9 +7,11 @@
 mod adaptive;
 pub mod resistance;
 
+use crate::constraints::angle::AngleStrength;
 use crate::constraints::bend::BendStrength;
+use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
 use crate::constraints::stretch::{LinkStrength, Sides};
-use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
+use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, Pressure, ResistanceModel};
 use crate::math::Real;
 use crate::schedule::resistance::{PhysicalStiffness, Share, share, steps};
 
@@ -30,7 +32,27 @@ pub enum Effect<R> {
     /// Cross links of quads.
     Shear(LinkStrength<R>),
     /// Hinges between faces.
-    Bend(BendStrength<R>),
+    Bend(BendStrength<R>, AngleStrength<R>),
+}
+
+/// One pass of an effect that takes a cloth as a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WholeSweep {
+    /// The cloth, by its index.
+    pub cloth: usize,
+    /// What is done.
+    pub effect: WholeEffect,
+}
+
+/// Effects that take a cloth as a whole, not row by row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeEffect {
+    /// Gas inside pushes the faces.
+    Pressure,
+    /// The mesh is pulled back to its shape.
+    Shape(ShapeStrength),
+    /// Points are drawn to the input mesh, by this share of the way; by a spring where there is none.
+    Attract(Option<f64>),
 }
 
 /// What comes next in a time step.
@@ -38,6 +60,8 @@ pub enum Effect<R> {
 pub enum Pass {
     /// These sweeps together, a run of [`Schedule::sweeps`].
     Constraints(std::ops::Range<usize>),
+    /// An effect on a whole cloth, of [`Schedule::wholes`].
+    Whole(usize),
     /// A pass over contacts of cloth with itself and other cloth.
     ClothContact,
     /// A pass over contacts with colliders and the plane.
@@ -69,6 +93,8 @@ pub struct Schedule<R> {
     pub h: f64,
     /// All sweeps of a time step.
     pub sweeps: Vec<Sweep<R>>,
+    /// All effects on whole cloths of a time step.
+    pub wholes: Vec<WholeSweep>,
     /// The rounds of a time step: the same in every one, for sweeps that change would feed energy in.
     pub passes: Vec<Pass>,
 }
@@ -83,7 +109,8 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let mut schedule = Self { substeps, steps, h, sweeps: Vec::new(), passes: Vec::new() };
+        let mut schedule =
+            Self { substeps, steps, h, sweeps: Vec::new(), wholes: Vec::new(), passes: Vec::new() };
         schedule.plan(frame);
         schedule
     }
@@ -91,7 +118,7 @@ impl<R: Real> Schedule<R> {
     /// The same for a part of a time step: what moves fast is met in shorter steps.
     pub fn split(&self, frame: &FrameInput, parts: u32) -> Self {
         let h = self.h / f64::from(parts);
-        let mut split = Self { h, sweeps: Vec::new(), passes: Vec::new(), ..*self };
+        let mut split = Self { h, sweeps: Vec::new(), wholes: Vec::new(), passes: Vec::new(), ..*self };
         split.plan(frame);
         split
     }
@@ -99,9 +126,10 @@ impl<R: Real> Schedule<R> {
     /// Sets the sweeps and rounds of a time step.
     fn plan(&mut self, frame: &FrameInput) {
         self.passes = match frame.resistance {
-            ResistanceModel::Classic => classic(frame, self.h, &mut self.sweeps),
-            ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps),
+            ResistanceModel::Classic => classic(frame, self.h, &mut self.sweeps, &mut self.wholes),
+            ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps, &mut self.wholes),
         };
+        self.push_outwards(frame);
         let meets = |cloth: &ClothFrame| cloth.self_collision.on;
         let is_mutual = frame.cloths.len() > 1 || frame.cloths.iter().any(meets);
         if !is_mutual {
@@ -109,6 +137,15 @@ impl<R: Real> Schedule<R> {
         }
         if is_mutual || frame.colliders.iter().any(|collider| collider.collide) {
             self.passes.push(Pass::Safeguard);
+        }
+    }
+
+    /// Pressure comes first in a time step: it is a force.
+    fn push_outwards(&mut self, frame: &FrameInput) {
+        let inflated = |cloth: &usize| frame.cloths[*cloth].pressure != Pressure::Off;
+        for cloth in (0..frame.cloths.len()).filter(inflated) {
+            self.passes.insert(0, Pass::Whole(self.wholes.len()));
+            self.wholes.push(WholeSweep { cloth, effect: WholeEffect::Pressure });
         }
     }
 
@@ -158,7 +195,12 @@ impl Span {
 
 /// All passes of a substep in the order of the moments at which they are due: the k-th of n sweeps in the
 /// middle of its n-th part, the k-th of n collision passes at the end of its.
-fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Pass> {
+fn classic<R: Real>(
+    frame: &FrameInput,
+    substep: f64,
+    sweeps: &mut Vec<Sweep<R>>,
+    wholes: &mut Vec<WholeSweep>,
+) -> Vec<Pass> {
     let mut due: Vec<(f64, Due<R>)> = Vec::new();
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         for (count, effect) in classic_effects(settings) {
@@ -166,6 +208,10 @@ fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>
             let effect = effect(R::from_f64(strength));
             let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
             due.extend((0..sweeps).map(|k| (moment(k), Due::Sweep(Sweep { cloth, effect }))));
+        }
+        for (count, effect) in classic_wholes(settings, substep) {
+            let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(count);
+            due.extend((0..count).map(|k| (moment(k), Due::Whole(WholeSweep { cloth, effect }))));
         }
     }
     let mut passes = |count: f64, round: Pass| {
@@ -182,6 +228,10 @@ fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>
                 rounds.push(Pass::Constraints(sweeps.len()..sweeps.len() + 1));
                 sweeps.push(sweep);
             }
+            Due::Whole(whole) => {
+                rounds.push(Pass::Whole(wholes.len()));
+                wholes.push(whole);
+            }
             Due::Pass(round) => rounds.push(round),
         }
     }
@@ -191,6 +241,7 @@ fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>
 /// What is due at a moment of a substep.
 enum Due<R> {
     Sweep(Sweep<R>),
+    Whole(WholeSweep),
     Pass(Pass),
 }
 
@@ -201,6 +252,7 @@ type Strengthen<R> = Box<dyn Fn(R) -> Effect<R>>;
 fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, Strengthen<R>); 4] {
     let rest_scale = R::from_f64(cloth.rest_length_scale);
     let rigid = Sides { above: R::ZERO, below: R::ZERO };
+    let angles = angle_strength(cloth);
     let links = move |above: R, below: R| LinkStrength {
         share: Sides { above, below },
         compliance: rigid,
@@ -210,15 +262,39 @@ fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, Strengthen<R>); 4] {
         (cloth.stretch_resistance, Box::new(move |share| Effect::Stretch(links(share, R::ZERO)))),
         (cloth.compression_resistance, Box::new(move |share| Effect::Stretch(links(R::ZERO, share)))),
         (cloth.shear_resistance, Box::new(move |share| Effect::Shear(links(share, share)))),
-        (cloth.bend_resistance, Box::new(|share| Effect::Bend(BendStrength { share, compliance: R::ZERO }))),
+        (
+            cloth.bend_resistance,
+            Box::new(move |share| Effect::Bend(BendStrength { share, compliance: R::ZERO }, angles)),
+        ),
     ]
+}
+
+/// The effects on a whole cloth with their counts in a substep.
+fn classic_wholes(cloth: &ClothFrame, substep: f64) -> Vec<(u32, WholeEffect)> {
+    let mut wholes = Vec::new();
+    for (count, rigid) in [(cloth.rigidity, true), (cloth.deform_resistance, false)] {
+        let Share { sweeps, strength } = share(count, substep);
+        let [rigid, deform] = if rigid { [strength, 0.0] } else { [0.0, strength] };
+        wholes.push((sweeps, WholeEffect::Shape(ShapeStrength { rigid, deform })));
+    }
+    if cloth.input_attract.strength > 0.0 {
+        // 1 goes all the way however short the substep; small shares add up to theirs in 1/24 s.
+        let (all, part) = (cloth.input_attract.strength.min(1.0), substep / COUNT_PERIOD);
+        wholes.push((1, WholeEffect::Attract(Some(all * part / (1.0 - all + all * part)))));
+    }
+    wholes
 }
 
 /// One sweep of every effect, then collision.
 ///
 /// Bending too is swept in every step, although it is soft: swept in every fourth for four, it takes away a
 /// bend at once, the velocity carries on for three steps more, and fine meshes of triangles boil.
-fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Pass> {
+fn physical<R: Real>(
+    frame: &FrameInput,
+    h: f64,
+    sweeps: &mut Vec<Sweep<R>>,
+    wholes: &mut Vec<WholeSweep>,
+) -> Vec<Pass> {
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         let mut add = |stiffness: f64, effect: Effect<R>| {
             if stiffness > 0.0 {
@@ -230,9 +306,33 @@ fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> 
         add(stretch.max(compression), Effect::Stretch(links(stretch, compression)));
         add(shear, Effect::Shear(links(shear, shear)));
         let compliance = compliance(bend, h);
-        add(bend, Effect::Bend(BendStrength { share: R::ONE, compliance }));
+        add(bend, Effect::Bend(BendStrength { share: R::ONE, compliance }, angle_strength(settings)));
     }
-    vec![Pass::Constraints(0..sweeps.len()), Pass::ClothContact, Pass::ColliderContact]
+    for (cloth, settings) in frame.cloths.iter().enumerate() {
+        let share = |rate: f64, resistance: f64| {
+            let stiff = rate * rate * resistance.max(0.0) * h * h;
+            stiff / (1.0 + stiff)
+        };
+        let rigid = share(RIGID_RATE, settings.rigidity);
+        let deform = share(DEFORM_RATE, settings.deform_resistance);
+        if rigid > 0.0 || deform > 0.0 {
+            wholes.push(WholeSweep { cloth, effect: WholeEffect::Shape(ShapeStrength { rigid, deform }) });
+        }
+        if settings.input_attract.strength > 0.0 {
+            wholes.push(WholeSweep { cloth, effect: WholeEffect::Attract(None) });
+        }
+    }
+    let mut passes = vec![Pass::Constraints(0..sweeps.len())];
+    passes.extend((0..wholes.len()).map(Pass::Whole));
+    passes.extend([Pass::ClothContact, Pass::ColliderContact]);
+    passes
+}
+
+fn angle_strength<R: Real>(cloth: &ClothFrame) -> AngleStrength<R> {
+    AngleStrength {
+        scale: R::from_f64(cloth.bending.angle_scale),
+        dropoff: R::from_f64(cloth.bending.angle_dropoff.clamp(0.0, 1.0)),
+    }
 }
 
 /// Links as stiff as two numbers in N/m say; a side without stiffness is left alone.
@@ -264,21 +364,7 @@ mod tests {
     use crate::input::frame::{COUNT_PERIOD, ColliderFrame};
 
     fn frame(substeps: u32, cloth: ClothFrame) -> FrameInput {
-        FrameInput {
-            duration: COUNT_PERIOD,
-            substeps,
-            collision_iterations: 4.0,
-            resistance: ResistanceModel::Classic,
-            gravity: Vector3::zeros(),
-            wind: Vector3::zeros(),
-            air_density: 0.0,
-            plane: None,
-            layer_range: 4.0,
-            self_collision_iterations: 4.0,
-            cloths: vec![cloth],
-            colliders: Vec::new(),
-            pins: Vec::new(),
-        }
+        FrameInput { substeps, cloths: vec![cloth], ..FrameInput::default() }
     }
 
     /// The rounds of a step as letters: stretch, compress, shear, bend, Collide.
@@ -287,10 +373,15 @@ mod tests {
             Effect::Stretch(strength) if strength.share.above == 0.0 => 'c',
             Effect::Stretch(_) => 's',
             Effect::Shear(_) => 'h',
-            Effect::Bend(_) => 'b',
+            Effect::Bend(..) => 'b',
         };
         let round = |round: &Pass| match round {
             Pass::Constraints(sweeps) => schedule.sweeps[sweeps.clone()].iter().map(letter).collect(),
+            Pass::Whole(at) => String::from(match schedule.wholes[*at].effect {
+                WholeEffect::Pressure => "P",
+                WholeEffect::Shape(_) => "R",
+                WholeEffect::Attract(_) => "A",
+            }),
             Pass::ClothContact => String::from("M"),
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),

@@ -13,6 +13,7 @@ impl<R: Real> Solver<R> {
         self.take_over_pairs(frame);
         self.begin_contact(frame);
         self.move_anchors();
+        self.carry_air(frame);
         for pin in &frame.pins {
             self.hold(pin, frame.duration);
         }
@@ -24,6 +25,12 @@ impl<R: Real> Solver<R> {
             state.begin_frame(&motion.start, &motion.end);
         }
         self.ground.begin_frame(frame.plane.as_ref(), &self.state.anchor);
+    }
+
+    /// The wind of the frame before has carried the air.
+    fn carry_air(&mut self, frame: &FrameInput) {
+        let travel = &mut self.state.wind_travel;
+        (0..3).for_each(|axis| travel[axis] += frame.wind[axis] * frame.duration);
     }
 
     fn move_anchors(&mut self) {
@@ -60,6 +67,10 @@ impl<R: Real> Solver<R> {
             on_all(pool, cloth.shear.groups_mut(), |group| group.anchor(anchors));
             on_all(pool, cloth.bend.groups_mut(), |group| group.anchor(anchors));
             on_all(pool, cloth.fold.groups_mut(), |group| group.anchor(anchors));
+            let hinges = cloth.bend.groups().iter().zip(cloth.bend_angles.groups_mut());
+            hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
+            let hinges = cloth.fold.groups().iter().zip(cloth.fold_angles.groups_mut());
+            hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
         }
     }
 }

@@ -7,6 +7,7 @@
 pub mod checkpoint;
 mod kinematics;
 
+use crate::constraints::pressure::Chamber;
 use crate::math::{Real, Row4, sub};
 use crate::model::builder::Cloth;
 use crate::model::{ClothModel, point_masses};
@@ -34,6 +35,16 @@ pub struct State<R> {
     pub predicted: Vec<Row4<R>>,
     /// Normal of unit length; empty where no air is felt. Written once per substep.
     pub normal: Vec<Row4<R>>,
+    /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
+    pub area: Vec<Row4<R>>,
+    /// What gusts add to the wind, in m/s; empty while the wind is steady. Written once per substep.
+    pub gust: Vec<Row4<R>>,
+    /// How far the wind has carried the air since the start, in metres.
+    pub wind_travel: [f64; 3],
+    /// The gas in each chamber of each cloth that has pressure.
+    pub chambers: Vec<Chamber>,
+    /// The rotation of each shell of each cloth that keeps its shape, as a quaternion x, y, z, w.
+    pub rotations: Vec<[f64; 4]>,
     /// Inverse mass in 1/kg of the point when it is free.
     pub inverse_mass: Vec<R>,
 }
@@ -53,6 +64,11 @@ impl<R: Real> State<R> {
             step_length: 0.0,
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
+            area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
+            gust: Vec::new(),
+            wind_travel: [0.0; 3],
+            chambers: Vec::new(),
+            rotations: Vec::new(),
             inverse_mass: vec![R::ZERO; rows],
         };
         for (cloth, model) in cloths.iter().zip(models) {

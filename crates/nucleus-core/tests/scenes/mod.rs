@@ -74,6 +74,7 @@ pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
         cloths: vec![still()],
         colliders: Vec::new(),
         pins: Vec::new(),
+        ..FrameInput::default()
     }
 }
 

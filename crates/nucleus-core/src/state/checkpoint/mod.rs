@@ -24,6 +24,7 @@ pub use item::{Item, Reader};
 pub(crate) use kept::{Kept, kept, load_column};
 pub use seal::{RestoreError, sealed, unsealed};
 
+use crate::constraints::angle::AngleGroup;
 use crate::contact::cloth::Mutual;
 use crate::contact::collider::ColliderState;
 use crate::contact::pairs::PairList;
@@ -33,7 +34,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// What the bytes are; counted up whenever their layout changes.
-const KIND: [u8; 8] = *b"solver 4";
+const KIND: [u8; 8] = *b"solver 5";
 
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
@@ -47,6 +48,7 @@ impl<R: Real> Solver<R> {
         self.fingerprint().put(&mut bytes);
         Kept::save(self, &mut bytes);
         self.save_pairs(&mut bytes);
+        self.save_rest(&mut bytes);
         sealed(KIND, &bytes)
     }
 
@@ -78,6 +80,43 @@ impl<R: Real> Solver<R> {
         Some(())
     }
 
+    /// Rest lengths and angles of cloth in which they can change.
+    fn save_rest(&self, out: &mut Vec<u8>) {
+        for cloth in &self.cloths {
+            if cloth.plastic {
+                for list in [&cloth.stretch, &cloth.shear] {
+                    list.groups().iter().map(|group| group.rest_length).collect::<Vec<_>>().put(out);
+                }
+            }
+            for list in [&cloth.bend_angles, &cloth.fold_angles] {
+                let memory = |angle: &AngleGroup<R>| [angle.rest, angle.flipped, angle.side];
+                list.groups().iter().map(memory).collect::<Vec<_>>().put(out);
+            }
+        }
+    }
+
+    fn load_rest(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        for cloth in &mut self.cloths {
+            if cloth.plastic {
+                for list in [&mut cloth.stretch, &mut cloth.shear] {
+                    let lengths: Vec<[R; 4]> = Item::take(from)?;
+                    let groups = list.groups_mut();
+                    (groups.len() == lengths.len()).then_some(())?;
+                    groups.iter_mut().zip(lengths).for_each(|(group, rest)| group.rest_length = rest);
+                }
+            }
+            for list in [&mut cloth.bend_angles, &mut cloth.fold_angles] {
+                let memory: Vec<[[R; 4]; 3]> = Item::take(from)?;
+                let groups = list.groups_mut();
+                (groups.len() == memory.len()).then_some(())?;
+                for (angle, [rest, flipped, side]) in groups.iter_mut().zip(memory) {
+                    (angle.rest, angle.flipped, angle.side) = (rest, flipped, side);
+                }
+            }
+        }
+        Some(())
+    }
+
     /// A solver that goes on from where one of the same model was saved, with the same bits. `threads` is the number of
     /// cores to use; it may be another.
     ///
@@ -97,7 +136,10 @@ impl<R: Real> Solver<R> {
         if u64::take(&mut from).ok_or(RestoreError::Damaged)? != solver.fingerprint() {
             return Err(RestoreError::OtherModel);
         }
-        let read = solver.load(&mut from).and_then(|()| solver.load_pairs(&mut from));
+        let read = solver
+            .load(&mut from)
+            .and_then(|()| solver.load_pairs(&mut from))
+            .and_then(|()| solver.load_rest(&mut from));
         read.filter(|()| from.is_at_end()).ok_or(RestoreError::Damaged)?;
         if !solver.fits() {
             return Err(RestoreError::Damaged);
@@ -130,10 +172,10 @@ kept!([R: Real] Solver<R> {
 });
 
 kept!([R: Real] State<R> {
-    columns: [anchor, displacement, velocity],
-    values: [],
+    columns: [anchor, displacement, velocity, chambers, rotations],
+    values: [wind_travel],
     parts: [],
-    anew: [start, led, parted, step_length, predicted, normal, inverse_mass],
+    anew: [start, led, parted, step_length, predicted, normal, area, gust, inverse_mass],
 });
 
 kept!([R: Real] PairList<R> {

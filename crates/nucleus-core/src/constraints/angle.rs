@@ -1,0 +1,306 @@
+//! Bending with a sign: hinges that are bent at rest, and everything that depends on which way they bend.
+//!
+//! The bending vector c of a [`hinge`](super::hinge) lies along the bisector n of its faces' normals, so s = ±|c|, with the
+//! sign of c·n, is twice the sine of half the signed angle. A hinge with a rest angle then has one rest shape instead of
+//! two mirrored ones (`bendSolver`: High Quality). The correction is (s - s_rest) m, where m is c/|c| with that sign, and n
+//! where the hinge is flat, so no shape is singular.
+//!
+//! - `bendAngleScale` multiplies s_rest.
+//! - `bendAngleDropoff` d: the resistance is a share (1 - d) + d |s - s_rest| / s_max of the whole, so near-flat cloth is soft.
+//! - Flip tracking: a hinge whose sign changes while it is folded by more than 90° has been folded past 180°. It is pushed
+//!   back the way it came: its chord counts as 2 s_max - |c| with the old sign.
+
+use crate::math::{Lanes, Real, Row4};
+use crate::model::Row;
+use crate::parallel::disjoint::DisjointSlice;
+
+use super::bend::BendStrength;
+use super::hinge::{HingeGroup, MIN_COSINE};
+use super::row_map::Portion;
+
+/// What the sign of four hinges is measured with, beside the hinges themselves.
+#[derive(Debug, Clone, Copy)]
+pub struct AngleGroup<R> {
+    /// From the first end of the edge of the anchors to the other, and to the middles of the far sides.
+    pub anchored: [[[R; 4]; 3]; 3],
+    /// Chord at rest with its sign, unscaled. Changes where bends can stay.
+    pub rest: [R; 4],
+    /// The sign that a hinge folded past 180° had before; 0 for all others.
+    pub flipped: [R; 4],
+    /// The sign of each hinge while it is not flipped; 0 before it was ever looked at.
+    pub side: [R; 4],
+}
+
+/// The angle of one hinge, before it is laid out like the hinge.
+#[derive(Debug, Clone, Copy)]
+pub struct AngleRow<R, const N: usize> {
+    points: [u32; N],
+    rest: R,
+}
+
+impl<R: Real, const N: usize> AngleRow<R, N> {
+    /// The angle of a hinge with a chord `rest` at rest.
+    pub fn new(points: [u32; N], rest: f64) -> Self {
+        Self { points, rest: R::from_f64(rest) }
+    }
+}
+
+impl<R: Real, const N: usize> Row for AngleRow<R, N> {
+    type Group = AngleGroup<R>;
+    const POINTS: usize = N;
+
+    fn point(&self, k: usize) -> u32 {
+        self.points[k]
+    }
+
+    fn idle(stand_in: u32) -> Self {
+        Self { points: [stand_in; N], rest: R::ZERO }
+    }
+
+    fn group(rows: [Self; 4]) -> AngleGroup<R> {
+        AngleGroup {
+            anchored: [[[R::ZERO; 4]; 3]; 3],
+            rest: rows.map(|row| row.rest),
+            flipped: [R::ZERO; 4],
+            side: [R::ZERO; 4],
+        }
+    }
+}
+
+/// How a sweep reads angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleStrength<R> {
+    /// `bendAngleScale`.
+    pub scale: R,
+    /// `bendAngleDropoff`, 0 to 1.
+    pub dropoff: R,
+}
+
+/// The ends of a hinge's edge, and weights of its points for the middles of the two far sides.
+const fn far_sides<const N: usize>() -> [&'static [usize]; 2] {
+    if N == 6 { [&[2, 3], &[4, 5]] } else { [&[2], &[3]] }
+}
+
+/// The sum of the unit normals of a hinge's two faces, from the vectors of its edge and to its far sides.
+pub fn bisector([edge, left, right]: [[f64; 3]; 3]) -> [f64; 3] {
+    let [edge, left, right] = [edge, left, right].map(nalgebra::Vector3::from);
+    let unit = |v: nalgebra::Vector3<f64>| v.try_normalize(0.0).unwrap_or_default();
+    (unit(edge.cross(&left)) + unit(right.cross(&edge))).into()
+}
+
+impl<R: Real> AngleGroup<R> {
+    /// Takes up where the anchors now are, in double precision.
+    pub fn anchor<const N: usize>(&mut self, hinge: &HingeGroup<R, N>, anchors: &[[f64; 3]]) {
+        for lane in 0..4 {
+            let x = hinge.points.map(|point| anchors[point[lane] as usize]);
+            let vectors = spans(x);
+            for (vector, span) in self.anchored.iter_mut().zip(vectors) {
+                for axis in 0..3 {
+                    vector[axis][lane] = R::from_f64(span[axis]);
+                }
+            }
+        }
+    }
+
+    /// The vectors of the edge and to the far sides of each hinge, in lanes.
+    #[inline(always)]
+    fn spans<const N: usize>(&self, x: &[[R::Lanes; 3]; N]) -> [[R::Lanes; 3]; 3] {
+        let anchored = self.anchored.map(|vector| vector.map(R::Lanes::from_array));
+        let half = R::Lanes::splat(R::from_f64(0.5));
+        let far = |side: &[usize], axis: usize| match side {
+            [one] => x[*one][axis],
+            [one, other] => (x[*one][axis] + x[*other][axis]) * half,
+            _ => x[0][axis],
+        };
+        let [near, other] = far_sides::<N>();
+        [
+            [0, 1, 2].map(|axis| anchored[0][axis] + (x[1][axis] - x[0][axis])),
+            [0, 1, 2].map(|axis| anchored[1][axis] + (far(near, axis) - x[0][axis])),
+            [0, 1, 2].map(|axis| anchored[2][axis] + (far(other, axis) - x[0][axis])),
+        ]
+    }
+}
+
+/// The vectors of a hinge's edge and to its far sides, from the positions of its points.
+pub fn spans<const N: usize>(x: [[f64; 3]; N]) -> [[f64; 3]; 3] {
+    let from_first = |side: &[usize]| {
+        [0, 1, 2].map(|axis| side.iter().map(|&k| x[k][axis]).sum::<f64>() / side.len() as f64 - x[0][axis])
+    };
+    let [near, far] = far_sides::<N>();
+    [from_first(&[1]), from_first(near), from_first(far)]
+}
+
+/// The chord of four hinges with its sign, the direction of their correction, and their longest chord.
+struct Measured<L> {
+    chord: L,
+    direction: [L; 3],
+    longest: L,
+}
+
+#[inline(always)]
+fn cross<L: Copy + std::ops::Mul<Output = L> + std::ops::Sub<Output = L>>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot<L: Copy + std::ops::Mul<Output = L> + std::ops::Add<Output = L>>(a: [L; 3], b: [L; 3]) -> L {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Share of the longest chord below which the direction of a hinge turns from c to the bisector.
+const NEAR_FLAT: f64 = 0.02;
+
+#[inline(always)]
+fn measure<R: Real, const N: usize>(
+    hinge: &HingeGroup<R, N>,
+    angle: &AngleGroup<R>,
+    x: &[[R::Lanes; 3]; N],
+) -> Measured<R::Lanes> {
+    let splat = |value: f64| R::Lanes::splat(R::from_f64(value));
+    let (zero, one, tiny) = (splat(0.0), splat(1.0), R::Lanes::splat(R::MIN_DENOMINATOR));
+    let mut c = hinge.anchored.map(R::Lanes::from_array);
+    for k in 0..N {
+        let weight = R::Lanes::from_array(hinge.weights[k]);
+        (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[k][axis]);
+    }
+    let [edge, left, right] = angle.spans(x);
+    let normals = [cross(edge, left), cross(right, edge)].map(|normal| {
+        let length = dot(normal, normal).sqrt() + tiny;
+        normal.map(|x| x / length)
+    });
+    let n: [R::Lanes; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
+    let length = dot(c, c).sqrt();
+    let sign = dot(c, n).choose_by_sign(one, zero - one);
+    let fold = R::Lanes::from_array(hinge.fold);
+    // The twist of a quad has no fold: its chord is measured by its own rest.
+    let longest = (fold - tiny).choose_by_sign(one / (fold.most(tiny)).sqrt(), length + tiny);
+    let flat = longest * splat(NEAR_FLAT);
+    let m: [R::Lanes; 3] = std::array::from_fn(|axis| c[axis] * sign + n[axis] * flat);
+    let size = dot(m, m).sqrt() + tiny;
+    let direction = m.map(|x| x / size);
+    let flipped = R::Lanes::from_array(angle.flipped);
+    let past = flipped * flipped;
+    let chord = (one - past) * (sign * length) + flipped * (longest + longest - length);
+    Measured { chord, direction, longest }
+}
+
+/// Sweeps the hinges of `groups` once, each group with its angles and its portion of the strength.
+///
+/// # Safety
+/// The rows of `groups` share no point within a group, and no other task of the loop touches their points.
+#[allow(unsafe_code)]
+#[inline]
+pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
+    points: DisjointSlice<'_, Row4<R>>,
+    groups: impl Iterator<Item = ((&'a HingeGroup<R, N>, &'a AngleGroup<R>), P)>,
+    strength: &BendStrength<R>,
+    angles: &AngleStrength<R>,
+) {
+    let splat = R::Lanes::splat;
+    let (share, compliance) = (splat(strength.share), splat(strength.compliance));
+    let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
+    let least = splat(R::from_f64(MIN_COSINE * MIN_COSINE));
+    let (scale, dropoff) = (splat(angles.scale), splat(angles.dropoff));
+    for ((hinge, angle), portion) in groups {
+        // SAFETY: the caller's promise.
+        let rows = hinge.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
+        let columns = rows.map(R::Lanes::transpose);
+        let x = columns.map(|[x, y, z, _]| [x, y, z]);
+        let Measured { chord, direction, longest } = measure(hinge, angle, &x);
+        let mut mobility = zero;
+        for k in 0..N {
+            let weight = R::Lanes::from_array(hinge.weights[k]);
+            mobility = mobility + columns[k][3] * weight * weight;
+        }
+        let error = chord - R::Lanes::from_array(angle.rest) * scale;
+        let size = error.most(zero - error);
+        let bent = (size / (longest + tiny)).least(one);
+        let grown = (one - dropoff) + dropoff * bent;
+        // cos²(θ/2), within bounds: the moment grows with the angle.
+        let cosine = one - chord * chord * R::Lanes::from_array(hinge.fold);
+        let cosine = (cosine - least).choose_by_sign(cosine, least);
+        let (share, compliance) = portion.of(error, share * grown, compliance / (grown + tiny));
+        let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
+        let push = direction.map(|x| x * lambda);
+        for k in 0..N {
+            let weight = R::Lanes::from_array(hinge.weights[k]);
+            let moves = R::Lanes::transpose([weight * push[0], weight * push[1], weight * push[2], zero]);
+            for lane in 0..4 {
+                let moved = rows[k][lane] - rows[k][lane].splat_last() * moves[lane];
+                // SAFETY: the caller's promise.
+                unsafe { points.set(hinge.points[k][lane], Row4(moved.to_array())) };
+            }
+        }
+    }
+}
+
+/// What of bends stays, and which are past 180°: after a time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleMemory<R> {
+    /// `bendAngleScale`.
+    pub scale: R,
+    /// Sine of half the angle beyond which bends stay; above 1 none do.
+    pub yield_sine: R,
+    /// Whether hinges that are folded past 180° are followed.
+    pub tracks_flips: bool,
+}
+
+impl<R: Real> AngleMemory<R> {
+    /// Whether there is anything to remember.
+    pub fn is_on(&self) -> bool {
+        self.tracks_flips || self.yield_sine <= R::ONE
+    }
+
+    /// Brings the memory of four hinges up to where their points are.
+    pub fn update<const N: usize>(
+        &self,
+        hinge: &HingeGroup<R, N>,
+        angle: &mut AngleGroup<R>,
+        displacement: &[Row4<R>],
+    ) {
+        let x = hinge.points.map(|ends| {
+            let [x, y, z, _] = R::Lanes::transpose(ends.map(|point| displacement[point as usize].lanes()));
+            [x, y, z]
+        });
+        let unflipped = AngleGroup { flipped: [R::ZERO; 4], ..*angle };
+        let now = measure(hinge, &unflipped, &x);
+        let (chord, longest) = (now.chord.to_array(), now.longest.to_array());
+        for lane in 0..4 {
+            if hinge.fold[lane] == R::ZERO {
+                continue; // the twist of a quad has no angle
+            }
+            if self.tracks_flips {
+                self.follow(angle, lane, chord[lane], longest[lane]);
+            }
+            let most = longest[lane] * self.yield_sine;
+            let chord = measured(angle.flipped[lane], chord[lane], longest[lane]);
+            let rest = angle.rest[lane] * self.scale;
+            if self.yield_sine <= R::ONE && self.scale != R::ZERO {
+                if chord - rest > most {
+                    angle.rest[lane] = (chord - most) / self.scale;
+                } else if rest - chord > most {
+                    angle.rest[lane] = (chord + most) / self.scale;
+                }
+            }
+        }
+    }
+
+    /// A sign that changes while the hinge is folded by more than 90° has gone past 180°.
+    fn follow(&self, angle: &mut AngleGroup<R>, lane: usize, chord: R, longest: R) {
+        let size = if chord < R::ZERO { -chord } else { chord };
+        let is_folded = size * R::from_f64(std::f64::consts::SQRT_2) > longest;
+        let sign = if chord < R::ZERO { -R::ONE } else { R::ONE };
+        let side = angle.side[lane];
+        let is_flipped = angle.flipped[lane] != R::ZERO;
+        if is_folded && side * sign < R::ZERO {
+            angle.flipped[lane] = side;
+        } else if !is_flipped || is_folded {
+            (angle.flipped[lane], angle.side[lane]) = (R::ZERO, sign);
+        }
+    }
+}
+
+fn measured<R: Real>(flipped: R, chord: R, longest: R) -> R {
+    let size = if chord < R::ZERO { -chord } else { chord };
+    if flipped == R::ZERO { chord } else { flipped * (longest + longest - size) }
+}

@@ -1,0 +1,389 @@
+//! Pressure: the faces of a mesh are pushed along their normals, by hand or by the gas inside.
+//!
+//! Every unconnected part of the mesh is a chamber. With a_i = ∂V/∂x_i, a third of the area vectors round point i, a gauge
+//! pressure p is the force p a_i, so one time step moves point i by w_i a_i λ with λ = h² p. The gas follows the ideal law
+//! at constant temperature, p = K (n V_0 / V - 1), where n V_0 is the volume of its air at ambient pressure and K the bulk
+//! modulus. The step is implicit: λ solves λ = h² p(V + s λ) with s = Σ w_i |a_i|², which has one root and is stable for
+//! every K (an XPBD constraint, Macklin et al. 2016, with the gas law as its energy).
+//!
+//! A boundary loop of the mesh is a hole. Sealed, it is capped: the cap carries the pressure to its rim. Open, the missing
+//! cap leaves a net force -p A (thrust), and air streams through at the speed of Bernoulli's law, plus the air that the
+//! opening runs into.
+
+use nalgebra::Vector3;
+
+use crate::input::frame::Pressure;
+use crate::math::{Real, Row4};
+use crate::model::surface::Surface;
+use crate::model::{Blocks, components, triangles_by_block};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
+
+/// Pascals for a `pressure`, `startPressure` or `incompressibility` of 1.
+pub const PASCALS_PER_PRESSURE: f64 = 1000.0;
+/// Density of air in kg/m³ at an `airDensity` of 1.
+const AIR: f64 = 1.2;
+/// Least density of streaming air, so that it has a finite speed in a vacuum.
+const LEAST_AIR: f64 = 1e-3;
+/// Rate in 1/s at which a mesh with an `airTightness` of 0 takes up ambient pressure.
+const LEAK: f64 = 24.0;
+/// Newton steps for λ; quadratic from a monotone side, so 12 reach rounding.
+const NEWTON: usize = 12;
+/// Volume that a collapsed chamber counts as, as a share of its volume at the start.
+const LEAST_VOLUME: f64 = 1e-3;
+
+/// What is fixed of the pressure in one cloth.
+#[derive(Debug, Clone, Default)]
+pub struct PressureModel {
+    /// Triangles that touch each block of points; empty where the cloth has no pressure.
+    triangles: Vec<Vec<[u32; 3]>>,
+    /// Chamber of each point, from the first chamber of the cloth on; `NO_CHAMBER` for points of no face.
+    chamber: Vec<u32>,
+    /// Holes, their corners so that the cap faces outwards.
+    holes: Vec<Hole>,
+    chambers: u32,
+    sealed: bool,
+    /// First of the chambers in the state.
+    pub first: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Hole {
+    corners: Vec<u32>,
+    chamber: u32,
+}
+
+const NO_CHAMBER: u32 = u32::MAX;
+
+/// The gas in one chamber.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chamber {
+    /// Volume at the start in m³; below zero for a mesh that is inside out.
+    pub start_volume: f64,
+    /// Volume at the end of the last time step in m³.
+    pub volume: f64,
+    /// Volume of its air at ambient pressure, in start volumes; below zero until the first frame sets it.
+    pub amount: f64,
+}
+
+crate::state::checkpoint::item!([] Chamber { start_volume: f64, volume: f64, amount: f64 });
+
+/// Sums over a chamber in one time step.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// Three times the volume.
+    volume: f64,
+    /// Σ w |a|².
+    mobility: f64,
+    /// Area of the holes in m², and the flow of still air into them in m³/s.
+    hole: f64,
+    inflow: f64,
+}
+
+impl PressureModel {
+    /// Compiles the chambers of a mesh; `place` gives the solver's row of a point.
+    pub fn new(surface: &Surface, place: impl Fn(u32) -> u32 + Copy, blocks: &Blocks, sealed: bool) -> Self {
+        let parts = components(surface);
+        let first = blocks.range(0).start;
+        let mut chamber = vec![NO_CHAMBER; surface.positions.len()];
+        for (index, part) in (0..).zip(&parts) {
+            part.iter().for_each(|&point| chamber[(place(point) - first) as usize] = index);
+        }
+        let holes = boundary_loops(surface).into_iter().map(|corners| {
+            let corners: Vec<u32> = corners.into_iter().map(place).collect();
+            Hole { chamber: chamber[(corners[0] - first) as usize], corners }
+        });
+        let triangles = triangles_by_block(surface, place, blocks);
+        Self { triangles, holes: holes.collect(), chambers: parts.len() as u32, chamber, sealed, first: 0 }
+    }
+
+    /// Whether the cloth has any.
+    pub fn is_on(&self) -> bool {
+        !self.triangles.is_empty()
+    }
+
+    /// How many chambers there are.
+    pub fn chambers(&self) -> usize {
+        self.chambers as usize
+    }
+
+    /// Triangles that are pushed, each once for every block that it touches.
+    pub fn rows(&self) -> usize {
+        self.triangles.iter().map(Vec::len).sum()
+    }
+
+    /// The chambers as they are when nothing has moved yet.
+    pub fn start<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
+        self.find_areas(blocks, state, pool);
+        for (index, sums) in self.sums(blocks, state).into_iter().enumerate() {
+            let volume = sums.volume / 3.0;
+            state.chambers[self.first + index] = Chamber { start_volume: volume, volume, amount: -1.0 };
+        }
+    }
+
+    /// Moves the points of a cloth as the pressure of one time step of `h` seconds says.
+    pub fn inflate<R: Real>(
+        &self,
+        blocks: &Blocks,
+        state: &mut State<R>,
+        pressure: &Pressure,
+        [h, air_density]: [f64; 2],
+        pool: &ThreadPool,
+    ) {
+        self.find_areas(blocks, state, pool);
+        let sums = self.sums(blocks, state);
+        let gases = &mut state.chambers[self.first..self.first + sums.len()];
+        let step = |(sums, chamber): (&Sums, &mut Chamber)| chamber.step(pressure, sums, h, air_density);
+        let pushes: Vec<R> = sums.iter().zip(gases).map(step).map(R::from_f64).collect();
+        let displacement = DisjointSlice::new(&mut state.displacement);
+        let (area, first) = (&state.area, blocks.range(0).start);
+        pool.parallel_for(blocks.len(), |block| {
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            let points = unsafe { displacement.run(blocks.range(block)) };
+            for (row, point) in blocks.range(block).zip(points) {
+                let Some(&push) = pushes.get(self.chamber[(row - first) as usize] as usize) else { continue };
+                let scale = point.0[3] * push;
+                let a = area[row as usize].xyz();
+                (0..3).for_each(|axis| point.0[axis] += scale * a[axis]);
+            }
+        });
+    }
+
+    /// Sets ∂V/∂x of every point, caps of sealed holes with them.
+    fn find_areas<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
+        let State { anchor, displacement, area, .. } = state;
+        let position = |row: u32| at(anchor, displacement, row);
+        let areas = DisjointSlice::new(area);
+        pool.parallel_for(blocks.len(), |block| {
+            let points = blocks.range(block);
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            let areas = unsafe { areas.run(points.clone()) };
+            areas.fill(Row4::ZERO);
+            for triangle in &self.triangles[block] {
+                let [a, b, c] = triangle.map(position);
+                let share = (b - a).cross(&(c - a)) / 6.0;
+                for point in triangle.iter().filter(|point| points.contains(point)) {
+                    add(&mut areas[(point - points.start) as usize], share);
+                }
+            }
+        });
+        for hole in self.holes.iter().filter(|_| self.sealed) {
+            let corners: Vec<_> = hole.corners.iter().map(|&row| at(anchor, displacement, row)).collect();
+            let shared = cap_area(&corners) / (3.0 * corners.len() as f64);
+            for (k, &row) in hole.corners.iter().enumerate() {
+                add(&mut area[row as usize], cap_corner(&corners, k) + shared);
+            }
+        }
+    }
+
+    /// Sums over each chamber, point by point in a fixed order.
+    fn sums<R: Real>(&self, blocks: &Blocks, state: &State<R>) -> Vec<Sums> {
+        let mut sums = vec![Sums::default(); self.chambers()];
+        let points = blocks.range(0).start..blocks.range(blocks.len() - 1).end;
+        // Relative to a point of the cloth, so that a chamber far from the origin loses nothing.
+        let origin = Vector3::from(state.position(points.start));
+        for (row, &chamber) in points.zip(&self.chamber) {
+            let Some(sums) = sums.get_mut(chamber as usize) else { continue };
+            let a: Vector3<f64> = state.area[row as usize].xyz().map(R::to_f64).into();
+            sums.volume += a.dot(&(Vector3::from(state.position(row)) - origin));
+            sums.mobility += state.displacement[row as usize].0[3].to_f64() * a.norm_squared();
+        }
+        for hole in self.holes.iter().filter(|_| !self.sealed) {
+            let corners: Vec<_> =
+                hole.corners.iter().map(|&row| Vector3::from(state.position(row)) - origin).collect();
+            let velocities = hole.corners.iter().map(|&row| state.velocity[row as usize].xyz());
+            let velocity: Vector3<f64> =
+                velocities.map(|v| Vector3::from(v.map(R::to_f64))).sum::<Vector3<f64>>()
+                    / corners.len() as f64;
+            let area = cap_area(&corners);
+            let sums = &mut sums[hole.chamber as usize];
+            sums.volume += 3.0 * cap_volume(&corners);
+            sums.hole += area.norm();
+            sums.inflow += velocity.dot(&area);
+        }
+        sums
+    }
+}
+
+impl Chamber {
+    /// Advances the gas by a time step; λ in Pa·s², along the area vectors.
+    fn step(&mut self, pressure: &Pressure, sums: &Sums, h: f64, air_density: f64) -> f64 {
+        // A mesh that is inside out has its gas on the side its normals turn from.
+        let side = if self.start_volume < 0.0 { -1.0 } else { 1.0 };
+        let (volume, start) = (side * sums.volume / 3.0, side * self.start_volume);
+        let before = std::mem::replace(&mut self.volume, side * volume) * side;
+        match *pressure {
+            Pressure::Off => 0.0,
+            Pressure::Manual { pascals, damping } => {
+                let damping = if start > 0.0 { h * damping / start } else { 0.0 };
+                let push =
+                    (h * h * pascals - damping * (volume - before) * side) / (1.0 + damping * sums.mobility);
+                self.volume += push * sums.mobility;
+                push
+            }
+            Pressure::Gas { start: above, bulk, pump, tightness, damping, sealed } => {
+                if start <= 0.0 {
+                    return 0.0; // a mesh that encloses nothing holds no gas
+                }
+                if self.amount < 0.0 {
+                    self.amount = (1.0 + above).max(0.0);
+                }
+                let gas =
+                    Gas { amount: self.amount * start, bulk: h * h * bulk, damping: h * damping / start };
+                let push = gas.solve(volume.max(LEAST_VOLUME * start), before, sums.mobility);
+                let after = (volume + push * sums.mobility).max(LEAST_VOLUME * start);
+                self.volume = side * after;
+                let gauge = bulk * (gas.amount / after - 1.0);
+                let leak = (1.0 - tightness).clamp(0.0, 1.0) * LEAK * h;
+                let mut flow = pump * h - (self.amount - after / start) * leak / (1.0 + leak);
+                if !sealed {
+                    let density = (AIR * air_density).max(LEAST_AIR);
+                    let speed = (2.0 * gauge.abs() / density).sqrt() * if gauge < 0.0 { -1.0 } else { 1.0 };
+                    // No more than equalizes the pressure within the step.
+                    let most = (self.amount - after / start).abs();
+                    flow += (-speed * sums.hole * h / start).clamp(-most, most);
+                    flow += side * sums.inflow * h / start;
+                }
+                self.amount = (self.amount + flow).max(0.0);
+                side * push
+            }
+        }
+    }
+}
+
+/// The gas law of one time step: λ = bulk (amount / (V + s λ) - 1) - damping (V + s λ - V_before).
+struct Gas {
+    amount: f64,
+    bulk: f64,
+    damping: f64,
+}
+
+impl Gas {
+    /// λ by Newton's method; the residual grows with λ, and the volume stays positive.
+    fn solve(&self, volume: f64, before: f64, mobility: f64) -> f64 {
+        let mut push = 0.0;
+        for _ in 0..NEWTON {
+            let after = volume + mobility * push;
+            let residual = push - self.bulk * (self.amount / after - 1.0) + self.damping * (after - before);
+            let slope = 1.0 + self.bulk * self.amount * mobility / (after * after) + self.damping * mobility;
+            let next = push - residual / slope;
+            // At most half of the volume goes in one Newton step.
+            push =
+                if volume + mobility * next < after / 2.0 { push - after / (2.0 * mobility) } else { next };
+        }
+        push
+    }
+}
+
+fn at<R: Real>(anchor: &[[f64; 3]], displacement: &[Row4<R>], row: u32) -> Vector3<f64> {
+    let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
+    Vector3::new(anchor[0] + moved[0].to_f64(), anchor[1] + moved[1].to_f64(), anchor[2] + moved[2].to_f64())
+}
+
+fn add<R: Real>(row: &mut Row4<R>, vector: Vector3<f64>) {
+    (0..3).for_each(|axis| row.0[axis] += R::from_f64(vector[axis]));
+}
+
+fn middle(corners: &[Vector3<f64>]) -> Vector3<f64> {
+    corners.iter().sum::<Vector3<f64>>() / corners.len() as f64
+}
+
+/// Area vectors of the fan of triangles from the middle of a hole to each of its sides, doubled.
+fn fan(corners: &[Vector3<f64>]) -> impl Iterator<Item = Vector3<f64>> + '_ {
+    let centre = middle(corners);
+    (0..corners.len()).map(move |k| (corners[k] - centre).cross(&(corners[(k + 1) % corners.len()] - centre)))
+}
+
+fn cap_area(corners: &[Vector3<f64>]) -> Vector3<f64> {
+    fan(corners).sum::<Vector3<f64>>() / 2.0
+}
+
+/// Share of a corner in the two triangles of the cap that it is a corner of.
+fn cap_corner(corners: &[Vector3<f64>], k: usize) -> Vector3<f64> {
+    let count = corners.len();
+    let centre = middle(corners);
+    let side = |k: usize| (corners[k] - centre).cross(&(corners[(k + 1) % count] - centre));
+    (side((k + count - 1) % count) + side(k)) / 6.0
+}
+
+fn cap_volume(corners: &[Vector3<f64>]) -> f64 {
+    let centre = middle(corners);
+    let count = corners.len();
+    let tetrahedron = |(k, normal): (usize, Vector3<f64>)| {
+        (centre + corners[k] + corners[(k + 1) % count]).dot(&normal) / 18.0
+    };
+    fan(corners).enumerate().map(tetrahedron).sum()
+}
+
+/// The holes of a mesh as loops of points, against the direction of the faces beside them.
+fn boundary_loops(surface: &Surface) -> Vec<Vec<u32>> {
+    let mut sides: Vec<[u32; 2]> = surface
+        .faces
+        .iter()
+        .flat_map(|face| (0..face.len()).map(move |k| [face[k], face[(k + 1) % face.len()]]))
+        .collect();
+    sides.sort_unstable();
+    let is_inner = |side: &[u32; 2]| sides.binary_search(&[side[1], side[0]]).is_ok();
+    // From each point the way back along its side.
+    let mut next: std::collections::BTreeMap<u32, u32> =
+        sides.iter().filter(|side| !is_inner(side)).map(|&[a, b]| (b, a)).collect();
+    let mut loops = Vec::new();
+    while let Some((first, mut point)) = next.pop_first() {
+        let mut corners = vec![first];
+        while point != first {
+            corners.push(point);
+            match next.remove(&point) {
+                Some(following) => point = following,
+                None => break, // a boundary that crosses itself ends where it was used before
+            }
+        }
+        if corners.len() > 2 {
+            loops.push(corners);
+        }
+    }
+    loops
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::surface::Faces;
+
+    /// A box of 1 × 1 × 1 m of quads that face outwards, without its top if it is open.
+    fn unit_box(open: bool) -> Surface {
+        let positions = (0..8u32)
+            .map(|k| Vector3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)))
+            .collect();
+        let faces: [[u32; 4]; 6] =
+            [[4, 5, 7, 6], [0, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces = faces[usize::from(open)..].iter().map(|face| &face[..]).collect::<Faces>();
+        Surface { positions, faces }
+    }
+
+    #[test]
+    fn a_box_without_its_top_has_one_hole_whose_cap_faces_up() {
+        let surface = unit_box(true);
+        let loops = boundary_loops(&surface);
+        assert_eq!(loops.len(), 1);
+        let corners: Vec<_> = loops[0].iter().map(|&point| surface.positions[point as usize]).collect();
+        assert_eq!(cap_area(&corners), Vector3::new(0.0, 0.0, 1.0));
+        assert!((cap_volume(&corners) - 1.0 / 3.0).abs() < 1e-15, "a pyramid from the origin to the top");
+        assert!(boundary_loops(&unit_box(false)).is_empty());
+    }
+
+    #[test]
+    fn the_implicit_gas_law_is_met_to_rounding_even_for_a_hard_gas() {
+        for bulk in [1e-6, 1.0, 1e6] {
+            let gas = Gas { amount: 1.3, bulk, damping: 0.0 };
+            for volume in [0.01, 1.0, 7.0] {
+                let push = gas.solve(volume, volume, 0.4);
+                let after = volume + 0.4 * push;
+                let expected = bulk * (1.3 / after - 1.0);
+                assert!(after > 0.0 && (push - expected).abs() <= 1e-9 * (1.0 + bulk), "{bulk} {volume}");
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Effects that take a cloth as a whole, not row by row: pressure, shape, the input mesh, and what of a deformation stays.
+
+use crate::input::frame::{BendSolver, Bending, FrameInput, InputMesh};
+use crate::math::Real;
+use crate::model::ClothModel;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::{WholeEffect, WholeSweep};
+use crate::state::State;
+
+use super::angle::AngleMemory;
+use super::attract::Attraction;
+use super::plastic;
+
+/// One pass of an effect over the cloth that it names, in a time step of `h` seconds that ends at a share `end` of the frame.
+pub fn relax<R: Real>(
+    whole: &WholeSweep,
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    frame: &FrameInput,
+    [end, h]: [f64; 2],
+    pool: &ThreadPool,
+) {
+    let (cloth, settings) = (&cloths[whole.cloth], &frame.cloths[whole.cloth]);
+    match whole.effect {
+        WholeEffect::Pressure if cloth.pressure.is_on() => {
+            cloth.pressure.inflate(&cloth.blocks, state, &settings.pressure, [h, frame.air_density], pool);
+        }
+        WholeEffect::Pressure => {}
+        WholeEffect::Shape(strength) => cloth.shape.relax(state, strength, pool),
+        WholeEffect::Attract(share) => {
+            let own = |mesh: &&InputMesh| mesh.cloth.index() == whole.cloth;
+            for mesh in frame.input_meshes.iter().filter(own) {
+                let (settings, duration) = (settings.input_attract, frame.duration);
+                Attraction { cloth, mesh, settings, duration, h }.pull(state, end, share, pool);
+            }
+        }
+    }
+}
+
+/// Velocities take up those of input meshes, before a time step of `h` seconds moves the points.
+pub fn drag_to_input_meshes<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    frame: &FrameInput,
+    h: f64,
+    pool: &ThreadPool,
+) {
+    for mesh in &frame.input_meshes {
+        let settings = frame.cloths[mesh.cloth.index()].input_attract;
+        let cloth = &cloths[mesh.cloth.index()];
+        Attraction { cloth, mesh, settings, duration: frame.duration, h }.drag(state, pool);
+    }
+}
+
+/// Lets links and bends yield, and follows hinges past 180°, at the end of a time step.
+pub fn remember_deformation<R: Real>(
+    cloths: &mut [ClothModel<R>],
+    state: &State<R>,
+    frame: &FrameInput,
+    pool: &ThreadPool,
+) {
+    for (cloth, settings) in cloths.iter_mut().zip(&frame.cloths) {
+        if cloth.plastic && settings.yield_strain.is_finite() {
+            let [scale, limit] = [settings.rest_length_scale, settings.yield_strain].map(R::from_f64);
+            plastic::creep(cloth, &state.displacement, scale, limit, pool);
+        }
+        let Bending { angle_scale, yield_sine, solver, .. } = settings.bending;
+        let memory = AngleMemory {
+            scale: R::from_f64(angle_scale),
+            yield_sine: R::from_f64(yield_sine),
+            tracks_flips: solver == BendSolver::FlipTracking,
+        };
+        if memory.is_on() && cloth.bend_angles.len() + cloth.fold_angles.len() > 0 {
+            plastic::remember_angles(cloth, &state.displacement, &memory, pool);
+        }
+    }
+}
