@@ -31,7 +31,7 @@ pub trait Compiled: Sized {
         Self: Real;
 
     /// [`Solver::step`].
-    fn step(solver: &mut Solver<Self>, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport
+    fn step(solver: &mut Solver<Self>, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport
     where
         Self: Real;
 
@@ -66,8 +66,8 @@ macro_rules! compiled {
                 solver.bytes()
             }
 
-            fn step(solver: &mut Solver<Self>, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-                solver.take_step(frame, watch)
+            fn step(solver: &mut Solver<Self>, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
+                crate::step::step(solver, frame, observer)
             }
 
             fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>) {

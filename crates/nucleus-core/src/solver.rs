@@ -9,13 +9,17 @@ use crate::contact::ground::Ground;
 use crate::contact::maps::Maps;
 use crate::contact::pairs::PairList;
 use crate::contact::terms::Terms;
+use crate::input::frame::FrameInput;
 use crate::input::ids::{ClothId, ColliderId, PointId};
+use crate::input::validation::LastPositions;
 use crate::math::{Real, Row4};
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
-use crate::output::observer::{ContactState, StateView};
+use crate::output::observer::{ContactState, StateView, StepObserver};
+use crate::output::report::StepReport;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
+use crate::state::kinematics::update_anchors;
 
 /// Everything needed to advance a scene by a frame; [`Solver::step`] does it.
 pub struct Solver<R: Real = f32> {
@@ -96,8 +100,16 @@ impl<R: Real> Solver<R> {
             ground: Ground::default(),
             pool: ThreadPool::new(threads),
         };
-        solver.anchor_rows();
+        update_anchors(&mut solver.cloths, &solver.state.anchor, &solver.pool);
         solver
+    }
+
+    /// Advances by one frame. A step cannot fail: the report counts what could not be satisfied, and every invalid value of
+    /// the input.
+    ///
+    /// `frame` has one entry per cloth and per collider.
+    pub fn step(&mut self, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
+        R::step(self, frame, observer)
     }
 
     /// How far into the frame the solver has come, as a share of it.
@@ -122,6 +134,16 @@ impl<R: Real> Solver<R> {
         let first = model.points().start;
         out.clear();
         out.extend(model.order.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
+    }
+}
+
+impl<R: Real> LastPositions for Solver<R> {
+    fn collider(&self, collider: ColliderId) -> &[Vector3<f64>] {
+        &self.collider_states[collider.index()].end
+    }
+
+    fn cloth_point(&self, cloth: ClothId, point: PointId) -> Vector3<f64> {
+        self.point(cloth, point.index())
     }
 }
 

@@ -3,12 +3,42 @@
 //! `stretchDamp` acts along the links only, `damp` in all directions. Both are given by pairs, equal and
 //! opposite, so they change no momentum: a cloth that flies or falls as one is not slowed.
 
-use crate::input::frame::COUNT_PERIOD;
+use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};
+use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
 
 use super::row_map::ShareGroup;
 use super::stretch::LinkGroup;
+use super::sweep::over_list;
+
+/// Damps all cloths once, for a substep of this many seconds. Reads displacements, writes velocities.
+pub fn damp<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    frame: &FrameInput,
+    substep: f64,
+    pool: &ThreadPool,
+) {
+    let State { displacement, velocity, .. } = state;
+    let velocity = DisjointSlice::new(velocity);
+    for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
+        let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
+        if !damping.is_felt() {
+            continue;
+        }
+        over_list(pool, &cloth.blocks, &cloth.stretch, |part| {
+            let (links, factors) = (cloth.stretch.part(part), cloth.shares.damp.part(part));
+            // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
+            #[allow(unsafe_code)]
+            unsafe {
+                relax(velocity, displacement, links, factors, &damping);
+            }
+        });
+    }
+}
 
 /// What damps a cloth in a substep.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,14 +9,18 @@ use crate::model::{Blocks, ClothModel, Part, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Direction, Effect, Sweep};
-use crate::solver::Solver;
 
 /// Does the sweeps of a round. Inner rows of all lists come first, block by block, while the block is in the
 /// core's cache; then cross rows, list by list. Backward, all of that from the last to the first, in cloths that
 /// turn.
-pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>], direction: Direction) {
-    let Solver { cloths, state, pool, .. } = solver;
-    let points = DisjointSlice::new(&mut state.displacement);
+pub fn sweep<R: Real>(
+    cloths: &[ClothModel<R>],
+    displacement: &mut [Row4<R>],
+    sweeps: &[Sweep<R>],
+    direction: Direction,
+    pool: &ThreadPool,
+) {
+    let points = DisjointSlice::new(displacement);
     for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
         let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
         let backward = direction == Direction::Backward && cloth.turns;

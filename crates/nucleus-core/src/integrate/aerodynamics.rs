@@ -14,7 +14,10 @@ use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::{Real, Row4, dot};
+use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
 
 /// What the air does to a point in one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,12 +115,31 @@ impl<R: Real> Air<R> {
     }
 }
 
+/// Writes the normals of all points that feel air, weighted by area. Reads positions.
+pub fn update_normals<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
+    let State { anchor, displacement, normal, .. } = state;
+    let position = |row: u32| {
+        let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
+        [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
+    };
+    let normals = DisjointSlice::new(normal);
+    for cloth in cloths {
+        pool.parallel_for(cloth.triangles.len(), |block| {
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            unsafe {
+                normals_of_block(normals, cloth.blocks.range(block), &cloth.triangles[block], position);
+            }
+        });
+    }
+}
+
 /// Sets the normals of a block of points, weighted by area, from the triangles that touch it.
 ///
 /// # Safety
 /// No other task of the phase touches these normals.
 #[allow(unsafe_code)]
-pub unsafe fn find_normals<R: Real>(
+unsafe fn normals_of_block<R: Real>(
     normals: DisjointSlice<'_, Row4<R>>,
     points: Range<u32>,
     triangles: &[[u32; 3]],

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 use crate::input::ids::{ClothId, ColliderId};
-use crate::input::validation::{MAX_COORDINATE, is_usable};
+use crate::input::validation::{MAX_COORDINATE, is_in_range};
 use crate::model::point_masses;
 use crate::model::surface::Surface;
 use crate::model::vertex_maps::VertexMaps;
@@ -255,7 +255,7 @@ fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
         if !column.is_empty() && column.len() != points {
             return Err(BuildError::StartCount { what, given: column.len(), points });
         }
-        if let Some(point) = column.iter().position(|given| !is_usable(given)) {
+        if let Some(point) = column.iter().position(|given| !is_in_range(given)) {
             return Err(BuildError::BadStart { what: one, point });
         }
     }
@@ -271,7 +271,7 @@ fn check_surface(surface: &Surface) -> Result<(), BuildError> {
     if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(BuildError::NotFinite { point });
     }
-    if let Some(point) = surface.positions.iter().position(|p| !is_usable(p)) {
+    if let Some(point) = surface.positions.iter().position(|p| !is_in_range(p)) {
         return Err(BuildError::TooFar { point });
     }
     for (face, corners) in surface.faces.iter().enumerate() {

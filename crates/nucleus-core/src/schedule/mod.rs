@@ -7,6 +7,8 @@
 mod adaptive;
 pub mod resistance;
 
+use std::borrow::Cow;
+
 use crate::constraints::bend::BendStrength;
 use crate::constraints::stretch::{LinkStrength, Sides};
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
@@ -63,8 +65,10 @@ const RUN: u32 = 16;
 pub struct Schedule<R> {
     /// Substeps in the frame.
     pub substeps: u32,
-    /// Time steps in a substep.
+    /// Time steps in a substep, before any is split.
     pub steps: u32,
+    /// Time steps that each of them is split into; 1 in the plan of a frame.
+    pub splits: u32,
     /// Length of a time step in seconds.
     pub h: f64,
     /// All sweeps of a time step.
@@ -83,17 +87,27 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let mut schedule = Self { substeps, steps, h, sweeps: Vec::new(), passes: Vec::new() };
+        let mut schedule = Self { substeps, steps, splits: 1, h, sweeps: Vec::new(), passes: Vec::new() };
         schedule.plan(frame);
         schedule
     }
 
-    /// The same for a part of a time step: what moves fast is met in shorter steps.
-    pub fn split(&self, frame: &FrameInput, parts: u32) -> Self {
-        let h = self.h / f64::from(parts);
-        let mut split = Self { h, sweeps: Vec::new(), passes: Vec::new(), ..*self };
+    /// The plan of a time step that is split into so many (adaptive substepping): the passes of each, at their length.
+    pub fn split(&self, frame: &FrameInput, splits: u32) -> Cow<'_, Self> {
+        if splits == self.splits {
+            return Cow::Borrowed(self);
+        }
+        let h = self.h / f64::from(splits);
+        let mut split = Self { splits, h, sweeps: Vec::new(), passes: Vec::new(), ..*self };
         split.plan(frame);
-        split
+        Cow::Owned(split)
+    }
+
+    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start of
+    /// the frame as if all were split alike, and its interval.
+    pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, Span)> + use<R> {
+        let (span, splits) = (self.span(step), self.splits);
+        (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
     }
 
     /// Sets the sweeps and rounds of a time step.
@@ -134,6 +148,23 @@ impl<R: Real> Schedule<R> {
         let run = u64::from(step) * u64::from(runs) / u64::from(steps);
         if run % 2 == 1 { Direction::Backward } else { Direction::Forward }
     }
+}
+
+/// A time step: the inputs that its stages share.
+#[derive(Debug, Clone, Copy)]
+pub struct TimeStep<'a, R> {
+    /// The input of the frame.
+    pub frame: &'a FrameInput,
+    /// Passes, sweeps and the length of the step.
+    pub schedule: &'a Schedule<R>,
+    /// Counted from the start of the frame.
+    pub index: u32,
+    /// When in the frame it is.
+    pub span: Span,
+    /// The direction of its sweeps.
+    pub direction: Direction,
+    /// Upper estimate of the speed of each cloth in this frame, in m/s.
+    pub max_speeds: &'a [f64],
 }
 
 /// When a time step is, in shares of the frame.

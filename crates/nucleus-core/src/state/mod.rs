@@ -5,7 +5,7 @@
 //! falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
 
 pub mod checkpoint;
-mod kinematics;
+pub mod kinematics;
 
 use crate::math::{Real, Row4, sub};
 use crate::model::builder::Cloth;

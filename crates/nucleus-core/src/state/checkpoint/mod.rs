@@ -31,6 +31,7 @@ use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::solver::Solver;
 use crate::state::State;
+use crate::state::kinematics::update_anchors;
 
 /// What the bytes are; counted up whenever their layout changes.
 const KIND: [u8; 8] = *b"solver 4";
@@ -117,7 +118,7 @@ impl<R: Real> Solver<R> {
         if let Some(Mutual { bodies, .. }) = &mut self.mutual {
             bodies.refit();
         }
-        self.anchor_rows();
+        update_anchors(&mut self.cloths, &self.state.anchor, &self.pool);
     }
 }
 
@@ -161,6 +162,6 @@ impl<R: Real> PairList<R> {
 
 /// A collider's state is in good order if its places are.
 fn is_sound(collider: &ColliderState) -> bool {
-    let usable = |column: &[nalgebra::Vector3<f64>]| column.iter().all(crate::input::validation::is_usable);
+    let usable = |column: &[nalgebra::Vector3<f64>]| column.iter().all(crate::input::validation::is_in_range);
     usable(&collider.start) && usable(&collider.end)
 }
