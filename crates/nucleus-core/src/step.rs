@@ -21,15 +21,15 @@ use crate::input::frame::FrameInput;
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
-use crate::math::Real;
-use crate::output::observer::{Stage, StepObserver, SubstepIndex};
-use crate::output::report::StepReport;
+use crate::output::StepReport;
+use crate::output::{Stage, StepObserver, SubstepIndex};
+use crate::report::diagnostics::report;
 use crate::schedule::{Direction, Pass, Schedule, TimeStep};
-use crate::solver::Solver;
+use crate::solver::{CompiledReal, Solver};
 use crate::state::kinematics::update_anchors;
 
 /// Advances the solver by one frame; see [`Solver::step`].
-pub fn step<R: Real>(
+pub fn step<R: CompiledReal>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     observer: &mut dyn StepObserver,
@@ -43,12 +43,12 @@ pub fn step<R: Real>(
 }
 
 /// A frame without a valid duration changes nothing.
-fn skip_frame<R: Real>(solver: &Solver<R>, observer: &mut dyn StepObserver) -> StepReport {
+fn skip_frame<R: CompiledReal>(solver: &Solver<R>, observer: &mut dyn StepObserver) -> StepReport {
     observer.substep(SubstepIndex { substep: 1, substeps: 1 }, solver);
     StepReport::default()
 }
 
-fn solve_frame<R: Real>(
+fn solve_frame<R: CompiledReal>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     observer: &mut dyn StepObserver,
@@ -62,12 +62,12 @@ fn solve_frame<R: Real>(
     }
     observer.enter(Stage::Report);
     solver.touches = tally.contacts.load(Ordering::Relaxed) > 0;
-    solver.report(frame, &schedule, &tally)
+    report(solver, frame, &schedule, &tally)
 }
 
 /// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
 /// is evaluated once per frame and interpolated inside it (§2.4).
-fn begin_frame<R: Real>(solver: &mut Solver<R>, frame: &FrameInput) {
+fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     solver.take_over_pairs(frame);
     solver.begin_contact(frame);
     solver.state.move_anchors();
@@ -89,7 +89,7 @@ fn begin_frame<R: Real>(solver: &mut Solver<R>, frame: &FrameInput) {
 }
 
 /// All substeps of a frame, unless the observer ends it before.
-fn solve_substeps<R: Real>(
+fn solve_substeps<R: CompiledReal>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     schedule: &Schedule<R>,
@@ -124,7 +124,7 @@ fn solve_substeps<R: Real>(
 }
 
 /// One time step, unless the observer ends the frame.
-fn solve_time_step<R: Real>(
+fn solve_time_step<R: CompiledReal>(
     solver: &mut Solver<R>,
     now: &TimeStep<'_, R>,
     tally: &mut Tally,

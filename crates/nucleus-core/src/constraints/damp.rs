@@ -10,9 +10,9 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-use super::row_map::ShareGroup;
+use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
-use super::sweep::over_list;
+use super::sweep::for_all_rows;
 
 /// Damps all cloths once, for a substep of this many seconds. Reads displacements, writes velocities.
 pub fn damp<R: Real>(
@@ -29,8 +29,8 @@ pub fn damp<R: Real>(
         if !damping.is_felt() {
             continue;
         }
-        over_list(pool, &cloth.blocks, &cloth.stretch, |part| {
-            let (links, factors) = (cloth.stretch.part(part), cloth.shares.damp.part(part));
+        for_all_rows(pool, &cloth.blocks, &cloth.stretch, |part| {
+            let (links, factors) = (cloth.stretch.part(part), cloth.strength_maps.damp.part(part));
             // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
             #[allow(unsafe_code)]
             unsafe {
@@ -70,7 +70,7 @@ impl Damping {
     }
 }
 
-/// Shares of the relative velocity of two linked points that one sweep takes away.
+/// StrengthMaps of the relative velocity of two linked points that one sweep takes away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampStrength<R> {
     along: R,
@@ -86,14 +86,14 @@ pub unsafe fn relax<R: Real>(
     velocity: DisjointSlice<'_, Row4<R>>,
     points: &[Row4<R>],
     groups: &[LinkGroup<R>],
-    factors: &[ShareGroup<R>],
+    factors: &[StrengthGroup<R>],
     damping: &Damping,
 ) {
     let everywhere: DampStrength<R> = damping.strength(1.0);
     for (k, group) in groups.iter().enumerate() {
         for lane in 0..4 {
             let [a, b] = group.ends.map(|ends| ends[lane]);
-            let own = |factors: &ShareGroup<R>| damping.strength(factors.above[lane].to_f64());
+            let own = |factors: &StrengthGroup<R>| damping.strength(factors.above[lane].to_f64());
             let strength = factors.get(k).map_or(everywhere, own);
             let (x_a, x_b) = (points[a as usize].0, points[b as usize].0);
             let total = x_a[3] + x_b[3];

@@ -4,7 +4,6 @@
 pub mod bend;
 pub mod damp;
 pub mod hinge;
-pub mod row_map;
-pub mod shear;
+pub mod strength_map;
 pub mod stretch;
 pub mod sweep;

@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use nalgebra::Vector3;
 
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, ResistanceModel};
-use crate::input::ids::{ClothId, ColliderId, PointId};
+use crate::input::{ClothId, ColliderId, PointId};
 
 /// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
 /// volumes it spans are finite in `f32`.

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::{Real, Row4, dot};
-use crate::model::ClothModel;
+use crate::model::{AirFactors, ClothModel};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
@@ -38,22 +38,6 @@ pub struct AirForces {
     lift: f64,
     tangential_drag: f64,
     h: f64,
-}
-
-/// Factors on what a point feels of the air, over the factor on its mass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AirFactors {
-    /// On drag.
-    pub drag: f64,
-    /// On the share of drag along the surface.
-    pub tangential_drag: f64,
-    /// On lift.
-    pub lift: f64,
-}
-
-impl AirFactors {
-    /// Everything as the cloth's own attributes say.
-    pub const NONE: Self = Self { drag: 1.0, tangential_drag: 1.0, lift: 1.0 };
 }
 
 impl AirForces {

@@ -9,9 +9,9 @@
 use std::ops::Range;
 
 use crate::input::frame::FrameInput;
-use crate::integrate::aerodynamics::{Air, AirFactors, AirForces};
+use crate::integrate::aerodynamics::{Air, AirForces};
 use crate::math::{Lanes, Real, Row4};
-use crate::model::ClothModel;
+use crate::model::{AirFactors, ClothModel};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::TimeStep;
@@ -44,7 +44,7 @@ pub fn predict<R: Real>(
     };
     for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
         let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
-        let air = AirForces::new(frame, settings, cloth.weight, schedule.h);
+        let air = AirForces::new(frame, settings, cloth.point_mass, schedule.h);
         let forces = ExternalForces {
             gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
             impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),

@@ -10,7 +10,8 @@ pub mod resistance;
 use std::borrow::Cow;
 
 use crate::constraints::bend::BendStrength;
-use crate::constraints::stretch::{LinkStrength, Sides};
+use crate::constraints::strength_map::Sides;
+use crate::constraints::stretch::LinkStrength;
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::Real;
 use crate::schedule::resistance::{PhysicalStiffness, Share, share, steps};
@@ -105,7 +106,7 @@ impl<R: Real> Schedule<R> {
 
     /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start of
     /// the frame as if all were split alike, and its interval.
-    pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, Span)> + use<R> {
+    pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, StepInterval)> + use<R> {
         let (span, splits) = (self.span(step), self.splits);
         (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
     }
@@ -127,10 +128,10 @@ impl<R: Real> Schedule<R> {
     }
 
     /// When in the frame a time step is.
-    pub fn span(&self, step: u32) -> Span {
+    pub fn span(&self, step: u32) -> StepInterval {
         let steps = f64::from(self.substeps * self.steps);
         let end_of_substep = f64::from(step / self.steps + 1) / f64::from(self.substeps);
-        Span { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
+        StepInterval { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
     }
 
     /// Which way a time step sweeps, counted from the start of the frame.
@@ -160,7 +161,7 @@ pub struct TimeStep<'a, R> {
     /// Counted from the start of the frame.
     pub index: u32,
     /// When in the frame it is.
-    pub span: Span,
+    pub span: StepInterval,
     /// The direction of its sweeps.
     pub direction: Direction,
     /// Upper estimate of the speed of each cloth in this frame, in m/s.
@@ -169,7 +170,7 @@ pub struct TimeStep<'a, R> {
 
 /// When a time step is, in shares of the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub struct StepInterval {
     /// Its start.
     pub from: f64,
     /// Its end.
@@ -178,7 +179,7 @@ pub struct Span {
     pub end_of_substep: f64,
 }
 
-impl Span {
+impl StepInterval {
     /// One of so many equal parts.
     pub fn part(self, part: u32, parts: u32) -> Self {
         let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);

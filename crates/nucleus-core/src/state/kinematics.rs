@@ -57,7 +57,7 @@ pub fn update_anchors<R: Real>(cloths: &mut [ClothModel<R>], anchors: &[[f64; 3]
         for_each_group(pool, cloth.stretch.groups_mut(), |group| group.anchor(anchors));
         for_each_group(pool, cloth.shear.groups_mut(), |group| group.anchor(anchors));
         for_each_group(pool, cloth.bend.groups_mut(), |group| group.anchor(anchors));
-        for_each_group(pool, cloth.fold.groups_mut(), |group| group.anchor(anchors));
+        for_each_group(pool, cloth.bend_six.groups_mut(), |group| group.anchor(anchors));
     }
 }
 
