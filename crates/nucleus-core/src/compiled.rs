@@ -1,73 +1,34 @@
-//! The work of the solver for one scalar, compiled here and nowhere else.
+//! The solver for `f32` and for `f64`, compiled here and nowhere else.
 //!
-//! Rust compiles a generic function anew in every crate and every test that uses it, and with [`Solver`] that would be
-//! nearly all of this crate each time. What [`Compiled`] holds is of `f32` or of `f64` and not generic; what is public
-//! of the solver hands its work on to it.
+//! Rust compiles a generic function anew in every crate and every test that uses it; for [`Solver`] that would be nearly all of
+//! this crate each time. The public methods of the solver therefore call [`CompiledReal`], whose functions are not generic.
 
+use crate::bytes::RestoreError;
+use crate::checkpoint;
 use crate::input::frame::FrameInput;
-use crate::math::Real;
 use crate::model::builder::ModelBuilder;
-use crate::output::observer::{ContactState, StepObserver};
-use crate::output::passes::PassCost;
-use crate::output::report::StepReport;
-use crate::solver::Solver;
-use crate::state::checkpoint::RestoreError;
-
-/// All of the solver's work that takes long to compile.
-pub trait Compiled: Sized {
-    /// [`Solver::new`].
-    fn build(builder: ModelBuilder, threads: usize) -> Solver<Self>
-    where
-        Self: Real;
-
-    /// [`Solver::restored`].
-    fn restore(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Solver<Self>, RestoreError>
-    where
-        Self: Real;
-
-    /// [`Solver::save`].
-    fn save(solver: &Solver<Self>) -> Vec<u8>
-    where
-        Self: Real;
-
-    /// [`Solver::step`].
-    fn step(solver: &mut Solver<Self>, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport
-    where
-        Self: Real;
-
-    /// How contact stands at the points of each cloth.
-    fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>)
-    where
-        Self: Real;
-
-    /// [`Solver::passes`].
-    fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost>
-    where
-        Self: Real;
-
-    /// [`Solver::elastic_energy`].
-    fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64
-    where
-        Self: Real;
-}
+use crate::output::{ContactState, PassCost, StepObserver, StepReport};
+use crate::report::{diagnostics, passes};
+use crate::solver::{CompiledReal, Solver};
+use crate::step;
 
 macro_rules! compiled {
     ($($scalar:ty)*) => {$(
-        impl Compiled for $scalar {
+        impl CompiledReal for $scalar {
             fn build(builder: ModelBuilder, threads: usize) -> Solver<Self> {
                 Solver::build(builder, threads)
             }
 
             fn restore(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Solver<Self>, RestoreError> {
-                Solver::restore(builder, threads, bytes)
+                checkpoint::restore(builder, threads, bytes)
             }
 
             fn save(solver: &Solver<Self>) -> Vec<u8> {
-                solver.bytes()
+                checkpoint::save(solver)
             }
 
-            fn step(solver: &mut Solver<Self>, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-                solver.take_step(frame, watch)
+            fn step(solver: &mut Solver<Self>, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
+                step::step(solver, frame, observer)
             }
 
             fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>) {
@@ -75,11 +36,11 @@ macro_rules! compiled {
             }
 
             fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost> {
-                solver.list_passes(frame)
+                passes::passes(solver, frame)
             }
 
             fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64 {
-                solver.held_energy(frame)
+                diagnostics::elastic_energy(&solver.cloths, &solver.state, frame)
             }
         }
     )*};

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::constraints::pressure::Chamber;
-use crate::constraints::shape::UNTURNED;
+use crate::bytes::RestoreError;
+use crate::constraints::whole;
 use crate::contact::cloth::Mutual;
 use crate::contact::collider::ColliderState;
 use crate::contact::foresee::Cover;
@@ -11,13 +11,17 @@ use crate::contact::ground::Ground;
 use crate::contact::maps::Maps;
 use crate::contact::pairs::PairList;
 use crate::contact::terms::Terms;
-use crate::input::ids::{ClothId, ColliderId, PointId};
+use crate::input::frame::FrameInput;
+use crate::input::validation::LastPositions;
+use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::{Real, Row4};
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
-use crate::output::observer::{ContactState, StateView};
+use crate::output::{ContactState, StateView, StepObserver};
+use crate::output::{PassCost, StepReport};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
+use crate::state::kinematics::update_anchors;
 
 /// Everything needed to advance a scene by a frame; [`Solver::step`] does it.
 pub struct Solver<R: Real = f32> {
@@ -53,13 +57,76 @@ pub struct Solver<R: Real = f32> {
     pub(crate) pool: ThreadPool,
 }
 
-impl<R: Real> Solver<R> {
-    /// Builds lists, trees and state. `threads` is the number of cores to use; it never changes a bit of
-    /// the result.
+/// `f32` or `f64`: a scalar for which this crate compiles the whole solver (`compiled.rs`).
+///
+/// No other crate can implement it, because the traits it extends are private.
+pub trait CompiledReal: Real {
+    /// [`Solver::new`].
+    fn build(builder: ModelBuilder, threads: usize) -> Solver<Self>;
+
+    /// [`Solver::restored`].
+    ///
+    /// # Errors
+    /// See there.
+    fn restore(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Solver<Self>, RestoreError>;
+
+    /// [`Solver::save`].
+    fn save(solver: &Solver<Self>) -> Vec<u8>;
+
+    /// [`Solver::step`].
+    fn step(solver: &mut Solver<Self>, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport;
+
+    /// [`StateView::contacts`].
+    fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>);
+
+    /// [`Solver::passes`].
+    fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost>;
+
+    /// [`Solver::elastic_energy`].
+    fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64;
+}
+
+impl<R: CompiledReal> Solver<R> {
+    /// Builds lists, bounding volumes and state. `threads` is the number of cores to use; the result has the same bits for any.
     pub fn new(builder: ModelBuilder, threads: usize) -> Self {
         R::build(builder, threads)
     }
 
+    /// A solver that continues, with the same bits, from where one of the same model was saved. `threads` is the number of cores
+    /// to use; it may differ from the saved one's.
+    ///
+    /// # Errors
+    /// When the bytes are damaged, of another version, or of another model.
+    pub fn restored(builder: ModelBuilder, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
+        R::restore(builder, threads, bytes)
+    }
+
+    /// The state that the next frame depends on, besides the model and the input of the frame, as bytes.
+    pub fn save(&self) -> Vec<u8> {
+        R::save(self)
+    }
+
+    /// Advances by one frame. A step cannot fail: the report counts what could not be satisfied, and every invalid value of the
+    /// input.
+    ///
+    /// `frame` has one entry per cloth and per collider.
+    pub fn step(&mut self, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
+        R::step(self, frame, observer)
+    }
+
+    /// The passes of a frame and their cost. A pass that the scene does not use is absent.
+    pub fn passes(&self, frame: &FrameInput) -> Vec<PassCost> {
+        R::passes(self, frame)
+    }
+
+    /// The elastic energy of stretch, shear and bending in joules, with the stiffness of `frame` and the current positions. Zero in
+    /// Classic, where a resistance is no stiffness.
+    pub fn elastic_energy(&self, frame: &FrameInput) -> f64 {
+        R::elastic_energy(self, frame)
+    }
+}
+
+impl<R: Real> Solver<R> {
     pub(crate) fn build(builder: ModelBuilder, threads: usize) -> Self {
         let ModelBuilder { cloths, colliders } = builder;
         let collides = !colliders.is_empty();
@@ -71,7 +138,7 @@ impl<R: Real> Solver<R> {
         }
         let mut state = State::new(&cloths, &models);
         let pool = ThreadPool::new(threads);
-        prepare_wholes(&mut models, &mut state, &pool);
+        whole::prepare(&mut models, &mut state, &pool);
         // What goes on from a state may lie on something; whether it does is only known after a frame.
         let touches = cloths.iter().any(|cloth| !cloth.start.positions.is_empty());
         let maps = Maps::new(&cloths, &models, state.anchor.len());
@@ -100,7 +167,7 @@ impl<R: Real> Solver<R> {
             ground: Ground::default(),
             pool,
         };
-        solver.anchor_rows();
+        update_anchors(&mut solver.cloths, &solver.state.anchor, &solver.pool);
         solver
     }
 
@@ -129,21 +196,21 @@ impl<R: Real> Solver<R> {
     }
 }
 
-/// Gives chambers and shells their places in the state.
-fn prepare_wholes<R: Real>(models: &mut [ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
-    for model in models {
-        model.shape.first = state.rotations.len();
-        state.rotations.resize(model.shape.first + model.shape.shells(), UNTURNED);
-        if model.pressure.is_on() {
-            model.pressure.first = state.chambers.len();
-            let chambers = model.pressure.first + model.pressure.chambers();
-            state.chambers.resize(chambers, Chamber { start_volume: 0.0, volume: 0.0, amount: 0.0 });
-            model.pressure.start(&model.blocks, state, pool);
-        }
+impl<R: Real> LastPositions for Solver<R> {
+    fn collider(&self, collider: ColliderId) -> &[Vector3<f64>] {
+        &self.collider_states[collider.index()].end
+    }
+
+    fn cloth_point(&self, cloth: ClothId, point: PointId) -> Vector3<f64> {
+        self.state.position(self.cloths[cloth.index()].place(point.index())).into()
+    }
+
+    fn cloth_points(&self, cloth: ClothId) -> usize {
+        self.cloths[cloth.index()].points().len()
     }
 }
 
-impl<R: Real> StateView for Solver<R> {
+impl<R: CompiledReal> StateView for Solver<R> {
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         self.column(cloth, out, |row| self.state.position(row).map(|x| x * units_per_metre));
     }

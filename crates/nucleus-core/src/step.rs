@@ -1,274 +1,181 @@
-//! One frame, told as a story.
+//! One frame of the solver, stage by stage.
+//!
+//! A frame has substeps, and a substep has time steps (small steps: Macklin et al. 2019). A time step is one of
+//! position-based dynamics (Müller et al. 2007, §3.1), with the interleaved passes of the Nucleus paper (§2.2):
+//!
+//! 1. **predict**: external forces change velocities, and velocities move points;
+//! 2. **passes**: Gauss-Seidel sweeps of the constraints alternate with contact passes, as the [`Schedule`] says;
+//! 3. **safeguard**: certifies that no pair of elements passed through each other, else applies fallbacks;
+//! 4. **velocities** follow the position corrections;
+//! 5. **restitution** adds the rebound of contacts.
+//!
+//! Normals and `pushOut` come once at the start of a substep, damping and the observer once at its end.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
-use crate::constraints::damp::{self, Damping};
-use crate::constraints::{sweep, whole};
+use crate::constraints::damp::damp;
+use crate::constraints::sweep::sweep;
+use crate::constraints::whole;
 use crate::contact::resolve::Tally;
 use crate::input::frame::FrameInput;
-use crate::input::validation::InvalidInput;
-use crate::integrate::aerodynamics::{self, AirForces};
-use crate::integrate::predict::{self, Columns, Drive, gravity_kick};
-use crate::integrate::{gusts, velocities};
-use crate::math::{Real, Row4};
-use crate::output::observer::{Stage, StepObserver, SubstepIndex};
-use crate::output::report::StepReport;
-use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::{Direction, Pass, Schedule, Span};
-use crate::solver::Solver;
-use crate::state::State;
+use crate::input::validation::{InvalidInput, sanitize};
+use crate::integrate::aerodynamics::update_normals;
+use crate::integrate::gusts::update_gusts;
+use crate::integrate::predict::{max_speeds, predict, update_velocities};
+use crate::output::StepReport;
+use crate::output::{Stage, StepObserver, SubstepIndex};
+use crate::report::diagnostics::report;
+use crate::schedule::{Direction, Pass, Schedule, TimeStep};
+use crate::solver::{CompiledReal, Solver};
+use crate::state::kinematics::update_anchors;
 
-/// A time step: what is done in it, which it is, and when.
-struct Step<'a, R> {
-    schedule: &'a Schedule<R>,
-    index: u32,
-    span: Span,
-    direction: Direction,
+/// Advances the solver by one frame; see [`Solver::step`].
+pub fn step<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    observer: &mut dyn StepObserver,
+) -> StepReport {
+    let (frame, sanitized) = sanitize(frame, solver);
+    let report = match sanitized.first {
+        Some(InvalidInput::Duration) => skip_frame(solver, observer),
+        _ => solve_frame(solver, &frame, observer),
+    };
+    StepReport { sanitized, ..report }
 }
 
-impl<R: Real> Solver<R> {
-    /// Advances by one frame. Cannot fail: what could not be satisfied, or is no number, is counted in the report.
-    ///
-    /// `frame` has one entry per cloth and per collider.
-    pub fn step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-        R::step(self, frame, watch)
-    }
+/// A frame without a valid duration changes nothing.
+fn skip_frame<R: CompiledReal>(solver: &Solver<R>, observer: &mut dyn StepObserver) -> StepReport {
+    observer.substep(SubstepIndex { substep: 1, substeps: 1 }, solver);
+    StepReport::default()
+}
 
-    pub(crate) fn take_step(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-        let (frame, sanitized) = self.usable(frame);
-        let report = match sanitized.first {
-            Some(InvalidInput::Duration) => self.pass_over(watch),
-            _ => self.solve(&frame, watch),
-        };
-        StepReport { sanitized, ..report }
+fn solve_frame<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    observer: &mut dyn StepObserver,
+) -> StepReport {
+    let schedule = Schedule::new(frame);
+    let mut tally = Tally::default();
+    observer.enter(Stage::FrameStart);
+    begin_frame(solver, frame);
+    if solve_substeps(solver, frame, &schedule, &mut tally, observer).is_break() {
+        return StepReport { stopped: true, ..StepReport::default() };
     }
+    observer.enter(Stage::Report);
+    solver.touches = tally.contacts.load(Ordering::Relaxed) > 0;
+    report(solver, frame, &schedule, &tally)
+}
 
-    /// A frame in which no time passes: all stays as it is.
-    fn pass_over(&mut self, watch: &mut dyn StepObserver) -> StepReport {
-        watch.substep(SubstepIndex { substep: 1, substeps: 1 }, self);
-        StepReport::default()
-    }
-
-    /// One frame of finite numbers.
-    fn solve(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
-        let schedule = Schedule::new(frame);
-        let mut tally = Tally::default();
-        if self.substeps(frame, &schedule, &mut tally, watch).is_break() {
-            return StepReport { stopped: true, ..StepReport::default() };
+/// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
+/// is evaluated once per frame and interpolated inside it (§2.4).
+fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
+    solver.take_over_pairs(frame);
+    solver.begin_contact(frame);
+    solver.state.move_anchors();
+    solver.state.carry_air(frame);
+    for pin in &frame.pins {
+        let row = solver.cloths[pin.cloth.index()].place(pin.point.index());
+        let is_moved_elsewhere = solver.state.pin(row, pin, frame.duration);
+        if is_moved_elsewhere {
+            solver.invalidate_bounds(row as usize);
         }
-        watch.enter(Stage::Report);
-        self.touches = tally.contacts.load(Ordering::Relaxed) > 0;
-        self.report(frame, &schedule, &tally)
     }
-
-    /// All substeps of a frame, unless the observer ends it before.
-    fn substeps(
-        &mut self,
-        frame: &FrameInput,
-        schedule: &Schedule<R>,
-        tally: &mut Tally,
-        watch: &mut dyn StepObserver,
-    ) -> ControlFlow<()> {
-        watch.enter(Stage::FrameStart);
-        self.begin_frame(frame); // animation is taken up once per frame, and interpolated inside (§2.4)
-        let max_speed = self.max_speed(frame);
-        // What is held or lies on something would tremble under sweeps that turn: not converged, each way has a
-        // balance of its own. Only what flies freely can be stirred for long.
-        let is_free = frame.pins.is_empty() && !self.touches;
-        for substep in 1..=schedule.substeps {
-            watch.enter(Stage::Normals);
-            self.find_normals();
-            let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
-            gusts::find_all(&self.cloths, &mut self.state, frame, time, &self.pool);
-            self.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
-            for step in (substep - 1) * schedule.steps..substep * schedule.steps {
-                let span = schedule.span(step);
-                let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(frame, schedule, span, &max_speed);
-                if parts == 1 {
-                    let now = Step { schedule, index: step, span, direction };
-                    self.advance(frame, &now, &max_speed, tally, watch)?;
-                    continue;
-                }
-                let split = schedule.split(frame, parts);
-                for part in 0..parts {
-                    let (index, span) = (step * parts + part, span.part(part, parts));
-                    let now = Step { schedule: &split, index, span, direction };
-                    self.advance(frame, &now, &max_speed, tally, watch)?;
-                }
-            }
-            self.damp(frame, schedule);
-            self.set_time(f64::from(substep) / f64::from(schedule.substeps));
-            watch.enter(Stage::Observe);
-            watch.substep(SubstepIndex { substep, substeps: schedule.substeps }, self);
-        }
-        ControlFlow::Continue(())
+    update_anchors(&mut solver.cloths, &solver.state.anchor, &solver.pool);
+    if let Some(mutual) = &mut solver.mutual {
+        mutual.active.follow(&solver.state.anchor);
     }
+    for (collider, motion) in solver.collider_states.iter_mut().zip(&frame.colliders) {
+        collider.begin_frame(&motion.start, &motion.end);
+    }
+    solver.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
+}
 
-    /// One time step, unless the observer ends the frame.
-    fn advance(
-        &mut self,
-        frame: &FrameInput,
-        now: &Step<'_, R>,
-        max_speed: &[f64],
-        tally: &mut Tally,
-        watch: &mut dyn StepObserver,
-    ) -> ControlFlow<()> {
-        let Step { schedule, index, span, direction } = *now;
-        watch.enter(Stage::Predict);
-        self.store_step_start(frame, schedule.h);
-        whole::drag_to_input_meshes(&self.cloths, &mut self.state, frame, schedule.h, &self.pool);
-        self.predict(frame, schedule, max_speed, index); // gravity, wind, drag; inertia
-        for round in &schedule.passes {
-            watch.should_continue()?;
-            match round {
-                Pass::Constraints(sweeps) => {
-                    watch.enter(Stage::Constraints);
-                    sweep::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
-                }
-                Pass::Whole(at) => {
-                    watch.enter(Stage::Constraints);
-                    let (whole, now) = (&schedule.wholes[*at], [span.to, schedule.h]);
-                    whole::relax(whole, &self.cloths, &mut self.state, frame, now, &self.pool);
-                }
-                Pass::ClothContact => {
-                    self.stick_to_cloth(frame, schedule, span, tally);
-                    self.meet(1.0, frame, schedule, span, tally, watch);
-                }
-                Pass::ColliderContact => {
-                    self.stick_to_colliders(frame, schedule, span, tally);
-                    self.meet_colliders(1.0, frame, schedule, span, tally, watch);
-                }
-                Pass::Safeguard => self.settle(frame, schedule, span, tally, watch), // the last word
+/// All substeps of a frame, unless the observer ends it before.
+fn solve_substeps<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    tally: &mut Tally,
+    observer: &mut dyn StepObserver,
+) -> ControlFlow<()> {
+    let max_speeds = max_speeds(&solver.cloths, &solver.state, frame);
+    // Alternating sweeps have two balances, one per direction: pinned or resting cloth would tremble between them.
+    // Only cloth that moves freely is stirred by sweeps in one direction.
+    let alternates_direction = frame.pins.is_empty() && !solver.touches;
+    for substep in 1..=schedule.substeps {
+        observer.enter(Stage::Normals);
+        update_normals(&solver.cloths, &mut solver.state, &solver.pool);
+        let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
+        update_gusts(&solver.cloths, &mut solver.state, frame, time, &solver.pool);
+        solver.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
+        for step in (substep - 1) * schedule.steps..substep * schedule.steps {
+            let splits = solver.parts(frame, schedule, schedule.span(step), &max_speeds);
+            let direction = if alternates_direction { schedule.direction(step) } else { Direction::Forward };
+            let schedule = schedule.split(frame, splits);
+            for (index, span) in schedule.time_steps(step) {
+                let now =
+                    TimeStep { frame, schedule: &schedule, index, span, direction, max_speeds: &max_speeds };
+                solve_time_step(solver, &now, tally, observer)?;
             }
         }
-        whole::remember_deformation(&mut self.cloths, &self.state, frame, &self.pool);
-        watch.enter(Stage::Velocity);
-        self.update_velocities(schedule);
-        self.bounce(frame, schedule, span);
-        watch.step(span.to, self);
-        ControlFlow::Continue(())
+        let substep_length = schedule.h * f64::from(schedule.steps);
+        damp(&solver.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+        solver.set_time(f64::from(substep) / f64::from(schedule.substeps));
+        observer.enter(Stage::Observe);
+        observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
     }
+    ControlFlow::Continue(())
+}
 
-    /// Keeps the places that points have before a time step moves them, where they can meet anything.
-    fn store_step_start(&mut self, frame: &FrameInput, h: f64) {
-        // Of the last step, and of what may be no more: a plane that is keyed off.
-        self.state.led.clear();
-        self.state.parted.clear();
-        self.state.step_length = h;
-        if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
-            let State { start, led, parted, displacement, .. } = &mut self.state;
-            start.clone_from(displacement);
-            led.resize(start.len(), Row4::ZERO);
-            parted.resize(start.len(), Row4::ZERO);
-        }
-    }
-
-    /// The largest speed that each cloth can have in this frame, about: the grain that gravity is given in.
-    fn max_speed(&self, frame: &FrameInput) -> Vec<f64> {
-        let of_cloth = |points: Range<u32>| {
-            let rows = &self.state.velocity[points.start as usize..points.end as usize];
-            let speeds = rows.iter().map(|row| row.xyz().map(R::to_f64));
-            let most = speeds.flatten().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most });
-            most + frame.gravity.amax() * frame.duration
-        };
-        self.cloths.iter().map(|cloth| of_cloth(cloth.points())).collect()
-    }
-
-    /// Normals for the air, once per substep.
-    fn find_normals(&mut self) {
-        let Self { cloths, state, pool, .. } = self;
-        let (anchor, displacement) = (&state.anchor, &state.displacement);
-        let position = |row: u32| {
-            let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
-            [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
-        };
-        let normals = DisjointSlice::new(&mut state.normal);
-        for cloth in cloths.iter() {
-            pool.parallel_for(cloth.triangles.len(), |block| {
-                // SAFETY: blocks do not overlap.
-                #[allow(unsafe_code)]
-                unsafe {
-                    aerodynamics::find_normals(
-                        normals,
-                        cloth.blocks.range(block),
-                        &cloth.triangles[block],
-                        position,
-                    );
-                }
-            });
-        }
-    }
-
-    fn predict(&mut self, frame: &FrameInput, schedule: &Schedule<R>, max_speed: &[f64], step: u32) {
-        let Self { cloths, state, pool, .. } = self;
-        let columns = Columns {
-            displacement: DisjointSlice::new(&mut state.displacement),
-            velocity: DisjointSlice::new(&mut state.velocity),
-            predicted: DisjointSlice::new(&mut state.predicted),
-            normal: &state.normal,
-            gust: &state.gust,
-        };
-        for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(max_speed) {
-            let gravity = gravity_kick(frame.gravity.into(), schedule.h, step, max_speed);
-            let air_forces = AirForces::new(frame, settings, cloth.weight, schedule.h);
-            let drive = Drive {
-                gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
-                impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
-                air_forces: air_forces.filter(|_| !cloth.triangles.is_empty()),
-                factors: &[],
-                h: R::from_f64(schedule.h),
-            };
-            pool.parallel_for(cloth.blocks.len(), |block| {
-                let points = cloth.blocks.range(block);
-                let drive = Drive { factors: cloth.air_factors(&points), ..drive };
-                // SAFETY: blocks do not overlap.
-                #[allow(unsafe_code)]
-                unsafe {
-                    predict::move_points(&columns, points, &drive);
-                }
-            });
-        }
-    }
-
-    fn update_velocities(&mut self, schedule: &Schedule<R>) {
-        let Self { cloths, state, pool, .. } = self;
-        let (displacement, predicted) =
-            (DisjointSlice::new(&mut state.displacement), DisjointSlice::new(&mut state.predicted));
-        let (led, velocity) = ([&state.led[..], &state.parted[..]], DisjointSlice::new(&mut state.velocity));
-        let h = R::from_f64(schedule.h);
-        for cloth in cloths.iter() {
-            // SAFETY: blocks do not overlap.
-            #[allow(unsafe_code)]
-            pool.parallel_for(cloth.blocks.len(), |block| unsafe {
-                velocities::update_velocities(
-                    [displacement, predicted, velocity],
-                    led,
-                    cloth.blocks.range(block),
-                    h,
+/// One time step, unless the observer ends the frame.
+fn solve_time_step<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    now: &TimeStep<'_, R>,
+    tally: &mut Tally,
+    observer: &mut dyn StepObserver,
+) -> ControlFlow<()> {
+    let TimeStep { frame, schedule, span, .. } = *now;
+    observer.enter(Stage::Predict);
+    let can_touch = frame.plane.is_some() || !solver.colliders.is_empty() || solver.mutual.is_some();
+    solver.state.store_step_start(schedule.h, can_touch);
+    whole::drag_to_input_meshes(&solver.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
+    predict(&solver.cloths, &mut solver.state, now, &solver.pool);
+    for pass in &schedule.passes {
+        observer.should_continue()?;
+        match pass {
+            Pass::Constraints(sweeps) => {
+                observer.enter(Stage::Constraints);
+                let sweeps = &schedule.sweeps[sweeps.clone()];
+                sweep(&solver.cloths, &mut solver.state.displacement, sweeps, now.direction, &solver.pool);
+            }
+            Pass::Whole(at) => {
+                observer.enter(Stage::Constraints);
+                let effect = &schedule.wholes[*at];
+                whole::relax(
+                    effect,
+                    &solver.cloths,
+                    &mut solver.state,
+                    frame,
+                    [span.to, schedule.h],
+                    &solver.pool,
                 );
-            });
-        }
-    }
-
-    fn damp(&mut self, frame: &FrameInput, schedule: &Schedule<R>) {
-        let Self { cloths, state, pool, .. } = self;
-        let substep = schedule.h * f64::from(schedule.steps);
-        let velocity = DisjointSlice::new(&mut state.velocity);
-        for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
-            let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
-            if !damping.is_felt() {
-                continue;
             }
-            sweep::over_list(pool, &cloth.blocks, &cloth.stretch, |part| {
-                let (links, factors) = (cloth.stretch.part(part), cloth.shares.damp.part(part));
-                // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
-                #[allow(unsafe_code)]
-                unsafe {
-                    damp::relax(velocity, &state.displacement, links, factors, &damping);
-                }
-            });
+            Pass::ClothContact => {
+                solver.stick_to_cloth(frame, schedule, span, tally);
+                solver.meet(1.0, frame, schedule, span, tally, observer);
+            }
+            Pass::ColliderContact => {
+                solver.stick_to_colliders(frame, schedule, span, tally);
+                solver.meet_colliders(1.0, frame, schedule, span, tally, observer);
+            }
+            Pass::Safeguard => solver.settle(frame, schedule, span, tally, observer),
         }
     }
+    whole::remember_deformation(&mut solver.cloths, &solver.state, frame, &solver.pool);
+    observer.enter(Stage::Velocity);
+    update_velocities(&solver.cloths, &mut solver.state, schedule.h, &solver.pool);
+    solver.bounce(frame, schedule, span); // restitution
+    observer.step(span.to, solver);
+    ControlFlow::Continue(())
 }

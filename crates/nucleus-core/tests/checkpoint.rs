@@ -5,7 +5,7 @@ mod scenes;
 use std::sync::OnceLock;
 
 use nucleus_core::{
-    Collider, FrameInput, ModelBuilder, RestoreError, SelfCollision, Solver, sealed, unsealed,
+    Collider, FrameInput, ModelBuilder, RestoreError, SelfCollision, Solver, add_checksum, verify_checksum,
 };
 use proptest::prelude::*;
 use scenes::{Vec3, frame, grid, ground, physical, sphere, still};
@@ -48,15 +48,15 @@ proptest! {
     fn no_content_makes_restoring_panic(at in 0.0..1.0f64, byte: u8, cut in 0usize..3) {
         let whole = SAVED.get_or_init(saved);
         let kind: [u8; 8] = whole[..8].try_into().unwrap();
-        let mut inner = unsealed(kind, whole).unwrap().to_vec();
+        let mut inner = verify_checksum(kind, whole).unwrap().to_vec();
         let at = (at * inner.len() as f64) as usize;
         match cut {
             0 => inner.truncate(at),
             _ => inner[at] = byte,
         }
-        if let Ok(solver) = Solver::<f32>::restored(scene().0, 1, &sealed(kind, &inner)) {
+        if let Ok(solver) = Solver::<f32>::restored(scene().0, 1, &add_checksum(kind, &inner)) {
             // What it holds may be another thing: pairs with a collider that moves are not kept.
-            prop_assert!(unsealed(kind, &solver.save()).is_ok());
+            prop_assert!(verify_checksum(kind, &solver.save()).is_ok());
         }
     }
 }
@@ -65,8 +65,8 @@ proptest! {
 fn a_checkpoint_of_another_version_is_refused_as_such() {
     let whole = saved();
     let kind: [u8; 8] = whole[..8].try_into().unwrap();
-    let inner = unsealed(kind, &whole).unwrap();
-    let newer = sealed(*b"solver 9", inner);
+    let inner = verify_checksum(kind, &whole).unwrap();
+    let newer = add_checksum(*b"solver 9", inner);
     let restored = Solver::<f32>::restored(scene().0, 1, &newer).map(|_| ());
     assert_eq!(restored, Err(RestoreError::OtherVersion));
 }

@@ -16,7 +16,7 @@ use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
 use super::hinge::{HingeGroup, MIN_COSINE};
-use super::row_map::Portion;
+use super::strength_map::StrengthMap;
 
 /// What the sign of four hinges is measured with, beside the hinges themselves.
 #[derive(Debug, Clone, Copy)]
@@ -184,15 +184,15 @@ fn measure<R: Real, const N: usize>(
     Measured { chord, direction, longest }
 }
 
-/// Sweeps the hinges of `groups` once, each group with its angles and its portion of the strength.
+/// Sweeps the hinges of `groups` once, each group with its angles and its map.
 ///
 /// # Safety
 /// The rows of `groups` share no point within a group, and no other task of the loop touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
+pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = ((&'a HingeGroup<R, N>, &'a AngleGroup<R>), P)>,
+    groups: impl Iterator<Item = ((&'a HingeGroup<R, N>, &'a AngleGroup<R>), M)>,
     strength: &BendStrength<R>,
     angles: &AngleStrength<R>,
 ) {
@@ -201,7 +201,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
     let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
     let least = splat(R::from_f64(MIN_COSINE * MIN_COSINE));
     let (scale, dropoff) = (splat(angles.scale), splat(angles.dropoff));
-    for ((hinge, angle), portion) in groups {
+    for ((hinge, angle), map) in groups {
         // SAFETY: the caller's promise.
         let rows = hinge.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
         let columns = rows.map(R::Lanes::transpose);
@@ -219,7 +219,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
         // cos²(θ/2), within bounds: the moment grows with the angle.
         let cosine = one - chord * chord * R::Lanes::from_array(hinge.fold);
         let cosine = (cosine - least).choose_by_sign(cosine, least);
-        let (share, compliance) = portion.of(error, share * grown, compliance / (grown + tiny));
+        let (share, compliance) = map.scale(error, share * grown, compliance / (grown + tiny));
         let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
         let push = direction.map(|x| x * lambda);
         for k in 0..N {

@@ -9,7 +9,7 @@ use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::hinge::{HingeGroup, MIN_COSINE};
-use super::row_map::Portion;
+use super::strength_map::StrengthMap;
 
 /// How strongly a sweep acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,13 +20,13 @@ pub struct BendStrength<R> {
     pub compliance: R,
 }
 
-/// Sweeps the hinges of `groups` once, each group with its portion of the strength.
+/// Sweeps the hinges of `groups` once, each group with its map of the strength.
 ///
 /// # Safety
 /// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
+pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
     groups: impl Iterator<Item = (&'a HingeGroup<R, N>, P)>,
     strength: &BendStrength<R>,
@@ -35,7 +35,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
     let (zero, one, tiny) =
         (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::MIN_DENOMINATOR));
     let least = R::Lanes::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
-    for (group, portion) in groups {
+    for (group, map) in groups {
         // SAFETY: the caller's promise.
         let x = group.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
         let weights = group.weights.map(R::Lanes::from_array);
@@ -53,7 +53,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>, const N: usize>(
         let cosine = one - square * R::Lanes::from_array(group.fold);
         let cosine = (cosine - least).choose_by_sign(cosine, least);
         let bent = one - R::Lanes::from_array(group.rest) / (length + tiny);
-        let (share, compliance) = portion.of(bent, share, compliance);
+        let (share, compliance) = map.scale(bent, share, compliance);
         let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
         let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
         for k in 0..N {

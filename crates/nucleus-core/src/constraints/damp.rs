@@ -3,12 +3,42 @@
 //! `stretchDamp` acts along the links only, `damp` in all directions. Both are given by pairs, equal and
 //! opposite, so they change no momentum: a cloth that flies or falls as one is not slowed.
 
-use crate::input::frame::COUNT_PERIOD;
+use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};
+use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
 
-use super::row_map::ShareGroup;
+use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
+use super::sweep::for_all_rows;
+
+/// Damps all cloths once, for a substep of this many seconds. Reads displacements, writes velocities.
+pub fn damp<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    frame: &FrameInput,
+    substep: f64,
+    pool: &ThreadPool,
+) {
+    let State { displacement, velocity, .. } = state;
+    let velocity = DisjointSlice::new(velocity);
+    for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
+        let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
+        if !damping.is_felt() {
+            continue;
+        }
+        for_all_rows(pool, &cloth.blocks, &cloth.stretch, |part| {
+            let (links, factors) = (cloth.stretch.part(part), cloth.strength_maps.damp.part(part));
+            // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
+            #[allow(unsafe_code)]
+            unsafe {
+                relax(velocity, displacement, links, factors, &damping);
+            }
+        });
+    }
+}
 
 /// What damps a cloth in a substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +70,7 @@ impl Damping {
     }
 }
 
-/// Shares of the relative velocity of two linked points that one sweep takes away.
+/// StrengthMaps of the relative velocity of two linked points that one sweep takes away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampStrength<R> {
     along: R,
@@ -56,14 +86,14 @@ pub unsafe fn relax<R: Real>(
     velocity: DisjointSlice<'_, Row4<R>>,
     points: &[Row4<R>],
     groups: &[LinkGroup<R>],
-    factors: &[ShareGroup<R>],
+    factors: &[StrengthGroup<R>],
     damping: &Damping,
 ) {
     let everywhere: DampStrength<R> = damping.strength(1.0);
     for (k, group) in groups.iter().enumerate() {
         for lane in 0..4 {
             let [a, b] = group.ends.map(|ends| ends[lane]);
-            let own = |factors: &ShareGroup<R>| damping.strength(factors.above[lane].to_f64());
+            let own = |factors: &StrengthGroup<R>| damping.strength(factors.above[lane].to_f64());
             let strength = factors.get(k).map_or(everywhere, own);
             let (x_a, x_b) = (points[a as usize].0, points[b as usize].0);
             let total = x_a[3] + x_b[3];

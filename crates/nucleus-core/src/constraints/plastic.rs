@@ -47,7 +47,7 @@ pub fn remember_angles<R: Real>(
     pool: &ThreadPool,
 ) {
     update(&cloth.bend, &mut cloth.bend_angles, points, memory, pool);
-    update(&cloth.fold, &mut cloth.fold_angles, points, memory, pool);
+    update(&cloth.bend_six, &mut cloth.bend_six_angles, points, memory, pool);
 }
 
 fn update<R: Real, const N: usize>(

@@ -67,8 +67,6 @@ pub struct Chamber {
     pub amount: f64,
 }
 
-crate::state::checkpoint::item!([] Chamber { start_volume: f64, volume: f64, amount: f64 });
-
 /// Sums over a chamber in one time step.
 #[derive(Clone, Copy, Default)]
 struct Sums {

@@ -1,41 +1,45 @@
-//! Stretch and compression: edges keep their length.
+//! Stretch, compression and shear: links keep their length.
 //!
-//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of
-//! Macklin et al. 2016, eq. 18. Every sweep starts from no multiplier: in a time step there is one sweep
-//! (Physical), or there is no compliance (Classic).
+//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of Macklin et al. 2016,
+//! eq. 18. The multiplier starts at zero in every sweep, because a time step has one sweep only (Physical), or there is no
+//! compliance (Classic).
+//!
+//! Shear rows are links too: the cross links of quads, swept with the strength of `shearResistance`.
 
 use crate::math::{Lanes, Real, Row4};
-use crate::model::{Link, Row};
+use crate::model::surface::Surface;
+use crate::model::vertex_maps::mean;
+use crate::model::{Link, Row, shear_links};
 use crate::parallel::disjoint::DisjointSlice;
 
-use super::row_map::Portion;
+use super::strength_map::{Sides, StrengthMap};
 
 /// Four links side by side. 28 bytes a link in `f32`.
 #[derive(Debug, Clone, Copy)]
 pub struct LinkGroup<R> {
     /// The points a and b.
     pub ends: [[u32; 4]; 2],
-    /// From anchor a to anchor b: x, y, z. Set at the start of each frame.
+    /// From anchor a to anchor b in metres: x, y, z. Written at the start of each frame.
     pub span: [[R; 4]; 3],
     /// Length at rest in metres.
     pub rest_length: [R; 4],
-    /// Length over width of the strip of cloth the link stands for.
+    /// Length over width of the strip of cloth that the link stands for.
     pub slenderness: [R; 4],
 }
 
-/// A link between points of the solver, before it is laid out.
+/// A link between rows of the solver's columns, before it is laid out.
 #[derive(Debug, Clone, Copy)]
 pub struct LinkRow<R> {
     /// The points a and b.
     pub ends: [u32; 2],
     /// Length at rest in metres.
     pub rest_length: R,
-    /// Length over width of the strip of cloth the link stands for.
+    /// Length over width of the strip of cloth that the link stands for.
     pub slenderness: R,
 }
 
 impl<R: Real> LinkRow<R> {
-    /// The link between the solver's places of its ends; `rest` is a factor on its length at rest.
+    /// The row of a link; `place` maps a point of the mesh to its row in the columns, `rest` is a factor on the rest length.
     pub fn new(link: &Link, rest: f64, place: impl Fn(u32) -> u32) -> Self {
         Self {
             ends: link.ends.map(place),
@@ -43,6 +47,18 @@ impl<R: Real> LinkRow<R> {
             slenderness: R::from_f64(link.slenderness),
         }
     }
+}
+
+/// The shear rows of a mesh: its cross links. `rest` is the vertex map of rest length factors.
+///
+/// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a resistance means the same
+/// stiffness here as along the edges.
+pub fn shear_rows<R: Real>(surface: &Surface, rest: &[f64], place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+    let row =
+        |link: &Link| LinkRow::new(link, mean(rest, link.ends.map(|end| end as usize).into_iter()), &place);
+    let mut rows: Vec<LinkRow<R>> = shear_links(surface).iter().map(row).collect();
+    rows.sort_unstable_by_key(|row| row.ends);
+    rows
 }
 
 impl<R: Real> Row for LinkRow<R> {
@@ -67,29 +83,20 @@ impl<R: Real> Row for LinkRow<R> {
     }
 }
 
-/// What one sweep does to a link that is longer (`above`) or shorter (`below`) than at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sides<T> {
-    /// Longer than at rest.
-    pub above: T,
-    /// Shorter than at rest.
-    pub below: T,
-}
-
-/// How strongly a sweep acts.
+/// The strength of a sweep over links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkStrength<R> {
-    /// The share of the error that is taken away, 0 to 1.
+    /// The share of the error that a sweep removes, 0 to 1.
     pub share: Sides<R>,
-    /// 1 / (stiffness h²) in 1/kg for a link as long as it is wide; 0 is rigid.
+    /// 1 / (stiffness h²) in 1/kg, for a link as long as it is wide; 0 is rigid.
     pub compliance: Sides<R>,
     /// Factor on all rest lengths.
     pub rest_scale: R,
 }
 
 impl<R: Real> LinkGroup<R> {
-    /// Takes up where the anchors now are. Differences are taken in double precision, so a cloth far from the
-    /// origin is as exact as one near it.
+    /// Updates the spans from the anchors. Differences are in double precision, so a cloth far from the origin is as exact as one
+    /// near it.
     pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
         for lane in 0..4 {
             let [a, b] = self.ends.map(|end| anchors[end[lane] as usize]);
@@ -99,7 +106,7 @@ impl<R: Real> LinkGroup<R> {
         }
     }
 
-    /// The strain of each link, length over rest length less one, in four lanes; 0 for a link of no length.
+    /// The strain of each link, length over rest length minus one; 0 for a link whose rest length is zero.
     pub fn strain(&self, points: &[Row4<R>], rest_scale: R) -> [R; 4] {
         std::array::from_fn(|lane| {
             let [a, b] = self.ends.map(|end| points[end[lane] as usize].0);
@@ -110,13 +117,13 @@ impl<R: Real> LinkGroup<R> {
     }
 }
 
-/// Sweeps the links of `groups` once, each group with its portion of the strength.
+/// Sweeps the links of `groups` once, each group with its strength map.
 ///
 /// # Safety
-/// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
+/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, P: Portion<R>>(
+pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>>(
     points: DisjointSlice<'_, Row4<R>>,
     groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
     strength: &LinkStrength<R>,
@@ -125,7 +132,7 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>>(
     let (share_above, share_below) = both(strength.share);
     let (compliance_above, compliance_below) = both(strength.compliance);
     let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::MIN_DENOMINATOR));
-    for (group, portion) in groups {
+    for (group, map) in groups {
         // SAFETY: the caller's promise.
         let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
         let [ax, ay, az, w_a] = R::Lanes::transpose(a);
@@ -136,9 +143,9 @@ pub unsafe fn relax<'a, R: Real, P: Portion<R>>(
         let c = length - R::Lanes::from_array(group.rest_length) * rest_scale;
         let share = c.choose_by_sign(share_above, share_below);
         let compliance = c.choose_by_sign(compliance_above, compliance_below);
-        let (share, compliance) = portion.of(c, share, compliance);
+        let (share, compliance) = map.scale(c, share, compliance);
         let softness = compliance * R::Lanes::from_array(group.slenderness);
-        // Two pinned ends, or no length and so no direction: the numerator or the difference is nought too.
+        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
         let lambda = share * c / ((w_a + w_b + softness) * length + tiny);
         let push = R::Lanes::transpose([lambda * dx, lambda * dy, lambda * dz, R::Lanes::splat(R::ZERO)]);
         for lane in 0..4 {

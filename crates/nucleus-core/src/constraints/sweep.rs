@@ -2,25 +2,29 @@
 
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
-use crate::constraints::row_map::{ShareGroup, Whole};
+use crate::constraints::strength_map::{StrengthGroup, Uniform};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
 use crate::constraints::{angle, bend, stretch};
 use crate::math::{Real, Row4};
-use crate::model::{Blocks, ClothModel, Part, RowList};
+use crate::model::{Blocks, ClothModel, RowBatch, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Direction, Effect, Sweep};
-use crate::solver::Solver;
 
 /// Does the sweeps of a round. Inner rows of all lists come first, block by block, while the block is in the
 /// core's cache; then cross rows, list by list. Backward, all of that from the last to the first, in cloths that
 /// turn.
-pub fn sweep<R: Real>(solver: &mut Solver<R>, sweeps: &[Sweep<R>], direction: Direction) {
-    let Solver { cloths, state, pool, .. } = solver;
-    let points = DisjointSlice::new(&mut state.displacement);
+pub fn sweep<R: Real>(
+    cloths: &[ClothModel<R>],
+    displacement: &mut [Row4<R>],
+    sweeps: &[Sweep<R>],
+    direction: Direction,
+    pool: &ThreadPool,
+) {
+    let points = DisjointSlice::new(displacement);
     for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
         let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
-        let backward = direction == Direction::Backward && cloth.turns;
+        let backward = direction == Direction::Backward && cloth.alternates_direction;
         let sweeper = Sweeper { points, cloth, backward };
         if backward {
             of_cloth.iter().rev().for_each(|sweep| sweeper.cross(pool, &sweep.effect));
@@ -48,13 +52,16 @@ struct Sweeper<'a, R: Real> {
 
 impl<R: Real> Sweeper<'_, R> {
     fn inner(&self, block: usize, effect: &Effect<R>) {
-        let (cloth, part) = (self.cloth, Part::Inner(block));
+        let (cloth, part) = (self.cloth, RowBatch::Interior(block));
         match effect {
-            Effect::Stretch(strength) => self.links(&cloth.stretch, &cloth.shares.stretch, part, strength),
+            Effect::Stretch(strength) => {
+                self.links(&cloth.stretch, &cloth.strength_maps.stretch, part, strength)
+            }
             Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), part, strength),
             Effect::Bend(strength, angles) => {
-                self.hinges((&cloth.bend, &cloth.bend_angles), &cloth.shares.bend, part, (strength, angles));
-                self.hinges((&cloth.fold, &cloth.fold_angles), &cloth.shares.fold, part, (strength, angles));
+                let (maps, strength) = (&cloth.strength_maps, (strength, angles));
+                self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, part, strength);
+                self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, part, strength);
             }
         }
     }
@@ -62,50 +69,41 @@ impl<R: Real> Sweeper<'_, R> {
     fn cross(&self, pool: &ThreadPool, effect: &Effect<R>) {
         let (cloth, backward) = (self.cloth, self.backward);
         match effect {
-            Effect::Stretch(strength) => over_cross(pool, &cloth.stretch, backward, |part| {
-                self.links(&cloth.stretch, &cloth.shares.stretch, part, strength);
+            Effect::Stretch(strength) => for_interface_rows(pool, &cloth.stretch, backward, |part| {
+                self.links(&cloth.stretch, &cloth.strength_maps.stretch, part, strength);
             }),
-            Effect::Shear(strength) => over_cross(pool, &cloth.shear, backward, |part| {
+            Effect::Shear(strength) => for_interface_rows(pool, &cloth.shear, backward, |part| {
                 self.links(&cloth.shear, &RowList::default(), part, strength);
             }),
             Effect::Bend(strength, angles) => {
-                over_cross(pool, &cloth.bend, backward, |part| {
-                    self.hinges(
-                        (&cloth.bend, &cloth.bend_angles),
-                        &cloth.shares.bend,
-                        part,
-                        (strength, angles),
-                    );
+                let (maps, strength) = (&cloth.strength_maps, (strength, angles));
+                for_interface_rows(pool, &cloth.bend, backward, |part| {
+                    self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, part, strength);
                 });
-                over_cross(pool, &cloth.fold, backward, |part| {
-                    self.hinges(
-                        (&cloth.fold, &cloth.fold_angles),
-                        &cloth.shares.fold,
-                        part,
-                        (strength, angles),
-                    );
+                for_interface_rows(pool, &cloth.bend_six, backward, |part| {
+                    self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, part, strength);
                 });
             }
         }
     }
 
-    /// Where there are shares they lie as the rows do.
+    /// Where there are maps they lie as the rows do.
     #[allow(unsafe_code)]
     fn links(
         &self,
         rows: &RowList<LinkGroup<R>>,
-        shares: &RowList<ShareGroup<R>>,
-        part: Part,
+        maps: &RowList<StrengthGroup<R>>,
+        part: RowBatch,
         strength: &LinkStrength<R>,
     ) {
-        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        let (rows, maps) = (rows.part(part).iter(), maps.part(part).iter());
         // SAFETY: see above.
         unsafe {
-            match (self.backward, shares.len() > 0) {
+            match (self.backward, maps.len() > 0) {
                 (false, false) => stretch::relax(self.points, rows.map(whole), strength),
                 (true, false) => stretch::relax(self.points, rows.rev().map(whole), strength),
-                (false, true) => stretch::relax(self.points, rows.zip(shares), strength),
-                (true, true) => stretch::relax(self.points, rows.zip(shares).rev(), strength),
+                (false, true) => stretch::relax(self.points, rows.zip(maps), strength),
+                (true, true) => stretch::relax(self.points, rows.zip(maps).rev(), strength),
             }
         }
     }
@@ -114,61 +112,67 @@ impl<R: Real> Sweeper<'_, R> {
     fn hinges<const N: usize>(
         &self,
         (rows, angles): (&RowList<HingeGroup<R, N>>, &RowList<AngleGroup<R>>),
-        shares: &RowList<ShareGroup<R>>,
-        part: Part,
-        (strength, angle_strength): (&bend::BendStrength<R>, &AngleStrength<R>),
+        maps: &RowList<StrengthGroup<R>>,
+        part: RowBatch,
+        (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
-        let (rows, shares) = (rows.part(part).iter(), shares.part(part).iter());
+        let (rows, maps) = (rows.part(part).iter(), maps.part(part).iter());
         if !angles.part(part).is_empty() {
             let rows = rows.zip(angles.part(part));
             // SAFETY: see above.
             unsafe {
-                match (self.backward, shares.len() > 0) {
-                    (false, false) => {
-                        angle::relax(self.points, rows.map(|row| (row, Whole)), strength, angle_strength)
-                    }
-                    (true, false) => angle::relax(
-                        self.points,
-                        rows.rev().map(|row| (row, Whole)),
-                        strength,
-                        angle_strength,
-                    ),
-                    (false, true) => angle::relax(self.points, rows.zip(shares), strength, angle_strength),
-                    (true, true) => {
-                        angle::relax(self.points, rows.zip(shares).rev(), strength, angle_strength)
-                    }
+                match (self.backward, maps.len() > 0) {
+                    (false, false) => angle::relax(self.points, rows.map(uniform), strength, reading),
+                    (true, false) => angle::relax(self.points, rows.rev().map(uniform), strength, reading),
+                    (false, true) => angle::relax(self.points, rows.zip(maps), strength, reading),
+                    (true, true) => angle::relax(self.points, rows.zip(maps).rev(), strength, reading),
                 }
             }
             return;
         }
         // SAFETY: see above.
         unsafe {
-            match (self.backward, shares.len() > 0) {
+            match (self.backward, maps.len() > 0) {
                 (false, false) => bend::relax(self.points, rows.map(whole), strength),
                 (true, false) => bend::relax(self.points, rows.rev().map(whole), strength),
-                (false, true) => bend::relax(self.points, rows.zip(shares), strength),
-                (true, true) => bend::relax(self.points, rows.zip(shares).rev(), strength),
+                (false, true) => bend::relax(self.points, rows.zip(maps), strength),
+                (true, true) => bend::relax(self.points, rows.zip(maps).rev(), strength),
             }
         }
     }
 }
 
 /// A group that gets all of a sweep's strength.
-fn whole<G>(group: &G) -> (&G, Whole) {
-    (group, Whole)
+fn whole<G>(group: &G) -> (&G, Uniform) {
+    (group, Uniform)
+}
+
+/// The same for a group with its angles.
+fn uniform<G>(group: G) -> (G, Uniform) {
+    (group, Uniform)
 }
 
 /// Does `work` on all parts of a list once: inner rows, then cross rows.
-pub fn over_list<G: Sync>(pool: &ThreadPool, blocks: &Blocks, list: &RowList<G>, work: impl Fn(Part) + Sync) {
-    pool.parallel_for(blocks.len(), |block| work(Part::Inner(block)));
-    over_cross(pool, list, false, work);
+pub fn for_all_rows<G: Sync>(
+    pool: &ThreadPool,
+    blocks: &Blocks,
+    list: &RowList<G>,
+    work: impl Fn(RowBatch) + Sync,
+) {
+    pool.parallel_for(blocks.len(), |block| work(RowBatch::Interior(block)));
+    for_interface_rows(pool, list, false, work);
 }
 
 /// Does `work` on the cross rows of a list, colour by colour.
-fn over_cross<G: Sync>(pool: &ThreadPool, list: &RowList<G>, backward: bool, work: impl Fn(Part) + Sync) {
-    let count = list.cross_colours();
+fn for_interface_rows<G: Sync>(
+    pool: &ThreadPool,
+    list: &RowList<G>,
+    backward: bool,
+    work: impl Fn(RowBatch) + Sync,
+) {
+    let count = list.interface_colours();
     for k in 0..count {
         let colour = if backward { count - 1 - k } else { k };
-        pool.parallel_for(list.cross_tasks(colour), |task| work(Part::Cross(colour, task)));
+        pool.parallel_for(list.interface_tasks(colour), |task| work(RowBatch::Interface(colour, task)));
     }
 }

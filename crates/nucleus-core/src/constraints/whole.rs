@@ -10,6 +10,22 @@ use crate::state::State;
 use super::angle::AngleMemory;
 use super::attract::Attraction;
 use super::plastic;
+use super::pressure::Chamber;
+use super::shape::UNTURNED;
+
+/// Gives the chambers and shells of all cloths their places in the state.
+pub fn prepare<R: Real>(models: &mut [ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
+    for model in models {
+        model.shape.first = state.rotations.len();
+        state.rotations.resize(model.shape.first + model.shape.shells(), UNTURNED);
+        if model.pressure.is_on() {
+            model.pressure.first = state.chambers.len();
+            let chambers = model.pressure.first + model.pressure.chambers();
+            state.chambers.resize(chambers, Chamber { start_volume: 0.0, volume: 0.0, amount: 0.0 });
+            model.pressure.start(&model.blocks, state, pool);
+        }
+    }
+}
 
 /// One pass of an effect over the cloth that it names, in a time step of `h` seconds that ends at a share `end` of the frame.
 pub fn relax<R: Real>(
@@ -70,7 +86,7 @@ pub fn remember_deformation<R: Real>(
             yield_sine: R::from_f64(yield_sine),
             tracks_flips: solver == BendSolver::FlipTracking,
         };
-        if memory.is_on() && cloth.bend_angles.len() + cloth.fold_angles.len() > 0 {
+        if memory.is_on() && cloth.bend_angles.len() + cloth.bend_six_angles.len() > 0 {
             plastic::remember_angles(cloth, &state.displacement, &memory, pool);
         }
     }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::bytes::encode_struct;
 use crate::math::{Lanes as _, Real};
-use crate::state::checkpoint::item;
 
 /// An axis-aligned box in metres, relative to some origin. In single precision, rounded outwards; the fourth
 /// number is always nought, so that a box is two aligned loads.
@@ -89,7 +89,7 @@ impl Aabb {
     }
 }
 
-item!([] Aabb { low: [f32; 4], high: [f32; 4] });
+encode_struct!([] Aabb { low: [f32; 4], high: [f32; 4] });
 
 /// A box at the start and at the end of a straight way.
 pub type SweptBox = [Aabb; 2];

@@ -14,7 +14,7 @@ use crate::contact::terms::{LEAST_THICKNESS, Terms};
 use crate::input::frame::{ColliderFrame, FrameInput};
 use crate::math::{Real, dot, sub};
 use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::{Schedule, Span};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 
 /// Shares of the thickness by which a point may stray from what is foreseen, in a window and in a substep.
@@ -33,7 +33,7 @@ impl<R: Real> Solver<R> {
         frame: &FrameInput,
         cloth: usize,
         schedule: &Schedule<R>,
-        times: Span,
+        times: StepInterval,
         tally: &mut Tally,
     ) {
         let step = [times.from, times.to];
@@ -61,7 +61,7 @@ impl<R: Real> Solver<R> {
 
     /// Sets the span that pairs are found for. A collider on its way needs a new list for each stretch of it;
     /// around colliders at rest a pair holds for as long as its points stay where they are foreseen.
-    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: Span) {
+    fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: StepInterval) {
         let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
         let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
         if colliders.any(|(collider, _)| collider.moves) {
@@ -87,7 +87,7 @@ impl<R: Real> Solver<R> {
 
     /// How far ahead is foreseen: to the end of the substep, or as long as nothing goes farther than a few
     /// edges. Boxes over a longer way would meet everything on it.
-    fn horizon(&self, frame: &FrameInput, cloth: usize, times: Span) -> f64 {
+    fn horizon(&self, frame: &FrameInput, cloth: usize, times: StepInterval) -> f64 {
         let (step, end_of_substep) = ([times.from, times.to], times.end_of_substep);
         let model = &self.cloths[cloth];
         let points = model.points();

@@ -16,9 +16,9 @@ use crate::contact::resolve::Tally;
 use crate::contact::terms::Terms;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4, scale, sub};
-use crate::output::observer::{Stage, StepObserver};
+use crate::output::{Stage, StepObserver};
 use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::{Schedule, Span};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 use crate::state::State;
 
@@ -83,7 +83,7 @@ impl<R: Real> Solver<R> {
         squeeze: f64,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
@@ -112,7 +112,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
     ) {
         let sticks = |mutual: &Mutual<R>| mutual.terms.iter().flatten().any(Terms::sticks);
@@ -125,7 +125,7 @@ impl<R: Real> Solver<R> {
 
     /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
     /// it was foreseen to, nothing needs to be done.
-    pub(crate) fn watch_contacts(&mut self, frame: &FrameInput, now: Span, tally: &mut Tally) {
+    pub(crate) fn watch_contacts(&mut self, frame: &FrameInput, now: StepInterval, tally: &mut Tally) {
         let Some(mutual) = &mut self.mutual else { return };
         let is_late = now.to <= mutual.span[1] + 1e-9;
         let since = mutual.span[0];
@@ -159,7 +159,7 @@ impl<R: Real> Solver<R> {
 
     /// Marks the points that are not where they were foreseen to be at the end of the step. Whether there
     /// are any.
-    fn find_strays(&mut self, now: Span) -> bool {
+    fn find_strays(&mut self, now: StepInterval) -> bool {
         let Self { mutual: Some(mutual), cloths, state, pool, .. } = self else { return false };
         let Mutual { span: [from, to], strayed, paths, .. } = mutual;
         let share = R::from_f64((now.to - *from) / (*to - *from));
@@ -185,7 +185,7 @@ impl<R: Real> Solver<R> {
 
     /// Writes what is foreseen for the points that strayed from what was foreseen before. As a span begins, those that stay
     /// where they are foreseen to be as the last one ends are foreseen to stay there. `since` is when the last one began.
-    fn foresee(&mut self, frame: &FrameInput, now: Span, since: f64, is_late: bool) {
+    fn foresee(&mut self, frame: &FrameInput, now: StepInterval, since: f64, is_late: bool) {
         let Self { mutual: Some(mutual), cloths, state, pool, .. } = self else { return };
         let Mutual { paths, began_at, span, strayed, active, .. } = mutual;
         let of_last = R::from_f64((now.to - now.from) / (now.from - since).max(now.to - now.from));

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 
 use super::aabb::Aabb;
 use super::tree::Tree;
+use crate::bytes::checkpoint_struct;
 use crate::model::ColliderModel;
-use crate::state::checkpoint::kept;
 
 /// A collider in the current frame, and the boxes over its elements for a span of it.
 #[derive(Debug, Clone)]
@@ -33,11 +33,11 @@ pub struct ColliderState {
     fitted: Option<[f64; 2]>,
 }
 
-kept!([] ColliderState {
+checkpoint_struct!([] ColliderState {
     columns: [start, end],
     values: [now],
     parts: [],
-    anew: [moves, way, drift, corners, boxes, tree, fitted],
+    rebuilt: [moves, way, drift, corners, boxes, tree, fitted],
 });
 
 /// The boxes of an object's elements.

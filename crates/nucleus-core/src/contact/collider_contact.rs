@@ -21,8 +21,8 @@ use proof::{best_plane, stays};
 use super::foresee::{Foreseen, spread};
 use super::friction::Push;
 use super::narrow;
+use crate::bytes::encode_struct;
 use crate::math::{Real, Row4, dot};
-use crate::state::checkpoint::item;
 
 type Point = Vector3<f64>;
 
@@ -54,7 +54,7 @@ pub struct Pair<R, const N: usize, const M: usize> {
     found_at: [R; 3],
 }
 
-item!([R: Real, const N: usize, const M: usize] Pair<R, N, M> {
+encode_struct!([R: Real, const N: usize, const M: usize] Pair<R, N, M> {
     points: [u32; N], collider_points: [u32; M], group: u32, normal: [R; 3], plane: [[R; N]; 2], weights: [R; N],
     surface_motion: [R; 3], found_at: [R; 3],
 });

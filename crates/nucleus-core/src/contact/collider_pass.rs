@@ -12,9 +12,9 @@ use crate::contact::resolve::{Tally, hold_back, prove, release, resolve, stick};
 use crate::contact::terms::Terms;
 use crate::input::frame::FrameInput;
 use crate::math::Real;
-use crate::output::observer::{Stage, StepObserver};
+use crate::output::{Stage, StepObserver};
 use crate::parallel::thread_pool::ThreadPool;
-use crate::schedule::{Schedule, Span};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 use crate::state::State;
 
@@ -26,7 +26,7 @@ impl<R: Real> Solver<R> {
         squeeze: f64,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
@@ -51,7 +51,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
     ) {
         if frame.plane.is_some() && self.ground_terms.iter().flatten().any(Terms::sticks) {
@@ -74,7 +74,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
     ) -> [u64; 2] {
         let mut counts = [0; 2];
@@ -90,7 +90,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
     ) {
         let mut held =
@@ -109,7 +109,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
     ) {
         let mut released = Vec::new();
@@ -126,7 +126,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
         mut work: impl FnMut(&mut PairList<R>, &Step<'_, R>, &ThreadPool, &Tally),
     ) {
@@ -143,7 +143,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         cloth: usize,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         mut work: impl FnMut(&mut PairList<R>, Step<'_, R>, &[crate::model::ColliderModel], &ThreadPool),
     ) {
         let Self { colliders, state, collider_states, pairs, terms, maps, pool, .. } = self;
@@ -166,7 +166,7 @@ impl<R: Real> Solver<R> {
         self.terms_of(cloth).iter().any(Option::is_some)
     }
 
-    fn lift_from_ground(&mut self, squeeze: f64, schedule: &Schedule<R>, span: Span, tally: &Tally) {
+    fn lift_from_ground(&mut self, squeeze: f64, schedule: &Schedule<R>, span: StepInterval, tally: &Tally) {
         self.on_ground(squeeze, schedule, span, |ground, points| {
             tally.contacts.fetch_add(ground.resolve(points), Ordering::Relaxed);
         });
@@ -177,7 +177,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         squeeze: f64,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         work: impl Fn(&GroundContact<'_, R>, std::ops::Range<u32>) + Sync,
     ) {
         let Self { cloths, state, ground, ground_terms, maps, pool, .. } = self;

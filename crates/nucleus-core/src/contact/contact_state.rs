@@ -7,7 +7,7 @@ use crate::contact::narrow::shortest;
 use crate::contact::pairs::PairList;
 use crate::contact::terms::Terms;
 use crate::math::Real;
-use crate::output::observer::ContactState;
+use crate::output::ContactState;
 use crate::solver::Solver;
 
 /// Share of the thickness up to which two elements touch. Passes keep them apart by all of it along a plane, to which

@@ -12,10 +12,10 @@ use super::maps::Maps;
 use super::mover::Mover;
 use super::stick::Adhesion;
 use super::terms::Terms;
+use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
-use crate::schedule::Span;
-use crate::state::checkpoint::{item, kept};
+use crate::schedule::StepInterval;
 
 /// A point of a plane in metres, and its unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Plane {
     normal: [f64; 3],
 }
 
-item!([] Plane { origin: [f64; 3], normal: [f64; 3] });
+encode_struct!([] Plane { origin: [f64; 3], normal: [f64; 3] });
 
 impl Plane {
     /// The plane of a frame.
@@ -50,7 +50,7 @@ pub struct Ground<R> {
     heights: [Vec<R>; 2],
 }
 
-kept!([R: Real] Ground<R> { columns: [], values: [end], parts: [], anew: [start, heights] });
+checkpoint_struct!([R: Real] Ground<R> { columns: [], values: [end], parts: [], rebuilt: [start, heights] });
 
 impl<R: Real> Default for Ground<R> {
     fn default() -> Self {
@@ -84,7 +84,7 @@ impl<R: Real> Ground<R> {
     }
 
     /// The plane in a time step.
-    pub fn in_step(&self, now: Span) -> Option<GroundStep<'_, R>> {
+    pub fn in_step(&self, now: StepInterval) -> Option<GroundStep<'_, R>> {
         let (from, to) = (self.start?, self.end?);
         let ends = [now.from, now.to].map(|time| {
             let normal: [f64; 3] =
@@ -233,8 +233,8 @@ mod tests {
         GroundPlane { origin, normal, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
     }
 
-    fn half_way() -> Span {
-        Span { from: 0.0, to: 0.5, end_of_substep: 1.0 }
+    fn half_way() -> StepInterval {
+        StepInterval { from: 0.0, to: 0.5, end_of_substep: 1.0 }
     }
 
     #[test]

@@ -7,12 +7,12 @@ use crate::contact::collider_pass::StepParts;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::{Schedule, Span};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 
 impl<R: Real> Solver<R> {
     /// Gives back, after the step, part of the speed to what hit something that bounces.
-    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, span: Span) {
+    pub(crate) fn bounce(&mut self, frame: &FrameInput, schedule: &Schedule<R>, span: StepInterval) {
         // Slower than gravity makes things anew in every step nothing bounces.
         let slowest = R::from_f64(2.0 * frame.gravity.norm() * schedule.h);
         let rebound = Bounce { bounce: R::ZERO, slowest, h: R::from_f64(schedule.h) };
@@ -23,7 +23,7 @@ impl<R: Real> Solver<R> {
         self.bounce_off_cloth(schedule, rebound);
     }
 
-    fn bounce_off_ground(&mut self, rebound: Bounce<R>, span: Span) {
+    fn bounce_off_ground(&mut self, rebound: Bounce<R>, span: StepInterval) {
         for cloth in 0..self.cloths.len() {
             let Some(terms) = self.ground_terms[cloth].filter(|terms| terms.bounces()) else { continue };
             for row in self.cloths[cloth].points() {

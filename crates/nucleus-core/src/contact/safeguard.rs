@@ -11,8 +11,8 @@ use crate::contact::cloth_pass::motion;
 use crate::contact::resolve::Tally;
 use crate::input::frame::FrameInput;
 use crate::math::Real;
-use crate::output::observer::{Stage, StepObserver};
-use crate::schedule::{Schedule, Span};
+use crate::output::{Stage, StepObserver};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 
 /// How often each remedy is tried before the next.
@@ -30,7 +30,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
@@ -103,7 +103,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         among_cloths: bool,
         tally: &mut Tally,
     ) {

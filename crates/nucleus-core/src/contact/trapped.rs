@@ -10,9 +10,9 @@ use super::aabb::Aabb;
 use super::collider::ColliderState;
 use super::collider_contact::Step;
 use super::narrow::closest_on_triangle;
+use crate::bytes::encode_struct;
 use crate::math::Real;
 use crate::model::ColliderModel;
-use crate::state::checkpoint::item;
 
 type Point = Vector3<f64>;
 
@@ -32,7 +32,7 @@ pub struct Trapped {
     has_begun: bool,
 }
 
-item!([] Trapped { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
+encode_struct!([] Trapped { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
 
 impl Trapped {
     /// Whether a point is trapped.

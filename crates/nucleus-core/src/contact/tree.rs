@@ -6,8 +6,8 @@
 use nalgebra::Vector3;
 
 use super::aabb::Aabb;
+use crate::bytes::checkpoint_struct;
 use crate::model::by_halves;
-use crate::state::checkpoint::kept;
 
 /// Triangles to a leaf.
 const LEAF: usize = 4;
@@ -22,7 +22,7 @@ pub struct Tree {
     leaves: usize,
 }
 
-kept!([] Tree { columns: [triangles], values: [], parts: [], anew: [nodes, leaves] });
+checkpoint_struct!([] Tree { columns: [triangles], values: [], parts: [], rebuilt: [nodes, leaves] });
 
 impl Tree {
     /// A tree over triangles with these centres. The boxes are empty until [`Tree::refit`].

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::input::ids::{ClothId, PointId};
+use crate::input::{ClothId, PointId};
 
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
 pub const COUNT_PERIOD: f64 = 1.0 / 24.0;

@@ -14,7 +14,10 @@ use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::{Real, Row4, dot};
+use crate::model::{AirFactors, ClothModel};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
 
 /// What the air does to a point in one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,22 +38,6 @@ pub struct AirForces {
     lift: f64,
     tangential_drag: f64,
     h: f64,
-}
-
-/// Factors on what a point feels of the air, over the factor on its mass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AirFactors {
-    /// On drag.
-    pub drag: f64,
-    /// On the share of drag along the surface.
-    pub tangential_drag: f64,
-    /// On lift.
-    pub lift: f64,
-}
-
-impl AirFactors {
-    /// Everything as the cloth's own attributes say.
-    pub const NONE: Self = Self { drag: 1.0, tangential_drag: 1.0, lift: 1.0 };
 }
 
 impl AirForces {
@@ -118,12 +105,31 @@ impl<R: Real> Air<R> {
     }
 }
 
+/// Writes the normals of all points that feel air, weighted by area. Reads positions.
+pub fn update_normals<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
+    let State { anchor, displacement, normal, .. } = state;
+    let position = |row: u32| {
+        let (anchor, moved) = (anchor[row as usize], displacement[row as usize].0);
+        [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
+    };
+    let normals = DisjointSlice::new(normal);
+    for cloth in cloths {
+        pool.parallel_for(cloth.triangles.len(), |block| {
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            unsafe {
+                normals_of_block(normals, cloth.blocks.range(block), &cloth.triangles[block], position);
+            }
+        });
+    }
+}
+
 /// Sets the normals of a block of points, weighted by area, from the triangles that touch it.
 ///
 /// # Safety
 /// No other task of the phase touches these normals.
 #[allow(unsafe_code)]
-pub unsafe fn find_normals<R: Real>(
+unsafe fn normals_of_block<R: Real>(
     normals: DisjointSlice<'_, Row4<R>>,
     points: Range<u32>,
     triangles: &[[u32; 3]],

@@ -22,7 +22,7 @@ pub fn is_gusty(frame: &FrameInput) -> bool {
 
 /// Sets what gusts add to the wind at every point that feels it, once per substep; `time` is in seconds since the start of
 /// the frame.
-pub fn find_all<R: Real>(
+pub fn update_gusts<R: Real>(
     cloths: &[ClothModel<R>],
     state: &mut State<R>,
     frame: &FrameInput,

@@ -1,13 +1,23 @@
 //! Time integration: symplectic Euler, the scheme of position-based dynamics (Müller et al. 2007, §3.1).
 //!
+//! With external acceleration g and a time step of h seconds, a free point of position x and velocity v goes
+//!
+//! ```text
+//! v  <-  v + h g          external forces, then drag and lift (implicit)
+//! p  <-  x + h v          the predicted position
+//! x  <-  p + corrections  constraints and contacts project positions
+//! v  <-  v + (x - p) / h  velocities follow the corrections
+//! ```
+//!
+//! The last line is v = (x - x_start) / h of the paper, written so that no velocity is a difference of rounded
+//! positions.
+//!
 //! | Stage | Read |
 //! |---|---|
-//! | external forces change velocities, velocities move points | [`predict`] |
+//! | gravity, forces, inertia; velocities after the corrections | [`predict`] |
 //! | drag, lift and wind, implicit per time step | [`aerodynamics`] |
 //! | wind that varies in space and time | [`gusts`] |
-//! | velocities follow the position corrections of constraints and contacts | [`velocities`] |
 
 pub mod aerodynamics;
 pub mod gusts;
 pub mod predict;
-pub mod velocities;

@@ -1,48 +1,110 @@
-//! Predict: forces change velocities, velocities move points. Velocity first, and damped before the move:
-//! so does the step of the original, as its recorded output shows.
+//! Prediction at the start of a time step, and velocities at its end.
+//!
+//! Velocities change before points move, and drag acts before the move: recorded output of the original shows this order.
+//!
+//! At the end v += (x - p) / h, where p is the predicted displacement, less the motion by which contacts resolve a
+//! penetration. The form v = (x - x_start) / h would take velocity from a difference of rounded positions: a free
+//! fall of 100 m is then 0.37 m off after a second at 20 substeps a frame.
 
 use std::ops::Range;
 
-use crate::integrate::aerodynamics::{Air, AirFactors, AirForces};
+use crate::input::frame::FrameInput;
+use crate::integrate::aerodynamics::{Air, AirForces};
 use crate::math::{Lanes, Real, Row4};
+use crate::model::{AirFactors, ClothModel};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::TimeStep;
+use crate::state::State;
 
-/// What drives the points of one cloth in one time step.
+/// Upper estimate of the speed of each cloth in this frame, in m/s per axis: its largest now, and what gravity adds.
+pub fn max_speeds<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> Vec<f64> {
+    let of_cloth = |points: Range<u32>| {
+        let rows = &state.velocity[points.start as usize..points.end as usize];
+        let speeds = rows.iter().map(|row| row.xyz().map(R::to_f64));
+        let max = speeds.flatten().fold(0.0, |max, x| if x.abs() > max { x.abs() } else { max });
+        max + frame.gravity.amax() * frame.duration
+    };
+    cloths.iter().map(|cloth| of_cloth(cloth.points())).collect()
+}
+
+/// Applies external forces and moves all points: writes velocity, displacement and predicted displacement.
+pub fn predict<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    now: &TimeStep<'_, R>,
+    pool: &ThreadPool,
+) {
+    let TimeStep { frame, schedule, .. } = *now;
+    let columns = MotionColumns {
+        displacement: DisjointSlice::new(&mut state.displacement),
+        velocity: DisjointSlice::new(&mut state.velocity),
+        predicted: DisjointSlice::new(&mut state.predicted),
+        normal: &state.normal,
+        gust: &state.gust,
+    };
+    for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
+        let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
+        let air = AirForces::new(frame, settings, cloth.point_mass, schedule.h);
+        let forces = ExternalForces {
+            gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
+            impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
+            air: air.filter(|_| !cloth.triangles.is_empty()),
+            air_factors: &[],
+            h: R::from_f64(schedule.h),
+        };
+        pool.parallel_for(cloth.blocks.len(), |block| {
+            let points = cloth.blocks.range(block);
+            let forces = ExternalForces { air_factors: cloth.air_factors(&points), ..forces };
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            unsafe {
+                move_points(&columns, points, &forces);
+            }
+        });
+    }
+}
+
+/// The external forces on the points of one cloth in one time step.
 #[derive(Debug, Clone, Copy)]
-pub struct Drive<'a, R> {
+struct ExternalForces<'a, R> {
     /// Change of velocity by gravity in m/s.
-    pub gravity: [R; 3],
+    gravity: [R; 3],
     /// Force on every point times the length of the step, in N·s.
-    pub impulse: [R; 3],
-    /// The air, where it is felt.
-    pub air_forces: Option<AirForces>,
-    /// Factors on it, for each point of the run; none where it is felt the same everywhere.
-    pub factors: &'a [AirFactors],
+    impulse: [R; 3],
+    /// Drag, lift and wind; none in a vacuum or where no air is felt.
+    air: Option<AirForces>,
+    /// Vertex maps of the air, one entry per point of the run; empty where there are none.
+    air_factors: &'a [AirFactors],
     /// Length of the step in seconds.
-    pub h: R,
+    h: R,
 }
 
 /// The columns that a prediction reads and writes.
 #[derive(Clone, Copy)]
-pub struct Columns<'a, R> {
-    /// Displacement and inverse mass.
-    pub displacement: DisjointSlice<'a, Row4<R>>,
-    /// Velocity.
-    pub velocity: DisjointSlice<'a, Row4<R>>,
-    /// Displacement before anything holds the point.
-    pub predicted: DisjointSlice<'a, Row4<R>>,
-    /// Normals, where air is felt.
-    pub normal: &'a [Row4<R>],
+struct MotionColumns<'a, R> {
+    /// Displacement in metres, and inverse mass in 1/kg.
+    displacement: DisjointSlice<'a, Row4<R>>,
+    /// Velocity in m/s.
+    velocity: DisjointSlice<'a, Row4<R>>,
+    /// Displacement before constraints and contacts correct it, in metres.
+    predicted: DisjointSlice<'a, Row4<R>>,
+    /// Normals of unit length; empty where no air is felt.
+    normal: &'a [Row4<R>],
     /// What gusts add to the wind in m/s; empty in a steady wind.
-    pub gust: &'a [Row4<R>],
+    gust: &'a [Row4<R>],
 }
 
-/// Moves a run of points. A pinned point goes on along its line.
+/// Moves a run of points. A pinned point keeps its velocity, which is that of its pin.
 ///
 /// # Safety
-/// No other task of the phase touches these points.
+/// No other task of the loop touches these points.
 #[allow(unsafe_code)]
-pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>, drive: &Drive<'_, R>) {
+unsafe fn move_points<R: Real>(
+    columns: &MotionColumns<'_, R>,
+    points: Range<u32>,
+    forces: &ExternalForces<'_, R>,
+) {
     // SAFETY: the caller's promise.
     let (displacement, velocity, predicted) = unsafe {
         (
@@ -52,49 +114,85 @@ pub unsafe fn move_points<R: Real>(columns: &Columns<'_, R>, points: Range<u32>,
         )
     };
     let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
-    let (gravity, impulse, zero) = (four(drive.gravity), four(drive.impulse), R::Lanes::splat(R::ZERO));
-    let h = four([drive.h; 3]);
-    let everywhere = drive.air_forces.map(|air_forces| air_forces.at(&AirFactors::NONE));
+    let (gravity, impulse, zero) = (four(forces.gravity), four(forces.impulse), R::Lanes::splat(R::ZERO));
+    let h = four([forces.h; 3]);
+    let uniform_air = forces.air.map(|air| air.at(&AirFactors::NONE));
     for (k, ((d, v), p)) in displacement.iter_mut().zip(velocity).zip(predicted).enumerate() {
-        let place = d.lanes();
-        let inverse_mass = place.splat_last();
+        let x = d.lanes();
+        let inverse_mass = x.splat_last();
         let kick = inverse_mass.choose_by_sign(gravity + impulse * inverse_mass, zero);
-        let mut fast = v.lanes() + kick;
-        if let Some(air) = &everywhere
+        let mut kicked = v.lanes() + kick;
+        if let Some(air) = &uniform_air
             && d.0[3] > R::ZERO
         {
-            let own: Option<Air<R>> =
-                drive.factors.get(k).zip(drive.air_forces).map(|(factors, air)| air.at(factors));
+            let mapped: Option<Air<R>> =
+                forces.air_factors.get(k).zip(forces.air).map(|(factors, air)| air.at(factors));
             let normal = columns.normal[points.start as usize + k];
-            let air = own.as_ref().unwrap_or(air);
+            let air = mapped.as_ref().unwrap_or(air);
             let slowed = match columns.gust.get(points.start as usize + k) {
-                Some(gust) => air.gusting(gust.xyz()).slow(fast.to_array(), normal.xyz()),
-                None => air.slow(fast.to_array(), normal.xyz()),
+                Some(gust) => air.gusting(gust.xyz()).slow(kicked.to_array(), normal.xyz()),
+                None => air.slow(kicked.to_array(), normal.xyz()),
             };
-            fast = Row4(slowed).lanes();
+            kicked = Row4(slowed).lanes();
         }
-        let moved = Row4((place + fast * h).to_array());
-        *v = Row4(fast.to_array());
+        let moved = Row4((x + kicked * h).to_array());
+        *v = Row4(kicked.to_array());
         *d = moved;
         *p = moved;
     }
 }
 
-/// Changes of velocity by gravity that add up right.
+/// Adds the position corrections of the time step to the velocities, over `h` seconds. Motion that resolves a
+/// penetration is no velocity and is left out.
+pub fn update_velocities<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, h: f64, pool: &ThreadPool) {
+    let State { displacement, predicted, velocity, led, parted, .. } = state;
+    let (led, velocity) = ([&led[..], &parted[..]], DisjointSlice::new(velocity));
+    let h = R::from_f64(h);
+    for cloth in cloths {
+        pool.parallel_for(cloth.blocks.len(), |block| {
+            let points = cloth.blocks.range(block);
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            let velocity = unsafe { velocity.run(points.clone()) };
+            let rows = points.start as usize..points.end as usize;
+            let of_block = [&displacement[rows.clone()], &predicted[rows.clone()]];
+            add_corrections(of_block, led.map(|led| led.get(rows.clone()).unwrap_or_default()), velocity, h);
+        });
+    }
+}
+
+/// Both columns of `led` are empty where the scene has no contact.
+fn add_corrections<R: Real>(
+    [displacement, predicted]: [&[Row4<R>]; 2],
+    led: [&[Row4<R>]; 2],
+    velocity: &mut [Row4<R>],
+    h: R,
+) {
+    let per_h = R::Lanes::splat(R::ONE / h);
+    for (k, ((d, p), v)) in displacement.iter().zip(predicted).zip(velocity).enumerate() {
+        let corrected = d.lanes() - p.lanes();
+        let but_led =
+            |corrected, led: &[Row4<R>]| led.get(k).map_or(corrected, |led| corrected - led.lanes());
+        let corrected = led.into_iter().fold(corrected, but_led);
+        *v = Row4((v.lanes() + corrected * per_h).to_array());
+    }
+}
+
+/// Changes of velocity by gravity whose sum is exact.
 ///
-/// A velocity of 8 m/s holds steps of 1e-6 m/s; at 1000 substeps gravity adds 4e-4 each, and always adding
-/// it rounded the same way is up to 0.1 % off. So each step adds a whole number of last bits, and what is
-/// left over is carried on to the next.
-pub fn gravity_kick<R: Real>(gravity: [f64; 3], h: f64, step: u32, max_speed: f64) -> [R; 3] {
+/// A velocity of 8 m/s holds steps of 1e-6 m/s; at 1000 substeps gravity adds 4e-4 each. Each of them rounded the same
+/// way makes the fall up to 0.1 % wrong. Each step therefore adds a whole number of last bits, and carries the
+/// remainder to the next step.
+fn gravity_kick<R: Real>(gravity: [f64; 3], h: f64, step: u32, max_speed: f64) -> [R; 3] {
     let grid = last_bit::<R>(max_speed);
     let whole = |sum: f64| (sum / grid).round() * grid;
     gravity.map(|g| R::from_f64(whole(g * h * f64::from(step + 1)) - whole(g * h * f64::from(step))))
 }
 
-/// The spacing of numbers about as large as `x`.
+/// The spacing of floating-point numbers about as large as `x`.
 fn last_bit<R: Real>(x: f64) -> f64 {
     let bits = if size_of::<R>() == 4 { -24 } else { -53 };
-    // A power of two not below x, by its exponent bits; for nought and the tiny, a floor far below any speed.
+    // A power of two not below x, by its exponent bits; for zero and tiny x, a floor far below any speed.
     let exponent = ((x.max(1e-6).to_bits() >> 52) as i32 - 1023) + 1;
     f64::from_bits(((1023 + exponent + bits) as u64) << 52)
 }
@@ -104,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kicks_add_up_to_gravity_times_time_however_many() {
+    fn gravity_kicks_add_up_to_gravity_times_time_for_any_number_of_steps() {
         for steps in [1u32, 20, 1000, 24_000] {
             let h = 1.0 / f64::from(steps);
             let sum = (0..steps).fold(0.0f32, |v, k| v + gravity_kick::<f32>([0.0, -9.8, 0.0], h, k, 9.8)[1]);

@@ -1,6 +1,51 @@
-//! Triples, and the max of two numbers: just what contact needs.
+//! Points as rows of four numbers, and the vector algebra that contact needs.
 
-use super::{Real, dot};
+use crate::bytes::{Encode, Reader};
+use crate::math::real::{Lanes, Real};
+
+/// A point's x, y, z and one number more, laid out for one aligned load.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C, align(16))]
+pub struct Row4<R>(pub [R; 4]);
+
+impl<R: Real> Row4<R> {
+    /// All zero.
+    pub const ZERO: Self = Self([R::ZERO; 4]);
+
+    /// x, y, z as the nearest scalars, and a fourth number.
+    pub fn new(xyz: [f64; 3], fourth: R) -> Self {
+        let [x, y, z] = xyz.map(R::from_f64);
+        Self([x, y, z, fourth])
+    }
+
+    /// The four numbers as lanes.
+    #[inline(always)]
+    pub fn lanes(self) -> R::Lanes {
+        R::Lanes::from_array(self.0)
+    }
+
+    /// x, y, z.
+    #[inline(always)]
+    pub fn xyz(self) -> [R; 3] {
+        [self.0[0], self.0[1], self.0[2]]
+    }
+}
+
+impl<R: Real> Encode for Row4<R> {
+    const SIZE: usize = 4 * R::SIZE;
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.0.encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        Encode::decode(from).map(Self)
+    }
+}
+
+/// The dot product of two triples, summed left to right.
+#[inline(always)]
+pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
 
 /// The sum of two triples.
 #[inline(always)]
@@ -26,21 +71,21 @@ pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The direction of a triple; nothing if it is no longer than `least`.
+/// The unit vector along a triple; `None` where its length is at most `least`.
 #[inline(always)]
 pub fn unit<R: Real>(a: [R; 3], least: R) -> Option<[R; 3]> {
     let length = dot(a, a).sqrt();
     (length > least).then(|| scale(a, R::ONE / length))
 }
 
-/// A triple, no longer than `most`.
+/// The triple, shortened to the length `most` where it is longer.
 #[inline(always)]
 pub fn clamp_length<R: Real>(a: [R; 3], most: R) -> [R; 3] {
     let length = dot(a, a).sqrt();
     if length > most { scale(a, most / length) } else { a }
 }
 
-/// The max of two numbers.
+/// The larger of two numbers.
 #[inline(always)]
 pub fn max<R: Real>(x: R, y: R) -> R {
     if y > x { y } else { x }

@@ -3,10 +3,11 @@
 
 use nalgebra::Vector3;
 
-use crate::input::ids::{ClothId, ColliderId};
-use crate::input::validation::{MAX_COORDINATE, is_usable};
-use crate::model::point_masses;
+use crate::input::validation::is_in_range;
+use crate::input::{ClothId, ColliderId};
+use crate::model::build_error::BuildError;
 use crate::model::surface::Surface;
+use crate::model::topology::point_areas;
 use crate::model::vertex_maps::VertexMaps;
 
 /// How the mass of a cloth is given.
@@ -136,94 +137,6 @@ pub struct Collider {
     pub surface: Surface,
 }
 
-/// What is wrong with an object, and with which element of it.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// A position is NaN or infinite.
-    #[error("point {point} is not a finite position")]
-    NotFinite {
-        /// The point, in the mesh's order.
-        point: usize,
-    },
-    /// A position is farther than [`MAX_COORDINATE`] from the origin.
-    #[error("point {point} is more than {MAX_COORDINATE:e} m from the origin")]
-    TooFar {
-        /// The point, in the mesh's order.
-        point: usize,
-    },
-    /// A face names a point that does not exist.
-    #[error("face {face} names point {point}, but there are only {points} points")]
-    FaceOutOfRange {
-        /// The face.
-        face: usize,
-        /// The point it names.
-        point: u32,
-        /// How many there are.
-        points: usize,
-    },
-    /// A face has fewer than three corners or names a point twice.
-    #[error("face {face} has fewer than three different points")]
-    DegenerateFace {
-        /// The face.
-        face: usize,
-    },
-    /// The mesh has faces, but none of them has any area.
-    #[error("the mesh has no area")]
-    NoArea,
-    /// The mesh has no points at all.
-    #[error("the mesh has no points")]
-    NoPoints,
-    /// A column of the start is not as long as the mesh has points.
-    #[error("there are {given} {what} to start from, but {points} points")]
-    StartCount {
-        /// `positions` or `velocities`.
-        what: &'static str,
-        /// How many were given.
-        given: usize,
-        /// How many points the mesh has.
-        points: usize,
-    },
-    /// A position or velocity to start from cannot be reckoned with.
-    #[error("point {point} cannot start so: its {what} is not finite, or more than {MAX_COORDINATE:e}")]
-    BadStart {
-        /// `position` or `velocity`.
-        what: &'static str,
-        /// The point, in the mesh's order.
-        point: usize,
-    },
-    /// A column of factors is not as long as the mesh has points.
-    #[error("there are {factors} factors on {column}, but {points} points")]
-    FactorCount {
-        /// What it is a factor on.
-        column: &'static str,
-        /// How many there are.
-        factors: usize,
-        /// How many points the mesh has.
-        points: usize,
-    },
-    /// A factor is not a number, or out of range.
-    #[error("the factor on {column} of point {point} must be between {least} and {most}, not {factor}")]
-    BadFactor {
-        /// What it is a factor on.
-        column: &'static str,
-        /// The point, in the mesh's order.
-        point: usize,
-        /// What was given.
-        factor: f64,
-        /// The least it may be.
-        least: f64,
-        /// The most it may be.
-        most: f64,
-    },
-    /// The mass is not a positive number.
-    #[error("the mass must be above zero and finite, not {mass}")]
-    BadMass {
-        /// What was given.
-        mass: f64,
-    },
-}
-
 /// Collects the objects of one solver.
 #[derive(Debug, Clone, Default)]
 pub struct ModelBuilder {
@@ -275,6 +188,27 @@ impl ModelBuilder {
     }
 }
 
+/// The mass of each point in kilograms, in the user's order.
+pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
+    let mut masses = even_masses(cloth);
+    masses.iter_mut().zip(&cloth.factors.mass).for_each(|(mass, factor)| *mass *= factor);
+    masses
+}
+
+fn even_masses(cloth: &Cloth) -> Vec<f64> {
+    match cloth.mass {
+        Mass::PerPoint(mass) => vec![mass; cloth.surface.positions.len()],
+        Mass::PerArea(density) => {
+            let areas = point_areas(&cloth.surface);
+            // A point of no face has no area: it weighs like an average one.
+            let faces = areas.iter().filter(|&&area| area > 0.0).count().max(1);
+            let average = areas.iter().sum::<f64>() / faces as f64;
+            let average = if average > 0.0 { average } else { 1.0 };
+            areas.iter().map(|&area| density * if area > 0.0 { area } else { average }).collect()
+        }
+    }
+}
+
 /// Refuses a start that is not one of every point.
 fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
     for (column, [one, what]) in
@@ -283,7 +217,7 @@ fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
         if !column.is_empty() && column.len() != points {
             return Err(BuildError::StartCount { what, given: column.len(), points });
         }
-        if let Some(point) = column.iter().position(|given| !is_usable(given)) {
+        if let Some(point) = column.iter().position(|given| !is_in_range(given)) {
             return Err(BuildError::BadStart { what: one, point });
         }
     }
@@ -299,7 +233,7 @@ fn check_surface(surface: &Surface) -> Result<(), BuildError> {
     if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(BuildError::NotFinite { point });
     }
-    if let Some(point) = surface.positions.iter().position(|p| !is_usable(p)) {
+    if let Some(point) = surface.positions.iter().position(|p| !is_in_range(p)) {
         return Err(BuildError::TooFar { point });
     }
     for (face, corners) in surface.faces.iter().enumerate() {

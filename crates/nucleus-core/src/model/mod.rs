@@ -1,9 +1,10 @@
 //! What is fixed once a scene is compiled: the lists of each cloth, laid out to be swept.
 
+pub mod build_error;
 pub mod builder;
 mod order;
-mod row_maps;
 mod rows;
+mod strength_maps;
 pub mod surface;
 mod topology;
 pub mod vertex_maps;
@@ -13,24 +14,21 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 pub use order::{Order, by_halves};
-pub use row_maps::{Factors, Shares};
-pub use rows::{Blocks, Part, Row, RowList};
+pub use rows::{Blocks, Row, RowBatch, RowList};
+pub use strength_maps::{AirFactors, MapReader, StrengthMaps};
 pub use topology::{
-    Link, Seam, components, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area,
-    triangle_edges,
+    Link, Seam, components, fan_triangles, seams, shear_links, stretch_links, triangle_area, triangle_edges,
 };
 
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::hinge::{self, HingeGroup, HingeRow};
 use crate::constraints::pressure::PressureModel;
 use crate::constraints::shape::ShapeModel;
-use crate::constraints::shear;
-use crate::constraints::stretch::{LinkGroup, LinkRow};
+use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
 use crate::contact::pseudonormals::Outside;
 use crate::contact::skin::{Skin, by_place};
-use crate::integrate::aerodynamics::AirFactors;
 use crate::math::Real;
-use crate::model::builder::{Cloth, Collider, Mass};
+use crate::model::builder::{Cloth, Collider, Mass, point_masses};
 use crate::model::surface::Surface;
 use crate::model::vertex_maps::mean;
 
@@ -48,12 +46,12 @@ pub struct ClothModel<R> {
     /// Hinges between triangles, and twists of quads.
     pub bend: RowList<HingeGroup<R, 4>>,
     /// Hinges between quads.
-    pub fold: RowList<HingeGroup<R, 6>>,
-    /// Signed angles of `bend` and of `fold`; empty where only the size of an angle matters.
+    pub bend_six: RowList<HingeGroup<R, 6>>,
+    /// Signed angles of `bend`; empty where only the size of an angle matters.
     pub bend_angles: RowList<AngleGroup<R>>,
-    /// See `bend_angles`.
-    pub fold_angles: RowList<AngleGroup<R>>,
-    /// What its pressure pushes.
+    /// The same of `bend_six`.
+    pub bend_six_angles: RowList<AngleGroup<R>>,
+    /// Chambers whose gas pushes the faces.
     pub pressure: PressureModel,
     /// The shapes that it is pulled back to.
     pub shape: ShapeModel,
@@ -67,15 +65,15 @@ pub struct ClothModel<R> {
     pub skin: Skin,
     /// Whether its sweeps turn round from time to time: its links close rings of an odd number (triangles, or
     /// quads with cross links), and swept always in one order they would stir it.
-    pub turns: bool,
+    pub alternates_direction: bool,
     /// `pointMass`, as a number: air forces are divided by it.
-    pub weight: f64,
+    pub point_mass: f64,
     /// Mean length of an edge at rest in metres; nought without edges.
     pub edge_length: f64,
     /// Whether velocities are ever damped.
     pub damps: bool,
     /// What its rows get of the strength of a sweep; empty where all get all of it.
-    pub shares: Shares<R>,
+    pub strength_maps: StrengthMaps<R>,
     /// Factors on what its points feel of the air; empty where they are none.
     pub air: Vec<AirFactors>,
 }
@@ -86,74 +84,72 @@ impl<R: Real> ClothModel<R> {
         let surface = &cloth.surface;
         let order = Order::morton(&surface.positions);
         let blocks = Blocks::new(first, surface.positions.len());
-        let (Mass::PerPoint(weight) | Mass::PerArea(weight)) = cloth.mass;
+        let (Mass::PerPoint(point_mass) | Mass::PerArea(point_mass)) = cloth.mass;
         let mut model = Self {
             order,
             blocks,
             stretch: RowList::default(),
             shear: RowList::default(),
             bend: RowList::default(),
-            fold: RowList::default(),
+            bend_six: RowList::default(),
             bend_angles: RowList::default(),
-            fold_angles: RowList::default(),
+            bend_six_angles: RowList::default(),
             pressure: PressureModel::default(),
             shape: ShapeModel::default(),
             plastic: cloth.lists.plastic,
             attract: cloth.factors.input_attract.clone(),
             triangles: Vec::new(),
             skin: Skin::default(),
-            turns: cloth.lists.cross_links || surface.faces.iter().any(|face| face.len() % 2 == 1),
-            weight,
+            alternates_direction: cloth.lists.cross_links
+                || surface.faces.iter().any(|face| face.len() % 2 == 1),
+            point_mass,
             edge_length: 0.0,
             damps: cloth.lists.damp,
-            shares: Shares::default(),
+            strength_maps: StrengthMaps::default(),
             air: Vec::new(),
         };
         let places = model.order.places().to_vec();
         let place = |point: u32| first + places[point as usize];
         let point = |place: u32| model.order.user((place - first) as usize);
-        let factors = Factors { factors: &cloth.factors, point: &point };
-        let mut shares = Shares::default();
+        let maps = MapReader { maps: &cloth.factors, point: &point };
+        let mut strength_maps = StrengthMaps::default();
         if cloth.lists.stretch {
             let rows = stretch_rows(surface, cloth, place);
-            shares.stretch = factors.of_links(&rows, &model.blocks);
-            shares.damp = factors.of_damping(&rows, &model.blocks);
+            strength_maps.stretch = maps.links(&rows, &model.blocks);
+            strength_maps.damp = maps.damping(&rows, &model.blocks);
             model.stretch = RowList::new(&rows, &model.blocks);
         }
         if cloth.lists.shear {
             let rest = &cloth.factors.rest_length;
-            model.shear = RowList::new(&shear::rows(surface, rest, place), &model.blocks);
+            model.shear = RowList::new(&shear_rows(surface, rest, place), &model.blocks);
         }
         if cloth.lists.bend {
             let rows = hinge::rows(surface, place);
-            shares.bend = factors.of_hinges(&rows.of_four, &model.blocks);
-            shares.fold = factors.of_hinges(&rows.of_six, &model.blocks);
+            strength_maps.bend = maps.hinges(&rows.of_four, &model.blocks);
+            strength_maps.bend_six = maps.hinges(&rows.of_six, &model.blocks);
             model.bend = RowList::new(&rows.of_four, &model.blocks);
-            model.fold = RowList::new(&rows.of_six, &model.blocks);
+            model.bend_six = RowList::new(&rows.of_six, &model.blocks);
             let is_bent =
                 rows.of_four.iter().any(HingeRow::is_bent) || rows.of_six.iter().any(HingeRow::is_bent);
             if cloth.lists.bend_angles || cloth.lists.signed_bend && is_bent {
                 let four: Vec<_> = rows.of_four.iter().map(|row| row.angle(surface, point)).collect();
                 let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(surface, point)).collect();
                 model.bend_angles = RowList::new(&four, &model.blocks);
-                model.fold_angles = RowList::new(&six, &model.blocks);
+                model.bend_six_angles = RowList::new(&six, &model.blocks);
             }
         }
         if cloth.lists.pressure {
             model.pressure = PressureModel::new(surface, place, &model.blocks, cloth.lists.seals_holes);
         }
         if cloth.lists.shape {
-            model.shape = ShapeModel::new(
-                surface,
-                place,
-                [&point_masses(cloth), &cloth.factors.deform],
-                cloth.lists.shells,
-            );
+            let masses = point_masses(cloth);
+            model.shape =
+                ShapeModel::new(surface, place, [&masses, &cloth.factors.deform], cloth.lists.shells);
         }
         if cloth.lists.air {
-            model.air = factors.of_air(model.points());
+            model.air = maps.air(model.points());
         }
-        model.shares = shares;
+        model.strength_maps = strength_maps;
         if cloth.lists.air {
             model.triangles = triangles_by_block(surface, place, &model.blocks);
         }
@@ -180,7 +176,7 @@ impl<R: Real> ClothModel<R> {
 
     /// How many rows and points have factors of their own.
     pub fn factors(&self) -> usize {
-        self.shares.len() + self.air.len()
+        self.strength_maps.len() + self.air.len()
     }
 
     /// The place in the columns of one of the user's points.
@@ -208,27 +204,6 @@ impl ColliderModel {
         let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
         let outside = Outside::of(&skin);
         Self { positions: collider.surface.positions, skin, outside }
-    }
-}
-
-/// The mass of each point in kilograms, in the user's order.
-pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
-    let mut masses = even_masses(cloth);
-    masses.iter_mut().zip(&cloth.factors.mass).for_each(|(mass, factor)| *mass *= factor);
-    masses
-}
-
-fn even_masses(cloth: &Cloth) -> Vec<f64> {
-    match cloth.mass {
-        Mass::PerPoint(mass) => vec![mass; cloth.surface.positions.len()],
-        Mass::PerArea(density) => {
-            let areas = point_areas(&cloth.surface);
-            // A point of no face has no area: it weighs like an average one.
-            let faces = areas.iter().filter(|&&area| area > 0.0).count().max(1);
-            let average = areas.iter().sum::<f64>() / faces as f64;
-            let average = if average > 0.0 { average } else { 1.0 };
-            areas.iter().map(|&area| density * if area > 0.0 { area } else { average }).collect()
-        }
     }
 }
 

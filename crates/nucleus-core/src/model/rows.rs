@@ -1,7 +1,7 @@
 //! Lists of rows, laid out to be swept: by block, by colour, four at a time.
 //!
 //! Points are cut into blocks of about a thousand, small enough for a core's nearest cache. Rows whose points
-//! all lie in one block are that block's *inner* rows, swept by one task; the others are *cross* rows, swept
+//! all lie in one block are that block's *interior* rows, swept by one task; the others are *interface* rows, swept
 //! after them colour by colour. Inside a block rows are in colour order too: rows of one colour share no
 //! point, so four can be computed side by side. A fixed coloured order is also what keeps a single sweep per
 //! time step from creating energy; the order of indices does not.
@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Points per block, about.
 const BLOCK: usize = 1024;
-/// Lane groups that a task of cross rows sweeps.
+/// Lane groups that a task of interface rows sweeps.
 const CHUNK: u32 = 32;
 
 /// The blocks of one cloth: runs of the solver's points.
@@ -46,7 +46,7 @@ impl Blocks {
     }
 
     /// A point of no mass that stands in for missing rows of a lane group: one per block, and one (`block` =
-    /// `len()`) for cross rows. It is never moved, and no two tasks of a phase share it.
+    /// `len()`) for interface rows. It is never moved, and no two tasks of a phase share it.
     pub fn stand_in(&self, block: usize) -> u32 {
         self.first + self.points + block as u32
     }
@@ -75,23 +75,23 @@ pub trait Row: Copy {
 #[derive(Debug, Clone)]
 pub struct RowList<G> {
     groups: Vec<G>,
-    inner: Vec<Range<u32>>,
-    cross: Vec<Range<u32>>,
+    interior: Vec<Range<u32>>,
+    interface: Vec<Range<u32>>,
     rows: usize,
 }
 
 /// Rows that are swept by one task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
-    /// The inner rows of a block.
-    Inner(usize),
-    /// The cross rows of a colour, and which task of it.
-    Cross(usize, usize),
+pub enum RowBatch {
+    /// The interior rows of a block.
+    Interior(usize),
+    /// The interface rows of a colour, and which task of it.
+    Interface(usize, usize),
 }
 
 impl<G> Default for RowList<G> {
     fn default() -> Self {
-        Self { groups: Vec::new(), inner: Vec::new(), cross: Vec::new(), rows: 0 }
+        Self { groups: Vec::new(), interior: Vec::new(), interface: Vec::new(), rows: 0 }
     }
 }
 
@@ -103,22 +103,22 @@ impl<G> RowList<G> {
             return list;
         }
         let mut by_block: Vec<Vec<T>> = (0..blocks.len()).map(|_| Vec::new()).collect();
-        let mut crossing = Vec::new();
+        let mut interface = Vec::new();
         for row in rows {
             let block = blocks.of(row.point(0));
             let inside = (1..T::POINTS).all(|k| blocks.of(row.point(k)) == block);
-            if inside { by_block[block as usize].push(*row) } else { crossing.push(*row) }
+            if inside { by_block[block as usize].push(*row) } else { interface.push(*row) }
         }
         let mut colours = Colours::new(blocks);
         for (block, rows) in by_block.into_iter().enumerate() {
             let start = list.groups.len() as u32;
             colours.sort(rows).for_each(|of_colour| list.push_groups(&of_colour, blocks.stand_in(block)));
-            list.inner.push(start..list.groups.len() as u32);
+            list.interior.push(start..list.groups.len() as u32);
         }
-        for of_colour in colours.sort(crossing) {
+        for of_colour in colours.sort(interface) {
             let start = list.groups.len() as u32;
             list.push_groups(&of_colour, blocks.stand_in(blocks.len()));
-            list.cross.push(start..list.groups.len() as u32);
+            list.interface.push(start..list.groups.len() as u32);
         }
         list.groups.shrink_to_fit();
         list
@@ -146,33 +146,33 @@ impl<G> RowList<G> {
         &mut self.groups
     }
 
-    /// The inner rows of a block. Nothing for a list without rows.
-    pub fn inner(&self, block: usize) -> &[G] {
-        self.inner.get(block).map_or(&[], |range| &self.groups[range.start as usize..range.end as usize])
+    /// The interior rows of a block. Nothing for a list without rows.
+    pub fn interior(&self, block: usize) -> &[G] {
+        self.interior.get(block).map_or(&[], |range| &self.groups[range.start as usize..range.end as usize])
     }
 
-    /// How many colours the cross rows have.
-    pub fn cross_colours(&self) -> usize {
-        self.cross.len()
+    /// How many colours the interface rows have.
+    pub fn interface_colours(&self) -> usize {
+        self.interface.len()
     }
 
-    /// How many tasks the cross rows of a colour are.
-    pub fn cross_tasks(&self, colour: usize) -> usize {
-        self.cross[colour].len().div_ceil(CHUNK as usize)
+    /// How many tasks the interface rows of a colour are.
+    pub fn interface_tasks(&self, colour: usize) -> usize {
+        self.interface[colour].len().div_ceil(CHUNK as usize)
     }
 
     /// The rows of a task. Nothing for a list without rows.
-    pub fn part(&self, part: Part) -> &[G] {
+    pub fn part(&self, part: RowBatch) -> &[G] {
         match part {
-            Part::Inner(block) => self.inner(block),
-            Part::Cross(..) if self.rows == 0 => &[],
-            Part::Cross(colour, task) => self.cross(colour, task),
+            RowBatch::Interior(block) => self.interior(block),
+            RowBatch::Interface(..) if self.rows == 0 => &[],
+            RowBatch::Interface(colour, task) => self.interface(colour, task),
         }
     }
 
-    /// The cross rows of one task.
-    pub fn cross(&self, colour: usize, task: usize) -> &[G] {
-        let Range { start, end } = self.cross[colour].clone();
+    /// The interface rows of one task.
+    pub fn interface(&self, colour: usize, task: usize) -> &[G] {
+        let Range { start, end } = self.interface[colour].clone();
         let from = start + task as u32 * CHUNK;
         &self.groups[from as usize..end.min(from + CHUNK) as usize]
     }
@@ -273,13 +273,13 @@ mod tests {
         fn rows_swept_side_by_side_share_no_point((points, rows) in pairs()) {
             let blocks = Blocks::new(0, points);
             let list = RowList::new(&rows, &blocks);
-            for colour in 0..list.cross_colours() {
-                let of_colour: Vec<_> = (0..list.cross_tasks(colour)).flat_map(|t| list.cross(colour, t)).copied().collect();
+            for colour in 0..list.interface_colours() {
+                let of_colour: Vec<_> = (0..list.interface_tasks(colour)).flat_map(|t| list.interface(colour, t)).copied().collect();
                 prop_assert!(!shares_a_point(&of_colour, points as u32));
             }
             for block in 0..blocks.len() {
-                prop_assert!(list.inner(block).iter().all(|group| !shares_a_point(&[*group], points as u32)));
-                prop_assert!(list.inner(block).iter().flatten().filter(|p| p.0 < points as u32)
+                prop_assert!(list.interior(block).iter().all(|group| !shares_a_point(&[*group], points as u32)));
+                prop_assert!(list.interior(block).iter().flatten().filter(|p| p.0 < points as u32)
                     .all(|p| blocks.of(p.0) == block as u32 && blocks.of(p.1) == block as u32));
             }
             let mut kept: Vec<_> = list.groups().iter().flatten().filter(|p| p.0 < points as u32).map(|p| (p.0, p.1)).collect();

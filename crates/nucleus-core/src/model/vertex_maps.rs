@@ -4,7 +4,7 @@
 //! over its points. How strongly a sweep acts is told as a share, 0 to 1, of what the cloth's own attribute says:
 //! in the Classic reading there is no evaluation that does more than all.
 
-use crate::model::builder::BuildError;
+use crate::model::build_error::BuildError;
 
 /// Factors on attributes, point by point in the mesh's order.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::ColliderState;
 use crate::input::frame::FrameInput;
 use crate::math::Real;
-use crate::schedule::{Schedule, Span};
+use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 
 /// Edge lengths of a cloth that a collider may go in a time step.
@@ -27,7 +27,7 @@ impl<R: Real> Solver<R> {
         &self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: Span,
+        span: StepInterval,
         max_speed: &[f64],
     ) -> u32 {
         let mut parts = 1.0f64;
@@ -60,7 +60,7 @@ impl<R: Real> Solver<R> {
     }
 
     /// Whether a collider comes near a cloth in a time step, by the boxes round them.
-    fn is_near(&self, cloth: usize, collider: &ColliderState, span: Span, room: f64) -> bool {
+    fn is_near(&self, cloth: usize, collider: &ColliderState, span: StepInterval, room: f64) -> bool {
         let place = |row: u32| Vector3::from(self.state.position(row));
         let points = self.cloths[cloth].points();
         let first = place(points.start);

@@ -7,10 +7,13 @@
 mod adaptive;
 pub mod resistance;
 
+use std::borrow::Cow;
+
 use crate::constraints::angle::AngleStrength;
 use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
-use crate::constraints::stretch::{LinkStrength, Sides};
+use crate::constraints::strength_map::Sides;
+use crate::constraints::stretch::LinkStrength;
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, Pressure, ResistanceModel};
 use crate::math::Real;
 use crate::schedule::resistance::{PhysicalStiffness, Share, share, steps};
@@ -87,8 +90,10 @@ const RUN: u32 = 16;
 pub struct Schedule<R> {
     /// Substeps in the frame.
     pub substeps: u32,
-    /// Time steps in a substep.
+    /// Time steps in a substep, before any is split.
     pub steps: u32,
+    /// Time steps that each of them is split into; 1 in the plan of a frame.
+    pub splits: u32,
     /// Length of a time step in seconds.
     pub h: f64,
     /// All sweeps of a time step.
@@ -109,18 +114,29 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let mut schedule =
-            Self { substeps, steps, h, sweeps: Vec::new(), wholes: Vec::new(), passes: Vec::new() };
+        let (sweeps, wholes, passes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut schedule = Self { substeps, steps, splits: 1, h, sweeps, wholes, passes };
         schedule.plan(frame);
         schedule
     }
 
-    /// The same for a part of a time step: what moves fast is met in shorter steps.
-    pub fn split(&self, frame: &FrameInput, parts: u32) -> Self {
-        let h = self.h / f64::from(parts);
-        let mut split = Self { h, sweeps: Vec::new(), wholes: Vec::new(), passes: Vec::new(), ..*self };
+    /// The plan of a time step that is split into so many (adaptive substepping): the passes of each, at their length.
+    pub fn split(&self, frame: &FrameInput, splits: u32) -> Cow<'_, Self> {
+        if splits == self.splits {
+            return Cow::Borrowed(self);
+        }
+        let h = self.h / f64::from(splits);
+        let (sweeps, wholes, passes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut split = Self { splits, h, sweeps, wholes, passes, ..*self };
         split.plan(frame);
-        split
+        Cow::Owned(split)
+    }
+
+    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start of
+    /// the frame as if all were split alike, and its interval.
+    pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, StepInterval)> + use<R> {
+        let (span, splits) = (self.span(step), self.splits);
+        (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
     }
 
     /// Sets the sweeps and rounds of a time step.
@@ -150,10 +166,10 @@ impl<R: Real> Schedule<R> {
     }
 
     /// When in the frame a time step is.
-    pub fn span(&self, step: u32) -> Span {
+    pub fn span(&self, step: u32) -> StepInterval {
         let steps = f64::from(self.substeps * self.steps);
         let end_of_substep = f64::from(step / self.steps + 1) / f64::from(self.substeps);
-        Span { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
+        StepInterval { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
     }
 
     /// Which way a time step sweeps, counted from the start of the frame.
@@ -173,9 +189,26 @@ impl<R: Real> Schedule<R> {
     }
 }
 
+/// A time step: the inputs that its stages share.
+#[derive(Debug, Clone, Copy)]
+pub struct TimeStep<'a, R> {
+    /// The input of the frame.
+    pub frame: &'a FrameInput,
+    /// Passes, sweeps and the length of the step.
+    pub schedule: &'a Schedule<R>,
+    /// Counted from the start of the frame.
+    pub index: u32,
+    /// When in the frame it is.
+    pub span: StepInterval,
+    /// The direction of its sweeps.
+    pub direction: Direction,
+    /// Upper estimate of the speed of each cloth in this frame, in m/s.
+    pub max_speeds: &'a [f64],
+}
+
 /// When a time step is, in shares of the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub struct StepInterval {
     /// Its start.
     pub from: f64,
     /// Its end.
@@ -184,7 +217,7 @@ pub struct Span {
     pub end_of_substep: f64,
 }
 
-impl Span {
+impl StepInterval {
     /// One of so many equal parts.
     pub fn part(self, part: u32, parts: u32) -> Self {
         let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);
@@ -358,10 +391,8 @@ fn compliance<R: Real>(stiffness: f64, h: f64) -> R {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::*;
-    use crate::input::frame::{COUNT_PERIOD, ColliderFrame};
+    use crate::input::frame::ColliderFrame;
 
     fn frame(substeps: u32, cloth: ClothFrame) -> FrameInput {
         FrameInput { substeps, cloths: vec![cloth], ..FrameInput::default() }

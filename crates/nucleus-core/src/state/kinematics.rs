@@ -1,42 +1,26 @@
-//! The start of a frame: anchors move to where the points are, pins and colliders take up their motion, and
-//! rows take up the new anchors. From here to the end of the frame nothing is allocated that was not before.
+//! The start of a frame: anchors move to the current positions, pins take their motion, and rows read the new anchors.
+//! From here to the end of the frame no column grows.
 
 use crate::input::frame::{FrameInput, Pin};
 use crate::math::{Real, Row4};
+use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::solver::Solver;
+use crate::state::State;
 
-impl<R: Real> Solver<R> {
-    /// Takes up what a frame brings.
-    pub(crate) fn begin_frame(&mut self, frame: &FrameInput) {
-        self.take_over_pairs(frame);
-        self.begin_contact(frame);
-        self.move_anchors();
-        self.carry_air(frame);
-        for pin in &frame.pins {
-            self.hold(pin, frame.duration);
-        }
-        self.anchor_rows();
-        if let Some(mutual) = &mut self.mutual {
-            mutual.active.follow(&self.state.anchor);
-        }
-        for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
-            state.begin_frame(&motion.start, &motion.end);
-        }
-        self.ground.begin_frame(frame.plane.as_ref(), &self.state.anchor);
+/// Lane groups per task.
+const GROUPS_PER_TASK: u32 = 1024;
+
+impl<R: Real> State<R> {
+    /// The wind carries the air, and with it the gusts.
+    pub fn carry_air(&mut self, frame: &FrameInput) {
+        (0..3).for_each(|axis| self.wind_travel[axis] += frame.wind[axis] * frame.duration);
     }
 
-    /// The wind of the frame before has carried the air.
-    fn carry_air(&mut self, frame: &FrameInput) {
-        let travel = &mut self.state.wind_travel;
-        (0..3).for_each(|axis| travel[axis] += frame.wind[axis] * frame.duration);
-    }
-
-    fn move_anchors(&mut self) {
-        let state = &mut self.state;
+    /// Moves every anchor to its point's position; displacements become zero, and every point is free.
+    pub fn move_anchors(&mut self) {
         for ((anchor, row), mass) in
-            state.anchor.iter_mut().zip(&mut state.displacement).zip(&state.inverse_mass)
+            self.anchor.iter_mut().zip(&mut self.displacement).zip(&self.inverse_mass)
         {
             for axis in 0..3 {
                 anchor[axis] += row.0[axis].to_f64();
@@ -45,45 +29,55 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    /// A pinned point is one of endless mass on its way.
-    fn hold(&mut self, pin: &Pin, duration: f64) {
-        let row = self.cloths[pin.cloth.index()].place(pin.point.index()) as usize;
+    /// Pins a point: it has no inverse mass, and moves on a straight line in `duration` seconds. Whether the pin starts
+    /// where the point is not.
+    pub fn pin(&mut self, row: u32, pin: &Pin, duration: f64) -> bool {
+        let row = row as usize;
         let start: [f64; 3] = pin.start.into();
-        // Put somewhere else, it is foreseen nowhere.
-        if self.state.anchor[row] != start {
-            self.invalidate_bounds(row);
-        }
-        self.state.anchor[row] = start;
-        self.state.displacement[row].0[3] = R::ZERO;
-        self.state.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
+        let is_moved_elsewhere = self.anchor[row] != start;
+        self.anchor[row] = start;
+        self.displacement[row].0[3] = R::ZERO;
+        self.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
+        is_moved_elsewhere
     }
 
-    /// Rows take up where the anchors are.
-    pub(crate) fn anchor_rows(&mut self) {
-        let Self { cloths, state, pool, .. } = self;
-        let anchors = &state.anchor;
-        for cloth in cloths {
-            on_all(pool, cloth.stretch.groups_mut(), |group| group.anchor(anchors));
-            on_all(pool, cloth.shear.groups_mut(), |group| group.anchor(anchors));
-            on_all(pool, cloth.bend.groups_mut(), |group| group.anchor(anchors));
-            on_all(pool, cloth.fold.groups_mut(), |group| group.anchor(anchors));
-            let hinges = cloth.bend.groups().iter().zip(cloth.bend_angles.groups_mut());
-            hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
-            let hinges = cloth.fold.groups().iter().zip(cloth.fold_angles.groups_mut());
-            hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
+    /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
+    pub fn store_step_start(&mut self, h: f64, can_touch: bool) {
+        let Self { start, led, parted, displacement, .. } = self;
+        // Also where contact has just become impossible: a ground plane can be keyed off.
+        led.clear();
+        parted.clear();
+        self.step_length = h;
+        if can_touch {
+            start.clone_from(displacement);
+            led.resize(start.len(), Row4::ZERO);
+            parted.resize(start.len(), Row4::ZERO);
         }
     }
 }
 
-/// Does `work` on every lane group, in tasks of a thousand.
-fn on_all<G: Copy + Send>(pool: &ThreadPool, groups: &mut [G], work: impl Fn(&mut G) + Sync) {
+/// Updates the part of every row that depends on the anchors alone.
+pub fn update_anchors<R: Real>(cloths: &mut [ClothModel<R>], anchors: &[[f64; 3]], pool: &ThreadPool) {
+    for cloth in cloths {
+        for_each_group(pool, cloth.stretch.groups_mut(), |group| group.anchor(anchors));
+        for_each_group(pool, cloth.shear.groups_mut(), |group| group.anchor(anchors));
+        for_each_group(pool, cloth.bend.groups_mut(), |group| group.anchor(anchors));
+        for_each_group(pool, cloth.bend_six.groups_mut(), |group| group.anchor(anchors));
+        let hinges = cloth.bend.groups().iter().zip(cloth.bend_angles.groups_mut());
+        hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
+        let hinges = cloth.bend_six.groups().iter().zip(cloth.bend_six_angles.groups_mut());
+        hinges.for_each(|(hinge, angle)| angle.anchor(hinge, anchors));
+    }
+}
+
+fn for_each_group<G: Copy + Send>(pool: &ThreadPool, groups: &mut [G], work: impl Fn(&mut G) + Sync) {
     let count = groups.len() as u32;
     let groups = DisjointSlice::new(groups);
-    pool.parallel_for(count.div_ceil(1024) as usize, |task| {
-        let from = task as u32 * 1024;
-        // SAFETY: tasks have groups of their own.
+    pool.parallel_for(count.div_ceil(GROUPS_PER_TASK) as usize, |task| {
+        let from = task as u32 * GROUPS_PER_TASK;
+        // SAFETY: no two tasks have a group in common.
         #[allow(unsafe_code)]
-        let run = unsafe { groups.run(from..count.min(from + 1024)) };
+        let run = unsafe { groups.run(from..count.min(from + GROUPS_PER_TASK)) };
         run.iter_mut().for_each(&work);
     });
 }

@@ -4,13 +4,13 @@
 //! kept and corrected, never taken from large positions. With plain `f32` positions a body 10 units up stops
 //! falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
 
-pub mod checkpoint;
-mod kinematics;
+pub mod kinematics;
 
+use crate::bytes::{HASH_SEED, hash_word};
 use crate::constraints::pressure::Chamber;
 use crate::math::{Real, Row4, sub};
-use crate::model::builder::Cloth;
-use crate::model::{ClothModel, point_masses};
+use crate::model::ClothModel;
+use crate::model::builder::{Cloth, point_masses};
 
 /// The points of all cloths, in the solver's places.
 #[derive(Debug, Clone)]
@@ -110,8 +110,6 @@ impl<R: Real> State<R> {
         let anchors = self.anchor.iter().flatten().map(|x| x.to_bits());
         let moved = self.displacement.iter().flat_map(words);
         let fast = self.velocity.iter().flat_map(words);
-        anchors.chain(moved).chain(fast).fold(0xcbf2_9ce4_8422_2325, |hash, word| {
-            (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23)
-        })
+        anchors.chain(moved).chain(fast).fold(HASH_SEED, hash_word)
     }
 }

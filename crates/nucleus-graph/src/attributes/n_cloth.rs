@@ -34,7 +34,7 @@ node_table! {
         /// Edges bent farther than this stay bent; at 360 none do.
         RESTITUTION_ANGLE: f64 = float("restitutionAngle", "reae", 360.0).soft(0.0, 360.0).unit("degrees");
         /// Resistance of the cross links of quads.
-        SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::shear");
+        SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
         /// How strongly the whole mesh moves like one rigid body.
         RIGIDITY: f64 = float("rigidity", "rity", 0.0).soft(0.0, 10.0);
         /// Treats unconnected parts of the mesh each on its own for `rigidity` and `deformResistance`.
@@ -108,7 +108,7 @@ node_table! {
         /// Physical: stiffness against being compressed. Below 0 it comes from `compressionResistance`, 500 N/m for 1.
         COMPRESSION_STIFFNESS: f64 = float("compressionStiffness", "compressionStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: shear modulus times thickness, on top of what cross links resist. Below 0 it comes from `shearResistance`, 500 N/m for 1.
-        SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::shear").extension();
+        SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: flexural rigidity of the cloth, the moment on a width of 1 m that bends it to a radius of 1 m. Below 0 it comes from `bendResistance`, 1e-4 N·m for 1.
         BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("nucleus_core::constraints::bend").extension();
     }

@@ -1,7 +1,7 @@
 //! A run as bytes, to be gone on with: the solvers of all nuclei, what their constraints hold, and where time stands.
 
 use nalgebra::Vector3;
-use nucleus_core::{Item, Reader, Real, RestoreError, Solver, sealed, unsealed};
+use nucleus_core::{Encode, Reader, Real, RestoreError, Solver, add_checksum, verify_checksum};
 
 use crate::compile::{Grips, Program};
 
@@ -14,10 +14,10 @@ impl<R: Real> Simulation<R> {
     /// All that the frames to come depend on, besides the program. An audit is no part of it.
     pub fn save(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        self.frame.put(&mut bytes);
-        (self.runs.len() as u64).put(&mut bytes);
+        self.frame.encode(&mut bytes);
+        (self.runs.len() as u64).encode(&mut bytes);
         self.runs.iter().for_each(|run| run.save(&mut bytes));
-        sealed(KIND, &bytes)
+        add_checksum(KIND, &bytes)
     }
 
     /// A run that goes on from where one was saved, with the same bits. `threads` is the number of cores to use; it may
@@ -26,8 +26,8 @@ impl<R: Real> Simulation<R> {
     /// # Errors
     /// When the bytes are damaged, of another version, or of a program of other objects.
     pub fn restored(program: &Program, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
-        let mut from = Reader::new(unsealed(KIND, bytes)?);
-        let (frame, count) = <(i64, u64)>::take(&mut from).ok_or(RestoreError::Damaged)?;
+        let mut from = Reader::new(verify_checksum(KIND, bytes)?);
+        let (frame, count) = <(i64, u64)>::decode(&mut from).ok_or(RestoreError::Damaged)?;
         if count != program.universes().len() as u64 {
             return Err(RestoreError::OtherModel);
         }
@@ -43,9 +43,9 @@ impl<R: Real> Simulation<R> {
 impl<R: Real> Run<R> {
     fn save(&self, out: &mut Vec<u8>) {
         let Self { solver, grips: Grips { held }, now, evaluated, left_out } = self;
-        solver.save().put(out);
-        held.put(out);
-        (*now, (*evaluated, *left_out)).put(out);
+        solver.save().encode(out);
+        held.encode(out);
+        (*now, (*evaluated, *left_out)).encode(out);
     }
 
     fn restored(
@@ -55,9 +55,9 @@ impl<R: Real> Run<R> {
         from: &mut Reader<'_>,
     ) -> Result<Self, RestoreError> {
         let universe = &program.universes()[universe];
-        let solver = Vec::take(from).ok_or(RestoreError::Damaged)?;
-        let held: Vec<Option<Vec<Vector3<f64>>>> = Item::take(from).ok_or(RestoreError::Damaged)?;
-        let (now, (evaluated, left_out)) = Item::take(from).ok_or(RestoreError::Damaged)?;
+        let solver = Vec::decode(from).ok_or(RestoreError::Damaged)?;
+        let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let (now, (evaluated, left_out)) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         if !universe.holds(&held) {
             return Err(RestoreError::OtherModel);
         }

@@ -5,11 +5,11 @@ use std::sync::{Mutex, RwLock};
 use super::contacts::{Blocks, Contacts};
 use super::near::{Motion, Near};
 use super::search::Task;
+use crate::bytes::checkpoint_struct;
 use crate::contact::bounce::Bounce;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::state::checkpoint::kept;
 
 /// All that can touch in a span.
 #[derive(Debug)]
@@ -37,8 +37,8 @@ pub struct Found<R> {
     pub point_point: Vec<Near<R, 1, 1>>,
 }
 
-kept!([R: Real] Active<R> {
-    columns: [], values: [], parts: [point_face, edge_edge, point_edge, point_point], anew: [],
+checkpoint_struct!([R: Real] Active<R> {
+    columns: [], values: [], parts: [point_face, edge_edge, point_edge, point_point], rebuilt: [],
 });
 
 impl<R> Default for Active<R> {

@@ -2,7 +2,7 @@
 
 use super::paths::Path;
 use crate::math::{Real, Row4, add, clamp_length, dot, scale, sub};
-use crate::schedule::Span;
+use crate::schedule::StepInterval;
 
 /// Share of its ball within which a point that stays in it needs no search as a span begins.
 const STAYS: f64 = 0.8;
@@ -19,7 +19,7 @@ pub struct Ahead<R> {
 
 impl<R: Real> Ahead<R> {
     /// For a step of a span of the frame.
-    pub fn new(now: Span, span: [f64; 2], common: [R; 3]) -> Self {
+    pub fn new(now: StepInterval, span: [f64; 2], common: [R; 3]) -> Self {
         let (step, length) = (now.to - now.from, span[1] - span[0]);
         Self { begun: R::from_f64((now.from - span[0]) / length), steps: R::from_f64(length / step), common }
     }

@@ -4,12 +4,12 @@ use nalgebra::Vector3;
 
 use super::lists::Lists;
 use super::seen::Seen;
+use crate::bytes::checkpoint_struct;
 use crate::contact::aabb::{Aabb, SweptBox};
 use crate::contact::skin::Group;
 use crate::contact::tree::Tree;
 use crate::math::Real;
 use crate::model::ClothModel;
-use crate::state::checkpoint::kept;
 
 /// Triangles to a group.
 const GROUP: usize = 8;
@@ -51,11 +51,11 @@ pub struct Bodies {
     pub rest: Vec<[f32; 3]>,
 }
 
-kept!([] Bodies {
+checkpoint_struct!([] Bodies {
     columns: [rest],
     values: [],
     parts: [tree],
-    anew: [groups, around, points, ends, block, cloth, edge_length, blocks, of_point, is_free],
+    rebuilt: [groups, around, points, ends, block, cloth, edge_length, blocks, of_point, is_free],
 });
 
 impl Bodies {

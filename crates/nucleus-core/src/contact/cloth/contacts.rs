@@ -4,10 +4,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::near::{Motion, Near};
 use super::tasks::Tasks;
+use crate::bytes::checkpoint_struct;
 use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::state::checkpoint::kept;
 
 /// Contacts of one kind, in batches that are worked on one after the other.
 #[derive(Debug)]
@@ -30,13 +30,13 @@ struct Batch<R, const N: usize, const M: usize> {
     tasks: Tasks,
 }
 
-kept!([R: Real, const N: usize, const M: usize] Contacts<R, N, M> {
-    columns: [], values: [], parts: [free, early, late], anew: [found],
+checkpoint_struct!([R: Real, const N: usize, const M: usize] Contacts<R, N, M> {
+    columns: [], values: [], parts: [free, early, late], rebuilt: [found],
 });
 
 // Tasks are laid out anew as the next span begins.
-kept!([R: Real, const N: usize, const M: usize] Batch<R, N, M> {
-    columns: [], values: [list], parts: [], anew: [tasks],
+checkpoint_struct!([R: Real, const N: usize, const M: usize] Batch<R, N, M> {
+    columns: [], values: [list], parts: [], rebuilt: [tasks],
 });
 
 impl<R, const N: usize, const M: usize> Default for Contacts<R, N, M> {

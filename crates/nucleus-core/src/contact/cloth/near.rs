@@ -5,12 +5,12 @@
 
 use super::friction::Memory;
 use super::ways::Points;
+use crate::bytes::{Encode, Reader, encode_struct};
 use crate::contact::maps::Maps;
 use crate::contact::mover::Mover;
 use crate::contact::narrow::{Places, gap_along, shortest};
 use crate::contact::terms::{Sides, Terms};
 use crate::math::{Real, Row4, add};
-use crate::state::checkpoint::{Item, Reader, item};
 
 /// What a contact needs of the time step.
 #[derive(Clone, Copy)]
@@ -78,22 +78,22 @@ pub struct Near<R, const N: usize, const M: usize> {
     pub(super) meeting: Meeting<R>,
 }
 
-item!([R: Real] Meeting<R> { thickness: R, terms: u32, rest_limited: bool, certified: bool, is_swept: bool, rubs: bool });
+encode_struct!([R: Real] Meeting<R> { thickness: R, terms: u32, rest_limited: bool, certified: bool, is_swept: bool, rubs: bool });
 
-impl<R: Real, const N: usize, const M: usize> Item for Near<R, N, M> {
+impl<R: Real, const N: usize, const M: usize> Encode for Near<R, N, M> {
     const SIZE: usize = <Points<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + Meeting::<R>::SIZE;
-    fn put(&self, out: &mut Vec<u8>) {
+    fn encode(&self, out: &mut Vec<u8>) {
         // Places are those of the next frame's anchors.
         let Self { ours, theirs, places: _, normal, slip, meeting } = self;
-        (*ours, *theirs).put(out);
-        [*normal, *slip].put(out);
-        meeting.put(out);
+        (*ours, *theirs).encode(out);
+        [*normal, *slip].encode(out);
+        meeting.encode(out);
     }
-    fn take(from: &mut Reader<'_>) -> Option<Self> {
-        let (ours, theirs) = Item::take(from)?;
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        let (ours, theirs) = Encode::decode(from)?;
         let places = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
-        let [normal, slip] = Item::take(from)?;
-        Some(Self { ours, theirs, places, normal, slip, meeting: Item::take(from)? })
+        let [normal, slip] = Encode::decode(from)?;
+        Some(Self { ours, theirs, places, normal, slip, meeting: Encode::decode(from)? })
     }
 }
 

@@ -8,8 +8,8 @@
 //! Pass the curve nothing is kept apart: contacts would hold the tangle as it is.
 
 use super::near::Motion;
+use crate::bytes::checkpoint_struct;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub, unit};
-use crate::state::checkpoint::kept;
 
 /// Metres.
 type Vector = [f64; 3];
@@ -68,11 +68,11 @@ pub struct Tangle {
     pub(super) wings: Vec<Wing>,
 }
 
-kept!([] Tangle {
+checkpoint_struct!([] Tangle {
     columns: [points, is_wrong],
     values: [crossings, pairs, sides, is_suspected],
     parts: [],
-    anew: [wings],
+    rebuilt: [wings],
 });
 
 impl Tangle {

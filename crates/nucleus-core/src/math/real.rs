@@ -1,10 +1,51 @@
-//! Four scalars side by side: what a pass computes with.
+//! The scalar that the solver computes with, and four of them side by side (SIMD lanes).
 
-use std::ops::{Add, Div, Mul, Sub};
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::Real;
+use crate::bytes::Encode;
 
-/// Four scalars of which each is computed like a lone one, bit for bit.
+/// A scalar that the solver computes with: `f32` for speed, `f64` for reference solutions.
+pub trait Real:
+    Copy
+    + Send
+    + Sync
+    + PartialOrd
+    + PartialEq
+    + Default
+    + std::fmt::Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Sum
+    + Encode
+    + 'static
+{
+    /// Four of them side by side.
+    type Lanes: Lanes<Self>;
+    /// Zero.
+    const ZERO: Self;
+    /// One.
+    const ONE: Self;
+    /// Added to denominators so that 0 / 0 is 0; too small to change any other quotient.
+    const MIN_DENOMINATOR: Self;
+    /// The distance from one to the next larger number.
+    const EPSILON: Self;
+    /// The nearest value.
+    fn from_f64(x: f64) -> Self;
+    /// The same value, exactly.
+    fn to_f64(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// The bits, for hashes.
+    fn to_bits(self) -> u64;
+}
+
+/// Four scalars; every operation gives each lane the bits that a scalar would have.
 pub trait Lanes<R>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
@@ -16,21 +57,21 @@ pub trait Lanes<R>:
     fn to_array(self) -> [R; 4];
     /// The square root of each.
     fn sqrt(self) -> Self;
-    /// Lane by lane: `above` where `self` is above nought, else `below`.
+    /// Lane by lane: `above` where `self` is above zero, else `below`.
     fn choose_by_sign(self, above: Self, below: Self) -> Self;
-    /// The lesser of each two.
+    /// The smaller of each two.
     fn least(self, other: Self) -> Self;
-    /// The max of each two.
+    /// The larger of each two.
     fn most(self, other: Self) -> Self;
-    /// A bit for each that is above nought.
+    /// One bit per lane, set where the lane is above zero.
     fn above_zero(self) -> u32;
-    /// Rows to columns.
+    /// The transposed 4 by 4 matrix.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
-    /// The last of the four, four times.
+    /// The last lane, four times.
     fn splat_last(self) -> Self;
 }
 
-/// Four scalars in plain Rust, for machines and scalars without lanes of their own.
+/// Four scalars in plain Rust, for machines and scalars without SIMD lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quad<R>(pub [R; 4]);
 

@@ -1,0 +1,123 @@
+//! Vertex maps per row: the factor of each link and hinge, laid out like the rows themselves, and those of the air per point.
+
+use std::ops::Range;
+
+use crate::constraints::hinge::HingeRow;
+use crate::constraints::strength_map::{StrengthGroup, StrengthRow};
+use crate::constraints::stretch::LinkRow;
+use crate::math::Real;
+use crate::model::vertex_maps::{VertexMaps, mean, mean_share};
+
+use super::rows::{Blocks, Row, RowList};
+
+/// The strength maps of the lists of a cloth; a list without a map is empty.
+#[derive(Debug, Clone)]
+pub struct StrengthMaps<R> {
+    /// Of links, above and below their rest length.
+    pub stretch: RowList<StrengthGroup<R>>,
+    /// Of hinges of four points.
+    pub bend: RowList<StrengthGroup<R>>,
+    /// Of hinges of six points.
+    pub bend_six: RowList<StrengthGroup<R>>,
+    /// On the damping of links; both sides are the same.
+    pub damp: RowList<StrengthGroup<R>>,
+}
+
+impl<R> Default for StrengthMaps<R> {
+    fn default() -> Self {
+        let none = RowList::default;
+        Self { stretch: none(), bend: none(), bend_six: none(), damp: none() }
+    }
+}
+
+impl<R> StrengthMaps<R> {
+    /// How many rows have a factor.
+    pub fn len(&self) -> usize {
+        [&self.stretch, &self.bend, &self.bend_six, &self.damp].iter().map(|list| list.len()).sum()
+    }
+}
+
+/// The factors of the vertex maps on the aerodynamic forces of a point, each over its mass factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AirFactors {
+    /// On drag.
+    pub drag: f64,
+    /// On the share of drag along the surface.
+    pub tangential_drag: f64,
+    /// On lift.
+    pub lift: f64,
+}
+
+impl AirFactors {
+    /// No map.
+    pub const NONE: Self = Self { drag: 1.0, tangential_drag: 1.0, lift: 1.0 };
+}
+
+/// Reads the vertex maps of a cloth for its rows.
+pub struct MapReader<'a> {
+    /// In the order of the mesh.
+    pub maps: &'a VertexMaps,
+    /// The point of the mesh at a row of the columns.
+    pub point: &'a dyn Fn(u32) -> usize,
+}
+
+impl MapReader<'_> {
+    /// The map of links.
+    pub fn links<R: Real>(&self, rows: &[LinkRow<R>], blocks: &Blocks) -> RowList<StrengthGroup<R>> {
+        let [above, below] = [&self.maps.stretch, &self.maps.compression];
+        if above.is_empty() && below.is_empty() {
+            return RowList::default();
+        }
+        let factors = |row: &LinkRow<R>| {
+            StrengthRow::new(row.ends, [above, below].map(|c| self.mean_factor(c, row.ends)))
+        };
+        RowList::new(&rows.iter().map(factors).collect::<Vec<_>>(), blocks)
+    }
+
+    /// The map of the damping along links.
+    pub fn damping<R: Real>(&self, rows: &[LinkRow<R>], blocks: &Blocks) -> RowList<StrengthGroup<R>> {
+        let damp = &self.maps.damp;
+        if damp.is_empty() {
+            return RowList::default();
+        }
+        let factor = |row: &LinkRow<R>| mean(damp, row.ends.map(|end| (self.point)(end)).into_iter());
+        let row = |row: &LinkRow<R>| StrengthRow::new(row.ends, [factor(row); 2]);
+        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), blocks)
+    }
+
+    /// The map of hinges.
+    pub fn hinges<R: Real, const N: usize>(
+        &self,
+        rows: &[HingeRow<R, N>],
+        blocks: &Blocks,
+    ) -> RowList<StrengthGroup<R>> {
+        let bend = &self.maps.bend;
+        if bend.is_empty() {
+            return RowList::default();
+        }
+        let row = |row: &HingeRow<R, N>| {
+            let points: [u32; N] = std::array::from_fn(|k| row.point(k));
+            StrengthRow::new(points, [self.mean_factor(bend, points); 2])
+        };
+        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), blocks)
+    }
+
+    /// The factors of the air at these rows. A larger mass factor lessens drag and lift.
+    pub fn air(&self, places: Range<u32>) -> Vec<AirFactors> {
+        let VertexMaps { mass, drag, tangential_drag, lift, .. } = self.maps;
+        if [mass, drag, tangential_drag, lift].iter().all(|column| column.is_empty()) {
+            return Vec::new();
+        }
+        let at = |column: &[f64], point: usize| column.get(point).copied().unwrap_or(1.0);
+        let factors = |point: usize| AirFactors {
+            drag: at(drag, point) / at(mass, point),
+            tangential_drag: at(tangential_drag, point),
+            lift: at(lift, point) / at(mass, point),
+        };
+        places.map(|place| factors((self.point)(place))).collect()
+    }
+
+    fn mean_factor<const N: usize>(&self, column: &[f64], places: [u32; N]) -> f64 {
+        mean_share(column, places.map(|place| (self.point)(place)).into_iter())
+    }
+}

@@ -1,0 +1,202 @@
+//! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail; whatever it could
+//! not satisfy is counted here.
+
+use std::sync::atomic::Ordering::Relaxed;
+
+use nalgebra::Vector3;
+
+use crate::constraints::hinge::{HingeGroup, held};
+use crate::constraints::strength_map::StrengthGroup;
+use crate::constraints::stretch::LinkGroup;
+use crate::contact::cloth::Mutual;
+use crate::contact::cloth_pass::motion;
+use crate::contact::collider_pass::StepParts;
+use crate::contact::resolve::Tally;
+use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
+use crate::math::{Real, dot};
+use crate::model::ClothModel;
+use crate::output::StepReport;
+use crate::schedule::Schedule;
+use crate::schedule::resistance::PhysicalStiffness;
+use crate::solver::Solver;
+use crate::state::State;
+
+/// Strains are counted in `BINS` bins of this width; the last bin also has everything above.
+const BIN: f64 = 1e-4;
+const BINS: usize = 10_000;
+
+/// The report of the frame that has just ended.
+pub fn report<R: Real>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    tally: &Tally,
+) -> StepReport {
+    let (max_strain, strain_99) = strains(&solver.cloths, &solver.state, frame);
+    let (kinetic_energy, finite) = kinetic_energy(&solver.cloths, &solver.state);
+    StepReport {
+        max_strain,
+        strain_99,
+        min_gap: smallest_gap(solver, frame, schedule),
+        min_cloth_gap: smallest_cloth_gap(solver),
+        rest_limited: solver.mutual.as_ref().map_or(0, |mutual| mutual.active.count_rest_limited()),
+        contacts: tally.contacts.load(Relaxed),
+        candidate_pairs: tally.pairs.load(Relaxed),
+        broad_phases: tally.broad_phases.load(Relaxed) as u32,
+        pairs_reverted: tally.pairs_reverted.load(Relaxed),
+        pairs_unresolved: tally.pairs_unresolved.load(Relaxed),
+        depenetrating: solver.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
+        intersections: solver.mutual.as_ref().map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
+        kinetic_energy,
+        finite,
+        ..StepReport::default()
+    }
+}
+
+/// The largest strain, and the 99th percentile (to 1e-4).
+fn strains<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> (f64, f64) {
+    let mut max = 0.0f64;
+    let mut bins = vec![0u64; BINS];
+    let mut links = 0u64;
+    for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
+        let scale = R::from_f64(settings.rest_length_scale);
+        for group in cloth.stretch.groups() {
+            let strains = group.strain(&state.displacement, scale);
+            for (_, strain) in group.rest_length.iter().zip(strains).filter(|(rest, _)| **rest > R::ZERO) {
+                let strain = strain.to_f64();
+                max = max.max(strain);
+                bins[((strain.max(0.0) / BIN) as usize).min(BINS - 1)] += 1;
+                links += 1;
+            }
+        }
+    }
+    let mut below = 0;
+    let bin = bins.iter().position(|&count| {
+        below += count;
+        below * 100 >= links * 99
+    });
+    let upper = bin.map_or(0.0, |bin| (bin + 1) as f64 * BIN);
+    (max, if links == 0 { 0.0 } else { upper.min(max) })
+}
+
+/// The elastic energy of stretch, shear and bending in joules; see [`Solver::elastic_energy`].
+pub fn elastic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> f64 {
+    let ResistanceModel::Physical { .. } = frame.resistance else { return 0.0 };
+    let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
+        let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);
+        let scale = settings.rest_length_scale;
+        let maps = &cloth.strength_maps;
+        let both = [stretch, compression];
+        link_energy(state, cloth.stretch.groups(), maps.stretch.groups(), scale, both)
+            + link_energy(state, cloth.shear.groups(), &[], scale, [shear; 2])
+            + hinge_energy(state, cloth.bend.groups(), maps.bend.groups(), bend)
+            + hinge_energy(state, cloth.bend_six.groups(), maps.bend_six.groups(), bend)
+    };
+    cloths.iter().zip(&frame.cloths).map(of_cloth).sum()
+}
+
+/// The energy of links, by the stiffness of the cloth in N/m above and below their rest length.
+fn link_energy<R: Real>(
+    state: &State<R>,
+    groups: &[LinkGroup<R>],
+    maps: &[StrengthGroup<R>],
+    rest_scale: f64,
+    [above, below]: [f64; 2],
+) -> f64 {
+    let energy = |(k, lane): (usize, usize)| {
+        let group = &groups[k];
+        let rest = group.rest_length[lane].to_f64() * rest_scale;
+        let stretch = length(state, group, lane) - rest;
+        let own = |share: fn(&StrengthGroup<R>) -> &[R; 4]| share_of(maps.get(k).map(share), lane);
+        let of_cloth =
+            if stretch > 0.0 { above * own(|share| &share.above) } else { below * own(|share| &share.below) };
+        let stiffness = of_cloth / group.slenderness[lane].to_f64();
+        stiffness * stretch * stretch / 2.0
+    };
+    (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
+}
+
+/// The length of a link in metres.
+fn length<R: Real>(state: &State<R>, group: &LinkGroup<R>, lane: usize) -> f64 {
+    let [a, b] = group.ends.map(|end| state.displacement[end[lane] as usize].0);
+    let d: [R; 3] = std::array::from_fn(|axis| group.span[axis][lane] + (b[axis] - a[axis]));
+    dot(d, d).sqrt().to_f64()
+}
+
+/// The energy of hinges, by the bending stiffness of the cloth in N·m.
+fn hinge_energy<R: Real, const N: usize>(
+    state: &State<R>,
+    groups: &[HingeGroup<R, N>],
+    maps: &[StrengthGroup<R>],
+    stiffness: f64,
+) -> f64 {
+    let energy = |(k, lane): (usize, usize)| {
+        let group = &groups[k];
+        let stiffness = stiffness * share_of(maps.get(k).map(|share| &share.above), lane);
+        let [rest, fold] = [group.rest, group.fold].map(|column| column[lane].to_f64());
+        stiffness * held(bending(state, group, lane), rest, fold)
+    };
+    (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
+}
+
+/// The length of a hinge's bending vector.
+fn bending<R: Real, const N: usize>(state: &State<R>, group: &HingeGroup<R, N>, lane: usize) -> f64 {
+    let weights = group.weights.map(|weight| weight[lane]);
+    let points = group.points.map(|point| state.displacement[point[lane] as usize].0);
+    let c: [R; 3] = std::array::from_fn(|axis| {
+        group.anchored[axis][lane] + weights.iter().zip(points).map(|(&k, x)| k * x[axis]).sum()
+    });
+    dot(c, c).sqrt().to_f64()
+}
+
+/// The kinetic energy in joules, and whether every position and velocity is finite.
+fn kinetic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>) -> (f64, bool) {
+    let mut energy = 0.0;
+    let mut finite = true;
+    for row in cloths.iter().flat_map(ClothModel::points) {
+        let v = state.seen_velocity(row);
+        let row = row as usize;
+        energy += dot(v, v) / (2.0 * state.inverse_mass[row].to_f64());
+        finite &= state.displacement[row].xyz().iter().all(|x| x.to_f64().is_finite());
+    }
+    (energy, finite && energy.is_finite())
+}
+
+/// The smallest gap ratio of two elements of cloth.
+fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
+    let Solver { mutual: Some(mutual), state, maps, .. } = solver else { return f64::INFINITY };
+    let Mutual { active, terms, .. } = mutual;
+    let closeness = active.closeness(&motion(state, terms, maps, 0.0));
+    closeness.map_or(f64::INFINITY, R::to_f64)
+}
+
+/// The smallest gap ratio to a collider or the ground plane.
+fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> f64 {
+    let Solver { cloths, state, collider_states, pairs, terms, maps, .. } = solver;
+    let mut least = smallest_ground_gap(cloths, state, frame);
+    for list in pairs.iter() {
+        let Some(terms) = terms[list.cloth * collider_states.len() + list.collider] else { continue };
+        let view = StepParts { terms, maps, h: schedule.h, time: [1.0; 2], span: list.span };
+        let step = view.of(state, &collider_states[list.collider]);
+        let distances = list.point_face.iter().map(|pair| pair.closeness(&step));
+        least = distances.fold(least, f64::min);
+    }
+    least
+}
+
+fn smallest_ground_gap<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> f64 {
+    let Some(ground) = &frame.plane else { return f64::INFINITY };
+    let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+    let height = |row| (Vector3::from(state.position(row)) - ground.origin).dot(&normal);
+    let touching = |(_, settings): &(_, &ClothFrame)| settings.collide && settings.thickness > 0.0;
+    let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
+        let free = cloth.points().filter(|&row| state.displacement[row as usize].0[3] > R::ZERO);
+        free.map(|row| height(row) / settings.thickness).fold(f64::INFINITY, f64::min)
+    };
+    cloths.iter().zip(&frame.cloths).filter(touching).map(of_cloth).fold(f64::INFINITY, f64::min)
+}
+
+/// A row's factor on the stiffness of its cloth.
+fn share_of<R: Real>(maps: Option<&[R; 4]>, lane: usize) -> f64 {
+    maps.map_or(1.0, |maps| maps[lane].to_f64())
+}
