@@ -9,7 +9,7 @@ use nucleus_measure::fingerprint::Fingerprint;
 pub fn fingerprint(program: &Program) -> String {
     let mut hash = Hash(Fingerprint::default());
     // Everything that is derived takes part, in the order in which it stands. Writing into a hash cannot fail.
-    let _ = write!(hash, "{:?}{:?}", program.universes(), program.graph());
+    let _ = write!(hash, "{:?}{:?}", program.nuclei(), program.graph());
     hash.0.name()
 }
 

@@ -1,4 +1,4 @@
-//! A run under audit: whether anything passes through anything, found apart from the solver.
+//! Audit of a run: finds penetrations independently of the solver.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -9,37 +9,37 @@ use nucleus_core::{self as core, Stage, StateView, StepObserver};
 
 use crate::compile::{Object, ObjectKind};
 
-pub(crate) use ground::Grounds;
+pub(crate) use scope::{GroundPlanes, collision_rules};
 
-mod ground;
+mod scope;
 
-/// How closely a run is audited.
+/// Which states of a run are audited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Closeness {
     /// The state at the end of every frame.
     Frames,
-    /// Every state that the solver shows: the straight way to it of every point, and the state at the end of the
-    /// frame. Where the solver shows its substeps alone, a point that went round something within one is taken to have
-    /// gone through.
+    /// Every state that the solver reports, the linear motion of each point to it, and the state at the end of the frame.
+    /// If the solver reports substeps only, a point that moves around an obstacle within a substep counts as a
+    /// penetration.
     Steps,
 }
 
-/// Watches a run, and follows it with an [`Auditor`].
+/// Passes the states of a run to an [`Auditor`].
 #[derive(Debug)]
 pub struct Audit {
     auditor: Auditor,
     objects: Vec<ObjectKind>,
     closeness: Closeness,
     frame: i64,
-    /// Whether the state has been looked at in the substep that is running.
+    /// Whether a state of the current substep has been audited.
     stepped: bool,
     positions: Vec<Vector3<f64>>,
-    /// Where the ground plane of each nucleus was left.
-    grounds: Grounds,
+    /// The ground planes at the end of the last frame.
+    planes: GroundPlanes,
 }
 
 impl Audit {
-    /// Begins with the state as it is. Nothing that is inside anything else there is held against the run.
+    /// Begins with the current state. Objects that intersect in it are excluded.
     pub(crate) fn new(
         objects: &[Object],
         closeness: Closeness,
@@ -53,8 +53,8 @@ impl Audit {
         read(&objects, &world, (state, 1.0), &mut positions);
         let rules = rules(&world);
         let auditor = Auditor::new(world, rules, &positions);
-        let grounds = Grounds::default();
-        Self { auditor, objects, closeness, frame: 0, stepped: false, positions, grounds }
+        let planes = GroundPlanes::default();
+        Self { auditor, objects, closeness, frame: 0, stepped: false, positions, planes }
     }
 
     /// Begins a frame.
@@ -63,53 +63,53 @@ impl Audit {
         self.auditor.set_rules(rules(self.auditor.world()));
     }
 
-    /// Where the ground planes are, to be told of what the frame brings while it is solved.
-    pub(crate) fn take_grounds(&mut self) -> Grounds {
-        let mut grounds = std::mem::take(&mut self.grounds);
-        grounds.begin_frame();
-        grounds
+    /// Takes the ground planes out, for the simulation to move while it solves the frame.
+    pub(crate) fn take_planes(&mut self) -> GroundPlanes {
+        let mut planes = std::mem::take(&mut self.planes);
+        planes.begin_frame();
+        planes
     }
 
-    /// Where the frame has left the ground planes.
-    pub(crate) fn keep_grounds(&mut self, grounds: Grounds) {
-        self.grounds = grounds;
+    /// Puts the ground planes back at the end of the frame.
+    pub(crate) fn keep_planes(&mut self, planes: GroundPlanes) {
+        self.planes = planes;
     }
 
-    /// What has been found so far.
+    /// The counts of penetrations found so far.
     pub fn account(&self) -> Account {
         self.auditor.account()
     }
 
-    /// The first findings in words, in order of time.
+    /// Descriptions of the first findings, in order of time.
     pub fn findings(&self) -> impl Iterator<Item = String> + '_ {
         self.auditor.findings().iter().map(|finding| self.auditor.describe(finding).to_string())
     }
 
-    /// Takes up a state within a substep.
-    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView, grounds: &Grounds) {
+    /// Audits a state within a substep. `share` is the share of the frame that has passed.
+    fn step(&mut self, share: f64, substep: u32, state: &dyn StateView, planes: &GroundPlanes) {
         if self.closeness == Closeness::Steps {
             self.stepped = true;
             read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
             let now = Moment { frame: self.frame, substep };
-            self.see_grounds(now, share, grounds);
+            self.audit_ground(now, share, planes);
             self.auditor.see(now, &self.positions);
         }
     }
 
-    fn see_grounds(&mut self, now: Moment, share: f64, grounds: &Grounds) {
+    fn audit_ground(&mut self, now: Moment, share: f64, planes: &GroundPlanes) {
         for (body, object) in self.objects.iter().enumerate() {
             if let ObjectKind::Cloth(cloth) = *object {
-                self.auditor.see_ground(now, body, grounds.of(cloth, share), &self.positions);
+                self.auditor.see_ground(now, body, planes.of(cloth, share), &self.positions);
             }
         }
     }
 
-    /// Takes up the end of a substep.
-    fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView, grounds: &Grounds) {
+    /// Audits the end of a substep.
+    fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView, planes: &GroundPlanes) {
         let now = Moment { frame: self.frame, substep: moment.substep };
         let share = f64::from(moment.substep) / f64::from(moment.substeps);
         if !std::mem::take(&mut self.stepped) {
-            self.step(share, moment.substep, state, grounds);
+            self.step(share, moment.substep, state, planes);
             self.stepped = false;
         }
         match self.closeness {
@@ -117,14 +117,14 @@ impl Audit {
             Closeness::Steps => self.auditor.look(now),
             Closeness::Frames => {
                 read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
-                self.see_grounds(now, share, grounds);
+                self.audit_ground(now, share, planes);
                 self.auditor.follow(now, &self.positions);
             }
         }
     }
 }
 
-/// Replaces `out` by the positions of all objects, in metres, in a state that a share of the frame has led to.
+/// Replaces `out` by the positions of all objects in metres. `share` is the share of the frame that has passed.
 fn read(
     objects: &[ObjectKind],
     world: &World,
@@ -146,34 +146,34 @@ fn read(
     }
 }
 
-/// Shows each state to an audit first, then to another observer.
+/// Passes each state to an audit, then to another observer.
 pub(crate) struct Audited<'a> {
     audit: &'a mut Audit,
-    grounds: &'a RefCell<Grounds>,
+    planes: &'a RefCell<GroundPlanes>,
     watch: &'a mut dyn StepObserver,
-    /// The substep that is running.
+    /// The current substep.
     substep: u32,
 }
 
 impl<'a> Audited<'a> {
     pub(crate) fn new(
         audit: &'a mut Audit,
-        grounds: &'a RefCell<Grounds>,
+        planes: &'a RefCell<GroundPlanes>,
         watch: &'a mut dyn StepObserver,
     ) -> Self {
-        Self { audit, grounds, watch, substep: 1 }
+        Self { audit, planes, watch, substep: 1 }
     }
 }
 
 impl StepObserver for Audited<'_> {
     fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView) {
-        self.audit.substep(moment, state, &self.grounds.borrow());
+        self.audit.substep(moment, state, &self.planes.borrow());
         self.watch.substep(moment, state);
         self.substep = moment.substep + 1;
     }
 
     fn step(&mut self, share: f64, state: &dyn StateView) {
-        self.audit.step(share, self.substep, state, &self.grounds.borrow());
+        self.audit.step(share, self.substep, state, &self.planes.borrow());
         self.watch.step(share, state);
     }
 

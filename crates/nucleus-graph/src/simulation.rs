@@ -1,103 +1,93 @@
-//! The loop over frames: evaluates the animation, calls the solvers.
+//! The loop over frames: evaluates the animation and calls the solvers.
 
 use std::cell::RefCell;
 
+use nalgebra::Vector3;
 use nucleus_audit::World;
 use nucleus_core::{
-    ClothId, FrameInput, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport, SubstepIndex,
+    ClothId, ColliderId, ContactState, Encode, FrameInput, Pin, PointId, Reader, Real, RestoreError, Solver,
+    StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
 };
 
-use crate::attributes::nucleus;
-use crate::audit::{Audit, Audited, Closeness, Grounds};
-use crate::compile::{Grips, Object, Program};
+use crate::audit::{Audit, Audited, Closeness, GroundPlanes, collision_rules};
+use crate::compile::{Object, Program};
 
-use plan::Leap;
-use view::{Merge, View};
+use combined::{CombinedObserver, CombinedState, combined_report};
+use nucleus_run::{NucleusRun, SolverCall};
 
-mod checkpoint;
-mod plan;
-mod view;
+mod combined;
+mod nucleus_run;
 
-/// A run of a program, at some frame of it.
+/// Identifies the layout of a checkpoint; the number increases whenever the layout changes.
+const CHECKPOINT_KIND: [u8; 8] = *b"nuclei 1";
+
+/// A run of a program, at one of its frames.
 ///
-/// It begins at the start frame with everything in its initial state. Every [`advance`](Self::advance)
-/// solves one frame more (N3.1-6), or several where the scene is evaluated only every so many frames.
-/// Nuclei are solved one after another, and none knows of the others.
+/// It begins at the start frame with all objects in their initial state. Each [`advance`](Self::advance) solves one frame
+/// (N3.1-6), or several if the scene is evaluated less often than once per frame. Nuclei are solved one after another and
+/// do not influence each other.
 pub struct Simulation<R: Real = f32> {
     program: Program,
-    runs: Vec<Run<R>>,
+    runs: Vec<NucleusRun<R>>,
     frame: i64,
     threads: usize,
     audit: Option<Audit>,
 }
 
-/// One nucleus while it runs.
-struct Run<R: Real> {
-    solver: Solver<R>,
-    grips: Grips,
-    /// Where the time of the nucleus stands, in frames.
-    now: f64,
-    /// The frame of the scene at which it was evaluated last.
-    evaluated: f64,
-    /// What was evaluated last has not been solved.
-    left_out: bool,
-}
-
-/// What the solver says about a frame.
+/// The result of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameReport {
-    /// The frame that was reached, or was on the way to be.
+    /// The frame. If the observer stopped the run, it is the frame that was not completed.
     pub frame: i64,
-    /// What happened on the way there; of several nuclei the worst of each figure.
+    /// The report of the solver, combined over all nuclei.
     pub report: StepReport,
-    /// How often something passed through something on the way there; nothing where no audit looks.
+    /// Count of penetrations that the audit found in the frame; `None` without an audit.
     pub passed_through: Option<u64>,
 }
 
 impl<R: Real> Simulation<R> {
-    /// A run at its start frame. `threads` is the number of cores to use; it never changes a bit of the result.
+    /// A run at its start frame. `threads` is the number of threads; the result is the same for any number.
     pub fn new(program: &Program, threads: usize) -> Self {
         let frame = program.time().start;
-        let runs = (0..program.universes().len()).map(|k| Run::new(program, k, threads)).collect();
+        let runs = (0..program.nuclei().len()).map(|k| NucleusRun::new(program, k, threads)).collect();
         Self { runs, frame, threads, program: program.clone(), audit: None }
     }
 
-    /// Has the run audited from here on.
+    /// Audits the run from the current frame on.
     pub fn begin_audit(&mut self, closeness: Closeness) {
         let pins = self.next_pins();
-        let rules = |world: &World| self.program.kept_apart(self.next_frame(), &pins, world);
+        let rules = |world: &World| collision_rules(&self.program, self.next_frame(), &pins, world);
         self.audit = Some(Audit::new(self.objects(), closeness, self.state(), rules));
     }
 
-    /// What the audit has come to, if there is one.
+    /// The audit of the run, if there is one.
     pub fn audit(&self) -> Option<&Audit> {
         self.audit.as_ref()
     }
 
-    /// What is held in the next frame, by the ids of the program.
+    /// The pins of the next frame, by the ids of the program.
     pub(crate) fn next_pins(&self) -> Vec<Pin> {
         let to = self.next_frame() as f64;
-        let pins =
-            self.runs.iter().zip(self.program.universes()).enumerate().flat_map(|(k, (run, universe))| {
-                let position = |cloth, point: PointId| run.solver.point(cloth, point.index());
-                let stretch = self.program.stretch(k, [run.evaluated, to], to - run.evaluated, run.left_out);
-                let pins = stretch.input(&mut run.grips.clone(), &position).pins;
-                let first = universe.cloths().start;
-                pins.into_iter().map(move |pin| Pin { cloth: ClothId(first + pin.cloth.0), ..pin })
-            });
-        pins.collect()
+        let pins_of = |(k, run): (usize, &NucleusRun<R>)| {
+            let position = |cloth, point: PointId| run.solver.point(cloth, point.index());
+            let interval = self.program.interval(k, [run.evaluated, to], to - run.evaluated, run.was_skipped);
+            let pins = interval.input(&mut run.attachments.clone(), &position).pins;
+            let first = self.program.nuclei()[k].cloths().start;
+            pins.into_iter().map(move |pin| Pin { cloth: ClothId(first + pin.cloth.0), ..pin })
+        };
+        self.runs.iter().enumerate().flat_map(pins_of).collect()
     }
 
-    /// Solves the next frame, showing the state to `watch` after each substep. May go on after the last frame.
+    /// Solves the next frame and calls `watch` with the state after each substep. The last frame of the scene is no limit.
     ///
-    /// Where `watch` stops the frame, its report says so. The run still is at the frame before, but its state is not: only
-    /// a run [`restored`](Self::restored) from what was saved there goes on with the same bits.
+    /// If `watch` stops the frame, the report says so. [`frame`](Self::frame) is then still the frame before, but the state
+    /// is not: to continue with the same bits, [`restore`](Self::restored) a checkpoint saved at that frame.
     pub fn advance(&mut self, watch: &mut dyn StepObserver) -> FrameReport {
         self.advance_with(&mut |_, _| {}, watch)
     }
 
-    /// The same, with a last look at what the frame brings, before the solver sees it: a chance to measure it, or
-    /// to bring what no scene can say.
+    /// The same, with access to the solver and its input before each call: to measure the input, or to set values that a
+    /// scene cannot express.
     pub fn advance_with(
         &mut self,
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
@@ -109,35 +99,36 @@ impl<R: Real> Simulation<R> {
             return FrameReport { frame, report, passed_through: None };
         };
         let pins = self.next_pins();
-        audit.begin_frame(frame, |world| self.program.kept_apart(frame, &pins, world));
+        audit.begin_frame(frame, |world| collision_rules(&self.program, frame, &pins, world));
         let before = audit.account().found();
-        let grounds = RefCell::new(audit.take_grounds());
-        let report = self.solve(frame, change, &mut Audited::new(&mut audit, &grounds, watch), &grounds);
-        audit.keep_grounds(grounds.into_inner());
+        let planes = RefCell::new(audit.take_planes());
+        let report = self.solve(frame, change, &mut Audited::new(&mut audit, &planes, watch), &planes);
+        audit.keep_planes(planes.into_inner());
         let passed_through = Some(audit.account().found() - before);
         self.audit = Some(audit);
         FrameReport { frame, report, passed_through }
     }
 
-    /// Solves everything up to a frame, and tells `grounds` where that puts the ground planes.
+    /// Solves all nuclei up to a frame, and records the motion of their ground planes in `planes`.
     fn solve(
         &mut self,
         frame: i64,
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
         watch: &mut dyn StepObserver,
-        grounds: &RefCell<Grounds>,
+        planes: &RefCell<GroundPlanes>,
     ) -> StepReport {
-        let leaps = self.plan(frame);
-        let total = leaps.iter().map(|leap| leap.substeps).sum();
+        let calls = self.schedule(frame);
+        let total = calls.iter().map(|call| call.substeps).sum();
         let mut done = 0;
         let mut report: Option<StepReport> = None;
-        for leap in leaps {
-            let seen = self.leap(&leap, change, &mut Watched { watch: &mut *watch, grounds, done, total });
-            if seen.stopped {
-                return seen;
+        for call in calls {
+            let observers = &mut Observers { watch: &mut *watch, planes, done, total };
+            let own = self.call_solver(&call, change, observers);
+            if own.stopped {
+                return own;
             }
-            done += leap.substeps;
-            report = Some(report.map_or(seen, |before| worst(&before, &seen, leap.is_new_time)));
+            done += call.substeps;
+            report = Some(report.map_or(own, |before| combined_report(&before, &own, call.is_new_time)));
         }
         if total == 0 {
             watch.substep(SubstepIndex { substep: 1, substeps: 1 }, self.state());
@@ -146,52 +137,74 @@ impl<R: Real> Simulation<R> {
         report.unwrap_or_default()
     }
 
-    /// Solves a stretch of time of one nucleus.
-    fn leap(
-        &mut self,
-        leap: &Leap,
-        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
-        watched: &mut Watched,
-    ) -> StepReport {
-        if leap.begins_anew {
-            self.runs[leap.universe] = Run::new(&self.program, leap.universe, self.threads);
-            watched.grounds.borrow_mut().begin_anew(leap.universe);
+    /// The solver calls up to a frame, in the order of time, then of nuclei.
+    fn schedule(&mut self, frame: i64) -> Vec<SolverCall> {
+        let mut calls: Vec<SolverCall> = Vec::new();
+        for time in self.evaluation_times(frame) {
+            let first = calls.len();
+            for (nucleus, run) in self.runs.iter_mut().enumerate() {
+                let call = run.evaluate(&self.program, nucleus, time);
+                let is_new_time = calls.len() == first;
+                calls.extend(call.map(|call| SolverCall { is_new_time, ..call }));
+            }
         }
-        let (before, rest) = self.runs.split_at_mut(leap.universe);
+        calls
+    }
+
+    /// The scene frames, possibly fractions, at which the graph is evaluated on the way to a frame.
+    fn evaluation_times(&self, frame: i64) -> Vec<f64> {
+        let parts = (1.0 / self.program.every()).round().max(1.0) as i64;
+        let at = |part: i64| {
+            if part == parts { frame as f64 } else { frame as f64 - 1.0 + part as f64 / parts as f64 }
+        };
+        (1..=parts).map(at).collect()
+    }
+
+    /// Solves one evaluation interval of one nucleus.
+    fn call_solver(
+        &mut self,
+        call: &SolverCall,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        observers: &mut Observers,
+    ) -> StepReport {
+        if call.resets {
+            self.runs[call.nucleus] = NucleusRun::new(&self.program, call.nucleus, self.threads);
+            observers.planes.borrow_mut().reset(call.nucleus);
+        }
+        let (before, rest) = self.runs.split_at_mut(call.nucleus);
         let Some((run, after)) = rest.split_first_mut() else { return StepReport::default() };
-        let stretch = self.program.stretch(leap.universe, leap.frames, leap.elapsed, leap.leaps);
+        let interval = self.program.interval(call.nucleus, call.frames, call.elapsed, call.is_discontinuous);
         let solver = &run.solver;
         let position = |cloth, point: PointId| solver.point(cloth, point.index());
-        let mut input = stretch.input(&mut run.grips, &position);
+        let mut input = interval.input(&mut run.attachments, &position);
         change(&run.solver, &mut input);
-        let first_cloth = self.program.universes()[leap.universe].cloths().start;
-        let span = [watched.done, watched.done + leap.substeps];
-        let span = span.map(|substep| f64::from(substep) / f64::from(watched.total.max(1)));
-        watched.grounds.borrow_mut().take(leap.universe, first_cloth, &input, span);
-        if before.is_empty() && after.is_empty() && watched.total == leap.substeps {
-            return run.solver.step(&input, watched.watch);
+        let first_cloth = self.program.nuclei()[call.nucleus].cloths().start;
+        let span = [observers.done, observers.done + call.substeps];
+        let span = span.map(|substep| f64::from(substep) / f64::from(observers.total.max(1)));
+        observers.planes.borrow_mut().begin_span(call.nucleus, first_cloth, &input, span);
+        if before.is_empty() && after.is_empty() && observers.total == call.substeps {
+            return run.solver.step(&input, observers.watch);
         }
         let others = before.iter().map(|run| &run.solver as &dyn StateView);
         let others: Vec<&dyn StateView> = others.chain(after.iter().map(|run| &run.solver as _)).collect();
-        let mut merge = Merge {
-            watch: &mut *watched.watch,
-            done: watched.done,
-            own: leap.substeps,
-            total: watched.total,
-            universe: leap.universe,
+        let mut combined = CombinedObserver {
+            watch: &mut *observers.watch,
+            done: observers.done,
+            own: call.substeps,
+            total: observers.total,
+            nucleus: call.nucleus,
             others,
             program: &self.program,
         };
-        run.solver.step(&input, &mut merge)
+        run.solver.step(&input, &mut combined)
     }
 
-    /// The frame it is at.
+    /// The current frame.
     pub fn frame(&self) -> i64 {
         self.frame
     }
 
-    /// The frame that it will be at after the next [`advance`](Self::advance). The last frame is never leapt
-    /// over.
+    /// The frame after the next [`advance`](Self::advance). The last frame of the scene is always one of them.
     pub fn next_frame(&self) -> i64 {
         let next = self.frame + (self.program.every() as i64).max(1);
         let end = self.program.time().end;
@@ -208,12 +221,12 @@ impl<R: Real> Simulation<R> {
         self.program.objects()
     }
 
-    /// Scene units in a metre, for the first nucleus.
+    /// Scene units per metre in the first nucleus.
     pub fn units_per_metre(&self) -> f64 {
         self.program.units_per_metre()
     }
 
-    /// The state as it is, at the start frame too.
+    /// The current state of all objects.
     pub fn state(&self) -> &dyn StateView {
         match self.runs.as_slice() {
             [only] => &only.solver,
@@ -231,59 +244,79 @@ impl<R: Real> Simulation<R> {
         self.runs.iter().map(|run| &run.solver)
     }
 
-    /// What it runs.
+    /// The program of the run.
     pub fn program(&self) -> &Program {
         &self.program
     }
 
-    fn view(&self) -> View<'_> {
-        let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
-        View { program: &self.program, parts }
+    /// The state as bytes, to continue the run later. An audit is not saved.
+    pub fn save(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.frame.encode(&mut bytes);
+        (self.runs.len() as u64).encode(&mut bytes);
+        self.runs.iter().for_each(|run| run.save(&mut bytes));
+        add_checksum(CHECKPOINT_KIND, &bytes)
     }
-}
 
-impl<R: Real> Run<R> {
-    fn new(program: &Program, universe: usize, threads: usize) -> Self {
-        let universe = &program.universes()[universe];
-        let start = universe.start() as f64;
-        let now = program.graph().at(start).get(universe.nucleus(), &nucleus::CURRENT_TIME);
-        Self {
-            solver: Solver::new(universe.model().clone(), threads),
-            grips: Grips::default(),
-            now,
-            evaluated: start,
-            left_out: false,
+    /// Continues a saved run with the same bits. `threads` is the number of threads, which may differ from before.
+    ///
+    /// # Errors
+    /// If the bytes are damaged, of another version, or of a program with other objects.
+    pub fn restored(program: &Program, threads: usize, bytes: &[u8]) -> Result<Self, RestoreError> {
+        let mut from = Reader::new(verify_checksum(CHECKPOINT_KIND, bytes)?);
+        let (frame, count) = <(i64, u64)>::decode(&mut from).ok_or(RestoreError::Damaged)?;
+        if count != program.nuclei().len() as u64 {
+            return Err(RestoreError::OtherModel);
         }
+        let runs = (0..program.nuclei().len()).map(|k| NucleusRun::restored(program, k, threads, &mut from));
+        let runs: Vec<NucleusRun<R>> = runs.collect::<Result<_, _>>()?;
+        let is_whole = from.is_at_end();
+        is_whole
+            .then(|| Self { runs, frame, threads, program: program.clone(), audit: None })
+            .ok_or(RestoreError::Damaged)
+    }
+
+    fn combined(&self) -> CombinedState<'_> {
+        let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
+        CombinedState { program: &self.program, parts }
     }
 }
 
-/// Whoever watches a frame, and how much of it is over.
-struct Watched<'a> {
+/// The observers of a frame, and its progress in substeps.
+struct Observers<'a> {
     watch: &'a mut dyn StepObserver,
-    grounds: &'a RefCell<Grounds>,
+    planes: &'a RefCell<GroundPlanes>,
     done: u32,
     total: u32,
 }
 
-/// The worst of two accounts: of two nuclei at one time, or of a nucleus at two times in a row.
-fn worst(a: &StepReport, b: &StepReport, in_a_row: bool) -> StepReport {
-    StepReport {
-        max_strain: a.max_strain.max(b.max_strain),
-        strain_99: a.strain_99.max(b.strain_99),
-        min_gap: a.min_gap.min(b.min_gap),
-        min_cloth_gap: a.min_cloth_gap.min(b.min_cloth_gap),
-        rest_limited: if in_a_row { b.rest_limited } else { a.rest_limited + b.rest_limited },
-        contacts: a.contacts + b.contacts,
-        candidate_pairs: a.candidate_pairs + b.candidate_pairs,
-        broad_phases: a.broad_phases + b.broad_phases,
-        pairs_reverted: a.pairs_reverted + b.pairs_reverted,
-        pairs_unresolved: a.pairs_unresolved + b.pairs_unresolved,
-        depenetrating: if in_a_row { b.depenetrating } else { a.depenetrating + b.depenetrating },
-        intersections: if in_a_row { b.intersections } else { a.intersections + b.intersections },
-        kinetic_energy: if in_a_row { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
-        finite: a.finite && b.finite,
-        sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
-        stopped: a.stopped || b.stopped,
+impl<R: Real> StateView for Simulation<R> {
+    fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        self.combined().positions(cloth, units_per_metre, out);
+    }
+
+    fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        self.combined().velocities(cloth, units_per_metre, out);
+    }
+
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        self.combined().contacts(out);
+    }
+
+    fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        self.combined().collider_positions(collider, units_per_metre, out);
+    }
+
+    fn collider_moved(&self, collider: ColliderId) -> bool {
+        self.combined().collider_moved(collider)
+    }
+
+    fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
+        self.combined().collider_points(collider, share, out);
+    }
+
+    fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64> {
+        self.combined().point(cloth, point)
     }
 }
 

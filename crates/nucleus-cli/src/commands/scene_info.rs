@@ -46,13 +46,13 @@ impl SceneInfo {
         let nodes =
             scene.graph.iter().map(|(_, node)| (node.name().to_owned(), node.node_type().name)).collect();
         let nuclei: Vec<_> = program
-            .universes()
+            .nuclei()
             .iter()
             .zip(program.first_inputs())
             .zip(simulation.solvers())
-            .map(|((universe, input), solver)| {
+            .map(|((nucleus, input), solver)| {
                 let passes = solver.passes(&input).into_iter().filter(|pass| pass.evaluations() > 0.0);
-                let name = scene.graph.node(universe.nucleus()).name().to_owned();
+                let name = scene.graph.node(nucleus.node()).name().to_owned();
                 NucleusFacts { name, passes: passes.collect(), input }
             })
             .collect();
@@ -204,7 +204,7 @@ enum ClothStiffness {
 impl ClothStiffness {
     /// The Classic reading takes the mean mass of all points of the scene.
     fn of(id: ClothId, program: &Program, nuclei: &[NucleusFacts]) -> Option<Self> {
-        let mut own = program.universes().iter().map(|universe| universe.cloths()).zip(nuclei);
+        let mut own = program.nuclei().iter().map(|nucleus| nucleus.cloths()).zip(nuclei);
         let (cloths, NucleusFacts { input, .. }) = own.find(|(cloths, _)| cloths.contains(&id.0))?;
         let cloth = input.cloths.get((id.0 - cloths.start) as usize)?;
         let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));

@@ -38,8 +38,8 @@ pub struct ShapeModel {
     shells: Vec<Vec<u32>>,
     /// Position at rest of each point of each shell, about the shell's centre of mass, in metres.
     rest: Vec<Vec<Vector3<f64>>>,
-    /// Share of the strength that each point of each shell gets; empty where all get all of it.
-    share: Vec<Vec<f64>>,
+    /// Shares of the two strengths that each point of each shell gets; empty where all get all of them.
+    share: Vec<Vec<[f64; 2]>>,
     /// First of the shells in the state.
     pub first: usize,
 }
@@ -54,12 +54,13 @@ pub struct ShapeStrength {
 }
 
 impl ShapeModel {
-    /// Compiles the shells of a mesh: its unconnected parts, or all of it as one. `masses` and `share`
-    /// by the user's points.
+    /// Compiles the shells of a mesh: its unconnected parts, or all of it as one. `masses` and the
+    /// maps of `rigidity` and `deformResistance` are by the user's points.
     pub fn new(
         surface: &Surface,
         place: impl Fn(u32) -> u32,
-        [masses, share]: [&[f64]; 2],
+        masses: &[f64],
+        maps: [&[f64]; 2],
         by_shell: bool,
     ) -> Self {
         let shells = if by_shell { components(surface) } else { vec![(0..masses.len() as u32).collect()] };
@@ -72,7 +73,9 @@ impl ShapeModel {
                 shell.iter().map(|&point| surface.positions[point as usize] - centre).collect();
             model.shells.push(shell.iter().map(|&point| place(point)).collect());
             model.rest.push(rest);
-            model.share.push(shell.iter().filter_map(|&point| share.get(point as usize).copied()).collect());
+            let share = |&point: &u32| maps.map(|map| map.get(point as usize).copied().unwrap_or(1.0));
+            let is_uniform = maps.iter().all(|map| map.is_empty());
+            model.share.push(if is_uniform { Vec::new() } else { shell.iter().map(share).collect() });
         }
         model
     }
@@ -105,11 +108,11 @@ impl ShapeModel {
                     }
                     let start = Vector3::from(anchor[row as usize]);
                     let x = start + Vector3::from(point.xyz().map(R::to_f64));
-                    let factor = share.get(at as usize).copied().unwrap_or(1.0);
+                    let [to_rigid, to_deform] = share.get(at as usize).copied().unwrap_or([1.0; 2]);
                     let rigid = fit.centre + fit.rotation * q;
                     let soft = (rigid + fit.centre + fit.linear * q) / 2.0;
-                    let moved = (rigid - x) * (strength.rigid * factor);
-                    let moved = x + moved + (soft - x - moved) * (strength.deform * factor) - start;
+                    let moved = (rigid - x) * (strength.rigid * to_rigid);
+                    let moved = x + moved + (soft - x - moved) * (strength.deform * to_deform) - start;
                     (0..3).for_each(|axis| point.0[axis] = R::from_f64(moved[axis]));
                     // SAFETY: as above.
                     #[allow(unsafe_code)]

@@ -143,8 +143,13 @@ impl<R: Real> ClothModel<R> {
         }
         if cloth.lists.shape {
             let masses = point_masses(cloth);
-            model.shape =
-                ShapeModel::new(surface, place, [&masses, &cloth.factors.deform], cloth.lists.shells);
+            model.shape = ShapeModel::new(
+                surface,
+                place,
+                &masses,
+                [&cloth.factors.rigidity, &cloth.factors.deform],
+                cloth.lists.shells,
+            );
         }
         if cloth.lists.air {
             model.air = maps.air(model.points());

@@ -39,7 +39,9 @@ pub struct VertexMaps {
     pub collide_strength: Vec<f64>,
     /// On the attraction to the input mesh.
     pub input_attract: Vec<f64>,
-    /// Share of `rigidity` and `deformResistance`.
+    /// Share of `rigidity`.
+    pub rigidity: Vec<f64>,
+    /// Share of `deform_resistance`.
     pub deform: Vec<f64>,
 }
 
@@ -48,7 +50,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 impl VertexMaps {
     /// Every column, with the least and the most it may hold.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 16] {
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 17] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
         [
@@ -67,6 +69,7 @@ impl VertexMaps {
             ("bounce", &self.bounce, ANY),
             ("collide strength", &self.collide_strength, ANY),
             ("input attract", &self.input_attract, ANY),
+            ("rigidity", &self.rigidity, SHARE),
             ("deform resistance", &self.deform, SHARE),
         ]
     }

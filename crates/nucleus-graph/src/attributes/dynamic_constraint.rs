@@ -29,15 +29,15 @@ node_table! {
     DYNAMIC_CONSTRAINT = "dynamicConstraint", inherits Some(&TRANSFORM), hides [];
     "Nucleus (open)" {
         /// Which constraint of Maya's menu it is. So far only `transform` acts: it holds points and carries them with its own transform.
-        CONSTRAINT_TYPE: Choice = choice("constraintType", "type", 0, CONSTRAINT_TYPES).solved("nucleus_graph::compile::pins").fixed().extension();
+        CONSTRAINT_TYPE: Choice = choice("constraintType", "type", 0, CONSTRAINT_TYPES).solved("nucleus_graph::compile::attachments").fixed().extension();
         /// What it takes hold of: `["cloth1.vtx[0]", "cloth1.vtx[8:16]", "cloth1.vtx[*]"]`.
-        COMPONENTS: Vec<Component> = components("components", "components").solved("nucleus_graph::compile::pins").extension();
+        COMPONENTS: Vec<Component> = components("components", "components").solved("nucleus_graph::compile::attachments").extension();
         /// The nucleus it belongs to; the only one of the scene when left out.
         NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("nucleus_graph::graph").extension();
     }
     "General" {
         /// Acts at all. A constraint that is switched on takes hold of things where they are then.
-        ENABLE: bool = toggle("enable", "ena", true).solved("nucleus_graph::compile::pins");
+        ENABLE: bool = toggle("enable", "ena", true).solved("nucleus_graph::compile::attachments");
     }
     "Dynamic Constraint" {
         /// Whether what it joins is welded, sprung, or held by rubber bands.

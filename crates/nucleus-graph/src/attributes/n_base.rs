@@ -68,13 +68,13 @@ node_table! {
         /// How much of a collision is carried out; the values of both sides are multiplied. 1 and above: all, nothing passes. Below 1 things may pass through each other; at 0 there is no collision.
         COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::terms");
         /// Up to which elements it collides: points, edges or faces.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::self_collision");
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::thickness");
         /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
-        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::self_collision");
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::thickness");
         /// Takes part in collisions with other objects.
         COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::terms");
         /// Takes part in collisions with itself.
-        SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::self_collision");
+        SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
         /// Which objects it meets, and which of the two gives way.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::terms");
         /// Colour in which Maya draws the thickness.
@@ -125,8 +125,8 @@ node_table! {
     "Quality Settings" {
         /// Passes for collisions with itself in 1/24 s.
         MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s").solved("nucleus_core::schedule");
-        /// No effect is given more iterations than this, whatever its resistance.
-        MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0);
+        /// Classic: no resistance is given more iterations in 1/24 s than this.
+        MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0).solved("nucleus_graph::compile::soft_body");
         /// Share of the way by which points of other objects go, in a substep, to the outer side of the surface; below 0 to the inner. For scenes that start with one object in another.
         PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::push_out");
         /// Points farther from the surface than this are not pushed out. Left out, it is four times the thickness.

@@ -10,47 +10,47 @@ node_table! {
     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES];
     "Collisions" {
         /// Thickness towards itself, as a multiple of `thickness`.
-        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::self_collision");
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::thickness");
         /// Out of use in Maya.
         SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0).unused();
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]);
     }
     "Dynamic Properties" {
-        /// A mesh to take rest lengths and angles from, in place of the initial state.
-        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh", Data::Mesh);
-        /// Whether a resistance belongs to a link, or to the cloth however finely it is divided.
-        SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]);
+        /// A mesh to take rest lengths and angles from, in place of the input mesh; it has the same points and faces.
+        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh", Data::Mesh).solved("nucleus_graph::compile::soft_body");
+        /// Classic: whether a count belongs to a link, to the object however finely it is divided, or to the world whatever its size too. Physical: a stiffness never depends on the mesh.
+        SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]).solved("nucleus_graph::compile::soft_body");
         /// Resistance of links that are longer than at rest.
         STRETCH_RESISTANCE: f64 = float("stretchResistance", "stch", 20.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
         /// Resistance of links that are shorter than at rest; at 0 they are rubber bands.
         COMPRESSION_RESISTANCE: f64 = float("compressionResistance", "comr", 10.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
         /// How strongly faces keep the angle between them.
         BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::bend");
-        /// Lets small bends be free and resists large ones.
-        BEND_ANGLE_DROPOFF: f64 = float("bendAngleDropoff", "bnad", 0.0).soft(0.0, 1.0);
-        /// Links pulled harder than this stay longer.
-        RESTITUTION_TENSION: f64 = float("restitutionTension", "retn", 1000.0).soft(0.0, 1000.0);
-        /// Edges bent farther than this stay bent; at 360 none do.
-        RESTITUTION_ANGLE: f64 = float("restitutionAngle", "reae", 360.0).soft(0.0, 360.0).unit("degrees");
+        /// Share of the bend resistance that grows with the angle: at 1 cloth is free while nearly flat.
+        BEND_ANGLE_DROPOFF: f64 = float("bendAngleDropoff", "bnad", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::angle");
+        /// Tension, as stretch resistance times strain, above which links lengthen permanently; at 1000 none do.
+        RESTITUTION_TENSION: f64 = float("restitutionTension", "retn", 1000.0).soft(0.0, 1000.0).solved("nucleus_core::constraints::plastic");
+        /// Hinges bent by more than this keep the excess; at 180 and above none do.
+        RESTITUTION_ANGLE: f64 = float("restitutionAngle", "reae", 360.0).soft(0.0, 360.0).unit("degrees").solved("nucleus_core::constraints::angle");
         /// Resistance of the cross links of quads.
         SHEAR_RESISTANCE: f64 = float("shearResistance", "shr", 0.0).min(0.0).soft(0.0, 200.0).unit("per 1/24 s").solved("nucleus_core::constraints::stretch");
-        /// How strongly the whole mesh moves like one rigid body.
-        RIGIDITY: f64 = float("rigidity", "rity", 0.0).soft(0.0, 10.0);
+        /// Stiffness with which the mesh moves as one rigid body; Physical: 1 is 120 Hz for every point about its goal.
+        RIGIDITY: f64 = float("rigidity", "rity", 0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::shape");
         /// Treats unconnected parts of the mesh each on its own for `rigidity` and `deformResistance`.
-        USE_POLYGON_SHELLS: bool = toggle("usePolygonShells", "ussh", false);
-        /// How strongly the mesh keeps its overall shape, without being rigid.
-        DEFORM_RESISTANCE: f64 = float("deformResistance", "dety", 0.0).soft(0.0, 10.0);
-        /// How strongly points are drawn to the input mesh.
-        INPUT_MESH_ATTRACT: f64 = float("inputMeshAttract", "imat", 0.0).soft(0.0, 1.0);
-        /// Whether points that are drawn fully are locked to the input mesh.
-        INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]);
-        /// How little points swing about the input mesh: 0 freely, 1 not at all.
-        INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0);
-        /// How much the motion of the input mesh drags the cloth along.
-        INPUT_MOTION_DRAG: f64 = float("inputMotionDrag", "imdr", 0.0).soft(0.0, 1.0);
-        /// Factor on rest angles: 0 wants to be flat, 1 as modelled.
-        BEND_ANGLE_SCALE: f64 = float("bendAngleScale", "basc", 1.0).soft(-2.0, 2.0);
+        USE_POLYGON_SHELLS: bool = toggle("usePolygonShells", "ussh", false).solved("nucleus_core::constraints::shape");
+        /// Stiffness with which the mesh keeps its shape, free to shear and bend as a whole; Physical: 1 is 24 Hz.
+        DEFORM_RESISTANCE: f64 = float("deformResistance", "dety", 0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::shape");
+        /// How strongly points are drawn to the live input mesh; Physical: 1 is 24 Hz; Classic: the share of the way in 1/24 s.
+        INPUT_MESH_ATTRACT: f64 = float("inputMeshAttract", "imat", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
+        /// Whether points whose attraction is 1 or greater are locked to the input mesh.
+        INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]).solved("nucleus_graph::compile::soft_body");
+        /// Share of critical damping of points about the input mesh: 0 springs, 1 does not overshoot.
+        INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
+        /// How fast velocities take up those of the input mesh, per 1/24 s.
+        INPUT_MOTION_DRAG: f64 = float("inputMotionDrag", "imdr", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
+        /// Factor on rest angles: 0 is flat, 1 as modelled, below 0 the other way.
+        BEND_ANGLE_SCALE: f64 = float("bendAngleScale", "basc", 1.0).soft(-2.0, 2.0).solved("nucleus_core::constraints::angle");
         /// Takes speed out of links that grow longer or shorter.
         STRETCH_DAMP: f64 = float("stretchDamp", "sdmp", 0.1).min(0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::damp");
         /// Does not feel the solver's gravity.
@@ -69,26 +69,26 @@ node_table! {
         WIND_SELF_SHADOW: bool = toggle("windSelfShadow", "wssh", false);
     }
     "Pressure" {
-        /// Whether pressure is set by hand, or follows from the air inside.
-        PRESSURE_METHOD: Choice = choice("pressureMethod", "pmth", 0, &[(0, "Manual Pressure Setting"), (1, "Volume Tracking Model")]);
-        /// Pressure set by hand: above 0 it pushes outwards.
-        PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0);
-        /// Air inside at the start beyond what fills the volume.
-        START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0);
-        /// How strongly the air inside keeps its volume.
-        INCOMPRESSIBILITY: f64 = float("incompressibility", "incm", 5.0).soft(0.0, 200.0);
-        /// How fast swings of the pressure die down.
-        PRESSURE_DAMPING: f64 = float("pressureDamping", "prdg", 0.0).soft(0.0, 1.0);
-        /// Air that is pumped in over time.
-        PUMP_RATE: f64 = float("pumpRate", "pure", 0.0).soft(-1.0, 1.0);
-        /// How much of the air stays inside: at 1 all of it.
-        AIR_TIGHTNESS: f64 = float("airTightness", "aits", 1.0).soft(0.0, 1.0);
-        /// Treats openings of the mesh as if they were closed.
-        SEAL_HOLES: bool = toggle("sealHoles", "shol", true);
+        /// Whether pressure is set by hand, or follows from the gas inside.
+        PRESSURE_METHOD: Choice = choice("pressureMethod", "pmth", 0, &[(0, "Manual Pressure Setting"), (1, "Volume Tracking Model")]).solved("nucleus_core::constraints::pressure");
+        /// Gauge pressure set by hand, along the normals; 1 is 1 kPa.
+        PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
+        /// Air inside at the start beyond what fills the volume, in volumes.
+        START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
+        /// Bulk modulus of the gas; 1 is 1 kPa (air has about 100).
+        INCOMPRESSIBILITY: f64 = float("incompressibility", "incm", 5.0).soft(0.0, 200.0).solved("nucleus_core::constraints::pressure");
+        /// Damping of changes of the volume.
+        PRESSURE_DAMPING: f64 = float("pressureDamping", "prdg", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::pressure");
+        /// Air pumped in, in start volumes per second.
+        PUMP_RATE: f64 = float("pumpRate", "pure", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
+        /// Share of the air that stays inside; at 0 it equalizes within 1/24 s.
+        AIR_TIGHTNESS: f64 = float("airTightness", "aits", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::pressure");
+        /// Closes the openings of the mesh; off, air streams through them and drives the mesh.
+        SEAL_HOLES: bool = toggle("sealHoles", "shol", true).solved("nucleus_core::constraints::pressure");
     }
     "Quality Settings" {
-        /// How bending is worked out.
-        BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]);
+        /// Simple: the size of the angle. High Quality: the angle with its sign, for cloth that is bent at rest. Flip Tracking: also beyond 180°.
+        BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]).solved("nucleus_core::constraints::angle");
         /// Whether collision has the last word in a step where shape attraction is in use. It always has, as at 1, whatever is set here.
         COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("nucleus_core::schedule");
         /// Solves links in the order of their distance from contacts and constraints.
@@ -140,17 +140,17 @@ node_table! {
         /// Factor on restitution angle at each point.
         RESTITUTION_ANGLE_PER_VERTEX: Vec<f64> = floats("restitutionAnglePerVertex", "rapv");
         /// Texture that varies rigidity.
-        RIGIDITY_MAP: f64 = texture("rigidityMap", "rimp", 0.0);
+        RIGIDITY_MAP: f64 = texture("rigidityMap", "rimp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on rigidity at each point.
-        RIGIDITY_PER_VERTEX: Vec<f64> = floats("rigidityPerVertex", "rpv");
+        RIGIDITY_PER_VERTEX: Vec<f64> = floats("rigidityPerVertex", "rpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies deform.
-        DEFORM_MAP: f64 = texture("deformMap", "demp", 0.0);
+        DEFORM_MAP: f64 = texture("deformMap", "demp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on deform at each point.
-        DEFORM_PER_VERTEX: Vec<f64> = floats("deformPerVertex", "dfpv");
+        DEFORM_PER_VERTEX: Vec<f64> = floats("deformPerVertex", "dfpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies input attract.
-        INPUT_ATTRACT_MAP: f64 = texture("inputAttractMap", "iamp", 0.0);
+        INPUT_ATTRACT_MAP: f64 = texture("inputAttractMap", "iamp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on input attract at each point.
-        INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv");
+        INPUT_ATTRACT_PER_VERTEX: Vec<f64> = floats("inputAttractPerVertex", "iapv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies rest length scale.
         REST_LENGTH_SCALE_MAP: f64 = texture("restLengthScaleMap", "rlmp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on rest length scale at each point.
@@ -168,11 +168,11 @@ node_table! {
         /// Factor on tangential drag at each point.
         TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies wrinkle.
-        WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0);
+        WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0).solved("nucleus_graph::compile::soft_body");
         /// Factor on wrinkle at each point.
-        WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv");
+        WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv").solved("nucleus_graph::compile::soft_body");
         /// How high the wrinkles of the wrinkle map stand.
-        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0);
+        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::soft_body");
         /// Whether stretch is varied by nothing, by point, or by a texture.
         STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether compression is varied by nothing, by point, or by a texture.
@@ -184,11 +184,11 @@ node_table! {
         /// Whether restitution angle is varied by nothing, by point, or by a texture.
         RESTITUTION_ANGLE_MAP_TYPE: Choice = choice("restitutionAngleMapType", "ramt", 2, MAP_TYPES);
         /// Whether rigidity is varied by nothing, by point, or by a texture.
-        RIGIDITY_MAP_TYPE: Choice = choice("rigidityMapType", "rmt", 2, MAP_TYPES);
+        RIGIDITY_MAP_TYPE: Choice = choice("rigidityMapType", "rmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
         /// Whether deform is varied by nothing, by point, or by a texture.
-        DEFORM_MAP_TYPE: Choice = choice("deformMapType", "dmmt", 2, MAP_TYPES);
+        DEFORM_MAP_TYPE: Choice = choice("deformMapType", "dmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
         /// Whether input attract is varied by nothing, by point, or by a texture.
-        INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES);
+        INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
         /// Whether rest length scale is varied by nothing, by point, or by a texture.
         REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether lift is varied by nothing, by point, or by a texture.
@@ -198,7 +198,7 @@ node_table! {
         /// Whether tangential drag is varied by nothing, by point, or by a texture.
         TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether wrinkle is varied by nothing, by point, or by a texture.
-        WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES);
+        WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::soft_body");
     }
     "Hidden" {
         /// Left over from early versions of Maya.

@@ -10,9 +10,9 @@ node_table! {
     N_COMPONENT = "nComponent", inherits None, hides [];
     "Component" {
         /// Kind of elements: points, edges, faces, or the object as a whole.
-        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::pins");
+        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::attachments");
         /// Which elements: those listed, those on borders, or all.
-        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::pins");
+        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::attachments");
         /// Factor on the constraint's strength here.
         STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0);
         /// Factor on the constraint's glue strength here.
@@ -22,7 +22,7 @@ node_table! {
         /// Factor on the constraint's tangent strength here.
         TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0);
         /// The elements listed.
-        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::pins").multi();
+        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::attachments").multi();
     }
     "Connections" {
         /// The object it is a part of.

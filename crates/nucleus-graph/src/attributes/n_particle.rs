@@ -113,7 +113,7 @@ node_table! {
         /// Size in collisions, as a multiple of the radius.
         COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::terms");
         /// Size towards each other, as a multiple of the size in collisions.
-        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::self_collision");
+        SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::thickness");
         /// Factor on friction, by particle.
         FRICTION_SCALE: Cow<'static, [RampPoint]> = ramp("frictionScale", "frsc", FULL);
         /// What the friction ramp is read by.

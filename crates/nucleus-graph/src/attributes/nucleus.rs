@@ -23,8 +23,8 @@ node_table! {
         WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
         /// Where the wind blows to; its length does not matter.
         WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("nucleus_core::integrate::aerodynamics");
-        /// How unsteady the wind is.
-        WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0);
+        /// Gusts as a multiple of the wind speed, smooth in space and time.
+        WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::gusts");
     }
     "Ground Plane" {
         /// Adds an endless ground plane that everything collides with.

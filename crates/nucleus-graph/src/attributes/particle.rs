@@ -10,8 +10,8 @@ node_table! {
     "General" {
         /// How many particles there are.
         COUNT: i64 = int("count", "cnt", 0).output();
-        /// Takes part in the simulation at all; Maya shows it as Enable.
-        IS_DYNAMIC: bool = toggle("isDynamic", "isd", true);
+        /// Takes part in the simulation; cloth that does not follows its input mesh. Maya shows it as Enable.
+        IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::soft_body");
     }
     "Time Attributes" {
         /// The time it is evaluated for; driven by `time1.outTime`.

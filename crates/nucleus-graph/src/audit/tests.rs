@@ -6,7 +6,7 @@ use nucleus_core::{ClothId, ColliderId};
 use super::*;
 use crate::Simulation;
 use crate::checks::Judge;
-use crate::compile::{Grips, Program, compile};
+use crate::compile::{AttachmentState, Program, compile};
 use crate::scene::read_scene_text;
 
 fn program(nodes: &str) -> Program {
@@ -49,12 +49,12 @@ impl StateView for Level<'_> {
 fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
     let program = program(nodes);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| program.kept_apart(2, &[], world);
+    let rules = |world: &World| collision_rules(&program, 2, &[], world);
     let mut audit = Audit::new(run.objects(), closeness, run.state(), rules);
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
         let moment = core::SubstepIndex { substep: 1, substeps: 1 };
-        audit.substep(moment, &Level { start: run.state(), height }, &Grounds::default());
+        audit.substep(moment, &Level { start: run.state(), height }, &GroundPlanes::default());
     }
     audit.account()
 }
@@ -78,13 +78,13 @@ fn a_sheet_that_ends_inside_a_ball_is_seen_either_way() {
 fn what_is_shown_within_a_substep_is_followed() {
     let program = program(SHEET_AND_BALL);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| program.kept_apart(2, &[], world);
+    let rules = |world: &World| collision_rules(&program, 2, &[], world);
     let mut audit = Audit::new(run.objects(), Closeness::Steps, run.state(), rules);
     audit.begin_frame(2, rules);
     let level = |height: f64| Level { start: run.state(), height };
     let mut watch = ();
-    let grounds = RefCell::default();
-    let mut audited = Audited::new(&mut audit, &grounds, &mut watch);
+    let planes = RefCell::default();
+    let mut audited = Audited::new(&mut audit, &planes, &mut watch);
     audited.step(0.5, &level(-1.5));
     audited.step(1.0, &level(1.4));
     audited.substep(core::SubstepIndex { substep: 1, substeps: 1 }, &level(1.4));
@@ -109,7 +109,7 @@ fn what_is_told_to_pass_through_may() {
     let mut all = Rules::default();
     (0..135).for_each(|point| all.hold(point));
     all.ignore(1, 1); // as Maya makes an nRigid
-    assert_eq!(program.kept_apart(2, &pins, &world), all);
+    assert_eq!(collision_rules(&program, 2, &pins, &world), all);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn cloths_in_layers_far_apart_are_not_held_to_anything() {
         );
         let program = program(&nodes);
         let world = World::new(vec![Body::default(), Body::default()]);
-        program.kept_apart(2, &[], &world) == Rules::default()
+        collision_rules(&program, 2, &[], &world) == Rules::default()
     };
     assert!(two(0.0) && two(3.9) && !two(4.0), "the range is 4 unless it is set");
 }
@@ -161,22 +161,23 @@ fn an_audit_changes_nothing() {
 fn a_ground_plane_goes_from_where_the_last_span_left_it_to_where_the_next_puts_it() {
     let level = |height: f64| Plane::new(Vector3::y() * height, Vector3::y());
     let program = program(r#""c": nCloth(inputMesh: "sheet")"#);
-    let mut input =
-        program.stretch(0, [1.0, 2.0], 1.0, false).input(&mut Grips::default(), &|_, _| Vector3::zeros());
-    let mut put = |grounds: &mut Grounds, height: f64, span: [f64; 2]| {
+    let mut input = program
+        .interval(0, [1.0, 2.0], 1.0, false)
+        .input(&mut AttachmentState::default(), &|_, _| Vector3::zeros());
+    let mut put = |planes: &mut GroundPlanes, height: f64, span: [f64; 2]| {
         let (origin, normal) = (Vector3::y() * height, Vector3::y());
         input.plane = Some(core::GroundPlane { origin, normal, bounce: 0.0, friction: 0.0, stickiness: 0.0 });
-        grounds.take(0, 0, &input, span);
+        planes.begin_span(0, 0, &input, span);
     };
-    let mut grounds = Grounds::default();
-    let at = |grounds: &Grounds, share: f64| grounds.of(ClothId(0), share).map(|[_, now]| now);
-    put(&mut grounds, 1.0, [0.0, 1.0]);
-    assert_eq!(at(&grounds, 0.0), level(1.0), "a plane that appears is there from the start");
-    grounds.begin_frame();
-    assert_eq!(at(&grounds, 0.0), level(1.0), "it has not been moved yet");
-    put(&mut grounds, 2.0, [0.0, 0.5]);
-    assert_eq!([0.0, 0.25, 0.5].map(|share| at(&grounds, share)), [1.0, 1.5, 2.0].map(level));
-    put(&mut grounds, 4.0, [0.5, 1.0]);
-    assert_eq!([0.5, 0.75, 1.0].map(|share| at(&grounds, share)), [2.0, 3.0, 4.0].map(level));
-    assert_eq!(grounds.of(ClothId(1), 1.0), None, "there is one cloth");
+    let mut planes = GroundPlanes::default();
+    let at = |planes: &GroundPlanes, share: f64| planes.of(ClothId(0), share).map(|[_, now]| now);
+    put(&mut planes, 1.0, [0.0, 1.0]);
+    assert_eq!(at(&planes, 0.0), level(1.0), "a plane that appears is there from the start");
+    planes.begin_frame();
+    assert_eq!(at(&planes, 0.0), level(1.0), "it has not been moved yet");
+    put(&mut planes, 2.0, [0.0, 0.5]);
+    assert_eq!([0.0, 0.25, 0.5].map(|share| at(&planes, share)), [1.0, 1.5, 2.0].map(level));
+    put(&mut planes, 4.0, [0.5, 1.0]);
+    assert_eq!([0.5, 0.75, 1.0].map(|share| at(&planes, share)), [2.0, 3.0, 4.0].map(level));
+    assert_eq!(planes.of(ClothId(1), 1.0), None, "there is one cloth");
 }

@@ -1,90 +1,58 @@
-//! What a frame brings: every attribute as it is at the end of the frame, and where things move.
+//! The solver's input for a frame: attribute values at its end, and the motion of colliders and attachments.
 //!
-//! Animation is evaluated here, once per frame or evaluation (N2.4-6). The solver interpolates positions
-//! linearly inside it (N2.4-7). Colliders are pulled first, then cloth, then constraints; what none of them
-//! needs is not evaluated at all.
+//! Animation is evaluated here, once per evaluation interval (N2.4-6). The solver interpolates positions linearly
+//! inside it (N2.4-7). Colliders are evaluated first, then cloth, then constraints. Nodes that none of them depends
+//! on are not evaluated.
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, PointId, PushOut, ResistanceModel, Stiffness,
+    ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, Pin, PointId, ResistanceModel, Stiffness,
 };
 
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus};
-use crate::graph::{Graph, Moment, NodeId};
+use crate::graph::NodeId;
 
-use super::objects::{CLASSIC, ClothSource, ColliderSource};
-use super::pins::Grips;
-use super::program::{Program, Universe};
-use super::self_collision::elements;
-use super::shape::Points;
-
-/// Thicknesses to which Maya sets `pushOutRadius` when it makes an object.
-const CREATED_PUSH_OUT_RADIUS: f64 = 4.0;
-
-/// A stretch of time that is solved in one go: from one evaluation to the next.
-pub(crate) struct Stretch<'p> {
-    pub(super) universe: &'p Universe,
-    pub(super) graph: &'p Graph,
-    pub(super) from: Moment<'p>,
-    pub(super) to: Moment<'p>,
-    /// Seconds of the animation.
-    pub(super) seconds: f64,
-    /// It begins at the start frame: everything is where it was made.
-    pub(super) is_first: bool,
-    /// What was evaluated last is not where this begins.
-    pub(super) leaps: bool,
-}
+use super::animated_mesh::Points;
+use super::attachments::AttachmentState;
+use super::program::{EvaluationInterval, Program};
+use super::sources::{ClothSource, ColliderSource};
+use super::thickness::elements;
+use super::units::CLASSIC;
 
 impl Program {
-    /// The input of the first frame of the first nucleus, as an example of what a frame costs.
+    /// The input of the first frame of the first nucleus.
     pub fn first_input(&self) -> FrameInput {
         self.first_input_of(0)
     }
 
     /// The input of the first frame of each nucleus, in the order of the program.
     pub fn first_inputs(&self) -> impl Iterator<Item = FrameInput> {
-        (0..self.universes().len()).map(|universe| self.first_input_of(universe))
+        (0..self.nuclei().len()).map(|nucleus| self.first_input_of(nucleus))
     }
 
-    fn first_input_of(&self, universe: usize) -> FrameInput {
-        let start = self.universes()[universe].start as f64;
-        self.stretch(universe, [start, start + 1.0], 1.0, false)
-            .input(&mut Grips::default(), &|_, _| Vector3::zeros())
+    fn first_input_of(&self, nucleus: usize) -> FrameInput {
+        let start = self.nuclei()[nucleus].start() as f64;
+        self.interval(nucleus, [start, start + 1.0], 1.0, false)
+            .input(&mut AttachmentState::default(), &|_, _| Vector3::zeros())
     }
 
-    /// The nodes whose values the first nucleus needs for a frame, in the order in which it asks for them.
+    /// The nodes that are evaluated for a frame of the first nucleus, in the order of evaluation.
     pub fn pulled(&self, frame: i64) -> Vec<NodeId> {
-        let stretch = self.stretch(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
-        stretch.input(&mut Grips::default(), &|_, _| Vector3::zeros());
-        stretch.to.pulled()
-    }
-
-    /// What moves a nucleus from one frame to another, which may be broken; `elapsed` is how many frames that
-    /// is to the nucleus.
-    pub(crate) fn stretch(
-        &self,
-        universe: usize,
-        frames: [f64; 2],
-        elapsed: f64,
-        leaps: bool,
-    ) -> Stretch<'_> {
-        let universe = &self.whole.universes[universe];
-        let graph = &self.whole.graph;
-        let [from, to] = frames.map(|frame| graph.at(frame));
-        let seconds = elapsed / self.whole.time.fps;
-        Stretch { universe, graph, from, to, seconds, is_first: frames[0] <= universe.start as f64, leaps }
+        let interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
+        interval.input(&mut AttachmentState::default(), &|_, _| Vector3::zeros());
+        interval.to.pulled()
     }
 }
 
-impl Stretch<'_> {
-    /// The input of the solver. `position` is where points are when it begins, in metres.
+impl EvaluationInterval<'_> {
+    /// The input of the solver. `position` gives the solved positions at the start of the interval, in metres.
     pub(crate) fn input(
         &self,
-        grips: &mut Grips,
+        attachments: &mut AttachmentState,
         position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
     ) -> FrameInput {
-        let (nucleus, to) = (self.universe.nucleus, &self.to);
+        let (nucleus, to) = (self.nucleus.node, &self.to);
         let space = self.nucleus_space();
         let along = |direction: &Key<[f64; 3]>, size: &Key<f64>| {
             unit(space.linear * Vector3::from(to.get(nucleus, direction))) * to.get(nucleus, size)
@@ -102,31 +70,44 @@ impl Stretch<'_> {
             air_density: to.get(nucleus, &nucleus::AIR_DENSITY),
             plane: self.ground_plane(&space),
             layer_range: to.get(nucleus, &nucleus::COLLISION_LAYER_RANGE),
-            colliders: self.universe.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
-            cloths: self.universe.cloths.iter().map(|cloth| self.active_frame(cloth)).collect(),
+            colliders: self.nucleus.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
+            cloths: self.nucleus.cloths.iter().map(|cloth| self.active_frame(cloth)).collect(),
             self_collision_iterations: self.self_collision_iterations(),
-            pins: self.pins(grips, position),
+            pins: self.locked_and_pinned(attachments, position),
+            wind_noise: to.get(nucleus, &nucleus::WIND_NOISE),
+            input_meshes: self.input_meshes(),
         }
     }
 
-    /// The space that directions and the ground plane are given in.
+    /// Pins of transform constraints, and of points that are locked to their input mesh.
+    fn locked_and_pinned(
+        &self,
+        attachments: &mut AttachmentState,
+        position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
+    ) -> Vec<Pin> {
+        let mut pins = self.pins(attachments, position);
+        self.lock_to_input_meshes(&mut pins);
+        pins
+    }
+
+    /// The frame of reference of the directions and the ground plane.
     fn nucleus_space(&self) -> Affine {
-        let own = self.to.get(self.universe.nucleus, &nucleus::USE_TRANSFORM);
-        if own { self.to.placement(self.universe.nucleus) } else { Affine::identity() }
+        let own = self.to.get(self.nucleus.node, &nucleus::USE_TRANSFORM);
+        if own { self.to.placement(self.nucleus.node) } else { Affine::identity() }
     }
 
     fn ground_plane(&self, space: &Affine) -> Option<GroundPlane> {
-        let (nucleus, to) = (self.universe.nucleus, &self.to);
+        let (nucleus, to) = (self.nucleus.node, &self.to);
         if !to.get(nucleus, &nucleus::USE_PLANE) {
             return None;
         }
-        // Normals go with the inverse transpose, or a scaled plane would tilt.
+        // A normal transforms by the inverse transpose, so that it stays normal to a scaled plane.
         let turn = space.linear.try_inverse().unwrap_or_default().transpose();
         let normal = turn * Vector3::from(to.get(nucleus, &nucleus::PLANE_NORMAL));
         let origin = space.point(Vector3::from(to.get(nucleus, &nucleus::PLANE_ORIGIN)));
-        // A plane without a direction is nowhere.
+        // Without a direction there is no plane.
         (normal != Vector3::zeros()).then(|| GroundPlane {
-            origin: self.universe.units.point(origin),
+            origin: self.nucleus.units.point(origin),
             normal,
             bounce: to.get(nucleus, &nucleus::PLANE_BOUNCE),
             friction: to.get(nucleus, &nucleus::PLANE_FRICTION),
@@ -141,13 +122,14 @@ impl Stretch<'_> {
     fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {
         let (node, to, scales) = (cloth.node, &self.to, &cloth.scales);
         let number = |key: &Key<f64>| to.get(node, key);
-        // Below nought there is none: the resistance counts.
+        // A negative stiffness is unset: the resistance applies.
         let stiffness = |key: &Key<f64>, scale: f64| Some(number(key) * scale).filter(|_| number(key) >= 0.0);
+        let resistance = |key: &Key<f64>, scale: f64| self.resistance(cloth, number(key) * scale);
         ClothFrame {
-            stretch_resistance: number(&n_cloth::STRETCH_RESISTANCE) * scales.stretch,
-            compression_resistance: number(&n_cloth::COMPRESSION_RESISTANCE) * scales.compression,
-            shear_resistance: number(&n_cloth::SHEAR_RESISTANCE),
-            bend_resistance: number(&n_cloth::BEND_RESISTANCE) * scales.bend,
+            stretch_resistance: resistance(&n_cloth::STRETCH_RESISTANCE, scales.stretch),
+            compression_resistance: resistance(&n_cloth::COMPRESSION_RESISTANCE, scales.compression),
+            shear_resistance: resistance(&n_cloth::SHEAR_RESISTANCE, 1.0),
+            bend_resistance: resistance(&n_cloth::BEND_RESISTANCE, scales.bend),
             stiffness: Stiffness {
                 stretch: stiffness(&n_cloth::STRETCH_STIFFNESS, scales.stretch),
                 compression: stiffness(&n_cloth::COMPRESSION_STIFFNESS, scales.compression),
@@ -176,12 +158,18 @@ impl Stretch<'_> {
             elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),
             self_collision: self.self_collision(cloth),
+            bending: self.bending(node),
+            yield_strain: self.yield_strain(node, number(&n_cloth::STRETCH_RESISTANCE) * scales.stretch),
+            pressure: self.pressure(node),
+            rigidity: number(&n_cloth::RIGIDITY) * scales.rigidity,
+            deform_resistance: number(&n_cloth::DEFORM_RESISTANCE) * scales.deform,
+            input_attract: self.input_attract(cloth),
         }
     }
 
     fn collider_frame(&self, collider: &ColliderSource) -> ColliderFrame {
         let (node, to) = (collider.node, &self.to);
-        let (start, end) = self.collider_way(collider);
+        let (start, end) = self.collider_motion(collider);
         ColliderFrame {
             start,
             end,
@@ -196,42 +184,22 @@ impl Stretch<'_> {
         }
     }
 
-    /// Where the points of a collider are at both ends, in metres; nothing for where they were, or if they
-    /// stay.
-    fn collider_way(&self, collider: &ColliderSource) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
-        let Some(shape) = &collider.shape else { return (Vec::new(), Vec::new()) };
+    /// The points of a collider at both ends of the interval, in metres. An empty start means the end of the interval
+    /// before; an empty end means no motion.
+    fn collider_motion(&self, collider: &ColliderSource) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+        let Some(motion) = &collider.motion else { return (Vec::new(), Vec::new()) };
         let [before, now] =
-            [&self.from, &self.to].map(|moment| (moment.placement(collider.mesh), shape.at(moment)));
+            [&self.from, &self.to].map(|moment| (moment.placement(collider.mesh), motion.at(moment)));
         let points = |(placement, points): &(Affine, Points)| -> Vec<Vector3<f64>> {
-            points.iter().map(|point| self.universe.units.point(placement.point(*point))).collect()
+            points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
         };
-        let start = if self.leaps { points(&before) } else { Vec::new() };
-        let stays = before == now && !self.leaps;
-        (start, if stays { Vec::new() } else { points(&now) })
-    }
-
-    /// How an object pushes points of others out. Left out, the radius is what Maya sets when it makes the object.
-    fn push_out(&self, node: NodeId, default_thickness: f64) -> PushOut {
-        let share = self.to.get(node, &n_base::PUSH_OUT);
-        if share == 0.0 {
-            return PushOut::OFF;
-        }
-        let radius = match self.graph.is_given(node, &n_base::PUSH_OUT_RADIUS) {
-            true => self.universe.units.length(self.to.get(node, &n_base::PUSH_OUT_RADIUS)),
-            false => CREATED_PUSH_OUT_RADIUS * self.thickness(node, default_thickness),
-        };
-        PushOut { share, radius }
-    }
-
-    /// In metres.
-    pub(super) fn thickness(&self, node: NodeId, default: f64) -> f64 {
-        let given = self.graph.is_given(node, &n_base::THICKNESS);
-        let units = if given { self.to.get(node, &n_base::THICKNESS) } else { default };
-        self.universe.units.length(units)
+        let start = if self.is_discontinuous { points(&before) } else { Vec::new() };
+        let is_still = before == now && !self.is_discontinuous;
+        (start, if is_still { Vec::new() } else { points(&now) })
     }
 }
 
-/// The direction of a vector; zero has none.
+/// The vector of unit length, or zero for the zero vector.
 fn unit(vector: Vector3<f64>) -> Vector3<f64> {
     vector.try_normalize(0.0).unwrap_or_default()
 }

@@ -1,30 +1,35 @@
-//! The surfaces that mesh nodes stand for.
+//! Surfaces of mesh nodes: primitives and OBJ files. Each is made once, within the memory limit.
 
 use std::collections::BTreeMap;
 
 use nucleus_core::Surface;
 
-use crate::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
+use crate::attributes::{
+    Painting, Value, mesh, n_base, n_particle, poly_cube, poly_cylinder, poly_plane, poly_sphere,
+};
 use crate::files;
-use crate::graph::{Node, NodeId};
+use crate::graph::{Graph, Node, NodeId};
 use crate::memory::{self, Budget, Cost, Size, TooLarge};
 use crate::mesh::{ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj, read_obj_uvs};
-use crate::scene::{Findings, Scene};
+use crate::scene::{Findings, Scene, Source};
 
-use super::shape::{Points, Shape};
+use super::animated_mesh::{AnimatedMesh, NumberedFile, Points};
 
-/// Meshes by node, each made once. In the space of the node, lengths in scene units.
+/// The minimum bytes of a point in a file: `v 0 0 0` and the end of the line, or `0 0 0`.
+const MIN_POINT_BYTES: u64 = 6;
+
+/// Meshes by node, each made once. Positions in mesh space, in scene units.
 pub(super) struct Geometry {
     made: BTreeMap<NodeId, Option<Mesh>>,
-    /// What is left of the memory that the scene may take.
+    /// The memory that the scene may take.
     pub(super) budget: Budget,
 }
 
-/// A mesh as it is made.
+/// A mesh before any blend.
 struct Mesh {
-    /// At the first frame, before any blend.
+    /// At the first frame.
     surface: Surface,
-    /// Its points from the first frame of the run on, where there is a file for each; else none.
+    /// Points of each frame from the first frame of the scene on, where there is a file for each; else empty.
     frames: Vec<Points>,
 }
 
@@ -33,7 +38,7 @@ impl Geometry {
         Self { made: BTreeMap::new(), budget: scene.source.budget() }
     }
 
-    /// How large the mesh of a node is: of a primitive without making it.
+    /// The size of a node's mesh. A primitive is not made for this.
     pub(super) fn size(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<Size> {
         if let Some(primitive) = primitive(scene.graph.node(node)) {
             return Some(primitive.size());
@@ -43,7 +48,7 @@ impl Geometry {
         Some(Size { points: points as u64, corners: corners as u64 })
     }
 
-    /// The surface of a node, or nothing if there is none; why not has been said then.
+    /// The surface of a node; `None` after an error, which is reported.
     pub(super) fn surface(
         &mut self,
         scene: &Scene,
@@ -53,13 +58,18 @@ impl Geometry {
         self.mesh(scene, node, findings).map(|mesh| &mesh.surface)
     }
 
-    /// The points of a node over time, blends included.
-    pub(super) fn shape(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<Shape> {
+    /// The points of a node over time, including its blend.
+    pub(super) fn animated(
+        &mut self,
+        scene: &Scene,
+        node: NodeId,
+        findings: &mut Findings,
+    ) -> Option<AnimatedMesh> {
         let mesh = self.mesh(scene, node, findings)?;
         let points = mesh.surface.positions.len();
         let own = match mesh.frames.as_slice() {
-            [] => Shape::fixed(mesh.surface.positions.as_slice().into()),
-            frames => Shape::sequence(frames.to_vec(), scene.time.start),
+            [] => AnimatedMesh::fixed(mesh.surface.positions.as_slice().into()),
+            frames => AnimatedMesh::sequence(frames.to_vec(), scene.time.start),
         };
         let Some(target) = scene.graph.blend_target(node) else { return Some(own) };
         let others = self.surface(scene, target, findings)?.positions.len();
@@ -72,11 +82,11 @@ impl Geometry {
             findings.error(&place, message);
             return None;
         }
-        let target = self.shape(scene, target, findings)?;
+        let target = self.animated(scene, target, findings)?;
         Some(own.blended(node, target))
     }
 
-    /// The texture coordinates of the points of a node; nothing if it is made without. Read anew each time.
+    /// The texture coordinates of a node's points; `None` if its kind has none. Reads the file on each call.
     pub(super) fn uvs(&self, scene: &Scene, node: NodeId) -> Result<Option<Vec<Option<[f64; 2]>>>, ObjError> {
         let own = scene.graph.node(node);
         if own.node_type() == &poly_plane::POLY_PLANE {
@@ -88,12 +98,12 @@ impl Geometry {
             return Ok(None);
         }
         let file = own.get(&mesh::FILE);
-        let file = Numbered::new(&file).map_or(file.clone(), |numbered| numbered.file(scene.time.start));
+        let file = NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start));
         let uvs = read_obj_uvs(scene.source.path(&file))?;
         Ok(Some(uvs).filter(|uvs| uvs.iter().any(Option::is_some)))
     }
 
-    /// Whether the points of a node stand where they are, seen from the node.
+    /// Whether the points of a node are constant in mesh space.
     pub(super) fn is_fixed(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> bool {
         let single = self.mesh(scene, node, findings).is_none_or(|mesh| mesh.frames.is_empty());
         single && scene.graph.blend_target(node).is_none()
@@ -112,7 +122,7 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
     } else {
         let primitive = primitive(node)?;
         if let Err(refused) = budget.claim(Cost::MESH.of(primitive.size())) {
-            refuse(scene, node, &refused, findings);
+            report_too_large(scene, node, &refused, findings);
             return None;
         }
         match primitive.surface() {
@@ -136,8 +146,8 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
     Some(mesh)
 }
 
-/// The primitive that a node makes, if it is one.
-pub(super) fn primitive(node: &Node) -> Option<Primitive> {
+/// The primitive of a node, if it is one.
+fn primitive(node: &Node) -> Option<Primitive> {
     let node_type = node.node_type();
     Some(if node_type == &poly_plane::POLY_PLANE {
         use poly_plane::{HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
@@ -162,13 +172,13 @@ pub(super) fn primitive(node: &Node) -> Option<Primitive> {
     })
 }
 
-/// The hard ranges of the tables keep it within what fits.
+/// The attribute's hard range fits into 32 bits.
 fn count(number: i64) -> u32 {
     u32::try_from(number).unwrap_or_default()
 }
 
-/// Says that a mesh takes too much memory.
-fn refuse(scene: &Scene, node: &Node, refused: &TooLarge, findings: &mut Findings) {
+/// Reports a mesh that exceeds the memory limit.
+fn report_too_large(scene: &Scene, node: &Node, refused: &TooLarge, findings: &mut Findings) {
     if !refused.is_first {
         return;
     }
@@ -177,7 +187,7 @@ fn refuse(scene: &Scene, node: &Node, refused: &TooLarge, findings: &mut Finding
     error.help(refused.help("make it coarser"));
 }
 
-/// The file of a mesh, or its files if there is one for each frame.
+/// Reads the file of a mesh, or one file per frame.
 fn read_files(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings) -> Option<Mesh> {
     let file = node.get(&mesh::FILE);
     let name = node.name();
@@ -203,24 +213,24 @@ fn read_files(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Fi
         }
     };
     let points = |surface: &Surface| surface.positions.len() as u64;
-    let Some(numbered) = Numbered::new(&file) else {
+    let Some(numbered) = NumberedFile::new(&file) else {
         let surface = read(&file, budget, findings)?;
         let size = Size { points: points(&surface), corners: surface.faces.corners().len() as u64 };
         let claimed = budget.claim(Cost::MESH.of(size));
         return match claimed {
             Ok(()) => Some(Mesh { surface, frames: Vec::new() }),
             Err(refused) => {
-                refuse(scene, node, &refused, findings);
+                report_too_large(scene, node, &refused, findings);
                 None
             }
         };
     };
-    let surface = read(&numbered.file(scene.time.start), budget, findings)?;
+    let surface = read(&numbered.at(scene.time.start), budget, findings)?;
     let mut frames: Vec<Points> = vec![surface.positions.as_slice().into()];
     for frame in scene.time.start + 1..=scene.time.end {
-        let file = numbered.file(frame);
+        let file = numbered.at(frame);
         if let Err(refused) = budget.claim(points(&surface) * memory::SHAPE_POINT) {
-            refuse(scene, node, &refused, findings);
+            report_too_large(scene, node, &refused, findings);
             return None;
         }
         let points = read(&file, budget, findings)?.positions;
@@ -236,21 +246,36 @@ fn read_files(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Fi
     Some(Mesh { surface, frames })
 }
 
-/// The name of a file with a run of `#` in it, which stand for the digits of the frame.
-struct Numbered<'a> {
-    before: &'a str,
-    digits: usize,
-    after: &'a str,
+/// An upper bound of the points of an object before it is made, which limits the points that a scene may name: from the
+/// size of its file. `None` where it is unknown, as for a file per frame.
+pub(crate) fn max_points(
+    graph: &Graph,
+    source: &Source,
+    object: NodeId,
+    mesh: Option<NodeId>,
+) -> Option<u64> {
+    let of_file = |file: &str| files::length(&source.path(file)) / MIN_POINT_BYTES + 1;
+    let Some(mesh) = mesh.or_else(|| graph.source(object, &n_base::INPUT_MESH)) else {
+        return max_particles(graph.node(object), of_file);
+    };
+    let mesh = graph.node(mesh);
+    if mesh.node_type() == &mesh::MESH {
+        let file = mesh.get(&mesh::FILE);
+        return (!file.contains('#')).then(|| of_file(&file));
+    }
+    primitive(mesh).map(|primitive| primitive.size().points)
 }
 
-impl<'a> Numbered<'a> {
-    fn new(file: &'a str) -> Option<Self> {
-        let first = file.find('#')?;
-        let digits = file[first..].bytes().take_while(|byte| *byte == b'#').count();
-        Some(Self { before: &file[..first], digits, after: &file[first + digits..] })
+/// The same for particles, from their list of positions.
+fn max_particles(node: &Node, of_file: impl Fn(&str) -> u64) -> Option<u64> {
+    if !node.node_type().is_a(&n_particle::N_PARTICLE) {
+        return None;
     }
-
-    fn file(&self, frame: i64) -> String {
-        format!("{}{frame:0digits$}{}", self.before, self.after, digits = self.digits)
+    let given = [&n_particle::POSITION0, &n_particle::POSITION];
+    let setting = given.iter().find_map(|key| node.setting(key))?;
+    match setting.at(0.0, &n_particle::POSITION.row) {
+        Value::Vectors(vectors) => Some(vectors.len() as u64),
+        Value::Painting(Painting::File(file)) => Some(of_file(&file)),
+        _ => None,
     }
 }

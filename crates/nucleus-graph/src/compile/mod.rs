@@ -1,47 +1,43 @@
-//! From a graph to what the solver takes: a model, and one input per frame.
+//! Compiles a graph to the solver's input: a model per nucleus, and one [`FrameInput`](nucleus_core::FrameInput) per
+//! frame.
 //!
-//! | You want to know...                                  | Read             |
-//! |------------------------------------------------------|------------------|
-//! | what comes out                                       | [`Program`]      |
-//! | how cloth and colliders get their shape and mass     | `objects.rs`     |
-//! | particles                                            | `particles.rs`   |
-//! | which lists a cloth needs                            | `lists.rs`       |
-//! | in which order objects are solved                    | `shaped.rs`      |
-//! | what a frame brings                                  | `frame.rs`       |
-//! | how meshes change their shape                        | `shape.rs`       |
-//! | attributes that differ from point to point           | `maps.rs`, `column.rs` |
-//! | how a cloth starts that does not start as its mesh   | `start.rs`       |
-//! | what holds points, and where it takes hold of them   | `pins.rs`        |
-//! | what an audit is to find kept apart                  | `apart.rs`       |
-//! | where a run is seen from                             | `camera.rs`      |
-//! | widths that no scene can mean                        | `widths.rs`      |
-//! | where scene units become metres                      | `units.rs`       |
-//! | how many points an object has at most                | `extent.rs`      |
-//! | the thickness that nobody sets                       | `thickness.rs`   |
+//! | You want to know...                                  | Read                               |
+//! |------------------------------------------------------|------------------------------------|
+//! | what the result is                                   | [`Program`], `sources.rs`          |
+//! | what compiling one nucleus shares                    | `compiler.rs`                      |
+//! | shape, mass and constraint lists of cloth; colliders | `objects.rs`                       |
+//! | pressure, shape, yielding, the input mesh            | `soft_body.rs`                     |
+//! | particles                                            | `particles.rs`                     |
+//! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
+//! | the input of a frame                                 | `frame.rs`                         |
+//! | meshes, and how many points they have                | `geometry.rs`                      |
+//! | mesh sequences and blends                            | `animated_mesh.rs`                 |
+//! | vertex maps                                          | `vertex_maps.rs`, `map_values.rs`  |
+//! | transform constraints                                | `attachments.rs`                   |
+//! | thickness, self-collision, push-out                  | `thickness.rs`                     |
+//! | cameras                                              | `camera.rs`                        |
+//! | scene units to metres, start frames                  | `units.rs`                         |
 //!
-//! **Invariant:** a scene pays only for what it uses, and whatever could go wrong in a run is refused
-//! here: a program can only run.
+//! Modules use each other in one direction only: from `units.rs` up to `objects.rs`.
+//!
+//! **Invariant:** a scene pays only for the features it uses. Compiling reports every error, so a program always runs.
 
-mod apart;
+mod animated_mesh;
+mod attachments;
 mod camera;
-mod column;
-mod extent;
+mod compiler;
 mod frame;
 mod geometry;
-mod lists;
-mod maps;
+mod initial_state;
+mod map_values;
 mod objects;
 mod particles;
-mod pins;
 mod program;
-mod self_collision;
-mod shape;
-mod shaped;
-mod start;
+mod soft_body;
+mod sources;
 mod thickness;
-mod time;
 mod units;
-mod widths;
+mod vertex_maps;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -50,74 +46,77 @@ use crate::attributes::nucleus;
 use crate::graph::NodeId;
 use crate::scene::{Diagnostic, Findings, Scene};
 
+use compiler::{CompiledNucleus, Compiler};
 use geometry::Geometry;
-use objects::{Compiled, Compiler};
-use program::Whole;
+use program::ProgramData;
 
+pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
-pub(crate) use extent::most_points;
-pub(crate) use pins::Grips;
-pub use program::{Object, ObjectKind, Program, Universe};
+pub(crate) use geometry::max_points;
+pub use program::{NucleusProgram, Object, ObjectKind, Program};
 
 /// Compiles a scene.
 ///
 /// # Errors
-/// All mistakes that can be found: missing and broken meshes, points that are not there ...
+/// All errors of the scene: missing or invalid meshes, points that do not exist, values outside their range.
 pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    let all = universes(scene, &BTreeSet::new(), &mut findings);
-    if all.is_empty() {
+    let compiled = compile_nuclei(scene, &BTreeSet::new(), &mut findings);
+    if compiled.is_empty() {
         let error = findings.error(&(0..0), "there is nothing to solve: the scene has no nucleus");
         error.help("add `\"nucleus1\": nucleus()`");
     }
     if findings.errors() > 0 {
         return Err(findings.in_order());
     }
-    let (mut universes, mut objects, mut mass) = (Vec::new(), Vec::new(), 0.0);
-    for (universe, its_objects, its_mass) in all {
-        universes.push(universe);
-        objects.extend(its_objects);
-        mass += its_mass;
-    }
-    // Cloths of all nuclei, then colliders of all nuclei.
-    objects.sort_by_key(|object| matches!(object.kind, ObjectKind::Collider(_)));
-    let starts = universes.iter().map(|universe| universe.start);
-    let start = starts.min().unwrap_or(scene.time.start);
-    let time = crate::scene::TimeSpan { start, ..scene.time };
-    let whole = Whole {
-        graph: scene.graph.clone(),
-        time,
-        every: scene.every,
-        record: scene.record,
-        checks: scene.checks.clone(),
-        universes,
-        objects,
-        mass,
-        warnings: findings.in_order(),
-    };
-    Ok(Program { whole: Arc::new(whole) })
+    Ok(link(scene, compiled, findings.in_order()))
 }
 
-/// What compiling would find in those parts of a scene that could be read.
+/// The diagnostics of compiling the valid part of a scene. Nothing is reported about `broken` nodes.
 pub(crate) fn survey(scene: &Scene, broken: &BTreeSet<NodeId>) -> Vec<Diagnostic> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    universes(scene, broken, &mut findings);
+    compile_nuclei(scene, broken, &mut findings);
     findings.in_order()
 }
 
-/// Each nucleus for itself, in the order of names. Of several, those without objects are left out.
-fn universes(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) -> Vec<Compiled> {
+/// Joins the nuclei to one program.
+fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, warnings: Vec<Diagnostic>) -> Program {
+    let (mut nuclei, mut objects, mut mass) = (Vec::new(), Vec::new(), 0.0);
+    for nucleus in compiled {
+        nuclei.push(nucleus.program);
+        objects.extend(nucleus.objects);
+        mass += nucleus.mass;
+    }
+    // Cloths of all nuclei, then colliders of all nuclei.
+    objects.sort_by_key(|object| matches!(object.kind, ObjectKind::Collider(_)));
+    let start = nuclei.iter().map(NucleusProgram::start).min().unwrap_or(scene.time.start);
+    let data = ProgramData {
+        graph: scene.graph.clone(),
+        time: crate::scene::TimeSpan { start, ..scene.time },
+        every: scene.every,
+        record: scene.record,
+        checks: scene.checks.clone(),
+        nuclei,
+        objects,
+        mass,
+        warnings,
+    };
+    Program { data: Arc::new(data) }
+}
+
+/// Each nucleus separately, in the order of names. Of several, those without objects are left out.
+fn compile_nuclei(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) -> Vec<CompiledNucleus> {
     let mut geometry = Geometry::new(scene);
     let mut nuclei: Vec<NodeId> = scene.graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect();
     nuclei.sort_by_key(|id| scene.graph.node(*id).name());
-    let mut all: Vec<Compiled> = Vec::new();
+    let mut all: Vec<CompiledNucleus> = Vec::new();
     for nucleus in nuclei {
-        let before = all.last().map(|(universe, ..)| universe);
-        let compiled = Compiler::new(scene, nucleus, broken, &mut geometry, before, findings).compile();
+        let previous = all.last().map(|compiled| &compiled.program);
+        let compiled = Compiler::new(scene, nucleus, broken, &mut geometry, previous, findings).compile();
         all.push(compiled);
     }
-    if all.iter().any(|(_, objects, _)| !objects.is_empty()) {
-        all.retain(|(_, objects, _)| !objects.is_empty());
+    if all.iter().any(|compiled| !compiled.objects.is_empty()) {
+        all.retain(|compiled| !compiled.objects.is_empty());
     } else {
         all.truncate(1);
     }

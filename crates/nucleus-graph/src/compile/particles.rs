@@ -1,75 +1,30 @@
-//! Particles: to the solver they are cloth of points alone (N1.1-4), each a ball of its radius.
+//! Particles: a cloth of points alone (N1.1-4), each a ball of `radius`.
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, MAX_COORDINATE, Mass, SelfCollision, Start,
-    Surface, VertexMaps,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Mass, SelfCollision, Start, VertexMaps,
 };
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
 use crate::graph::NodeId;
-use crate::memory::{Cost, Size};
 
-use super::frame::Stretch;
-use super::maps::Scales;
-use super::objects::{ClothSource, Compiler};
-use super::program::ObjectKind;
-use super::shaped::Shaped;
+use super::compiler::Compiler;
+use super::initial_state::PlacedObject;
+use super::program::{EvaluationInterval, ObjectKind};
+use super::sources::{ClothSource, MapScales};
 
 impl Compiler<'_> {
-    /// Where the particles of a node start, in scene units; nothing if it has none, or they are wrong, which has been
-    /// said then.
-    pub(super) fn initial_positions(&mut self, node: NodeId) -> Option<Surface> {
-        let key = self.initial(node, &n_particle::POSITION0, &n_particle::POSITION);
-        let name = self.scene.graph.node(node).name();
-        let place = self.scene.source.place(&format!("{name}.{}", key.row.name));
-        let vectors = match self.vectors(node, key) {
-            Ok(vectors) => vectors,
-            Err(message) => {
-                self.findings.error(&place, message);
-                return None;
-            }
-        };
-        if vectors.is_empty() {
-            let message = format!("`{name}` has no particles, and does nothing");
-            let warning = self.findings.warning(&self.scene.source.place(name), message);
-            warning.help("say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`");
-            return None;
-        }
-        let size = Size { points: vectors.len() as u64, corners: 0 };
-        self.claim(node, node, size, Cost::CLOTH)?;
-        let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).collect();
-        let is_far = |position: &Vector3<f64>| self.whole.units.point(*position).amax() > MAX_COORDINATE;
-        if let Some(point) = positions.iter().position(is_far) {
-            let message =
-                format!("`{}` of `{name}` is more than {MAX_COORDINATE:e} m at point {point}", key.row.name);
-            self.findings.error(&place, message);
-            return None;
-        }
-        Some(Surface { positions, faces: Faces::default() })
-    }
-
-    /// The first of two lists that is given.
-    fn initial(
-        &self,
-        node: NodeId,
-        first: &'static Key<Vec<[f64; 3]>>,
-        else_this: &'static Key<Vec<[f64; 3]>>,
-    ) -> &'static Key<Vec<[f64; 3]>> {
-        if self.scene.graph.is_given(node, first) { first } else { else_this }
-    }
-
     /// Compiles the particles of a node.
-    pub(super) fn particles(&mut self, Shaped { id, surface, .. }: Shaped) -> Option<()> {
-        self.check_wired(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
+    pub(super) fn particles(&mut self, PlacedObject { id, surface, .. }: PlacedObject) -> Option<()> {
+        self.check_inputs(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
         let points = surface.positions.len();
-        let surface = self.whole.units.surface(surface);
-        let velocities = self.initial(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
-        let velocities = self.start_column(id, id, points, velocities)?;
+        let surface = self.program.units.surface(surface);
+        let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
+        let velocities = self.start_vectors(id, id, points, velocities)?;
         let graph = &self.scene.graph;
         let lists = ClothLists {
             air: graph.is_ever_nonzero(id, &n_particle::DRAG)
-                && graph.is_ever_nonzero(self.whole.nucleus, &nucleus::AIR_DENSITY),
+                && graph.is_ever_nonzero(self.program.node, &nucleus::AIR_DENSITY),
             self_collision: graph.is_ever_nonzero(id, &n_base::SELF_COLLIDE),
             ..ClothLists::NONE
         };
@@ -77,27 +32,36 @@ impl Compiler<'_> {
         let start = Start { velocities, ..Start::default() };
         let cloth =
             Cloth { surface, mass: Mass::PerPoint(mass), lists, factors: VertexMaps::default(), start };
-        match self.whole.model.cloth(cloth) {
+        match self.program.model.cloth(cloth) {
             Ok(cloth) => {
-                let kind = ObjectKind::Cloth(ClothId(self.whole.first_cloth + cloth.0));
-                self.mass_and_object(id, kind, points, Faces::default(), mass * points as f64);
+                let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
+                self.add_object(id, kind, points, Faces::default(), mass * points as f64);
                 let radius = self.start.get(id, &n_particle::RADIUS);
                 self.objects.iter_mut().last().into_iter().for_each(|object| object.radius = Some(radius));
             }
-            Err(error) => return self.refuse(id, id, &error),
+            Err(error) => return self.report_refused(id, id, &error),
         }
-        let (default_thickness, is_dense, scales) = (0.0, false, Scales::NONE);
-        let source = ClothSource { node: id, is_particles: true, default_thickness, is_dense, scales };
-        self.whole.cloths.push(source);
+        let (default_thickness, is_dense, scales) = (0.0, false, MapScales::ONE);
+        let source = ClothSource {
+            node: id,
+            is_particles: true,
+            default_thickness,
+            is_dense,
+            scales,
+            faces: 0,
+            area: 0.0,
+            followed: None,
+        };
+        self.program.cloths.push(source);
         Some(())
     }
 }
 
-impl Stretch<'_> {
-    /// The attributes of particles in a frame.
+impl EvaluationInterval<'_> {
+    /// The attributes of particles in a frame. Their thickness is the radius.
     pub(super) fn particle_frame(&self, node: NodeId) -> ClothFrame {
         let number = |key: &Key<f64>| self.to.get(node, key);
-        let radius = self.universe.units.length(number(&n_particle::RADIUS));
+        let radius = self.nucleus.units.length(number(&n_particle::RADIUS));
         let thickness = radius * number(&n_particle::COLLIDE_WIDTH_SCALE).max(0.0);
         ClothFrame {
             stretch_resistance: 0.0,
@@ -105,7 +69,7 @@ impl Stretch<'_> {
             bend_resistance: 0.0,
             stretch_damp: 0.0,
             drag: number(&n_particle::DRAG),
-            // A ball has no side: what is said of the surface holds for all directions.
+            // The drag of a ball is the same in all directions.
             tangential_drag: 1.0,
             lift: 0.0,
             feels_gravity: !self.to.get(node, &n_particle::IGNORE_SOLVER_GRAVITY),

@@ -1,52 +1,54 @@
-//! A scene that can run.
+//! A compiled scene: one model per nucleus, and the sources of each frame's input.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nucleus_core::{ClothId, ColliderId, Faces, ModelBuilder};
 
+use crate::attributes::{FromValue, Key};
 use crate::checks::Check;
-use crate::graph::{Graph, NodeId};
+use crate::graph::{Graph, Moment, NodeId};
 use crate::scene::{Diagnostic, Record, TimeSpan};
 
 use super::camera::{self, Camera};
-use super::objects::{ClothSource, ColliderSource};
-use super::pins::PinSource;
+use super::sources::{AttachmentSource, ClothSource, ColliderSource};
 use super::units::Units;
 
-/// A compiled scene. Cheap to clone: clones share everything.
+/// A compiled scene. Cloning is cheap: clones share their data.
 #[derive(Debug, Clone)]
 pub struct Program {
-    pub(super) whole: Arc<Whole>,
+    pub(super) data: Arc<ProgramData>,
 }
 
-/// All of a program.
+/// The shared data of a program.
 #[derive(Debug)]
-pub(super) struct Whole {
+pub(super) struct ProgramData {
     pub(super) graph: Graph,
     pub(super) time: TimeSpan,
     pub(super) every: f64,
     pub(super) record: Record,
     pub(super) checks: Vec<Check>,
     /// At least one.
-    pub(super) universes: Vec<Universe>,
+    pub(super) nuclei: Vec<NucleusProgram>,
     pub(super) objects: Vec<Object>,
     pub(super) mass: f64,
     pub(super) warnings: Vec<Diagnostic>,
 }
 
-/// A nucleus with all that belongs to it: nothing in another one has any influence on it (N3.1-2).
+/// One nucleus with its cloths, colliders and constraints. Nuclei do not influence each other (N3.1-2).
 #[derive(Debug)]
-pub struct Universe {
-    pub(super) nucleus: NodeId,
+pub struct NucleusProgram {
+    pub(super) node: NodeId,
     pub(super) units: Units,
     pub(super) model: ModelBuilder,
     pub(super) cloths: Vec<ClothSource>,
     pub(super) colliders: Vec<ColliderSource>,
-    pub(super) pins: Vec<PinSource>,
-    /// The frame at which it begins.
+    pub(super) attachments: Vec<AttachmentSource>,
+    /// Start frame.
     pub(super) start: i64,
-    /// How many cloths and colliders the nuclei before have.
+    /// Count of cloths in the nuclei before this one.
     pub(super) first_cloth: u32,
+    /// Count of colliders in the nuclei before this one.
     pub(super) first_collider: u32,
 }
 
@@ -55,39 +57,53 @@ pub struct Universe {
 pub struct Object {
     /// Name of its node.
     pub name: String,
-    /// What it is to the solver. In a scene of several nuclei the ids count on from one to the next.
+    /// Its role and id in the solver. Ids are numbered on from one nucleus to the next.
     pub kind: ObjectKind,
-    /// How many points it has.
+    /// Count of its points.
     pub points: usize,
-    /// Its faces, which never change.
+    /// Its faces, constant during the run.
     pub faces: Faces,
-    /// Radius of each of its particles in scene units; nothing for a mesh.
+    /// Radius of its particles in scene units; `None` for a mesh.
     pub radius: Option<f64>,
 }
 
-/// What an object is to the solver.
+/// The role of an object in the solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObjectKind {
-    /// It is solved.
+    /// The solver moves it.
     Cloth(ClothId),
-    /// It moves as it is told.
+    /// The animation moves it.
     Collider(ColliderId),
+}
+
+/// The time from one evaluation to the next, which the solver advances in one call.
+pub(crate) struct EvaluationInterval<'p> {
+    pub(super) nucleus: &'p NucleusProgram,
+    pub(super) graph: &'p Graph,
+    pub(super) from: Moment<'p>,
+    pub(super) to: Moment<'p>,
+    /// Length in seconds of animation time.
+    pub(super) seconds: f64,
+    /// It begins at or before the start frame: objects are in their initial state.
+    pub(super) is_first: bool,
+    /// The solver's state is not that of `from`, because the interval before was not solved.
+    pub(super) is_discontinuous: bool,
 }
 
 impl Program {
     /// The model that the solver of the first nucleus starts from. Metres, kilograms.
     pub fn model(&self) -> &ModelBuilder {
-        &self.whole.universes[0].model
+        &self.data.nuclei[0].model
     }
 
-    /// The nuclei, in the order of their names; nearly always one.
-    pub fn universes(&self) -> &[Universe] {
-        &self.whole.universes
+    /// The nuclei in the order of their names; usually one.
+    pub fn nuclei(&self) -> &[NucleusProgram] {
+        &self.data.nuclei
     }
 
     /// All objects: cloths, then colliders, each in the order of their ids.
     pub fn objects(&self) -> &[Object] {
-        &self.whole.objects
+        &self.data.objects
     }
 
     /// The cameras over all frames, in the order of their names.
@@ -95,75 +111,129 @@ impl Program {
         camera::cameras(self.graph(), self.time())
     }
 
-    /// The frames of the run. It begins at the nucleus' `startFrame` if that is later than the scene's start.
+    /// The frames of the run. They begin at the earliest `startFrame` if all nuclei start after the scene.
     pub fn time(&self) -> TimeSpan {
-        self.whole.time
+        self.data.time
     }
 
-    /// Frames from one evaluation to the next.
+    /// Frames between two evaluations.
     pub fn every(&self) -> f64 {
-        self.whole.every
+        self.data.every
     }
 
-    /// What is to be recorded.
+    /// The record options of the scene.
     pub fn record(&self) -> Record {
-        self.whole.record
+        self.data.record
     }
 
-    /// What must hold.
+    /// The checks of the scene.
     pub fn checks(&self) -> &[Check] {
-        &self.whole.checks
+        &self.data.checks
     }
 
-    /// Scene units in a metre, for the first nucleus.
+    /// Scene units per metre in the first nucleus.
     pub fn units_per_metre(&self) -> f64 {
-        self.whole.universes[0].units.per_metre()
+        self.data.nuclei[0].units.per_metre()
     }
 
-    /// Mass of all cloth together, in kilograms.
+    /// Total mass of all cloths in kilograms.
     pub fn mass(&self) -> f64 {
-        self.whole.mass
+        self.data.mass
     }
 
-    /// What runs, but perhaps not as meant.
+    /// Findings that do not prevent the run.
     pub fn warnings(&self) -> &[Diagnostic] {
-        &self.whole.warnings
+        &self.data.warnings
     }
 
     /// The graph that it was compiled from.
     pub fn graph(&self) -> &Graph {
-        &self.whole.graph
+        &self.data.graph
+    }
+
+    /// The interval of a nucleus between two frames, which may be fractions. `elapsed` is its length in frames of
+    /// the nucleus' own time.
+    pub(crate) fn interval(
+        &self,
+        nucleus: usize,
+        frames: [f64; 2],
+        elapsed: f64,
+        is_discontinuous: bool,
+    ) -> EvaluationInterval<'_> {
+        let nucleus = &self.data.nuclei[nucleus];
+        let graph = &self.data.graph;
+        let [from, to] = frames.map(|frame| graph.at(frame));
+        let seconds = elapsed / self.data.time.fps;
+        let is_first = frames[0] <= nucleus.start as f64;
+        EvaluationInterval { nucleus, graph, from, to, seconds, is_first, is_discontinuous }
+    }
+
+    /// The nucleus of a cloth, by its index, and the id of the cloth in that nucleus.
+    pub(crate) fn locate_cloth(&self, cloth: ClothId) -> (usize, ClothId) {
+        let owner = self.nuclei().iter().position(|nucleus| nucleus.cloths().contains(&cloth.0));
+        let owner = owner.unwrap_or_default();
+        (owner, ClothId(cloth.0 - self.nuclei()[owner].first_cloth))
+    }
+
+    /// The nucleus of a collider, by its index, and the id of the collider in that nucleus.
+    pub(crate) fn locate_collider(&self, collider: ColliderId) -> (usize, ColliderId) {
+        let owner = self.nuclei().iter().position(|nucleus| nucleus.colliders().contains(&collider.0));
+        let owner = owner.unwrap_or_default();
+        (owner, ColliderId(collider.0 - self.nuclei()[owner].first_collider))
+    }
+
+    /// The node of an object, and its nucleus.
+    pub(crate) fn node_of(&self, object: ObjectKind) -> (NodeId, &NucleusProgram) {
+        match object {
+            ObjectKind::Cloth(cloth) => {
+                let (owner, own) = self.locate_cloth(cloth);
+                let nucleus = &self.nuclei()[owner];
+                (nucleus.cloths[own.0 as usize].node, nucleus)
+            }
+            ObjectKind::Collider(collider) => {
+                let (owner, own) = self.locate_collider(collider);
+                let nucleus = &self.nuclei()[owner];
+                (nucleus.colliders[own.0 as usize].node, nucleus)
+            }
+        }
     }
 }
 
-impl Universe {
+impl EvaluationInterval<'_> {
+    /// The value of an attribute at the end of the interval, if it is set or connected.
+    pub(super) fn given<T: FromValue>(&self, node: NodeId, key: &Key<T>) -> Option<T> {
+        self.graph.is_given(node, key).then(|| self.to.get(node, key))
+    }
+}
+
+impl NucleusProgram {
     /// The model that its solver starts from. Metres, kilograms.
     pub fn model(&self) -> &ModelBuilder {
         &self.model
     }
 
-    /// The frame at which it begins.
+    /// Its start frame.
     pub fn start(&self) -> i64 {
         self.start
     }
 
-    /// Its nucleus.
-    pub fn nucleus(&self) -> NodeId {
-        self.nucleus
+    /// Its nucleus node.
+    pub fn node(&self) -> NodeId {
+        self.node
     }
 
-    /// Scene units in a metre.
+    /// Scene units per metre.
     pub fn units_per_metre(&self) -> f64 {
         self.units.per_metre()
     }
 
-    /// The cloths that are its own, by their ids in the program.
-    pub fn cloths(&self) -> std::ops::Range<u32> {
+    /// The ids of its cloths in the program.
+    pub fn cloths(&self) -> Range<u32> {
         self.first_cloth..self.first_cloth + self.cloths.len() as u32
     }
 
-    /// The colliders that are its own, by their ids in the program.
-    pub fn colliders(&self) -> std::ops::Range<u32> {
+    /// The ids of its colliders in the program.
+    pub fn colliders(&self) -> Range<u32> {
         self.first_collider..self.first_collider + self.colliders.len() as u32
     }
 }

@@ -11,7 +11,7 @@ use crate::attributes::{NodeType, n_cloth, n_rigid, nucleus, particle};
 use crate::graph::Setting;
 use crate::scene::read_scene_text;
 
-mod pins;
+mod attachments;
 
 /// A scene of these nodes, over frames 1 to 24.
 fn scene(nodes: &str) -> Scene {
@@ -46,17 +46,17 @@ fn model(program: &Program) -> String {
 /// The input of a frame when nothing has moved since the start.
 fn input(program: &Program, frame: i64) -> FrameInput {
     let start = |cloth: ClothId, point: PointId| program.model().positions(cloth)[point.index()];
-    solved(program, frame, &mut Grips::default(), &start)
+    solved(program, frame, &mut AttachmentState::default(), &start)
 }
 
 /// The input of the frame that ends at `frame`.
 fn solved(
     program: &Program,
     frame: i64,
-    grips: &mut Grips,
+    attachments: &mut AttachmentState,
     position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
 ) -> FrameInput {
-    program.stretch(0, [frame - 1, frame].map(|frame| frame as f64), 1.0, false).input(grips, position)
+    program.interval(0, [frame - 1, frame].map(|frame| frame as f64), 1.0, false).input(attachments, position)
 }
 
 fn lists(cloth: &str) -> String {

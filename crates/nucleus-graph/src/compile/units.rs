@@ -1,13 +1,20 @@
-//! Where scene units become metres, and nowhere else.
+//! Space and time of a nucleus: metres per scene unit, and the frame at which it starts.
 //!
-//! A scene unit is `spaceScale` metres (N1.3-1). Positions and thicknesses are in scene units; gravity,
-//! wind, masses and forces are in metres, kilograms and seconds already. In scene units things therefore
-//! fall with gravity / `spaceScale`.
+//! A scene unit is `spaceScale` metres (N1.3-1). Positions and thicknesses are in scene units; gravity, wind, masses
+//! and forces are in metres, kilograms and seconds. An object therefore falls with gravity / `spaceScale`, in scene
+//! units per second squared. No other file converts scene units to metres.
 
 use nalgebra::Vector3;
 use nucleus_core::Surface;
 
-/// How long a scene unit is.
+use crate::attributes::{Choice, nucleus};
+use crate::graph::NodeId;
+use crate::scene::{Findings, Scene, TimeSpan};
+
+/// `resistanceModel: classic`.
+pub(super) const CLASSIC: Choice = Choice(0);
+
+/// The length of a scene unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Units {
     metres_per_unit: f64,
@@ -42,8 +49,41 @@ impl Units {
         surface
     }
 
-    /// Scene units in a metre.
+    /// Scene units per metre.
     pub(super) fn per_metre(self) -> f64 {
         1.0 / self.metres_per_unit
+    }
+}
+
+/// The start frame of a nucleus: its `startFrame`, but not before the first frame of the scene.
+pub(super) fn start_frame(scene: &Scene, nucleus: NodeId, findings: &mut Findings) -> i64 {
+    let TimeSpan { start, end, .. } = scene.time;
+    let node = scene.graph.node(nucleus);
+    let set = node.setting(&nucleus::START_FRAME).is_some();
+    let fed = scene.graph.source(nucleus, &nucleus::START_FRAME).is_some();
+    if !set && !fed {
+        return start;
+    }
+    let start_frame = scene.graph.at(start as f64).get(nucleus, &nucleus::START_FRAME);
+    let place = scene.source.place(&format!("{}.startFrame", node.name()));
+    if start_frame > end as f64 {
+        let message = format!("`startFrame` of `{}` comes after the last frame, {end}", node.name());
+        findings.error(&place, message);
+    } else if start_frame > start as f64 {
+        return start_frame.ceil() as i64;
+    } else if start_frame < start as f64 {
+        let message = format!("frames before {start}, where the scene's time begins, are not solved");
+        findings.warning(&place, message);
+    }
+    start
+}
+
+/// Warns of a nucleus without a time input, which is never solved.
+pub(super) fn check_time_input(scene: &Scene, nucleus: NodeId, findings: &mut Findings) {
+    if scene.graph.source(nucleus, &nucleus::CURRENT_TIME).is_none() {
+        let name = scene.graph.node(nucleus).name();
+        let message = format!("nothing is connected to `{name}.currentTime`: nothing is solved");
+        let warning = findings.warning(&scene.source.place(name), message);
+        warning.help(format!("connect `time1.outTime` to `{name}.currentTime`"));
     }
 }

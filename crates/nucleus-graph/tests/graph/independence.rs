@@ -28,7 +28,7 @@ fn objects_on_different_nuclei_never_affect_each_other() {
     let wild = "gravity: 50, subSteps: 7, spaceScale: 0.5, startFrame: 3, timeScale: 2";
     for other in [sheet("0", wild, "friction: 2"), sheet("2", wild, "thickness: 0.2")] {
         let both = program(&of_nodes(&(one.clone() + &other), ""));
-        assert_eq!(both.universes().len(), 2);
+        assert_eq!(both.nuclei().len(), 2);
         for object in ["c1", "r1"] {
             assert_eq!(after(&both, 6, object), after(&alone, 6, object), "{object}");
         }

@@ -7,7 +7,7 @@ use crate::attributes::{
     Attribute, Choice, Component, NodeType, Selection, dyn_base, dynamic_constraint, n_base, n_cloth,
     n_particle, nucleus, particle, surface_shape, transform,
 };
-use crate::compile::most_points;
+use crate::compile::max_points;
 use crate::graph::{Creation, Graph, NodeId};
 use crate::memory;
 use crate::scene::findings::Findings;
@@ -255,7 +255,7 @@ impl Joiner<'_> {
             let place = self.source.place(&format!("{}.components[{k}]", self.graph.node(id).name()));
             let Some(node) = self.graph.find(object) else { continue };
             let mesh = self.resolved.get(&(node, n_base::INPUT_MESH.row.name)).copied();
-            let most = most_points(self.graph, self.source, node, mesh);
+            let most = max_points(self.graph, self.source, node, mesh);
             if most.is_some_and(|most| u64::from(*last) >= most) {
                 self.findings.error(&place, format!("`{object}` has no point {last}")).help(match most {
                     Some(most @ 1..) => format!("its points are numbered 0 to {}", most - 1),

@@ -1,4 +1,4 @@
-//! What transform constraints hold, and where they carry it.
+//! The points that transform constraints hold, and their motion.
 
 use super::*;
 
@@ -10,10 +10,10 @@ fn pins_are_carried_by_their_transform() {
              rotateY: keys([(1, 0), (3, 90)]), ty: keys([(1, 0), (2, 0), (3, 2)]))"#),
     );
     // Point 1 is at (1, 0, 1), which is (-4, 0, 1) from the pin; a quarter about y makes that (1, 0, 4).
-    let mut grips = Grips::default();
+    let mut attachments = AttachmentState::default();
     let start = |cloth: ClothId, point: PointId| pinned.model().positions(cloth)[point.index()];
-    let first = solved(&pinned, 2, &mut grips, &start).pins;
-    let second = solved(&pinned, 3, &mut grips, &start).pins;
+    let first = solved(&pinned, 2, &mut attachments, &start).pins;
+    let second = solved(&pinned, 3, &mut attachments, &start).pins;
     assert_eq!((first.len(), first[0].cloth, first[0].point), (1, ClothId(0), PointId(1)));
     assert_eq!(first[0].start, Vector3::new(0.1, 0.0, 0.1));
     assert_eq!(first[0].end, second[0].start);
@@ -28,8 +28,8 @@ fn a_constraint_that_is_switched_on_takes_hold_where_points_are() {
             + r#""hand": dynamicConstraint(components: ["cloth1.vtx[0]"], tx: keys([(1, 0), (11, 10)]),
              enable: keys([(1, false), (3, true), (5, false), (7, true)]))"#),
     );
-    let mut grips = Grips::default();
-    let mut pins = |frame, at: Vector3<f64>| solved(&hand, frame, &mut grips, &|_, _| at).pins;
+    let mut attachments = AttachmentState::default();
+    let mut pins = |frame, at: Vector3<f64>| solved(&hand, frame, &mut attachments, &|_, _| at).pins;
     let (here, there) = (Vector3::new(7.0, 8.0, 9.0), Vector3::new(0.0, -5.0, 0.0));
     assert_eq!(pins(2, here), []);
     let held = pins(3, here);

@@ -1,4 +1,4 @@
-//! Transform constraints: which points they hold, and where they carry them.
+//! Transform constraints: the points they hold, and the pins that move these points in a frame.
 
 use std::collections::BTreeSet;
 
@@ -8,9 +8,9 @@ use nucleus_core::{ClothId, Pin, PointId};
 use crate::attributes::{Choice, Component, Selection, dynamic_constraint, n_component, nucleus};
 use crate::graph::{Moment, NodeId};
 
-use super::frame::Stretch;
-use super::objects::Compiler;
-use super::program::Universe;
+use super::compiler::Compiler;
+use super::program::{EvaluationInterval, NucleusProgram};
+use super::sources::{AttachedPoint, AttachmentSource};
 
 /// `constraintType: transform`.
 const TRANSFORM: Choice = Choice(0);
@@ -21,52 +21,36 @@ const ALL: Choice = Choice(2);
 const POINT: Choice = Choice(2);
 const OBJECT: Choice = Choice(6);
 
-/// What one constraint holds.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct PinSource {
-    constraint: NodeId,
-    points: Vec<HeldPoint>,
-    /// Whether the constraint is ever carried anywhere.
-    moves: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct HeldPoint {
-    cloth: ClothId,
-    point: PointId,
-    /// In metres.
-    start: Vector3<f64>,
-}
-
-/// How constraints hold their points at the moment; for each constraint, once it has taken hold, where its
-/// points are in its own space, in scene units.
+/// Attachment state of each constraint during a run: positions of its points in constraint space, in scene units, or
+/// `None` while it is disabled. If the constraint never moves, the positions are in world space, in metres.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Grips {
+pub(crate) struct AttachmentState {
     pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
 }
 
-impl Universe {
-    /// Whether its constraints can hold so: none is there yet, or each holds all of its points or nothing.
-    pub(crate) fn holds(&self, held: &[Option<Vec<Vector3<f64>>>]) -> bool {
-        let fits = |(grip, source): (&Option<Vec<_>>, &PinSource)| {
-            grip.as_ref().is_none_or(|grip| grip.len() == source.points.len())
+impl NucleusProgram {
+    /// Whether a restored attachment state fits: it is empty, or each constraint holds all of its points or none.
+    pub(crate) fn accepts_attachments(&self, held: &[Option<Vec<Vector3<f64>>>]) -> bool {
+        let fits = |(held, source): (&Option<Vec<_>>, &AttachmentSource)| {
+            held.as_ref().is_none_or(|held| held.len() == source.points.len())
         };
-        held.is_empty() || (held.len() == self.pins.len() && held.iter().zip(&self.pins).all(fits))
+        held.is_empty()
+            || (held.len() == self.attachments.len() && held.iter().zip(&self.attachments).all(fits))
     }
 }
 
 impl Compiler<'_> {
-    /// What all transform constraints hold, in the order of their names.
-    pub(super) fn pins(&mut self) -> Vec<PinSource> {
-        let mut pins: Vec<PinSource> = Vec::new();
+    /// All transform constraints, in the order of their names.
+    pub(super) fn attachments(&mut self) -> Vec<AttachmentSource> {
+        let mut attachments: Vec<AttachmentSource> = Vec::new();
         let mut taken: BTreeSet<(ClothId, PointId)> = BTreeSet::new();
         for id in self.constraints() {
-            self.check_points_named(id);
+            self.check_named_points(id);
             let node = self.scene.graph.node(id);
             if self.start.get(id, &dynamic_constraint::CONSTRAINT_TYPE) != TRANSFORM {
                 continue;
             }
-            let points = self.held_points(id);
+            let points = self.attached_points(id);
             let place = self.scene.source.place(node.name());
             if points.iter().any(|held| taken.contains(&(held.cloth, held.point))) {
                 let message =
@@ -80,29 +64,29 @@ impl Compiler<'_> {
             if moves && placement.linear.try_inverse().is_none() {
                 self.findings.error(&place, format!("`{}` is scaled to nothing at the start", node.name()));
             }
-            pins.push(PinSource { constraint: id, points, moves });
+            attachments.push(AttachmentSource { constraint: id, points, moves });
         }
-        pins
+        attachments
     }
 
     /// The constraints of the nucleus, in the order of their names.
     fn constraints(&self) -> Vec<NodeId> {
         let graph = &self.scene.graph;
-        let elements = graph.elements(self.whole.nucleus, &nucleus::INPUT_CURRENT);
+        let elements = graph.elements(self.program.node, &nucleus::INPUT_CURRENT);
         let mut constraints: Vec<NodeId> = elements.into_iter().map(|(_, plug)| plug.node).collect();
         constraints.sort_by_key(|id| graph.node(*id).name());
         constraints.dedup();
         constraints
     }
 
-    /// Points that a constraint names have to be there.
-    fn check_points_named(&mut self, constraint: NodeId) {
+    /// Reports points that a constraint names and the cloth does not have.
+    fn check_named_points(&mut self, constraint: NodeId) {
         let graph = &self.scene.graph;
         let node = graph.node(constraint);
         for (k, component) in node.get(&dynamic_constraint::COMPONENTS).iter().enumerate() {
             let Component { object, selection: Selection::Points { last, .. } } = component else { continue };
             let Some(cloth) = graph.find(object).and_then(|object| self.cloth_of(object)) else { continue };
-            let points = self.whole.model.positions(cloth).len();
+            let points = self.program.model.positions(cloth).len();
             if *last as usize >= points {
                 let place = self.scene.source.place(&format!("{}.components[{k}]", node.name()));
                 let error = self.findings.error(&place, format!("`{object}` has no point {last}"));
@@ -111,8 +95,8 @@ impl Compiler<'_> {
         }
     }
 
-    /// Each point once, member by member.
-    fn held_points(&mut self, constraint: NodeId) -> Vec<HeldPoint> {
+    /// The points of a constraint, each once, in the order of its components.
+    fn attached_points(&mut self, constraint: NodeId) -> Vec<AttachedPoint> {
         let graph = &self.scene.graph;
         let mut seen = BTreeSet::new();
         let mut held = Vec::new();
@@ -124,17 +108,17 @@ impl Compiler<'_> {
             };
             for point in self.points_of(member.node, cloth) {
                 if seen.insert((cloth, point)) {
-                    let start = self.whole.model.positions(cloth)[point as usize];
-                    held.push(HeldPoint { cloth, point: PointId(point), start });
+                    let start = self.program.model.positions(cloth)[point as usize];
+                    held.push(AttachedPoint { cloth, point: PointId(point), start });
                 }
             }
         }
         held
     }
 
-    /// The points of a component, as far as they are there.
+    /// The points of a component that exist.
     fn points_of(&mut self, member: NodeId, cloth: ClothId) -> Vec<u32> {
-        let all = self.whole.model.positions(cloth).len() as u32;
+        let all = self.program.model.positions(cloth).len() as u32;
         let node = self.scene.graph.node(member);
         let (kind, elements) = (node.get(&n_component::COMPONENT_TYPE), node.get(&n_component::ELEMENTS));
         if elements == ALL || kind == OBJECT {
@@ -147,7 +131,7 @@ impl Compiler<'_> {
             return Vec::new();
         }
         let listed = node.get(&n_component::COMPONENT_INDICES);
-        // Where the constraint names its points itself, that has been looked at.
+        // `check_named_points` covers components that the constraint's short form makes.
         let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.made_by().is_none());
         if let Some(point) = missing {
             let place = self.scene.source.place(&format!("{name}.componentIndices"));
@@ -159,56 +143,65 @@ impl Compiler<'_> {
     }
 }
 
-impl Stretch<'_> {
-    /// The pins of this stretch of time. A constraint that is on and holds nothing yet takes hold of its
-    /// points where they are when it begins: `position` in metres (N2.4-5).
+impl EvaluationInterval<'_> {
+    /// The pins of this interval. A constraint that becomes enabled attaches its points where they are at the start of
+    /// the interval: `position` in metres (N2.4-5).
     pub(super) fn pins(
         &self,
-        grips: &mut Grips,
+        attachments: &mut AttachmentState,
         position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
     ) -> Vec<Pin> {
-        grips.held.resize(self.universe.pins.len(), None);
+        attachments.held.resize(self.nucleus.attachments.len(), None);
         let mut pins = Vec::new();
         let mut taken = BTreeSet::new();
-        for (source, grip) in self.universe.pins.iter().zip(&mut grips.held) {
+        for (source, held) in self.nucleus.attachments.iter().zip(&mut attachments.held) {
             if !self.to.get(source.constraint, &dynamic_constraint::ENABLE) {
-                *grip = None;
+                *held = None;
                 continue;
             }
-            let grip = grip.get_or_insert_with(|| {
+            let held = held.get_or_insert_with(|| {
                 let points = source.points.iter();
-                let place = |held: &HeldPoint| {
-                    if self.is_first { held.start } else { position(held.cloth, held.point) }
+                let place = |point: &AttachedPoint| {
+                    if self.is_first { point.start } else { position(point.cloth, point.point) }
                 };
-                self.take_hold(source, points.map(place))
+                self.to_constraint_space(source, points.map(place))
             });
-            let [from, to] = [&self.from, &self.to].map(|moment| self.carried(source, moment, grip));
-            for ((held, start), end) in source.points.iter().zip(from).zip(to) {
-                if taken.insert((held.cloth, held.point)) {
-                    pins.push(Pin { cloth: held.cloth, point: held.point, start, end });
+            let [from, to] = [&self.from, &self.to].map(|moment| self.positions_at(source, moment, held));
+            for ((point, start), end) in source.points.iter().zip(from).zip(to) {
+                if taken.insert((point.cloth, point.point)) {
+                    pins.push(Pin { cloth: point.cloth, point: point.point, start, end });
                 }
             }
         }
         pins
     }
 
-    /// Points in metres to points in the space of the constraint, or as they are if it never moves.
-    fn take_hold(&self, source: &PinSource, points: impl Iterator<Item = Vector3<f64>>) -> Vec<Vector3<f64>> {
+    /// Positions in constraint space, in scene units, from positions in metres; unchanged if the constraint never moves.
+    fn to_constraint_space(
+        &self,
+        source: &AttachmentSource,
+        points: impl Iterator<Item = Vector3<f64>>,
+    ) -> Vec<Vector3<f64>> {
         if !source.moves {
             return points.collect();
         }
         let placement = self.from.placement(source.constraint);
-        // Scaled to nothing, it has no space to keep points in: then they all come to where it is.
+        // With a scale of zero there is no inverse: all points move to the origin of the constraint.
         let inverse = placement.linear.try_inverse().unwrap_or_default();
-        points.map(|point| inverse * (self.universe.units.scene_point(point) - placement.offset)).collect()
+        points.map(|point| inverse * (self.nucleus.units.scene_point(point) - placement.offset)).collect()
     }
 
-    /// Where the constraint has its points at a moment, in metres.
-    fn carried(&self, source: &PinSource, moment: &Moment, grip: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    /// Positions of the attached points at a time, in metres.
+    fn positions_at(
+        &self,
+        source: &AttachmentSource,
+        moment: &Moment,
+        held: &[Vector3<f64>],
+    ) -> Vec<Vector3<f64>> {
         if !source.moves {
-            return grip.to_vec();
+            return held.to_vec();
         }
         let placement = moment.placement(source.constraint);
-        grip.iter().map(|point| self.universe.units.point(placement.point(*point))).collect()
+        held.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
     }
 }

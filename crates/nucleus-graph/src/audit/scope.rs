@@ -1,0 +1,116 @@
+//! What an audit checks in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
+
+use nucleus_audit::{Plane, Rules, World};
+use nucleus_core::{ClothFrame, ClothId, FrameInput, Pin};
+
+use crate::attributes::{n_base, nucleus};
+use crate::compile::{Object, ObjectKind, Program};
+use crate::graph::Moment;
+
+/// The ground planes of all nuclei.
+#[derive(Debug, Default)]
+pub(crate) struct GroundPlanes {
+    nuclei: Vec<NucleusPlane>,
+}
+
+/// The ground plane of one nucleus, from its solver's input.
+#[derive(Debug, Default)]
+struct NucleusPlane {
+    /// At the start and the end of a span of the frame.
+    planes: Option<[Plane; 2]>,
+    /// Start and end of the span, as shares of the frame.
+    span: [f64; 2],
+    first_cloth: u32,
+    /// Whether each cloth collides with the plane.
+    collides: Vec<bool>,
+}
+
+impl GroundPlanes {
+    /// Begins a frame: each plane is where the last frame left it.
+    pub(crate) fn begin_frame(&mut self) {
+        for planes in self.nuclei.iter_mut().filter_map(|nucleus| nucleus.planes.as_mut()) {
+            planes[0] = planes[1];
+        }
+    }
+
+    /// A nucleus returns to its initial state: its plane has no earlier position.
+    pub(crate) fn reset(&mut self, nucleus: usize) {
+        self.nucleus(nucleus).planes = None;
+    }
+
+    /// Takes the plane of a nucleus from the solver's input for a span of the frame. A plane without an earlier position
+    /// does not move in the span.
+    pub(crate) fn begin_span(
+        &mut self,
+        nucleus: usize,
+        first_cloth: u32,
+        input: &FrameInput,
+        span: [f64; 2],
+    ) {
+        let nucleus = self.nucleus(nucleus);
+        let end = input.plane.as_ref().and_then(|plane| Plane::new(plane.origin, plane.normal));
+        let start = nucleus.planes.map(|[_, end]| end);
+        let collides = |cloth: &ClothFrame| cloth.collide && cloth.collide_strength > 0.0;
+        nucleus.planes = end.map(|end| [start.unwrap_or(end), end]);
+        nucleus.collides = input.cloths.iter().map(collides).collect();
+        (nucleus.first_cloth, nucleus.span) = (first_cloth, span);
+    }
+
+    /// The plane that a cloth collides with, at the start of the span and at a share of the frame.
+    pub(crate) fn of(&self, cloth: ClothId, share: f64) -> Option<[Plane; 2]> {
+        let collides = |nucleus: &NucleusPlane| {
+            let own = cloth.0.checked_sub(nucleus.first_cloth);
+            own.and_then(|own| nucleus.collides.get(own as usize)).copied()
+        };
+        let nucleus = self.nuclei.iter().find(|nucleus| collides(nucleus).is_some())?;
+        let [start, end] = nucleus.planes.filter(|_| collides(nucleus) == Some(true))?;
+        let [from, to] = nucleus.span;
+        let progress = if to > from { ((share - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        Some([start, start.towards(&end, progress)])
+    }
+
+    fn nucleus(&mut self, index: usize) -> &mut NucleusPlane {
+        if self.nuclei.len() <= index {
+            self.nuclei.resize_with(index + 1, NucleusPlane::default);
+        }
+        &mut self.nuclei[index]
+    }
+}
+
+/// The rules of the frame that ends at `frame`, over all objects in their order. Colliders and pinned points follow the
+/// animation, so the solver cannot keep them apart from each other.
+pub(crate) fn collision_rules(program: &Program, frame: i64, pins: &[Pin], world: &World) -> Rules {
+    let mut rules = Rules::default();
+    let objects = program.objects();
+    let moment = program.graph().at(frame as f64);
+    for a in 0..objects.len() {
+        for b in a..objects.len() {
+            if !collide(program, a, b, &moment) {
+                rules.ignore(a, b);
+            }
+        }
+        if let ObjectKind::Collider(_) = objects[a].kind {
+            world.points_of(a).for_each(|point| rules.hold(point));
+        }
+    }
+    for pin in pins {
+        let is_pinned = |object: &Object| object.kind == ObjectKind::Cloth(pin.cloth);
+        let cloth = objects.iter().position(is_pinned).map(|cloth| world.points_of(cloth));
+        cloth.into_iter().for_each(|points| rules.hold(points.start + pin.point.index()));
+    }
+    rules
+}
+
+/// Whether two objects collide, or one with itself. Objects of different nuclei never do.
+fn collide(program: &Program, a: usize, b: usize, moment: &Moment) -> bool {
+    let [kind_a, kind_b] = [a, b].map(|object| program.objects()[object].kind);
+    let [(node_a, nucleus_a), (node_b, nucleus_b)] = [kind_a, kind_b].map(|kind| program.node_of(kind));
+    if a == b {
+        return moment.get(node_a, &n_base::SELF_COLLIDE);
+    }
+    let collide = moment.get(node_a, &n_base::COLLIDE) && moment.get(node_b, &n_base::COLLIDE);
+    let are_cloths = [kind_a, kind_b].iter().all(|kind| matches!(kind, ObjectKind::Cloth(_)));
+    let range = moment.get(nucleus_a.node(), &nucleus::COLLISION_LAYER_RANGE);
+    let layers = moment.get(node_a, &n_base::COLLISION_LAYER) - moment.get(node_b, &n_base::COLLISION_LAYER);
+    nucleus_a.node() == nucleus_b.node() && collide && !(are_cloths && layers.abs() >= range)
+}

@@ -1,0 +1,209 @@
+//! Initial state of objects: positions and velocities at the start frame, and the order in which objects are solved.
+//!
+//! Cloth starts as its mesh, at rest, unless `startPositions` or `startVelocities` are given. Both are in world space, in
+//! scene units. Rest lengths always come from the mesh, so cloth that starts stretched contracts.
+//!
+//! Objects are solved in the order of height at the start frame, lowest first, so that names do not influence the
+//! result. Contacts are solved one after another (Gauss-Seidel), so the order shows in the last bits, and in larger
+//! differences where cloth is compressed. Objects at identical positions are ordered by their settings; objects with
+//! identical settings are interchangeable.
+
+use std::cmp::Ordering;
+
+use nalgebra::Vector3;
+use nucleus_core::{Faces, MAX_COORDINATE, Start, Surface};
+
+use crate::attributes::{Key, Painting, Value, n_base, n_cloth, n_particle, surface_shape};
+use crate::graph::{Graph, NodeId};
+use crate::memory::{self, Cost, Size};
+use crate::mesh::read_obj;
+use crate::paint::read_vectors;
+
+use super::compiler::Compiler;
+
+/// An object with its mesh at the start frame, in world space; lengths in scene units. Particles are their own mesh.
+pub(super) struct PlacedObject {
+    pub(super) id: NodeId,
+    pub(super) mesh: NodeId,
+    pub(super) surface: Surface,
+}
+
+impl Compiler<'_> {
+    /// The objects that have a mesh, in solve order.
+    pub(super) fn placed_meshes(&mut self, objects: Vec<NodeId>) -> Vec<PlacedObject> {
+        let place = |id| self.world_surface(id).map(|(mesh, surface)| PlacedObject { id, mesh, surface });
+        let placed = objects.into_iter().filter_map(place).collect();
+        self.in_solve_order(placed)
+    }
+
+    /// The particle nodes that have particles, in solve order.
+    pub(super) fn placed_particles(&mut self, objects: Vec<NodeId>) -> Vec<PlacedObject> {
+        let place = |id| self.particle_positions(id).map(|surface| PlacedObject { id, mesh: id, surface });
+        let placed = objects.into_iter().filter_map(place).collect();
+        self.in_solve_order(placed)
+    }
+
+    /// Sorts objects, and enlarges the bounding box of the nucleus by them.
+    fn in_solve_order(&mut self, mut placed: Vec<PlacedObject>) -> Vec<PlacedObject> {
+        for point in placed.iter().flat_map(|placed| &placed.surface.positions) {
+            let [low, high] = self.bounds.unwrap_or([*point; 2]);
+            self.bounds = Some([low.inf(point), high.sup(point)]);
+        }
+        placed.sort_by(|a, b| a.solve_order(b, &self.scene.graph));
+        placed
+    }
+
+    /// The mesh of an object, and its surface at the start frame in world space; lengths in scene units.
+    fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
+        let graph = &self.scene.graph;
+        let Some(mesh) = self.mesh_of(object) else {
+            let name = graph.node(object).name();
+            let error =
+                self.findings.error(&self.scene.source.place(name), format!("`{name}` has no `inputMesh`"));
+            error.help("connect a mesh's `worldMesh[0]` to it");
+            return None;
+        };
+        if self.broken.contains(&mesh) {
+            return None;
+        }
+        let size = self.geometry.size(self.scene, mesh, self.findings)?;
+        let is_cloth = graph.node(object).node_type().is_a(&n_cloth::N_CLOTH);
+        self.claim(object, mesh, size, if is_cloth { Cost::CLOTH } else { Cost::COLLIDER })?;
+        let placement = self.start.placement(mesh);
+        let fixed = self.geometry.is_fixed(self.scene, mesh, self.findings);
+        let mut surface = self.geometry.surface(self.scene, mesh, self.findings)?.clone();
+        if !fixed {
+            surface.positions =
+                self.geometry.animated(self.scene, mesh, self.findings)?.at(&self.start).to_vec();
+        }
+        for position in &mut surface.positions {
+            *position = placement.point(*position);
+        }
+        Some((mesh, surface))
+    }
+
+    /// The mesh node connected to an object. A mesh that only displays another node's output, as that of a cloth,
+    /// is not a source.
+    fn mesh_of(&self, object: NodeId) -> Option<NodeId> {
+        let graph = &self.scene.graph;
+        let mesh = graph.source(object, &n_base::INPUT_MESH)?;
+        let is_surface = graph.node(mesh).node_type().is_a(&surface_shape::SURFACE_SHAPE);
+        (is_surface && graph.source(mesh, &surface_shape::IN_MESH).is_none()).then_some(mesh)
+    }
+
+    /// Initial positions of a node's particles, in scene units. `None` without particles or after an error, which is
+    /// reported.
+    fn particle_positions(&mut self, node: NodeId) -> Option<Surface> {
+        let key = self.first_given(node, &n_particle::POSITION0, &n_particle::POSITION);
+        let name = self.scene.graph.node(node).name();
+        let place = self.place(node, &key.row);
+        let vectors = match self.vectors(node, key) {
+            Ok(vectors) => vectors,
+            Err(message) => {
+                self.findings.error(&place, message);
+                return None;
+            }
+        };
+        if vectors.is_empty() {
+            let message = format!("`{name}` has no particles, and does nothing");
+            let warning = self.findings.warning(&self.scene.source.place(name), message);
+            warning.help("say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`");
+            return None;
+        }
+        let size = Size { points: vectors.len() as u64, corners: 0 };
+        self.claim(node, node, size, Cost::CLOTH)?;
+        let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).collect();
+        let is_far = |position: &Vector3<f64>| self.program.units.point(*position).amax() > MAX_COORDINATE;
+        if let Some(point) = positions.iter().position(is_far) {
+            let message =
+                format!("`{}` of `{name}` is more than {MAX_COORDINATE:e} m at point {point}", key.row.name);
+            self.findings.error(&place, message);
+            return None;
+        }
+        Some(Surface { positions, faces: Faces::default() })
+    }
+
+    /// The first of two attributes that is given, else the second.
+    pub(super) fn first_given(
+        &self,
+        node: NodeId,
+        first: &'static Key<Vec<[f64; 3]>>,
+        second: &'static Key<Vec<[f64; 3]>>,
+    ) -> &'static Key<Vec<[f64; 3]>> {
+        if self.scene.graph.is_given(node, first) { first } else { second }
+    }
+
+    /// The start state of a cloth; `None` after an error, which is reported.
+    pub(super) fn start_state(&mut self, cloth: NodeId, mesh: NodeId, points: usize) -> Option<Start> {
+        let [positions, velocities] = [&n_base::START_POSITIONS, &n_base::START_VELOCITIES]
+            .map(|key| self.start_vectors(cloth, mesh, points, key));
+        Some(Start { positions: positions?, velocities: velocities? })
+    }
+
+    /// One vector per point in metres or metres per second, or none; `None` after an error, which is reported.
+    pub(super) fn start_vectors(
+        &mut self,
+        cloth: NodeId,
+        mesh: NodeId,
+        points: usize,
+        key: &Key<Vec<[f64; 3]>>,
+    ) -> Option<Vec<Vector3<f64>>> {
+        let vectors = self.vectors(cloth, key);
+        let [name, mesh] = [cloth, mesh].map(|node| self.scene.graph.node(node).name());
+        let label = format!("`{}` of `{name}`", key.row.name);
+        let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {
+            vectors.into_iter().map(|vector| self.program.units.point(vector.into())).collect()
+        };
+        let is_far = |metres: &Vector3<f64>| metres.amax() > MAX_COORDINATE;
+        let checked = vectors.map(metres).and_then(|column| match column.iter().position(is_far) {
+            _ if !column.is_empty() && column.len() != points => {
+                Err(format!("{label} has {} vectors, but `{mesh}` has {points} points", column.len()))
+            }
+            Some(point) => Err(format!("{label} is more than {MAX_COORDINATE:e} m at point {point}")),
+            None => Ok(column),
+        });
+        let report = |message| {
+            let place = self.place(cloth, &key.row);
+            self.findings.error(&place, message);
+        };
+        checked.map_err(report).ok()
+    }
+
+    /// The value of a list of vectors, from the scene or from a file; else the reason why it cannot be read.
+    fn vectors(&self, node: NodeId, key: &Key<Vec<[f64; 3]>>) -> Result<Vec<[f64; 3]>, String> {
+        match self.start.held(node, key) {
+            Some(Value::Vectors(vectors)) => Ok(vectors),
+            Some(Value::Painting(Painting::File(file))) => {
+                let path = self.scene.source.path(&file);
+                self.check_file(&path, memory::NUMBER_BYTE)?;
+                if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
+                    let points = read_obj(path).map_err(|error| error.to_string())?.positions;
+                    return Ok(points.into_iter().map(Into::into).collect());
+                }
+                read_vectors(&path).map_err(|error| error.to_string())
+            }
+            _ => Ok(Vec::new()),
+        }
+    }
+}
+
+impl PlacedObject {
+    /// By y, z and x of the points in turn, then by size, faces and settings.
+    fn solve_order(&self, other: &Self, graph: &Graph) -> Ordering {
+        let (a, b) = (&self.surface, &other.surface);
+        let size = |surface: &Surface| [surface.positions.len(), surface.faces.len()];
+        let place = |surface: &'_ Surface, point: usize| {
+            let p = surface.positions[point];
+            [p.y, p.z, p.x]
+        };
+        let points = a.positions.len().min(b.positions.len());
+        let coordinates = (0..points).flat_map(|k| place(a, k).into_iter().zip(place(b, k)));
+        let places = coordinates.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne());
+        let settings = |id: NodeId| format!("{:?}", (graph.node(id).preset(), graph.node(id).settings()));
+        places
+            .unwrap_or(Ordering::Equal)
+            .then_with(|| size(a).cmp(&size(b)))
+            .then_with(|| a.faces.corners().cmp(b.faces.corners()))
+            .then_with(|| settings(self.id).cmp(&settings(other.id)))
+    }
+}

@@ -1,0 +1,112 @@
+//! Sources of a frame's input: the nodes that each object and constraint is evaluated from, and constants fixed at
+//! compile time.
+
+use nalgebra::Vector3;
+use nucleus_core::{ClothId, PointId};
+
+use crate::graph::NodeId;
+
+use super::animated_mesh::AnimatedMesh;
+
+/// Source of the frames of a cloth or of particles.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ClothSource {
+    pub(super) node: NodeId,
+    /// Particles are a cloth of points alone (N1.1-4).
+    pub(super) is_particles: bool,
+    /// Thickness where `thickness` is not given, in scene units.
+    pub(super) default_thickness: f64,
+    /// Whether the edge length limits `default_thickness`.
+    pub(super) is_dense: bool,
+    /// The uniform vertex maps.
+    pub(super) scales: MapScales,
+    /// How many faces it has.
+    pub(super) faces: usize,
+    /// Its area at rest in m².
+    pub(super) area: f64,
+    /// The live input mesh, where anything follows it.
+    pub(super) followed: Option<FollowedMesh>,
+}
+
+/// The live input mesh of a cloth that follows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FollowedMesh {
+    pub(super) mesh: NodeId,
+    pub(super) shape: AnimatedMesh,
+    /// Factors on the attraction, by point; empty where they are uniform.
+    pub(super) factors: Vec<f64>,
+}
+
+/// Source of the frames of a collider.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ColliderSource {
+    pub(super) node: NodeId,
+    pub(super) mesh: NodeId,
+    /// Thickness where `thickness` is not given, in scene units.
+    pub(super) default_thickness: f64,
+    /// Its points in mesh space, in scene units; `None` if it never moves.
+    pub(super) motion: Option<AnimatedMesh>,
+}
+
+/// Source of the pins of a transform constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AttachmentSource {
+    pub(super) constraint: NodeId,
+    pub(super) points: Vec<AttachedPoint>,
+    /// Whether the transform of the constraint is ever animated.
+    pub(super) moves: bool,
+}
+
+/// A point that a transform constraint holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AttachedPoint {
+    pub(super) cloth: ClothId,
+    pub(super) point: PointId,
+    /// Initial position in metres.
+    pub(super) start: Vector3<f64>,
+}
+
+/// Factors on the attributes of a cloth from vertex maps that are uniform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MapScales {
+    pub(super) mass: f64,
+    pub(super) damp: f64,
+    pub(super) stretch: f64,
+    pub(super) compression: f64,
+    pub(super) bend: f64,
+    pub(super) rest_length: f64,
+    pub(super) drag: f64,
+    pub(super) tangential_drag: f64,
+    pub(super) lift: f64,
+    pub(super) thickness: f64,
+    pub(super) friction: f64,
+    pub(super) stickiness: f64,
+    pub(super) bounce: f64,
+    pub(super) collide_strength: f64,
+    pub(super) input_attract: f64,
+    pub(super) rigidity: f64,
+    pub(super) deform: f64,
+}
+
+impl MapScales {
+    /// Without vertex maps.
+    pub(super) const ONE: Self = Self {
+        mass: 1.0,
+        damp: 1.0,
+        stretch: 1.0,
+        compression: 1.0,
+        bend: 1.0,
+        rest_length: 1.0,
+        drag: 1.0,
+        tangential_drag: 1.0,
+        lift: 1.0,
+        thickness: 1.0,
+        friction: 1.0,
+        stickiness: 1.0,
+        bounce: 1.0,
+        collide_strength: 1.0,
+        input_attract: 1.0,
+        rigidity: 1.0,
+        deform: 1.0,
+    };
+}

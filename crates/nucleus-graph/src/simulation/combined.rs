@@ -1,0 +1,153 @@
+//! Several nuclei presented as one: their states, the observer of their substeps, and their reports.
+
+use std::ops::ControlFlow;
+
+use nalgebra::Vector3;
+use nucleus_core::{
+    ClothId, ColliderId, ContactState, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+};
+
+use crate::compile::{NucleusProgram, Program};
+
+/// The states of all nuclei, by the ids of the program.
+pub(super) struct CombinedState<'a> {
+    pub(super) program: &'a Program,
+    /// One per nucleus.
+    pub(super) parts: Vec<&'a dyn StateView>,
+}
+
+impl CombinedState<'_> {
+    fn cloth(&self, cloth: ClothId) -> (&dyn StateView, ClothId, &NucleusProgram) {
+        let (k, own) = self.program.locate_cloth(cloth);
+        (self.parts[k], own, &self.program.nuclei()[k])
+    }
+
+    fn collider(&self, collider: ColliderId) -> (&dyn StateView, ColliderId, &NucleusProgram) {
+        let (k, own) = self.program.locate_collider(collider);
+        (self.parts[k], own, &self.program.nuclei()[k])
+    }
+
+    /// Converts scene units per metre from the first nucleus to another.
+    fn units(&self, asked: f64, nucleus: &NucleusProgram) -> f64 {
+        let (own, first) = (nucleus.units_per_metre(), self.program.units_per_metre());
+        if own == first { asked } else { asked * (own / first) }
+    }
+}
+
+impl StateView for CombinedState<'_> {
+    fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        let (part, id, nucleus) = self.cloth(cloth);
+        part.positions(id, self.units(units_per_metre, nucleus), out);
+    }
+
+    fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        let (part, id, nucleus) = self.cloth(cloth);
+        part.velocities(id, self.units(units_per_metre, nucleus), out);
+    }
+
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        out.clear();
+        let mut own = Vec::new();
+        for (part, nucleus) in self.parts.iter().zip(self.program.nuclei()) {
+            part.contacts(&mut own);
+            // A nucleus without contact states leaves its cloths empty.
+            out.resize(nucleus.cloths().start as usize, Vec::new());
+            out.append(&mut own);
+        }
+    }
+
+    fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
+        let (part, id, nucleus) = self.collider(collider);
+        part.collider_positions(id, self.units(units_per_metre, nucleus), out);
+    }
+
+    fn collider_moved(&self, collider: ColliderId) -> bool {
+        let (part, id, _) = self.collider(collider);
+        part.collider_moved(id)
+    }
+
+    fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
+        let (part, id, _) = self.collider(collider);
+        part.collider_points(id, share, out);
+    }
+
+    fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64> {
+        let (part, id, _) = self.cloth(cloth);
+        part.point(id, point)
+    }
+}
+
+/// Presents the substeps of one nucleus as substeps of the whole frame. Nuclei that are solved later in the frame keep
+/// their previous state.
+pub(super) struct CombinedObserver<'a> {
+    pub(super) watch: &'a mut dyn StepObserver,
+    /// Completed substeps of the frame.
+    pub(super) done: u32,
+    /// Substeps of this nucleus.
+    pub(super) own: u32,
+    /// All substeps of the frame.
+    pub(super) total: u32,
+    /// Index of this nucleus.
+    pub(super) nucleus: usize,
+    /// The states of the other nuclei, in order.
+    pub(super) others: Vec<&'a dyn StateView>,
+    pub(super) program: &'a Program,
+}
+
+impl<'a> CombinedObserver<'a> {
+    /// The states of all nuclei; `state` is that of this one.
+    fn parts<'b>(&self, state: &'b dyn StateView) -> Vec<&'b dyn StateView>
+    where
+        'a: 'b,
+    {
+        let mut parts: Vec<&'b dyn StateView> =
+            self.others.iter().map(|other| *other as &'b dyn StateView).collect();
+        parts.insert(self.nucleus, state);
+        parts
+    }
+}
+
+impl StepObserver for CombinedObserver<'_> {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
+        let parts = self.parts(state);
+        let moment = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
+        self.watch.substep(moment, &CombinedState { program: self.program, parts });
+    }
+
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        let parts = self.parts(state);
+        let share = (f64::from(self.done) + share * f64::from(self.own)) / f64::from(self.total);
+        self.watch.step(share, &CombinedState { program: self.program, parts });
+    }
+
+    fn should_continue(&self) -> ControlFlow<()> {
+        self.watch.should_continue()
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        self.watch.enter(stage);
+    }
+}
+
+/// Combines two reports: of two nuclei over the same time, or of two consecutive times. Gaps and strains are the worst of
+/// both, and counts of events are added. Of consecutive times, a quantity of the state is that of the later one.
+pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: bool) -> StepReport {
+    StepReport {
+        max_strain: a.max_strain.max(b.max_strain),
+        strain_99: a.strain_99.max(b.strain_99),
+        min_gap: a.min_gap.min(b.min_gap),
+        min_cloth_gap: a.min_cloth_gap.min(b.min_cloth_gap),
+        rest_limited: if are_consecutive { b.rest_limited } else { a.rest_limited + b.rest_limited },
+        contacts: a.contacts + b.contacts,
+        candidate_pairs: a.candidate_pairs + b.candidate_pairs,
+        broad_phases: a.broad_phases + b.broad_phases,
+        pairs_reverted: a.pairs_reverted + b.pairs_reverted,
+        pairs_unresolved: a.pairs_unresolved + b.pairs_unresolved,
+        depenetrating: if are_consecutive { b.depenetrating } else { a.depenetrating + b.depenetrating },
+        intersections: if are_consecutive { b.intersections } else { a.intersections + b.intersections },
+        kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
+        finite: a.finite && b.finite,
+        sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
+        stopped: a.stopped || b.stopped,
+    }
+}

@@ -1,0 +1,106 @@
+//! One nucleus during a run: its solver, the state of its constraints, and the time it has reached.
+
+use nalgebra::Vector3;
+use nucleus_core::{Encode, Reader, Real, RestoreError, Solver};
+
+use crate::attributes::nucleus;
+use crate::compile::{AttachmentState, NucleusProgram, Program};
+
+/// One nucleus during a run.
+pub(super) struct NucleusRun<R: Real> {
+    pub(super) solver: Solver<R>,
+    pub(super) attachments: AttachmentState,
+    /// `currentTime` of the nucleus at the last evaluation, in frames.
+    now: f64,
+    /// Scene frame of the last evaluation.
+    pub(super) evaluated: f64,
+    /// The last evaluation was not solved.
+    pub(super) was_skipped: bool,
+}
+
+/// One call of the solver: an evaluation interval of one nucleus.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SolverCall {
+    /// Index of the nucleus.
+    pub(super) nucleus: usize,
+    /// Scene frames at its start and end.
+    pub(super) frames: [f64; 2],
+    /// Its length in frames of the nucleus' own time.
+    pub(super) elapsed: f64,
+    /// The evaluation before was not solved: the solver's state is not that of the start of the interval.
+    pub(super) is_discontinuous: bool,
+    pub(super) substeps: u32,
+    /// It is the first call at its time.
+    pub(super) is_new_time: bool,
+    /// The nucleus returns to its initial state first.
+    pub(super) resets: bool,
+}
+
+impl<R: Real> NucleusRun<R> {
+    /// A nucleus in its initial state, at its start frame.
+    pub(super) fn new(program: &Program, nucleus: usize, threads: usize) -> Self {
+        let nucleus = &program.nuclei()[nucleus];
+        let start = nucleus.start() as f64;
+        let now = program.graph().at(start).get(nucleus.node(), &nucleus::CURRENT_TIME);
+        Self {
+            solver: Solver::new(nucleus.model().clone(), threads),
+            attachments: AttachmentState::default(),
+            now,
+            evaluated: start,
+            was_skipped: false,
+        }
+    }
+
+    /// Evaluates the time of nucleus number `index` at a scene frame. `None` keeps its state: the nucleus is disabled, it
+    /// has not started, its time does not advance, or advances by more than `frameJumpLimit`.
+    pub(super) fn evaluate(&mut self, program: &Program, index: usize, frame: f64) -> Option<SolverCall> {
+        let moment = program.graph().at(frame);
+        let nucleus: &NucleusProgram = &program.nuclei()[index];
+        let (id, start) = (nucleus.node(), nucleus.start() as f64);
+        let now = moment.get(id, &nucleus::CURRENT_TIME);
+        let (elapsed, from) = (now - self.now, self.evaluated);
+        (self.now, self.evaluated) = (now, frame);
+        let max_jump = (moment.get(id, &nucleus::FRAME_JUMP_LIMIT) as f64).max(program.every());
+        let advances = elapsed > 0.0 && elapsed <= max_jump * (1.0 + 1e-9) && now > start;
+        if !advances || !moment.get(id, &nucleus::ENABLE) {
+            self.was_skipped = true;
+            return None;
+        }
+        let resets = self.was_skipped && now - elapsed <= start;
+        Some(SolverCall {
+            nucleus: index,
+            frames: [from, frame],
+            elapsed,
+            is_discontinuous: std::mem::take(&mut self.was_skipped),
+            substeps: moment.get(id, &nucleus::SUB_STEPS) as u32,
+            is_new_time: false,
+            resets,
+        })
+    }
+
+    /// Appends the state to a checkpoint.
+    pub(super) fn save(&self, out: &mut Vec<u8>) {
+        let Self { solver, attachments: AttachmentState { held }, now, evaluated, was_skipped } = self;
+        solver.save().encode(out);
+        held.encode(out);
+        (*now, (*evaluated, *was_skipped)).encode(out);
+    }
+
+    /// Reads the state from a checkpoint.
+    pub(super) fn restored(
+        program: &Program,
+        nucleus: usize,
+        threads: usize,
+        from: &mut Reader<'_>,
+    ) -> Result<Self, RestoreError> {
+        let nucleus = &program.nuclei()[nucleus];
+        let solver = Vec::decode(from).ok_or(RestoreError::Damaged)?;
+        let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let (now, (evaluated, was_skipped)) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        if !nucleus.accepts_attachments(&held) {
+            return Err(RestoreError::OtherModel);
+        }
+        let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
+        Ok(Self { solver, attachments: AttachmentState { held }, now, evaluated, was_skipped })
+    }
+}
