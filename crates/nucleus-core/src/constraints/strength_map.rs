@@ -77,8 +77,8 @@ impl<R: Real, const N: usize> Row for StrengthRow<R, N> {
         self.points[k]
     }
 
-    fn idle(stand_in: u32) -> Self {
-        Self { points: [stand_in; N], factor: Sides { above: R::ONE, below: R::ONE } }
+    fn idle(padding_point: u32) -> Self {
+        Self { points: [padding_point; N], factor: Sides { above: R::ONE, below: R::ONE } }
     }
 
     fn group(rows: [Self; 4]) -> StrengthGroup<R> {

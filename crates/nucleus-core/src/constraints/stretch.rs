@@ -69,8 +69,8 @@ impl<R: Real> Row for LinkRow<R> {
         self.ends[k]
     }
 
-    fn idle(stand_in: u32) -> Self {
-        Self { ends: [stand_in; 2], rest_length: R::ZERO, slenderness: R::ONE }
+    fn idle(padding_point: u32) -> Self {
+        Self { ends: [padding_point; 2], rest_length: R::ZERO, slenderness: R::ONE }
     }
 
     fn group(rows: [Self; 4]) -> LinkGroup<R> {

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use nalgebra::Vector3;
 
-use crate::constraints::hinge::{HingeGroup, held};
+use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::Mutual;
@@ -133,8 +133,9 @@ fn hinge_energy<R: Real, const N: usize>(
     let energy = |(k, lane): (usize, usize)| {
         let group = &groups[k];
         let stiffness = stiffness * share_of(maps.get(k).map(|share| &share.above), lane);
-        let [rest, fold] = [group.rest, group.fold].map(|column| column[lane].to_f64());
-        stiffness * held(bending(state, group, lane), rest, fold)
+        let [rest, inverse_square_max] =
+            [group.rest, group.inverse_square_max].map(|column| column[lane].to_f64());
+        stiffness * energy_of_length(bending(state, group, lane), rest, inverse_square_max)
     };
     (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
 }
