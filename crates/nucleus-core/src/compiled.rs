@@ -40,7 +40,7 @@ macro_rules! compiled {
             }
 
             fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64 {
-                diagnostics::elastic_energy(&solver.cloths, &solver.state, frame)
+                diagnostics::elastic_energy(&solver.model.cloths, &solver.state, frame)
             }
         }
     )*};
