@@ -1,5 +1,5 @@
-//! Checkpoints: everything that a solver carries from one frame to the next, as bytes. A solver restored from them continues
-//! with the same bits as one that never stopped.
+//! Checkpoints: everything that a solver carries from one frame to the next, as bytes. A solver restored from them
+//! continues with the same bits as one that never stopped.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | which model a checkpoint belongs to | `fingerprint` |
 //! | how damaged bytes are refused | `references_are_valid` |
 //!
-//! **Invariant:** the checksum detects accidental damage, and every index that a checkpoint holds is checked against the model
-//! before a contact uses it.
+//! **Invariant:** the checksum detects accidental damage, and every index that a checkpoint holds is checked against
+//! the model before a contact uses it.
 
 use nalgebra::Vector3;
 
@@ -68,7 +68,8 @@ pub fn restore<R: Real>(
     Ok(solver)
 }
 
-/// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as rebuilt.
+/// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
+/// rebuilt.
 fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     let Solver { model: _, state, contact, pool: _ } = solver;
     // The ignored fields are rebuilt, or every frame writes them before it reads them.
@@ -112,7 +113,8 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     contact.ground.load(from)
 }
 
-/// Pairs with a collider that moves are valid for one frame only, so the checkpoint omits them; it keeps their trapped points.
+/// Pairs with a collider that moves are valid for one frame only, so the checkpoint omits them; it keeps their trapped
+/// points.
 fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     let are_valid = !solver.contact.collider_states.iter().any(|collider| collider.moves);
     are_valid.encode(out);
@@ -160,8 +162,8 @@ fn sort_by_point<R: Real>(list: &mut PairList<R>) {
     list.by_point.sort_unstable();
 }
 
-/// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no part
-/// of it.
+/// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no
+/// part of it.
 fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
     let of_cloth = |cloth: &ClothModel<R>| {
         let order = cloth.order.places().iter().map(|&place| u64::from(place));

@@ -1,7 +1,8 @@
 //! The solver for `f32` and for `f64`, compiled here and nowhere else.
 //!
-//! Rust compiles a generic function anew in every crate and every test that uses it; for [`Solver`] that would be nearly all of
-//! this crate each time. The public methods of the solver therefore call [`CompiledReal`], whose functions are not generic.
+//! Rust compiles a generic function anew in every crate and every test that uses it; for [`Solver`] that would be
+//! nearly all of this crate each time. The public methods of the solver therefore call [`CompiledReal`], whose
+//! functions are not generic.
 
 use crate::bytes::RestoreError;
 use crate::checkpoint;

@@ -50,8 +50,8 @@ pub struct ContactSystem<R: Real> {
     pub windows: Vec<[f64; 2]>,
     /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
     pub drifts: Vec<[R; 3]>,
-    /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the scene has no
-    /// collider.
+    /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
+    /// scene has no collider.
     pub near: Vec<Cover<R>>,
     pub far: Vec<Cover<R>>,
     /// Points with new motion bounds, whose pairs are to be found again.
@@ -100,13 +100,14 @@ pub trait CompiledReal: Real {
 }
 
 impl<R: CompiledReal> Solver<R> {
-    /// Builds lists, bounding volumes and state. `threads` is the number of cores to use; the result has the same bits for any.
+    /// Builds lists, bounding volumes and state. `threads` is the number of cores to use; the result has the same bits
+    /// for any.
     pub fn new(builder: ModelBuilder, threads: usize) -> Self {
         R::build(builder, threads)
     }
 
-    /// A solver that continues, with the same bits, from where one of the same model was saved. `threads` is the number of cores
-    /// to use; it may differ from the saved one's.
+    /// A solver that continues, with the same bits, from where one of the same model was saved. `threads` is the number
+    /// of cores to use; it may differ from the saved one's.
     ///
     /// # Errors
     /// When the bytes are damaged, of another version, or of another model.
@@ -119,8 +120,8 @@ impl<R: CompiledReal> Solver<R> {
         R::save(self)
     }
 
-    /// Advances by one frame. A step cannot fail: the report counts what could not be satisfied, and every invalid value of the
-    /// input.
+    /// Advances by one frame. A step cannot fail: the report counts what could not be satisfied, and every invalid
+    /// value of the input.
     ///
     /// `frame` has one entry per cloth and per collider.
     pub fn step(&mut self, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
@@ -132,8 +133,8 @@ impl<R: CompiledReal> Solver<R> {
         R::passes(self, frame)
     }
 
-    /// The elastic energy of stretch, shear and bending in joules, with the stiffness of `frame` and the current positions. Zero in
-    /// Classic, where a resistance is no stiffness.
+    /// The elastic energy of stretch, shear and bending in joules, with the stiffness of `frame` and the current
+    /// positions. Zero in Classic, where a resistance is no stiffness.
     pub fn elastic_energy(&self, frame: &FrameInput) -> f64 {
         R::elastic_energy(self, frame)
     }

@@ -1,9 +1,10 @@
 //! Bending: faces that share an edge keep the angle between them, and quads stay flat.
 //!
-//! C(x) = |c| - |c_rest|, where c is the bending vector of a [`hinge`](super::hinge) (Bergou et al. 2006): zero where the cloth is
-//! flat, else at right angles to it, with a length that grows with the angle. The vector is linear in the positions, so it needs no
-//! angle, has no singular shape, and cannot rotate or translate the cloth. A hinge that is bent at rest keeps the length of its
-//! vector. Far from flat a hinge is stiffer along c, so that its moment grows with the angle.
+//! C(x) = |c| - |c_rest|, where c is the bending vector of a [`hinge`](super::hinge) (Bergou et al. 2006): zero where
+//! the cloth is flat, else at right angles to it, with a length that grows with the angle. The vector is linear in the
+//! positions, so it needs no angle, has no singular shape, and cannot rotate or translate the cloth. A hinge that is
+//! bent at rest keeps the length of its vector. Far from flat a hinge is stiffer along c, so that its moment grows with
+//! the angle.
 
 use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;

@@ -1,7 +1,7 @@
 //! Damping of the relative velocity of linked points, once per substep.
 //!
-//! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite, so they
-//! conserve momentum: a cloth that moves as a rigid body is not slowed.
+//! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite,
+//! so they conserve momentum: a cloth that moves as a rigid body is not slowed.
 
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};

@@ -1,23 +1,25 @@
 //! Bending rows: hinges between two faces, and the twist of quads.
 //!
-//! The bending vector of a row is c = Σ K_i x_i, with Σ K_i = 0 and, where the cloth is flat, Σ K_i x_i = 0. For triangles K are the
-//! weights of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", §3; |c| is then the length of the edge times
-//! the angle. The energy is B/2 · |c|², with K scaled so that B is the bending stiffness of a plate in N·m on any mesh:
+//! The bending vector of a row is c = Σ K_i x_i, with Σ K_i = 0 and, where the cloth is flat, Σ K_i x_i = 0. For
+//! triangles K are the weights of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", §3; |c| is
+//! then the length of the edge times the angle. The energy is B/2 · |c|², with K scaled so that B is the bending
+//! stiffness of a plate in N·m on any mesh:
 //!
-//! - A hinge stands for half the cloth between the centres of its faces: K is divided by the root of A_0 + A_1 for triangles, of
-//!   which three families cover the plane, and of (A_0 + A_1) / 2 for quads, of which two families do.
-//! - In a quad a hinge uses the midpoint of the opposite edge. The two families of a grid then measure the two curvatures only, and
-//!   the result does not depend on a diagonal.
-//! - The twist of a quad is x_a - x_b + x_c - x_d, and stands for all of it. With it a grid is an isotropic plate: its energy is
-//!   B/2 · (z_xx² + z_yy² + 2 z_xy²), Poisson's ratio zero.
+//! - A hinge stands for half the cloth between the centres of its faces: K is divided by the root of A_0 + A_1 for
+//!   triangles, of which three families cover the plane, and of (A_0 + A_1) / 2 for quads, of which two families do.
+//! - In a quad a hinge uses the midpoint of the opposite edge. The two families of a grid then measure the two
+//!   curvatures only, and the result does not depend on a diagonal.
+//! - The twist of a quad is x_a - x_b + x_c - x_d, and stands for all of it. With it a grid is an isotropic plate: its
+//!   energy is B/2 · (z_xx² + z_yy² + 2 z_xy²), Poisson's ratio zero.
 //!
-//! Equilateral triangles are a plate of the same B and a Poisson's ratio of -1/3 (Seung and Nelson 1988). A grid that is cut along one
-//! diagonal is up to three times as stiff across that diagonal, so quads should stay quads.
+//! Equilateral triangles are a plate of the same B and a Poisson's ratio of -1/3 (Seung and Nelson 1988). A grid that
+//! is cut along one diagonal is up to three times as stiff across that diagonal, so quads should stay quads.
 //!
-//! **Large angles.** |c| is 2 sin(θ/2) times its value at an angle of 1, and an energy of its square gives a moment of sin θ: a third
-//! too small at 90°, and zero for a hinge that is folded shut. A hinge therefore resists with a moment of 2 sin(θ/2), because along c
-//! its stiffness is divided by cos(θ/2). The tip of a strip of 50 elements that hangs under its weight (Γ = 1000, 50° at the first
-//! hinge) is then 0.4 % off the exact elastica; with the square it is 2.2 % off, with a moment of θ 1.2 %.
+//! **Large angles.** |c| is 2 sin(θ/2) times its value at an angle of 1, and an energy of its square gives a moment of
+//! sin θ: a third too small at 90°, and zero for a hinge that is folded shut. A hinge therefore resists with a moment
+//! of 2 sin(θ/2), because along c its stiffness is divided by cos(θ/2). The tip of a strip of 50 elements that hangs
+//! under its weight (Γ = 1000, 50° at the first hinge) is then 0.4 % off the exact elastica; with the square it is 2.2
+//! % off, with a moment of θ 1.2 %.
 
 use nalgebra::Vector3;
 
@@ -45,12 +47,13 @@ pub struct HingeGroup<R, const N: usize> {
     pub anchored: [[R; 4]; 3],
     /// Length of the bending vector at rest; zero where flat.
     pub rest: [R; 4],
-    /// One over the square of the vector's length when the hinge is folded shut: times |c|² it is sin²(θ/2). Zero for the twist of a
-    /// quad, which has no such angle.
+    /// One over the square of the vector's length when the hinge is folded shut: times |c|² it is sin²(θ/2). Zero for
+    /// the twist of a quad, which has no such angle.
     pub inverse_square_max: [R; 4],
 }
 
-/// Lower bound of cos(θ/2): beyond 120° a hinge is not stiffer than twice. Folded shut it would be rigid, and open in one step.
+/// Lower bound of cos(θ/2): beyond 120° a hinge is not stiffer than twice. Folded shut it would be rigid, and open in
+/// one step.
 pub const MIN_COSINE: f64 = 0.5;
 
 /// The rows of a mesh, by their number of points.
@@ -134,7 +137,8 @@ fn wide<R: Real>(surface: &Surface, points: [u32; 6], place: impl Fn(u32) -> u32
     Some(HingeRow::new(surface, points, weights, place).with_max_length(2.0 * (b - a).norm() / root))
 }
 
-/// The distance of a quad from a plane: its diagonals as a hinge, scaled so that all four weights of a parallelogram are equal.
+/// The distance of a quad from a plane: its diagonals as a hinge, scaled so that all four weights of a parallelogram
+/// are equal.
 fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32) -> Option<HingeRow<R, 4>> {
     let [a, b, c, d] = face;
     let points = [a, c, b, d];
@@ -173,7 +177,8 @@ impl<R: Real, const N: usize> HingeRow<R, N> {
     }
 }
 
-/// The energy of a hinge in joules at a bending stiffness of 1: the moment 2 (sin(θ/2) - sin(θ_0/2)), integrated from rest.
+/// The energy of a hinge in joules at a bending stiffness of 1: the moment 2 (sin(θ/2) - sin(θ_0/2)), integrated from
+/// rest.
 pub fn energy_of_length(length: f64, rest: f64, inverse_square_max: f64) -> f64 {
     let square = |length: f64| (length - rest).powi(2) / 2.0;
     if inverse_square_max == 0.0 {
@@ -281,8 +286,8 @@ mod tests {
         rows.iter().map(|row| vector(row).norm_squared() / 2.0).sum()
     }
 
-    /// Energy per area and B of a mesh bent to z = (p x² + 2 q x y + r y²) / 2. Second differences over three sizes eliminate the
-    /// border of cells.
+    /// Energy per area and B of a mesh bent to z = (p x² + 2 q x y + r y²) / 2. Second differences over three sizes
+    /// eliminate the border of cells.
     fn density(at: impl Fn(f64, f64) -> [f64; 2] + Copy, cell: Faced, [p, q, r]: [f64; 3]) -> f64 {
         let of = |n: u32| {
             let surface = mesh(n, at, cell);

@@ -1,7 +1,8 @@
-//! Coloured Gauss-Seidel sweeps: every row of a list once, in a fixed order that does not depend on the number of threads.
+//! Coloured Gauss-Seidel sweeps: every row of a list once, in a fixed order that does not depend on the number of
+//! threads.
 //!
-//! Blocks of points are swept in parallel, each by one task, which sweeps its interior rows in order. Interface rows, which join
-//! several blocks, follow colour by colour: the rows of one colour share no point.
+//! Blocks of points are swept in parallel, each by one task, which sweeps its interior rows in order. Interface rows,
+//! which join several blocks, follow colour by colour: the rows of one colour share no point.
 
 use crate::constraints::hinge::HingeGroup;
 use crate::constraints::strength_map::{StrengthGroup, Uniform};
@@ -15,8 +16,8 @@ use crate::schedule::{Direction, Effect, Sweep};
 
 /// Does the sweeps of one pass: writes displacements.
 ///
-/// The interior rows of all lists come first, block by block, while the block is in the core's cache; then the interface rows, list
-/// by list. Backward reverses the unmapped order, in cloths that alternate their direction.
+/// The interior rows of all lists come first, block by block, while the block is in the core's cache; then the
+/// interface rows, list by list. Backward reverses the unmapped order, in cloths that alternate their direction.
 pub fn sweep<R: Real>(
     cloths: &[ClothModel<R>],
     displacement: &mut [Row4<R>],
@@ -45,8 +46,8 @@ pub fn sweep<R: Real>(
 
 /// Sweeps the lists of one cloth in one direction.
 ///
-/// Safety of all its loops: interior rows of two blocks, and interface rows of one colour, share no point. [`RowList`] lays rows out
-/// so, and its tests check it.
+/// Safety of all its loops: interior rows of two blocks, and interface rows of one colour, share no point. [`RowList`]
+/// lays rows out so, and its tests check it.
 struct Sweeper<'a, R: Real> {
     points: DisjointSlice<'a, Row4<R>>,
     cloth: &'a ClothModel<R>,

@@ -1,7 +1,7 @@
 //! The input of a frame: everything that may change from frame to frame. Metres, kilograms, seconds; world space.
 //!
-//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so every moving thing has two positions, at the
-//! start of the frame and at its end.
+//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so every moving thing has two
+//! positions, at the start of the frame and at its end.
 
 use nalgebra::Vector3;
 
@@ -13,12 +13,13 @@ pub const COUNT_PERIOD: f64 = 1.0 / 24.0;
 /// The reading of a resistance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ResistanceModel {
-    /// The paper's reading: a resistance is a count of evaluations in 1/24 s, shared among substeps. The stiffness follows from mesh and
-    /// substeps.
+    /// The paper's reading: a resistance is a count of evaluations in 1/24 s, shared among substeps. The stiffness
+    /// follows from mesh and substeps.
     Classic,
     /// A resistance is a stiffness that depends on neither mesh nor substeps.
     Physical {
-        /// The budget: evaluations in 1/24 s, each a small time step with one sweep over every list. More of them only reduce the error.
+        /// The budget: evaluations in 1/24 s, each a small time step with one sweep over every list. More of them only
+        /// reduce the error.
         evaluations: f64,
     },
 }
@@ -70,8 +71,8 @@ pub struct GroundPlane {
     pub stickiness: f64,
 }
 
-/// Measured stiffnesses of a cloth. One that is given replaces the resistance of the same effect; zero switches the effect off. Only the
-/// Physical reading uses them: in the Classic reading stiffness follows from mesh and substeps.
+/// Measured stiffnesses of a cloth. One that is given replaces the resistance of the same effect; zero switches the
+/// effect off. Only the Physical reading uses them: in the Classic reading stiffness follows from mesh and substeps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stiffness {
     /// Of links longer than at rest, in N/m: Young's modulus times the thickness of the cloth.
@@ -128,8 +129,8 @@ pub struct ClothFrame {
     pub stickiness: f64,
     /// Bounce, 0 to 1; the larger of the two sides' values counts.
     pub bounce: f64,
-    /// Strength of contacts; the two sides' values are multiplied. From 1 on nothing passes through, below 1 objects may, at 0 there is
-    /// no contact.
+    /// Strength of contacts; the two sides' values are multiplied. From 1 on nothing passes through, below 1 objects
+    /// may, at 0 there is no contact.
     pub collide_strength: f64,
     /// Moves points of other objects to a side of its surface.
     pub push_out: PushOut,
@@ -139,8 +140,8 @@ pub struct ClothFrame {
     pub self_crossover_push: f64,
     /// Its elements of contact with other cloth (`collisionFlag`).
     pub elements: Elements,
-    /// `collisionLayer`: in contacts the cloth in the lower layer is heavier, and from a difference of one on the other does not move
-    /// it.
+    /// `collisionLayer`: in contacts the cloth in the lower layer is heavier, and from a difference of one on the other
+    /// does not move it.
     pub layer: f64,
     /// Self-collision.
     pub self_collision: SelfCollision,
@@ -250,7 +251,8 @@ pub struct ColliderFrame {
 }
 
 impl Default for ColliderFrame {
-    /// Maya's defaults of an nRigid, except that it does not move or collide, and that `friction` and `thickness` are zero.
+    /// Maya's defaults of an nRigid, except that it does not move or collide, and that `friction` and `thickness` are
+    /// zero.
     fn default() -> Self {
         Self {
             start: Vec::new(),

@@ -1,11 +1,12 @@
 //! Aerodynamic forces: drag, lift and wind, by the orientation of the surface.
 //!
-//! Wind is the velocity of the air, relative to which drag and lift act; cloth that faces it therefore catches more than cloth on edge
-//! (§3.1). Drag is linear in velocity and per 1/24 s. It acts along the normal, and along the surface with the share
-//! `tangentialDrag`, as recorded output of the original shows. Its discrete form, two implicit half-steps, also matches that output.
+//! Wind is the velocity of the air, relative to which drag and lift act; cloth that faces it therefore catches more
+//! than cloth on edge (§3.1). Drag is linear in velocity and per 1/24 s. It acts along the normal, and along the
+//! surface with the share `tangentialDrag`, as recorded output of the original shows. Its discrete form, two implicit
+//! half-steps, also matches that output.
 //!
-//! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no work. Its rate is per unit of
-//! time, not of length, so large scenes need no manual scaling.
+//! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no work. Its
+//! rate is per unit of time, not of length, so large scenes need no manual scaling.
 
 use std::ops::Range;
 

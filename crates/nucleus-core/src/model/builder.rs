@@ -102,7 +102,8 @@ impl Cloth {
     }
 }
 
-/// A passive mesh that cloth collides with (an nRigid), in world space; [`ColliderFrame`](crate::ColliderFrame) moves it.
+/// A passive mesh that cloth collides with (an nRigid), in world space; [`ColliderFrame`](crate::ColliderFrame) moves
+/// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collider {
     /// The mesh at the start, in metres.

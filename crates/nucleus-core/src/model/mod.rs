@@ -1,10 +1,10 @@
 //! The model: everything about the objects of a scene that is fixed once it is compiled.
 //!
-//! A mesh becomes lists of constraint rows. Links keep lengths (stretch, compression, shear) and hinges keep angles (bending, Bergou
-//! et al. 2006); the Nucleus paper has the same two kinds (§2.2, §2.4). Points are reordered along a Morton curve and cut into blocks,
-//! and rows are coloured, so that a Gauss-Seidel sweep of position-based dynamics (Müller et al. 2007) runs in parallel with the same
-//! bits on any number of threads. Stiffness is scaled by the strip of cloth that each row stands for, so that it does not depend on
-//! the mesh.
+//! A mesh becomes lists of constraint rows. Links keep lengths (stretch, compression, shear) and hinges keep angles
+//! (bending, Bergou et al. 2006); the Nucleus paper has the same two kinds (§2.2, §2.4). Points are reordered along a
+//! Morton curve and cut into blocks, and rows are coloured, so that a Gauss-Seidel sweep of position-based dynamics
+//! (Müller et al. 2007) runs in parallel with the same bits on any number of threads. Stiffness is scaled by the strip
+//! of cloth that each row stands for, so that it does not depend on the mesh.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -63,8 +63,8 @@ pub struct ClothModel<R> {
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// The elements of contact; empty where no contact is possible.
     pub skin: Skin,
-    /// Whether its sweeps alternate their direction: its links form odd rings (triangles, or quads with cross links), and sweeps in
-    /// one direction would stir it; see [`Schedule::direction`](crate::schedule::Schedule::direction).
+    /// Whether its sweeps alternate their direction: its links form odd rings (triangles, or quads with cross links),
+    /// and sweeps in one direction would stir it; see [`Schedule::direction`](crate::schedule::Schedule::direction).
     pub alternates_direction: bool,
     /// The number of `pointMass`, whatever its unit; aerodynamic forces are divided by it.
     pub point_mass: f64,

@@ -1,5 +1,5 @@
-//! The solver's order of points: along a Morton curve, so that points near in space are near in memory. [`Order`] maps between it and
-//! the order of the mesh.
+//! The solver's order of points: along a Morton curve, so that points near in space are near in memory. [`Order`] maps
+//! between it and the order of the mesh.
 
 use nalgebra::Vector3;
 
@@ -46,8 +46,9 @@ impl Order {
     }
 }
 
-/// An order of positions for a tree with leaves of `leaf` elements: halved across the longest side recursively, so that the elements of
-/// each subtree are close together. The lower half is as large as a full tree of leaves; the upper half has the remainder.
+/// An order of positions for a tree with leaves of `leaf` elements: halved across the longest side recursively, so that
+/// the elements of each subtree are close together. The lower half is as large as a full tree of leaves; the upper half
+/// has the remainder.
 pub fn by_halves(centres: &[Vector3<f64>], leaf: usize) -> Vec<u32> {
     let zero = centres.first().copied().unwrap_or_default();
     let (low, high) = centres.iter().fold((zero, zero), |(low, high), p| (low.inf(p), high.sup(p)));

@@ -1,9 +1,10 @@
 //! Lists of constraint rows, laid out for parallel Gauss-Seidel sweeps: by block, by colour, four at a time.
 //!
-//! Points are cut into blocks of about a thousand, small enough for a core's nearest cache. A row whose points are all in one block is
-//! an *interior* row of that block, swept by one task. The others are *interface* rows, swept after them colour by colour. Inside a
-//! block rows are in colour order too: rows of one colour share no point, so four of them are computed side by side. A fixed coloured
-//! order also keeps a single sweep per time step from creating energy; the order of indices does not.
+//! Points are cut into blocks of about a thousand, small enough for a core's nearest cache. A row whose points are all
+//! in one block is an *interior* row of that block, swept by one task. The others are *interface* rows, swept after
+//! them colour by colour. Inside a block rows are in colour order too: rows of one colour share no point, so four of
+//! them are computed side by side. A fixed coloured order also keeps a single sweep per time step from creating energy;
+//! the order of indices does not.
 
 use std::ops::Range;
 
@@ -44,8 +45,8 @@ impl Blocks {
         (((at + 1) * u64::from(self.count) - 1) / u64::from(self.points)) as u32
     }
 
-    /// A padding point without mass, for missing rows of a lane group: one per block, and one (`block` = `len()`) for interface rows.
-    /// It never moves, and no two tasks of a loop share it.
+    /// A padding point without mass, for missing rows of a lane group: one per block, and one (`block` = `len()`) for
+    /// interface rows. It never moves, and no two tasks of a loop share it.
     pub fn padding_point(&self, block: usize) -> u32 {
         self.first + self.points + block as u32
     }
@@ -191,8 +192,8 @@ impl Colours {
         Self { first: blocks.first, taken: vec![0; blocks.points as usize] }
     }
 
-    /// The rows by colour. A fan of many rows round one point needs as many colours as it has rows, so colours are assigned 64 at a
-    /// time.
+    /// The rows by colour. A fan of many rows round one point needs as many colours as it has rows, so colours are
+    /// assigned 64 at a time.
     fn sort<T: Row>(&mut self, rows: Vec<T>) -> std::vec::IntoIter<Vec<T>> {
         let mut colours: Vec<Vec<T>> = Vec::new();
         let mut left = rows;

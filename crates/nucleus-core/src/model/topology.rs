@@ -1,5 +1,5 @@
-//! The topology of a mesh as simple lists (§2.2, §2.4): edges, cross links of quads and seams between faces, with the areas and lengths
-//! that determine their stiffness and mass.
+//! The topology of a mesh as simple lists (§2.2, §2.4): edges, cross links of quads and seams between faces, with the
+//! areas and lengths that determine their stiffness and mass.
 
 use nalgebra::Vector3;
 
@@ -12,8 +12,8 @@ pub struct Link {
     pub ends: [u32; 2],
     /// Rest length in metres.
     pub rest_length: f64,
-    /// Length over width of the strip of cloth that the link stands for. The stiffness of the cloth in N/m, divided by it, is the
-    /// stiffness of the link.
+    /// Length over width of the strip of cloth that the link stands for. The stiffness of the cloth in N/m, divided by
+    /// it, is the stiffness of the link.
     pub slenderness: f64,
 }
 
@@ -33,13 +33,14 @@ struct Line {
     strip: f64,
 }
 
-/// The edges of the mesh as links, each once, sorted by ends; then, `with_cross_links`, the cross links (`addCrossLinks`): both diagonals
-/// of each quad, and in larger polygons every line between two corners that are not neighbours. A triangle has none.
+/// The edges of the mesh as links, each once, sorted by ends; then, `with_cross_links`, the cross links
+/// (`addCrossLinks`): both diagonals of each quad, and in larger polygons every line between two corners that are not
+/// neighbours. A triangle has none.
 ///
-/// A stiffness K of the cloth in N/m gives a link the stiffness K strip / l², where the strip is the area of cloth that the link stands
-/// for. The strips are chosen so that the links together have the stiffness K along the edges of a grid, and in every direction in
-/// equilateral triangles and in squares with cross links. The latter then also have a Poisson's ratio of 1/3 and a shear stiffness of
-/// 3/8 K.
+/// A stiffness K of the cloth in N/m gives a link the stiffness K strip / l², where the strip is the area of cloth that
+/// the link stands for. The strips are chosen so that the links together have the stiffness K along the edges of a
+/// grid, and in every direction in equilateral triangles and in squares with cross links. The latter then also have a
+/// Poisson's ratio of 1/3 and a shear stiffness of 3/8 K.
 pub fn stretch_links(surface: &Surface, with_cross_links: bool) -> Vec<Link> {
     let mut links = merged(surface, sides(surface, with_cross_links));
     if with_cross_links {
@@ -73,8 +74,8 @@ fn sides(surface: &Surface, with_cross_links: bool) -> Vec<Line> {
     let mut sides = Vec::with_capacity(surface.faces.corners().len());
     for face in surface.faces.iter() {
         let area = polygon_area(surface, face);
-        // Without cross links the sides cover every direction once and share twice the area; the sides of a triangle brace each
-        // other, and share it three times.
+        // Without cross links the sides cover every direction once and share twice the area; the sides of a triangle
+        // brace each other, and share it three times.
         let without_cross_links = if face.len() == 3 { area } else { 2.0 * area / face.len() as f64 };
         let cell = (with_cross_links && face.len() == 4).then(|| Cell::of(surface, face));
         for (k, ends) in around(face).enumerate() {
@@ -115,8 +116,8 @@ fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
 
 /// A quad, approximated by a rectangle: the squares of the cosines between its diagonal and its sides.
 ///
-/// With strips of D = 3 c_x² c_y² of its area for each diagonal, the shear stiffness is 6 c_x⁴ c_y⁴, that is 3/8 in a square. The strips of
-/// the sides supply the remainder to a stiffness of exactly 1 along both of them.
+/// With strips of D = 3 c_x² c_y² of its area for each diagonal, the shear stiffness is 6 c_x⁴ c_y⁴, that is 3/8 in a
+/// square. The strips of the sides supply the remainder to a stiffness of exactly 1 along both of them.
 struct Cell {
     cosine: [f64; 2],
 }

@@ -1,7 +1,8 @@
 //! Vertex maps: factors on attributes, point by point.
 //!
-//! An empty map is 1 everywhere: it takes no memory, and no pass reads it. A link or hinge has the mean over its points. A factor on a
-//! resistance is a share, 0 to 1, of the cloth's attribute, because a Classic evaluation cannot remove more than the whole error.
+//! An empty map is 1 everywhere: it takes no memory, and no pass reads it. A link or hinge has the mean over its
+//! points. A factor on a resistance is a share, 0 to 1, of the cloth's attribute, because a Classic evaluation cannot
+//! remove more than the whole error.
 
 use crate::model::build_error::BuildError;
 

@@ -6,8 +6,9 @@ use std::marker::PhantomData;
 
 /// A column that the tasks of a parallel loop borrow together.
 ///
-/// No two tasks of a loop touch the same row: tasks work on blocks of points that do not overlap, or on constraint rows of one colour,
-/// which share no point. Building the lists ensures it, and tests check it; the compiler cannot see it, hence the raw pointer.
+/// No two tasks of a loop touch the same row: tasks work on blocks of points that do not overlap, or on constraint rows
+/// of one colour, which share no point. Building the lists ensures it, and tests check it; the compiler cannot see it,
+/// hence the raw pointer.
 pub struct DisjointSlice<'a, T> {
     first: *mut T,
     len: usize,

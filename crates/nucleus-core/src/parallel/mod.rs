@@ -1,4 +1,5 @@
-//! Parallel loops with the same bits on any number of threads: a loop has fixed tasks, and no two tasks of a loop write the same row.
+//! Parallel loops with the same bits on any number of threads: a loop has fixed tasks, and no two tasks of a loop write
+//! the same row.
 //!
 //! | You want to know… | Read |
 //! |---|---|

@@ -42,8 +42,9 @@ struct Shared {
     wake: Condvar,
 }
 
-// SAFETY: `work` is written only by the caller that holds `is_busy`, while no task is open (see `ThreadPool::parallel_for`), and read
-// only by holders of a claimed, unfinished task; the claim's acquire orders the read after the write.
+// SAFETY: `work` is written only by the caller that holds `is_busy`, while no task is open (see
+// `ThreadPool::parallel_for`), and read only by holders of a claimed, unfinished task; the claim's acquire orders the
+// read after the write.
 unsafe impl Sync for Shared {}
 // SAFETY: the pointer in `work` is to a `Sync` closure that outlives the loop.
 unsafe impl Send for Shared {}
@@ -114,8 +115,9 @@ impl Drop for ThreadPool {
 impl Shared {
     /// Opens the tasks of a loop; the caller holds `is_busy`.
     fn open(&self, tasks: usize, work: &(dyn Fn(usize) + Sync)) {
-        // SAFETY: every task of the loop before is finished, so no thread reads `work` now; and `ThreadPool::parallel_for` neither
-        // returns nor unwinds before every task of this loop is finished, so the closure outlives all its readers.
+        // SAFETY: every task of the loop before is finished, so no thread reads `work` now; and
+        // `ThreadPool::parallel_for` neither returns nor unwinds before every task of this loop is finished, so the
+        // closure outlives all its readers.
         unsafe { *self.work.get() = Some(std::mem::transmute::<&(dyn Fn(usize) + Sync), Work>(work)) };
         self.finished.store(0, Ordering::Relaxed);
         let number = (self.ticket.load(Ordering::Relaxed) >> (2 * TASK_BITS)) + 1;
@@ -237,7 +239,8 @@ mod tests {
         }
     }
 
-    /// Runs a loop of 64 tasks of which some panic, each with its number. The number of others that ran, and the loop's panic.
+    /// Runs a loop of 64 tasks of which some panic, each with its number. The number of others that ran, and the loop's
+    /// panic.
     fn panicking(pool: &ThreadPool, panics: fn(usize) -> bool) -> (usize, Option<usize>) {
         let ran = AtomicUsize::new(0);
         let run = || {

@@ -1,5 +1,5 @@
-//! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail; whatever it could
-//! not satisfy is counted here.
+//! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail;
+//! whatever it could not satisfy is counted here.
 
 use std::sync::atomic::Ordering::Relaxed;
 

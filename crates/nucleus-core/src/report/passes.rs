@@ -1,4 +1,5 @@
-//! The passes of a frame: how long their lists are, and how often each is swept. A pass that a scene does not use is absent.
+//! The passes of a frame: how long their lists are, and how often each is swept. A pass that a scene does not use is
+//! absent.
 
 use crate::constraints::damp::Damping;
 use crate::contact::terms::Terms;
@@ -120,8 +121,8 @@ fn sweeps_of<R: Real>(cloths: &[ClothModel<R>], name: &'static str, schedule: &S
     PassCost { name, rows, sweeps: if rows > 0 { evaluations / rows as f64 } else { 0.0 } }
 }
 
-/// Whether an effect has this name. A Classic sweep of links below their rest length is `compress`; a Physical sweep handles
-/// both sides and is `stretch`.
+/// Whether an effect has this name. A Classic sweep of links below their rest length is `compress`; a Physical sweep
+/// handles both sides and is `stretch`.
 fn named<R: Real>(effect: &Effect<R>, name: &str) -> bool {
     match effect {
         Effect::Stretch(strength) if strength.share.above == R::ZERO => name == "compress",

@@ -2,15 +2,15 @@
 //!
 //! A resistance has two readings, chosen by [`ResistanceModel`]:
 //!
-//! * **Classic** (§2.2, §2.4 of the Nucleus paper): a count of evaluations in 1/24 s, shared among the substeps. A substep is one
-//!   time step. Its sweeps of all effects are interleaved, not run one effect after the other: the k-th of n sweeps of an effect is
-//!   due in the middle of the k-th of n equal parts of the substep.
-//! * **Physical** (small steps: Macklin et al. 2019): a stiffness. A substep has many time steps, each with one sweep of every
-//!   effect, which converges faster than as many sweeps of one step.
+//! * **Classic** (§2.2, §2.4 of the Nucleus paper): a count of evaluations in 1/24 s, shared among the substeps. A
+//!   substep is one time step. Its sweeps of all effects are interleaved, not run one effect after the other: the k-th
+//!   of n sweeps of an effect is due in the middle of the k-th of n equal parts of the substep.
+//! * **Physical** (small steps: Macklin et al. 2019): a stiffness. A substep has many time steps, each with one sweep
+//!   of every effect, which converges faster than as many sweeps of one step.
 //!
-//! A time step ends with the contact passes and the safeguard. All time steps of a frame have the same passes, because passes that
-//! change from step to step feed energy in. Adaptive substepping splits single time steps ([`Schedule::split`]): `adaptive.rs` finds
-//! how often, and the schedule says which passes and intervals that gives.
+//! A time step ends with the contact passes and the safeguard. All time steps of a frame have the same passes, because
+//! passes that change from step to step feed energy in. Adaptive substepping splits single time steps
+//! ([`Schedule::split`]): `adaptive.rs` finds how often, and the schedule says which passes and intervals that gives.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -117,8 +117,8 @@ impl<R: Real> Schedule<R> {
         Cow::Owned(split)
     }
 
-    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start of
-    /// the frame as if all were split alike, and its interval.
+    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start
+    /// of the frame as if all were split alike, and its interval.
     pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, StepInterval)> + use<R> {
         let (span, splits) = (self.span(step), self.splits);
         (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
@@ -149,11 +149,12 @@ impl<R: Real> Schedule<R> {
 
     /// The direction of the sweeps of a time step, counted from the start of the frame.
     ///
-    /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small antisymmetric part, which couples modes
-    /// and feeds them energy. Where links form odd rings every order has that part, and an undamped cloth is stirred, from rounding
-    /// to 1 % of strain within a second. The backward order has the same part with the opposite sign. In runs of 4 to 32 steps the
-    /// two cancel, and nothing grows; alternated in every step or two they excite the cloth at its highest frequencies, and it
-    /// explodes. A frame of few steps has no room for runs, and hardly stirs: all its sweeps are forward.
+    /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small antisymmetric part, which
+    /// couples modes and feeds them energy. Where links form odd rings every order has that part, and an undamped cloth
+    /// is stirred, from rounding to 1 % of strain within a second. The backward order has the same part with the
+    /// opposite sign. In runs of 4 to 32 steps the two cancel, and nothing grows; alternated in every step or two they
+    /// excite the cloth at its highest frequencies, and it explodes. A frame of few steps has no room for runs, and
+    /// hardly stirs: all its sweeps are forward.
     pub fn direction(&self, step: u32) -> Direction {
         let steps = self.substeps * self.steps;
         // As many runs forward as backward.
@@ -200,8 +201,8 @@ impl StepInterval {
     }
 }
 
-/// The passes of a Classic substep in the order of their due times: the k-th of n sweeps is due in the middle of the k-th of n equal
-/// parts of the substep, the k-th of n contact passes at its end.
+/// The passes of a Classic substep in the order of their due times: the k-th of n sweeps is due in the middle of the
+/// k-th of n equal parts of the substep, the k-th of n contact passes at its end.
 fn classic<R: Real>(frame: &FrameInput, substep: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Pass> {
     let mut due: Vec<(f64, PassOrSweep<R>)> = Vec::new();
     for (cloth, settings) in frame.cloths.iter().enumerate() {
@@ -241,7 +242,8 @@ enum PassOrSweep<R> {
 /// Makes an effect from its strength.
 type EffectOfStrength<R> = Box<dyn Fn(R) -> Effect<R>>;
 
-/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each on its own side of rest.
+/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each on its own side of
+/// rest.
 fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, EffectOfStrength<R>); 4] {
     let rest_scale = R::from_f64(cloth.rest_length_scale);
     let rigid = Sides { above: R::ZERO, below: R::ZERO };
@@ -260,8 +262,8 @@ fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, EffectOfStrength<R>); 
 
 /// The passes of a Physical time step: one sweep of every effect, then contact.
 ///
-/// Bending is swept in every step too, although it is soft. Swept in every fourth step with four times the strength, it removes a bend
-/// at once, the velocity continues for three steps more, and fine meshes of triangles become noisy.
+/// Bending is swept in every step too, although it is soft. Swept in every fourth step with four times the strength, it
+/// removes a bend at once, the velocity continues for three steps more, and fine meshes of triangles become noisy.
 fn physical<R: Real>(frame: &FrameInput, h: f64, sweeps: &mut Vec<Sweep<R>>) -> Vec<Pass> {
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         let mut add = |stiffness: f64, effect: Effect<R>| {
@@ -293,7 +295,8 @@ fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -
     }
 }
 
-/// 1 / (stiffness h²), bounded so that it is finite in `f32`: a resistance that is keyed down to zero passes through all sizes.
+/// 1 / (stiffness h²), bounded so that it is finite in `f32`: a resistance that is keyed down to zero passes through
+/// all sizes.
 fn compliance<R: Real>(stiffness: f64, h: f64) -> R {
     const MAX_COMPLIANCE: f64 = 1e30;
     R::from_f64((1.0 / (stiffness * h * h)).min(MAX_COMPLIANCE))
@@ -324,8 +327,8 @@ mod tests {
         }
     }
 
-    /// The passes of a step as letters: stretch (s), compress (c), shear (h), bend (b), collider contact (C), cloth contact (M),
-    /// safeguard (S).
+    /// The passes of a step as letters: stretch (s), compress (c), shear (h), bend (b), collider contact (C), cloth
+    /// contact (M), safeguard (S).
     fn letters(schedule: &Schedule<f64>) -> String {
         let letter = |sweep: &Sweep<f64>| match sweep.effect {
             Effect::Stretch(strength) if strength.share.above == 0.0 => 'c',

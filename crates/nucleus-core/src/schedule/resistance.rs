@@ -1,18 +1,19 @@
 //! The meaning of a resistance, in its two readings.
 //!
-//! *Classic* (§2.2, §2.4): a count of evaluations in 1/24 s, shared among the substeps. A substep whose share is below one gets one
-//! evaluation of less strength. The stiffness of the cloth follows from mesh and substeps: see [`classic_stiffness`].
+//! *Classic* (§2.2, §2.4): a count of evaluations in 1/24 s, shared among the substeps. A substep whose share is below
+//! one gets one evaluation of less strength. The stiffness of the cloth follows from mesh and substeps: see
+//! [`classic_stiffness`].
 //!
 //! *Physical*: a stiffness. The cloth is the same on every mesh and at every setting; a setting changes only the error.
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame};
 
-/// Membrane stiffness in N/m of a stretch, compression or shear resistance of 1. The default of 20 is then 10 kN/m, a usual woven
-/// cloth.
+/// Membrane stiffness in N/m of a stretch, compression or shear resistance of 1. The default of 20 is then 10 kN/m, a
+/// usual woven cloth.
 pub const STIFFNESS_PER_RESISTANCE: f64 = 500.0;
 
-/// Bending stiffness in N·m of a bend resistance of 1. The presets for T-shirt (0.1), denim (0.4) and leather (10) are then 1e-5, 4e-5
-/// and 1e-3 N·m, the magnitudes of such cloths.
+/// Bending stiffness in N·m of a bend resistance of 1. The presets for T-shirt (0.1), denim (0.4) and leather (10) are
+/// then 1e-5, 4e-5 and 1e-3 N·m, the magnitudes of such cloths.
 pub const BENDING_PER_RESISTANCE: f64 = 1e-4;
 
 /// The stiffnesses of a cloth in the Physical reading, in SI units.
@@ -54,8 +55,9 @@ pub struct Share {
     pub strength: f64,
 }
 
-/// Shares a count per 1/24 s among substeps of `substep` seconds (§2.4): 10 is 10 evaluations at 1 substep, 5 at 2, 1 at 10, and 1 of
-/// half the strength at 20. Every substep gets the same: sweeps that change from one to the next feed energy in.
+/// Shares a count per 1/24 s among substeps of `substep` seconds (§2.4): 10 is 10 evaluations at 1 substep, 5 at 2, 1
+/// at 10, and 1 of half the strength at 20. Every substep gets the same: sweeps that change from one to the next feed
+/// energy in.
 pub fn share(count: f64, substep: f64) -> Share {
     let wanted = (count * substep / COUNT_PERIOD).clamp(0.0, MAX_SWEEPS);
     if wanted <= 0.0 {
@@ -71,8 +73,8 @@ pub fn steps(evaluations: f64, substep: f64) -> u32 {
     share(evaluations, substep).sweeps.max(1)
 }
 
-/// Approximate membrane stiffness in N/m of a Classic resistance: K = 3.5 n ρ d² / h², where n evaluations in a substep of h seconds act
-/// on points of ρ d² kilograms. Measured for coloured sweeps, the factor is between 3.4 and 4.5.
+/// Approximate membrane stiffness in N/m of a Classic resistance: K = 3.5 n ρ d² / h², where n evaluations in a substep
+/// of h seconds act on points of ρ d² kilograms. Measured for coloured sweeps, the factor is between 3.4 and 4.5.
 pub fn classic_stiffness(resistance: f64, substep: f64, point_mass: f64) -> f64 {
     let Share { sweeps, strength } = share(resistance, substep);
     3.5 * f64::from(sweeps) * strength * point_mass / (substep * substep)

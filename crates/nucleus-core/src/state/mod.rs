@@ -1,8 +1,8 @@
 //! The state: the columns that a frame changes.
 //!
-//! A position is a displacement, in the solver's scalar, from an `f64` anchor that moves to the point at the start of each frame. A
-//! velocity is stored and corrected, never derived from large positions. With plain `f32` positions a body 10 units up stops falling at
-//! 200 substeps a frame, because a step is smaller than the last bit of its height.
+//! A position is a displacement, in the solver's scalar, from an `f64` anchor that moves to the point at the start of
+//! each frame. A velocity is stored and corrected, never derived from large positions. With plain `f32` positions a
+//! body 10 units up stops falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
 
 pub mod kinematics;
 
@@ -22,11 +22,12 @@ pub struct State<R> {
     pub velocity: Vec<Row4<R>>,
     /// Displacement at the start of the time step, in metres; empty where no contact is possible.
     pub start: Vec<Row4<R>>,
-    /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where no contact is
-    /// possible.
+    /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where
+    /// no contact is possible.
     pub led: Vec<Row4<R>>,
-    /// Displacement by depenetration from cloth in the time step, in metres: a motion without velocity. The part that a collider takes
-    /// back does become velocity, because cloth between the two carries the load. Empty where no contact is possible.
+    /// Displacement by depenetration from cloth in the time step, in metres: a motion without velocity. The part that a
+    /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
+    /// is possible.
     pub parted: Vec<Row4<R>>,
     /// Length of the last time step in seconds.
     pub step_length: f64,
@@ -63,7 +64,8 @@ impl<R: Real> State<R> {
                 if let Some(velocity) = cloth.start.velocities.get(point) {
                     state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
                 }
-                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins it.
+                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins
+                // it.
                 state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
             }
         }
@@ -76,8 +78,8 @@ impl<R: Real> State<R> {
         std::array::from_fn(|axis| anchor[axis] + moved[axis].to_f64())
     }
 
-    /// The velocity of a point in m/s, for observers: where contacts displaced the point without velocity, its motion in the last time
-    /// step. Resting cloth has a stored velocity there that contacts cancel in every step.
+    /// The velocity of a point in m/s, for observers: where contacts displaced the point without velocity, its motion
+    /// in the last time step. Resting cloth has a stored velocity there that contacts cancel in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
         let row = row as usize;
         let is_led = |column: &[Row4<R>]| column.get(row).is_some_and(|led| led.xyz() != [R::ZERO; 3]);
