@@ -73,7 +73,7 @@ pub trait StateView {
 /// Receives the state after each substep: a recorder, a meter, or `()`, which ignores it.
 pub trait StepObserver {
     /// Called once after each substep.
-    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView);
+    fn substep(&mut self, index: SubstepIndex, state: &dyn StateView);
 
     /// Called after each time step, at the time `share` of the frame (0 to 1). Points move on straight lines from one
     /// of these states to the next.
@@ -118,7 +118,7 @@ pub enum Stage {
 }
 
 impl StepObserver for () {
-    fn substep(&mut self, _moment: SubstepIndex, _state: &dyn StateView) {}
+    fn substep(&mut self, _index: SubstepIndex, _state: &dyn StateView) {}
 }
 
 /// The report of one frame: counters over the frame, and worst values at its end.

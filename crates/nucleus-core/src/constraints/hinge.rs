@@ -18,8 +18,8 @@
 //! **Large angles.** |c| is 2 sin(θ/2) times its value at an angle of 1, and an energy of its square gives a moment of
 //! sin θ: a third too small at 90°, and zero for a hinge that is folded shut. A hinge therefore resists with a moment
 //! of 2 sin(θ/2), because along c its stiffness is divided by cos(θ/2). The tip of a strip of 50 elements that hangs
-//! under its weight (Γ = 1000, 50° at the first hinge) is then 0.4 % off the exact elastica; with the square it is 2.2
-//! % off, with a moment of θ 1.2 %.
+//! under its weight (Γ = 1000, 50° at the first hinge) is then 0.4 % off the exact elastica; with the square it is
+//! 2.2 % off, with a moment of θ 1.2 %.
 
 use nalgebra::Vector3;
 
