@@ -1,5 +1,5 @@
-//! Binary encoding of the solver's state: little-endian, bit for bit. Decoded bytes are never trusted: decoding gives a valid
-//! value or `None`.
+//! Binary encoding of the solver's state: little-endian, bit for bit. Decoded bytes are never trusted: decoding gives a
+//! valid value or `None`.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | which fields of a struct a checkpoint stores, and which are rebuilt | [`Checkpoint`], [`checkpoint_struct`] |
 //! | version and checksum | [`add_checksum`], [`verify_checksum`] |
 //!
-//! **Invariant:** both macros name every field of a struct. A new field that neither names does not compile, so no state can be
-//! missing from a checkpoint by mistake.
+//! **Invariant:** both macros name every field of a struct. A new field that neither names does not compile, so no
+//! state can be missing from a checkpoint by mistake.
 
 use nalgebra::Vector3;
 
@@ -124,8 +124,8 @@ impl<T: Encode> Encode for Option<T> {
 /// Values per run of the byte shuffle: few enough for the nearest cache.
 const RUN: usize = 256;
 
-/// The count, then the values. Values of one fixed size are byte-shuffled: first byte of all, second byte of all, and so on,
-/// because the high bytes of numbers are alike and compress well side by side.
+/// The count, then the values. Values of one fixed size are byte-shuffled: first byte of all, second byte of all, and
+/// so on, because the high bytes of numbers are alike and compress well side by side.
 impl<T: Encode> Encode for Vec<T> {
     const SIZE: usize = 0;
     fn encode(&self, out: &mut Vec<u8>) {
@@ -220,8 +220,9 @@ pub fn load_column<T: Encode>(column: &mut Vec<T>, from: &mut Reader<'_>) -> Opt
 
 /// Implements [`Checkpoint`] for a struct; every field must be named.
 ///
-/// `columns` have the length that the model determines; `values` have any length; `parts` implement [`Checkpoint`]; fields that
-/// are `rebuilt` follow from the model and the stored fields, or every frame writes them before it reads them.
+/// `columns` have the length that the model determines; `values` have any length; `parts` implement [`Checkpoint`];
+/// fields that are `rebuilt` follow from the model and the stored fields, or every frame writes them before it reads
+/// them.
 macro_rules! checkpoint_struct {
     (
         [$($generics:tt)*] $type:ty {

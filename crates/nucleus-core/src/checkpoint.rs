@@ -1,5 +1,5 @@
-//! Checkpoints: everything that a solver carries from one frame to the next, as bytes. A solver restored from them continues
-//! with the same bits as one that never stopped.
+//! Checkpoints: everything that a solver carries from one frame to the next, as bytes. A solver restored from them
+//! continues with the same bits as one that never stopped.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -7,14 +7,14 @@
 //! | which model a checkpoint belongs to | `fingerprint` |
 //! | how damaged bytes are refused | `references_are_valid` |
 //!
-//! **Invariant:** the checksum detects accidental damage, and every index that a checkpoint holds is checked against the model
-//! before a contact uses it.
+//! **Invariant:** the checksum detects accidental damage, and every index that a checkpoint holds is checked against
+//! the model before a contact uses it.
 
 use nalgebra::Vector3;
 
 use crate::bytes::{
     Checkpoint, Encode, HASH_SEED, Reader, RestoreError, add_checksum, checkpoint_struct, encode_struct,
-    hash_word, verify_checksum,
+    hash_word, load_column, verify_checksum,
 };
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::pressure::Chamber;
@@ -29,7 +29,7 @@ use crate::input::validation::is_in_range;
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Solver};
 use crate::state::State;
 use crate::state::kinematics::update_anchors;
 
@@ -41,7 +41,7 @@ pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
     let mut bytes = Vec::new();
     (R::SIZE as u8).encode(&mut bytes);
     fingerprint(solver).encode(&mut bytes);
-    Checkpoint::save(solver, &mut bytes);
+    save_fields(solver, &mut bytes);
     save_pairs(solver, &mut bytes);
     save_rest(solver, &mut bytes);
     add_checksum(KIND, &bytes)
@@ -62,8 +62,7 @@ pub fn restore<R: Real>(
     if u64::decode(&mut from).ok_or(RestoreError::Damaged)? != fingerprint(&solver) {
         return Err(RestoreError::OtherModel);
     }
-    let read = solver
-        .load(&mut from)
+    let read = load_fields(&mut solver, &mut from)
         .and_then(|()| load_pairs(&mut solver, &mut from))
         .and_then(|()| load_rest(&mut solver, &mut from));
     read.filter(|()| from.is_at_end()).ok_or(RestoreError::Damaged)?;
@@ -74,11 +73,57 @@ pub fn restore<R: Real>(
     Ok(solver)
 }
 
-/// Pairs with a collider that moves are valid for one frame only, so the checkpoint omits them; it keeps their trapped points.
+/// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
+/// rebuilt.
+fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
+    let Solver { model: _, state, contact, pool: _ } = solver;
+    // The ignored fields are rebuilt, or every frame writes them before it reads them.
+    let ContactSystem {
+        collider_states,
+        pairs: _,
+        spans: _,
+        windows: _,
+        drifts: _,
+        near: _,
+        far,
+        strayed,
+        terms,
+        ground_terms,
+        maps: _,
+        mutual,
+        touches,
+        ground,
+    } = contact;
+    far.encode(out);
+    strayed.encode(out);
+    terms.encode(out);
+    ground_terms.encode(out);
+    touches.encode(out);
+    state.save(out);
+    collider_states.save(out);
+    mutual.save(out);
+    ground.save(out);
+}
+
+fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
+    let Solver { state, contact, .. } = solver;
+    load_column(&mut contact.far, from)?;
+    load_column(&mut contact.strayed, from)?;
+    contact.terms = Encode::decode(from)?;
+    contact.ground_terms = Encode::decode(from)?;
+    contact.touches = Encode::decode(from)?;
+    state.load(from)?;
+    contact.collider_states.load(from)?;
+    contact.mutual.load(from)?;
+    contact.ground.load(from)
+}
+
+/// Pairs with a collider that moves are valid for one frame only, so the checkpoint omits them; it keeps their trapped
+/// points.
 fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
-    let are_valid = !solver.collider_states.iter().any(|collider| collider.moves);
+    let are_valid = !solver.contact.collider_states.iter().any(|collider| collider.moves);
     are_valid.encode(out);
-    for list in &solver.pairs {
+    for list in &solver.contact.pairs {
         if are_valid {
             list.save(out);
         } else {
@@ -90,7 +135,7 @@ fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 
 fn load_pairs<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
     let are_valid = bool::decode(from)?;
-    for list in &mut solver.pairs {
+    for list in &mut solver.contact.pairs {
         if are_valid {
             list.load(from)?;
         } else {
@@ -103,7 +148,7 @@ fn load_pairs<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<
 
 /// Rest lengths and angles of cloth in which they can change.
 fn save_rest<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
-    for cloth in &solver.cloths {
+    for cloth in &solver.model.cloths {
         for list in [&cloth.stretch, &cloth.shear].into_iter().filter(|_| cloth.plastic) {
             list.groups().iter().map(|group| group.rest_length).collect::<Vec<_>>().encode(out);
         }
@@ -115,7 +160,7 @@ fn save_rest<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 }
 
 fn load_rest<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
-    for cloth in &mut solver.cloths {
+    for cloth in &mut solver.model.cloths {
         let plastic = cloth.plastic;
         for list in [&mut cloth.stretch, &mut cloth.shear].into_iter().filter(|_| plastic) {
             let lengths: Vec<[R; 4]> = Encode::decode(from)?;
@@ -137,16 +182,16 @@ fn load_rest<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<(
 
 /// Rebuilds everything that follows from the stored fields.
 fn rebuild<R: Real>(solver: &mut Solver<R>) {
-    for collider in &mut solver.collider_states {
+    for collider in &mut solver.contact.collider_states {
         let (start, end, now) = (collider.start.clone(), collider.end.clone(), collider.now);
         collider.begin_frame(&start, &end);
         collider.now = now;
     }
-    solver.pairs.iter_mut().for_each(sort_by_point);
-    if let Some(Mutual { bodies, .. }) = &mut solver.mutual {
+    solver.contact.pairs.iter_mut().for_each(sort_by_point);
+    if let Some(Mutual { bodies, .. }) = &mut solver.contact.mutual {
         bodies.refit();
     }
-    update_anchors(&mut solver.cloths, &solver.state.anchor, &solver.pool);
+    update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
 }
 
 /// Rebuilds `by_point`.
@@ -156,8 +201,8 @@ fn sort_by_point<R: Real>(list: &mut PairList<R>) {
     list.by_point.sort_unstable();
 }
 
-/// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no part
-/// of it.
+/// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no
+/// part of it.
 fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
     let of_cloth = |cloth: &ClothModel<R>| {
         let order = cloth.order.places().iter().map(|&place| u64::from(place));
@@ -174,12 +219,12 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
             .chain(skin)
             .fold(HASH_SEED, hash_word)
     };
-    let cloths = solver.cloths.iter().map(of_cloth);
-    let colliders = solver.colliders.iter().map(|collider| {
+    let cloths = solver.model.cloths.iter().map(of_cloth);
+    let colliders = solver.model.colliders.iter().map(|collider| {
         corners(&collider.skin.triangles).chain([collider.positions.len() as u64]).fold(HASH_SEED, hash_word)
     });
     let masses = solver.state.inverse_mass.iter().map(|mass| mass.to_bits());
-    let rows = [solver.mutual.is_some() as u64, solver.far.len() as u64];
+    let rows = [solver.contact.mutual.is_some() as u64, solver.contact.far.len() as u64];
     cloths.chain([0]).chain(colliders).chain(masses).chain(rows).fold(HASH_SEED, hash_word)
 }
 
@@ -189,13 +234,13 @@ fn corners(triangles: &[[u32; 3]]) -> impl Iterator<Item = u64> + '_ {
 
 /// Whether the model has every point, face and group that the restored contacts refer to. Contacts use them unchecked.
 fn references_are_valid<R: Real>(solver: &Solver<R>) -> bool {
-    let pairs = solver
-        .pairs
-        .iter()
-        .all(|list| pairs_are_valid(list, &solver.cloths[list.cloth], &solver.colliders[list.collider]));
-    let mutual = solver.mutual.as_ref().is_none_or(|mutual| mutual_is_valid(mutual, &solver.cloths));
+    let pairs = solver.contact.pairs.iter().all(|list| {
+        pairs_are_valid(list, &solver.model.cloths[list.cloth], &solver.model.colliders[list.collider])
+    });
+    let mutual =
+        solver.contact.mutual.as_ref().is_none_or(|mutual| mutual_is_valid(mutual, &solver.model.cloths));
     let in_range = |column: &[Vector3<f64>]| column.iter().all(is_in_range);
-    let mut colliders = solver.collider_states.iter();
+    let mut colliders = solver.contact.collider_states.iter();
     pairs && mutual && colliders.all(|collider| in_range(&collider.start) && in_range(&collider.end))
 }
 
@@ -233,14 +278,6 @@ fn mutual_is_valid<R: Real>(mutual: &Mutual<R>, cloths: &[ClothModel<R>]) -> boo
         })
         && bodies.tree.as_ref().is_none_or(|tree| tree.is_over(bodies.groups.len()))
 }
-
-// `save_pairs` stores the pairs.
-checkpoint_struct!([R: Real] Solver<R> {
-    columns: [far, strayed],
-    values: [terms, ground_terms, touches],
-    parts: [state, collider_states, mutual, ground],
-    rebuilt: [cloths, colliders, pairs, spans, windows, drifts, near, maps, pool],
-});
 
 checkpoint_struct!([R: Real] State<R> {
     columns: [anchor, displacement, velocity, chambers, rotations],

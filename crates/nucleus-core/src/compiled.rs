@@ -1,7 +1,8 @@
 //! The solver for `f32` and for `f64`, compiled here and nowhere else.
 //!
-//! Rust compiles a generic function anew in every crate and every test that uses it; for [`Solver`] that would be nearly all of
-//! this crate each time. The public methods of the solver therefore call [`CompiledReal`], whose functions are not generic.
+//! Rust compiles a generic function anew in every crate and every test that uses it; for [`Solver`] that would be
+//! nearly all of this crate each time. The public methods of the solver therefore call [`CompiledReal`], whose
+//! functions are not generic.
 
 use crate::bytes::RestoreError;
 use crate::checkpoint;
@@ -40,7 +41,7 @@ macro_rules! compiled {
             }
 
             fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64 {
-                diagnostics::elastic_energy(&solver.cloths, &solver.state, frame)
+                diagnostics::elastic_energy(&solver.model.cloths, &solver.state, frame)
             }
         }
     )*};

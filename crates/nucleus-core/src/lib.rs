@@ -1,8 +1,8 @@
 //! The Nucleus solver: points, links, hinges and contacts, advanced one frame at a time.
 //!
-//! It is position-based dynamics (Müller et al. 2007) with the interleaved constraint passes of Nucleus (§2.2), compliant
-//! constraints (XPBD, Macklin et al. 2016) and small time steps (Macklin et al. 2019). A bare § names a section of the Nucleus
-//! paper.
+//! It is position-based dynamics (Müller et al. 2007) with the interleaved constraint passes of Nucleus (§2.2),
+//! compliant constraints (XPBD, Macklin et al. 2016) and small time steps (Macklin et al. 2019). A bare § names a
+//! section of the Nucleus paper.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -20,11 +20,11 @@
 //! | scalars and SIMD lanes | `math/` |
 //! | the public methods, and why the solver is monomorphized in this crate only | `solver.rs`, `compiled.rs` |
 //!
-//! **Invariant:** this crate knows no nodes, no files and no clock. The same input gives the same bits on any number of threads.
-//! From [`ModelBuilder`] on, everything is in metres, kilograms and seconds.
+//! **Invariant:** this crate knows no nodes, no files and no clock. The same input gives the same bits on any number of
+//! threads. From [`ModelBuilder`] on, everything is in metres, kilograms and seconds.
 //!
-//! Imports point downwards: `math`, `bytes`, `parallel` and `input` know nothing of the solver; `step`, `checkpoint` and `report`
-//! are on top, and only `compiled` calls them.
+//! Imports point downwards: `math`, `bytes`, `parallel` and `input` know nothing of the solver; `step`, `checkpoint`
+//! and `report` are on top, and only `compiled` calls them.
 
 #![deny(unsafe_code)] // allowed where tasks share columns, each time with its reason
 

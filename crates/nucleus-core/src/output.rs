@@ -1,5 +1,5 @@
-//! The output of the solver: the state that an observer reads after each substep, the report of a frame, and the cost of its
-//! passes. `report/` computes them.
+//! The output of the solver: the state that an observer reads after each substep, the report of a frame, and the cost
+//! of its passes. `report/` computes them.
 
 use std::ops::ControlFlow;
 
@@ -47,8 +47,9 @@ pub trait StateView {
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Replaces `out` by the velocities of a cloth, in units per second.
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
-    /// Replaces `out` by the contact state of each point, cloth by cloth. All cloths come at once, because a contact between two
-    /// cloths concerns both. A cloth's row is empty where contact is impossible; the default implementation knows of none.
+    /// Replaces `out` by the contact state of each point, cloth by cloth. All cloths come at once, because a contact
+    /// between two cloths concerns both. A cloth's row is empty where contact is impossible; the default implementation
+    /// knows of none.
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         out.clear();
     }
@@ -58,8 +59,8 @@ pub trait StateView {
     fn collider_moved(&self, collider: ColliderId) -> bool;
     /// The position of a point of cloth in metres, in double precision; for tests and measurements.
     fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64>;
-    /// Replaces `out` by the positions of a collider at a time of the frame (0 to 1), in metres, in double precision; for tests
-    /// and measurements. The default implementation ignores the time.
+    /// Replaces `out` by the positions of a collider at a time of the frame (0 to 1), in metres, in double precision;
+    /// for tests and measurements. The default implementation ignores the time.
     fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
         let _ = share;
         let mut single = Vec::new();
@@ -72,21 +73,22 @@ pub trait StateView {
 /// Receives the state after each substep: a recorder, a meter, or `()`, which ignores it.
 pub trait StepObserver {
     /// Called once after each substep.
-    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView);
+    fn substep(&mut self, index: SubstepIndex, state: &dyn StateView);
 
-    /// Called after each time step, at the time `share` of the frame (0 to 1). Points move on straight lines from one of these
-    /// states to the next.
+    /// Called after each time step, at the time `share` of the frame (0 to 1). Points move on straight lines from one
+    /// of these states to the next.
     fn step(&mut self, share: f64, state: &dyn StateView) {
         let _ = (share, state);
     }
 
-    /// Called before each pass of a time step: `Break` ends the frame there. Its report is then `stopped`, and the state is in the
-    /// middle of a time step: to continue, restore a checkpoint from before the frame.
+    /// Called before each pass of a time step: `Break` ends the frame there. Its report is then `stopped`, and the
+    /// state is in the middle of a time step: to continue, restore a checkpoint from before the frame.
     fn should_continue(&self) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// Called when the solver enters another stage. The solver has no clock; an observer that measures stages reads one here.
+    /// Called when the solver enters another stage. The solver has no clock; an observer that measures stages reads one
+    /// here.
     fn enter(&mut self, stage: Stage) {
         let _ = stage;
     }
@@ -116,7 +118,7 @@ pub enum Stage {
 }
 
 impl StepObserver for () {
-    fn substep(&mut self, _moment: SubstepIndex, _state: &dyn StateView) {}
+    fn substep(&mut self, _index: SubstepIndex, _state: &dyn StateView) {}
 }
 
 /// The report of one frame: counters over the frame, and worst values at its end.
@@ -126,10 +128,11 @@ pub struct StepReport {
     pub max_strain: f64,
     /// The 99th percentile of the strain of all links.
     pub strain_99: f64,
-    /// Smallest gap ratio of a point to a collider or the ground plane at the end of the frame: distance over the contact
-    /// thickness. 1 is touching, below 1 is compressed; infinite where nothing is near.
+    /// Smallest gap ratio of a point to a collider or the ground plane at the end of the frame: distance over the
+    /// contact thickness. 1 is touching, below 1 is compressed; infinite where nothing is near.
     pub min_gap: f64,
-    /// Smallest gap ratio of two elements of cloth in contact at the end of the frame. Infinite where there is no contact.
+    /// Smallest gap ratio of two elements of cloth in contact at the end of the frame. Infinite where there is no
+    /// contact.
     pub min_cloth_gap: f64,
     /// Self-collision pairs whose contact thickness is limited by their distance at rest.
     pub rest_limited: u64,
@@ -139,11 +142,11 @@ pub struct StepReport {
     pub candidate_pairs: u64,
     /// Runs of the broad phase: one per candidate interval, and one more wherever a point violates its motion bounds.
     pub broad_phases: u32,
-    /// Pairs of elements, of cloth and a collider or of two cloths, that would have passed through each other, and whose motion
-    /// the safeguard reverted or truncated; counted each time.
+    /// Pairs of elements, of cloth and a collider or of two cloths, that would have passed through each other, and
+    /// whose motion the safeguard reverted or truncated; counted each time.
     pub pairs_reverted: u64,
-    /// Pairs that no fallback could certify, so that one may have passed through the other; counted once per time step. Pins or
-    /// colliders leave them no feasible motion, or they touched when the time step began.
+    /// Pairs that no fallback could certify, so that one may have passed through the other; counted once per time step.
+    /// Pins or colliders leave them no feasible motion, or they touched when the time step began.
     pub pairs_unresolved: u64,
     /// Points inside a closed collider, in depenetration.
     pub depenetrating: u64,

@@ -63,7 +63,7 @@ fn solve_frame<R: CompiledReal>(
         return StepReport { stopped: true, ..StepReport::default() };
     }
     observer.enter(Stage::Report);
-    solver.touches = tally.contacts.load(Ordering::Relaxed) > 0;
+    solver.contact.touches = tally.contacts.load(Ordering::Relaxed) > 0;
     report(solver, frame, &schedule, &tally)
 }
 
@@ -75,20 +75,20 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     solver.state.move_anchors();
     solver.state.carry_air(frame);
     for pin in &frame.pins {
-        let row = solver.cloths[pin.cloth.index()].place(pin.point.index());
+        let row = solver.model.cloths[pin.cloth.index()].place(pin.point.index());
         let is_moved_elsewhere = solver.state.pin(row, pin, frame.duration);
         if is_moved_elsewhere {
             solver.invalidate_bounds(row as usize);
         }
     }
-    update_anchors(&mut solver.cloths, &solver.state.anchor, &solver.pool);
-    if let Some(mutual) = &mut solver.mutual {
+    update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
+    if let Some(mutual) = &mut solver.contact.mutual {
         mutual.active.follow(&solver.state.anchor);
     }
-    for (collider, motion) in solver.collider_states.iter_mut().zip(&frame.colliders) {
+    for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
         collider.begin_frame(&motion.start, &motion.end);
     }
-    solver.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
+    solver.contact.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
 }
 
 /// All substeps of a frame, unless the observer ends it before.
@@ -99,15 +99,15 @@ fn solve_substeps<R: CompiledReal>(
     tally: &mut Tally,
     observer: &mut dyn StepObserver,
 ) -> ControlFlow<()> {
-    let max_speeds = max_speeds(&solver.cloths, &solver.state, frame);
+    let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
     // Alternating sweeps have two balances, one per direction: pinned or resting cloth would tremble between them.
     // Only cloth that moves freely is stirred by sweeps in one direction.
-    let alternates_direction = frame.pins.is_empty() && !solver.touches;
+    let alternates_direction = frame.pins.is_empty() && !solver.contact.touches;
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
-        update_normals(&solver.cloths, &mut solver.state, &solver.pool);
+        update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
         let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
-        update_gusts(&solver.cloths, &mut solver.state, frame, time, &solver.pool);
+        update_gusts(&solver.model.cloths, &mut solver.state, frame, time, &solver.pool);
         solver.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let splits = solver.parts(frame, schedule, schedule.span(step), &max_speeds);
@@ -120,7 +120,7 @@ fn solve_substeps<R: CompiledReal>(
             }
         }
         let substep_length = schedule.h * f64::from(schedule.steps);
-        damp(&solver.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+        damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
         solver.set_time(f64::from(substep) / f64::from(schedule.substeps));
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
@@ -137,24 +137,31 @@ fn solve_time_step<R: CompiledReal>(
 ) -> ControlFlow<()> {
     let TimeStep { frame, schedule, span, .. } = *now;
     observer.enter(Stage::Predict);
-    let can_touch = frame.plane.is_some() || !solver.colliders.is_empty() || solver.mutual.is_some();
+    let can_touch =
+        frame.plane.is_some() || !solver.model.colliders.is_empty() || solver.contact.mutual.is_some();
     solver.state.store_step_start(schedule.h, can_touch);
-    whole::drag_to_input_meshes(&solver.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
-    predict(&solver.cloths, &mut solver.state, now, &solver.pool);
+    whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
+    predict(&solver.model.cloths, &mut solver.state, now, &solver.pool);
     for pass in &schedule.passes {
         observer.should_continue()?;
         match pass {
             Pass::Constraints(sweeps) => {
                 observer.enter(Stage::Constraints);
                 let sweeps = &schedule.sweeps[sweeps.clone()];
-                sweep(&solver.cloths, &mut solver.state.displacement, sweeps, now.direction, &solver.pool);
+                sweep(
+                    &solver.model.cloths,
+                    &mut solver.state.displacement,
+                    sweeps,
+                    now.direction,
+                    &solver.pool,
+                );
             }
             Pass::Whole(at) => {
                 observer.enter(Stage::Constraints);
                 let effect = &schedule.wholes[*at];
                 whole::relax(
                     effect,
-                    &solver.cloths,
+                    &solver.model.cloths,
                     &mut solver.state,
                     frame,
                     [span.to, schedule.h],
@@ -172,9 +179,9 @@ fn solve_time_step<R: CompiledReal>(
             Pass::Safeguard => solver.settle(frame, schedule, span, tally, observer),
         }
     }
-    whole::remember_deformation(&mut solver.cloths, &solver.state, frame, &solver.pool);
+    whole::remember_deformation(&mut solver.model.cloths, &solver.state, frame, &solver.pool);
     observer.enter(Stage::Velocity);
-    update_velocities(&solver.cloths, &mut solver.state, schedule.h, &solver.pool);
+    update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, &solver.pool);
     solver.bounce(frame, schedule, span); // restitution
     observer.step(span.to, solver);
     ControlFlow::Continue(())

@@ -13,7 +13,7 @@ static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
 
 struct Counting;
 
-// SAFETY: everything is handed on to the system's allocator.
+// SAFETY: every call is forwarded to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
@@ -31,10 +31,10 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// Allocations seen at the end of each substep.
-struct Seen([usize; 3]);
+/// The number of allocations up to the end of each substep.
+struct AllocationCounts([usize; 3]);
 
-impl StepObserver for Seen {
+impl StepObserver for AllocationCounts {
     fn substep(&mut self, moment: SubstepIndex, _state: &dyn StateView) {
         self.0[moment.substep as usize - 1] = ALLOCATIONS.load(Ordering::Relaxed);
     }
@@ -45,7 +45,7 @@ fn a_warm_substep_allocates_nothing() {
     let (builder, mut input) = scenes::drape(33, 48.0);
     input.cloths[0] = ClothFrame { drag: 0.05, shear_resistance: 5.0, damp: 0.1, ..input.cloths[0] };
     let mut solver = Solver::<f32>::new(builder, 2);
-    let mut seen = Seen([0; 3]);
+    let mut seen = AllocationCounts([0; 3]);
     (0..60).for_each(|_| {
         solver.step(&input, &mut seen);
     });

@@ -1,4 +1,4 @@
-//! Against closed forms and tables.
+//! Comparison with closed forms and published tables.
 
 mod scenes;
 
@@ -30,14 +30,15 @@ fn a_free_point_falls_as_newton_says_from_any_height_at_any_number_of_substeps()
                 solver.step(&input, &mut ());
             }
             let fallen = height - solver.point(CLOTH, 0).y;
-            // Velocity first, then position: n steps fall 1 + 1/n times as far as the parabola.
+            // Symplectic Euler: n steps fall 1 + 1/n times as far as the parabola.
             let exact = 9.81 / 2.0 * (1.0 + 1.0 / f64::from(24 * substeps));
             assert!((fallen / exact - 1.0).abs() < 1e-4, "{height} at {substeps}: {fallen} for {exact}");
         }
     }
 }
 
-/// The period of a pendulum of 1 m let go at `degrees`, from the times at which it comes to rest on either side.
+/// The period of a pendulum of 1 m that starts at rest at `degrees`, from the times at which it crosses the vertical,
+/// in seconds.
 fn period(degrees: f64, input: &FrameInput) -> f64 {
     let (sin, cos) = degrees.to_radians().sin_cos();
     // Two parallel rods joined by a bar are a pendulum in the plane across the bar.
@@ -106,7 +107,7 @@ fn a_hanging_chain_of_100_links_is_a_catenary() {
             cloths: vec![ClothFrame { drag: 0.5, tangential_drag: 1.0, ..still() }],
             ..frame(1, physical(768.0))
         };
-        // Folded to half its span and let down: a zigzag keeps every link at its length.
+        // It starts as a zigzag, which keeps every link at its rest length.
         let mut input = input;
         let rise = (1.0f64 - span * span).sqrt() * 0.01;
         for (k, p) in chain.positions.iter_mut().enumerate() {
@@ -134,7 +135,7 @@ fn sag(points: u32, input: &FrameInput) -> f64 {
     let mut lowest = 0.0;
     for step in 0..60 {
         solver.step(&input, &mut ());
-        // The mean over the last second: undamped, it bobs about its rest.
+        // The mean over the last second, because an undamped sheet oscillates about its rest.
         if step >= 36 {
             lowest += solver.point(CLOTH, (points * points - points / 2 - 1) as usize).y / 24.0;
         }
@@ -144,7 +145,7 @@ fn sag(points: u32, input: &FrameInput) -> f64 {
 
 // EVIDENCE: N1.3-2  a higher resistance makes cloth inelastic
 #[test]
-fn a_hanging_sheet_sags_less_wrongly_the_more_evaluations_it_gets() {
+fn the_error_of_a_hanging_sheets_sag_falls_with_the_evaluations() {
     // 0.2 kg/m², 10 kN/m: rho g H² / 2K.
     let exact = 0.2 * 9.81 / (2.0 * 10_000.0);
     let errors = |input: &dyn Fn(f64) -> FrameInput| [24.0, 96.0, 384.0].map(|n| sag(41, &input(n)) - exact);
@@ -162,7 +163,7 @@ fn a_hanging_sheet_sags_less_wrongly_the_more_evaluations_it_gets() {
 
 // EVIDENCE: N3.1-4  cloth that faces the wind catches more of it than cloth on edge
 #[test]
-fn a_sheet_that_faces_the_wind_is_carried_along_and_one_on_edge_is_not() {
+fn wind_accelerates_a_sheet_that_faces_it_and_not_one_on_edge() {
     let carried = |wind: Vec3| {
         let sheet = grid(5, 5, Vec3::x(), Vec3::y());
         let mut solver = Solver::<f32>::new(one_cloth(sheet, ClothLists { air: true, ..LINKS }), 1);

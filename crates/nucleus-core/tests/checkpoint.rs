@@ -1,4 +1,4 @@
-//! Checkpoints whose seal is sound and whose content is not: refused or taken, never a panic.
+//! Checkpoints with a valid checksum and damaged content: restoring refuses or accepts them, and never panics.
 
 mod scenes;
 
@@ -29,7 +29,7 @@ fn scene() -> (ModelBuilder, FrameInput) {
     (builder, input)
 }
 
-/// What it is after some frames.
+/// Its checkpoint after some frames.
 fn saved() -> Vec<u8> {
     let (builder, input) = scene();
     let mut solver = Solver::<f32>::new(builder, 1);
@@ -45,7 +45,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn no_content_makes_restoring_panic(at in 0.0..1.0f64, byte: u8, cut in 0usize..3) {
+    fn restoring_damaged_content_never_panics(at in 0.0..1.0f64, byte: u8, cut in 0usize..3) {
         let whole = SAVED.get_or_init(saved);
         let kind: [u8; 8] = whole[..8].try_into().unwrap();
         let mut inner = verify_checksum(kind, whole).unwrap().to_vec();
@@ -55,14 +55,14 @@ proptest! {
             _ => inner[at] = byte,
         }
         if let Ok(solver) = Solver::<f32>::restored(scene().0, 1, &add_checksum(kind, &inner)) {
-            // What it holds may be another thing: pairs with a collider that moves are not kept.
+            // Only the checksum is compared, because restoring drops pairs that are valid for one frame only.
             prop_assert!(verify_checksum(kind, &solver.save()).is_ok());
         }
     }
 }
 
 #[test]
-fn a_checkpoint_of_another_version_is_refused_as_such() {
+fn a_checkpoint_of_another_version_is_refused_with_that_reason() {
     let whole = saved();
     let kind: [u8; 8] = whole[..8].try_into().unwrap();
     let inner = verify_checksum(kind, &whole).unwrap();

@@ -1,4 +1,4 @@
-//! Only what a scene needs: a feature that is off has no rows and no passes.
+//! A scene pays only for the features it uses: a feature that is off has no rows and no passes.
 
 mod scenes;
 
@@ -15,10 +15,10 @@ const EDGES: usize = 2 * CELLS * (CELLS + 1);
 const DIAGONALS: usize = 2 * CELLS * CELLS;
 const HINGES: usize = 2 * CELLS * (CELLS - 1) + CELLS * CELLS;
 
-/// A feature, what switches it on, the pass it adds, and how many rows that has.
+/// A feature: the list and the attribute that switch it on, the pass it adds, and the rows of that pass.
 type Feature = (fn(&mut ClothLists), fn(&mut FrameInput), &'static str, usize);
 
-/// Each is added to those before it.
+/// Each is switched on in addition to those before it.
 const FEATURES: [Feature; 7] = [
     (|lists| lists.stretch = true, |frame| frame.cloths[0].stretch_resistance = 20.0, "stretch", EDGES),
     (|lists| lists.cross_links = true, |_| {}, "stretch", EDGES + DIAGONALS),
@@ -37,7 +37,7 @@ const PLANE: GroundPlane = GroundPlane {
     stickiness: 0.0,
 };
 
-/// A frame in which nothing is on but gravity.
+/// A frame with gravity only.
 fn bare() -> FrameInput {
     let off = ClothFrame {
         stretch_resistance: 0.0,
@@ -64,7 +64,7 @@ fn passes(lists: ClothLists, frame: &FrameInput) -> Vec<(&'static str, usize)> {
     passes.iter().map(|pass| (pass.name, pass.rows)).collect()
 }
 
-// EVIDENCE: N2.2-7  there is a list for what is used, and none for what is not
+// EVIDENCE: N2.2-7  a feature that is used has a list, one that is not has none
 #[test]
 fn each_feature_adds_its_own_rows_and_no_others() {
     let (mut lists, mut frame) = (ClothLists::NONE, bare());
@@ -83,12 +83,12 @@ fn each_feature_adds_its_own_rows_and_no_others() {
 }
 
 #[test]
-fn a_list_whose_attribute_is_nought_in_a_frame_is_not_swept_in_it() {
+fn a_list_whose_attribute_is_zero_in_a_frame_is_not_swept_in_it() {
     assert_eq!(passes(ClothLists::ALL, &bare()), [("predict", POINTS)]);
 }
 
 #[test]
-fn what_contact_does_besides_is_a_pass_only_where_something_does_it() {
+fn each_contact_effect_is_a_pass_only_where_an_attribute_switches_it_on() {
     let mut frame = bare();
     frame.cloths[0].collide = true;
     let names = |lists: ClothLists, frame: &FrameInput| -> Vec<&str> {
@@ -109,7 +109,7 @@ fn what_contact_does_besides_is_a_pass_only_where_something_does_it() {
 }
 
 #[test]
-fn collision_is_there_only_where_both_sides_collide() {
+fn collider_contact_is_a_pass_only_where_both_sides_collide() {
     let mut frame = bare();
     frame.colliders = vec![ColliderFrame { collide: true, ..ColliderFrame::default() }];
     let names = |frame: &FrameInput| -> Vec<&str> {

@@ -1,4 +1,4 @@
-//! Laws that hold whatever the scene.
+//! Invariants of every scene: energy, momentum, translation, determinism, and the contract of the observer.
 
 mod scenes;
 
@@ -25,7 +25,7 @@ fn an_undamped_swing_creates_no_energy_at_any_setting() {
     for evaluations in [24.0, 48.0, 96.0, 192.0] {
         let input = FrameInput { pins: pins(&sheet, [0, 80]), ..frame(1, physical(evaluations)) };
         let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), LINKS), 2);
-        // Masses by area, as the solver shares them out: inner points of a grid weigh one cell.
+        // Mass by area: an inner point of a grid has the mass of one cell.
         let share = |k: usize| {
             let side = |k: usize| if k == 0 || k == 80 { 0.5 } else { 1.0 };
             side(k % 81) * side(k / 81) * 0.2 / 6400.0
@@ -34,7 +34,7 @@ fn an_undamped_swing_creates_no_energy_at_any_setting() {
             let kinetic = solver.step(&input, &mut ()).kinetic_energy;
             let height: f64 = points(&solver, 6561).iter().enumerate().map(|(k, p)| share(k) * p.y).sum();
             let total = kinetic + 9.81 * height;
-            // It starts from nought; 1.96 J are at stake.
+            // It starts at zero; the potential energy of the swing is 1.96 J.
             assert!(total < 1e-4, "{evaluations} evaluations, frame {step}: {total} J");
         }
     }
@@ -42,7 +42,7 @@ fn an_undamped_swing_creates_no_energy_at_any_setting() {
 
 // EVIDENCE: N2.1-2  fast, low settings give soft cloth, not an explosion
 #[test]
-fn few_evaluations_never_explode() {
+fn few_evaluations_are_stable() {
     let sheet = grid(41, 41, Vec3::x(), Vec3::z());
     for resistance in [ResistanceModel::Classic, physical(1.0), physical(3.0), physical(10.0)] {
         let cloths =
@@ -57,7 +57,7 @@ fn few_evaluations_never_explode() {
 }
 
 #[test]
-fn a_falling_sheet_moves_as_one() {
+fn a_falling_sheet_moves_as_a_rigid_body() {
     let sheet = grid(33, 33, Vec3::x(), Vec3::z());
     for resistance in [ResistanceModel::Classic, physical(48.0)] {
         let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), ClothLists::ALL), 1);
@@ -75,8 +75,9 @@ fn a_falling_sheet_moves_as_one() {
     }
 }
 
-/// The largest strain and the energy of motion of a cloth that starts at rest in empty space, undamped.
-fn left_alone(surface: nucleus_core::Surface, evaluations: f64, bend: f64, frames: u32) -> (f64, f64) {
+/// The largest strain, and the largest kinetic energy in joules, of an undamped cloth that starts at rest without
+/// gravity.
+fn at_rest(surface: nucleus_core::Surface, evaluations: f64, bend: f64, frames: u32) -> (f64, f64) {
     let lists = ClothLists { bend: true, cross_links: true, ..LINKS };
     let mut solver = Solver::<f32>::new(one_cloth(surface, lists), 1);
     let cloths = vec![ClothFrame { bend_resistance: bend, ..still() }];
@@ -87,13 +88,13 @@ fn left_alone(surface: nucleus_core::Surface, evaluations: f64, bend: f64, frame
 }
 
 #[test]
-fn a_curved_cloth_left_alone_stays_as_it_is() {
-    // A fine mesh of uneven triangles, bent at rest. Swept always in one order it would be stirred by rounding
-    // alone: to a strain of 1 % within a second at 192 evaluations.
+fn a_curved_cloth_at_rest_stays_at_rest() {
+    // A fine mesh of uneven triangles, bent at rest. Sweeps in one direction would amplify rounding errors to a strain
+    // of 1 % within a second at 192 evaluations.
     for (evaluations, bend) in
         [(24.0, 0.2), (48.0, 0.2), (96.0, 0.0), (96.0, 2.0), (192.0, 0.0), (192.0, 20.0)]
     {
-        let (strain, energy) = left_alone(scenes::sphere(0.3, Vec3::zeros()), evaluations, bend, 48);
+        let (strain, energy) = at_rest(scenes::sphere(0.3, Vec3::zeros()), evaluations, bend, 48);
         assert!(strain < 1e-5, "{evaluations} evaluations, bend {bend}: strain {strain:e}, {energy:e} J");
     }
 }
@@ -116,7 +117,7 @@ fn uneven(seed: u64, quads: bool) -> nucleus_core::Surface {
     surface
 }
 
-/// Where a small drape is after a few frames, the whole scene turned and moved first.
+/// The positions of a small drape after eight frames of a rotated and translated scene, transformed back.
 fn moved(turn: Rotation3<f64>, shift: Vec3) -> Vec<Vec3> {
     let (_, input) = drape(17, 48.0);
     let builder = scenes::drape_placed(17, |p| turn * p + shift);
@@ -128,10 +129,10 @@ fn moved(turn: Rotation3<f64>, shift: Vec3) -> Vec<Vec3> {
     points(&solver, 289).into_iter().map(|p| turn.inverse() * (p - shift)).collect()
 }
 
-// One place is turned and shifted at random; the solver sorts its points by place, so rows come in another
-// order and the result is the same only as far as the sweeps have converged. A shift alone keeps the order.
+// The solver orders points by their positions, so a rotation changes the order of rows, and the results agree only as
+// far as the sweeps have converged. A translation keeps the order.
 #[test]
-fn moving_the_scene_moves_the_result_with_it() {
+fn translating_or_rotating_a_scene_does_the_same_to_its_result() {
     let here = moved(Rotation3::identity(), Vec3::zeros());
     for shift in [Vec3::new(10_000.0, 0.0, 0.0), Vec3::new(-3.0, 500.0, 77.0)] {
         let there = moved(Rotation3::identity(), shift);
@@ -161,7 +162,7 @@ fn any_thread_count_gives_the_same_bits() {
     assert!([2, 4, 8].into_iter().all(|threads| hash(threads) == one));
 }
 
-/// Two sheets that fall on each other and on a ball, at a place, and start at so many m/s.
+/// Adds two sheets that fall on each other and on a ball, at `place`, with a downward start velocity of `speed` m/s.
 fn a_heap(place: Vec3, speed: f64, builder: &mut ModelBuilder, input: &mut FrameInput) {
     for k in 0..2 {
         let mut sheet = grid(13, 13, Vec3::x(), Vec3::z());
@@ -177,8 +178,8 @@ fn a_heap(place: Vec3, speed: f64, builder: &mut ModelBuilder, input: &mut Frame
     input.colliders.push(ColliderFrame { collide: true, friction: 0.3, ..ColliderFrame::default() });
 }
 
-/// Where the first sheet of a heap is after each frame, with another heap far away that starts at so many m/s. What is
-/// alone is in contact with the other sheet all the while.
+/// The positions of the first sheet of a heap after each frame, in contact with the second sheet throughout. `far` is
+/// the start speed in m/s of another heap 50 m away.
 fn beside(far: Option<f64>) -> Vec<Vec<Vec3>> {
     let mut builder = ModelBuilder::new();
     let mut input = FrameInput { cloths: Vec::new(), ..frame(3, physical(48.0)) };
@@ -207,26 +208,26 @@ fn cloth_in_contact_far_away_changes_not_one_bit() {
     }
 }
 
-struct Count(Vec<SubstepIndex>);
+struct Substeps(Vec<SubstepIndex>);
 
-impl StepObserver for Count {
+impl StepObserver for Substeps {
     fn substep(&mut self, moment: SubstepIndex, _state: &dyn StateView) {
         self.0.push(moment);
     }
 }
 
-// EVIDENCE: N2.4-10  a substep is the smallest unit of time that is seen from outside
+// EVIDENCE: N2.4-10  a substep is the smallest unit of time that an observer sees
 #[test]
 fn an_observer_sees_every_substep_once() {
     let mut solver = Solver::<f32>::new(one_cloth(grid(3, 3, Vec3::x(), Vec3::z()), LINKS), 1);
-    let mut seen = Count(Vec::new());
+    let mut seen = Substeps(Vec::new());
     solver.step(&frame(7, physical(96.0)), &mut seen);
     assert_eq!(seen.0, (1..=7).map(|substep| SubstepIndex { substep, substeps: 7 }).collect::<Vec<_>>());
 }
 
 #[test]
 fn an_observer_can_end_a_frame_between_time_steps() {
-    struct UntilSubstep(u32, Count);
+    struct UntilSubstep(u32, Substeps);
     impl StepObserver for UntilSubstep {
         fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
             self.1.substep(moment, state);
@@ -237,16 +238,16 @@ fn an_observer_can_end_a_frame_between_time_steps() {
     }
     let solver = || Solver::<f32>::new(one_cloth(grid(3, 3, Vec3::x(), Vec3::z()), LINKS), 1);
     let input = frame(7, physical(96.0));
-    let mut watch = UntilSubstep(3, Count(Vec::new()));
+    let mut watch = UntilSubstep(3, Substeps(Vec::new()));
     assert!(solver().step(&input, &mut watch).stopped);
     assert_eq!(watch.1.0.len(), 3);
-    let mut watch = UntilSubstep(7, Count(Vec::new()));
+    let mut watch = UntilSubstep(7, Substeps(Vec::new()));
     assert!(!solver().step(&input, &mut watch).stopped);
     assert_eq!(watch.1.0.len(), 7);
 }
 
 // EVIDENCE: N2.4-7  what is animated moves along a straight line inside a frame
-// EVIDENCE: N2.4-6  animation is taken up once per frame
+// EVIDENCE: N2.4-6  animation is read once per frame
 #[test]
 fn pins_and_colliders_move_along_straight_lines_inside_a_frame() {
     struct Watch(Vec<(f64, f32)>);
@@ -276,16 +277,16 @@ fn pins_and_colliders_move_along_straight_lines_inside_a_frame() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn no_energy_comes_from_nothing_on_any_mesh(
+    fn a_cloth_at_rest_gains_no_energy_on_any_mesh(
         seed: u64, quads: bool, evaluations in 16.0..400.0f64, bend in 0.0..10.0f64,
     ) {
-        let (strain, energy) = left_alone(uneven(seed, quads), evaluations, bend, 36);
-        // Rounding leaves some 1e-11 J; a millimetre a second would be 1e-7.
+        let (strain, energy) = at_rest(uneven(seed, quads), evaluations, bend, 36);
+        // Rounding gives some 1e-11 J; a speed of 1 mm/s would be 1e-7 J.
         prop_assert!(energy < 1e-9 && strain < 1e-5, "strain {strain:e}, {energy:e} J");
     }
 
     #[test]
-    fn no_setting_makes_a_number_that_is_not_one(
+    fn every_state_is_finite_at_any_setting(
         stretch in 0.0..1000.0f64, bend in 0.0..1000.0f64, shear in 0.0..1000.0f64, substeps in 1u32..6,
         evaluations in 1.0..60.0f64, classic: bool, mass in 1e-3..1e3f64, friction in 0.0..2.0f64,
     ) {

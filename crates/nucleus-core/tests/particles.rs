@@ -11,7 +11,7 @@ use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 const BEADS: ClothId = ClothId(0);
 const CLASSIC: ResistanceModel = ResistanceModel::Classic;
 
-/// Particles of a mass each, with a speed each.
+/// Particles of this mass in kilograms, each with a velocity.
 fn beads(positions: &[Vec3], velocities: &[Vec3], mass: f64) -> Cloth {
     let surface = Surface { positions: positions.to_vec(), faces: Default::default() };
     let lists = ClothLists { air: true, self_collision: true, ..ClothLists::NONE };
@@ -19,7 +19,7 @@ fn beads(positions: &[Vec3], velocities: &[Vec3], mass: f64) -> Cloth {
     Cloth { start, ..Cloth::new(surface, Mass::PerPoint(mass), lists) }
 }
 
-/// Balls of a radius that meet everything.
+/// Balls of a radius that collide with everything.
 fn balls(radius: f64) -> ClothFrame {
     let own = SelfCollision { on: true, thickness: radius, elements: Elements::Points, edges: false };
     ClothFrame {
@@ -49,13 +49,13 @@ fn velocities(solver: &impl StateView, cloth: ClothId) -> Vec<Vec3> {
     out.into_iter().map(|v| Vec3::from(v.map(f64::from))).collect()
 }
 
-/// The distance of the nearest two.
+/// The smallest distance of two points.
 fn nearest(points: &[Vec3]) -> f64 {
     let pairs = (0..points.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
     pairs.map(|(a, b)| (points[a] - points[b]).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Beads in layers of `side` by `side`, one above the other, none quite over the one below.
+/// Beads in layers of `side` by `side`, each layer slightly offset from the one below.
 fn layers(count: usize, side: usize, spacing: f64) -> Vec<Vec3> {
     let place = |k: usize| {
         let [x, y, z] = [k % side, k / (side * side), k / side % side].map(|n| n as f64);
@@ -78,7 +78,8 @@ fn drag_slows_a_particle_as_recorded_output_of_the_original_shows() {
         places.push(solver.point(BEADS, 0));
     }
     let moved: Vec<Vec3> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    // Displacement of a frame over a 24th of the velocity before it, and the logarithm of what is left of the speed.
+    // Displacement per frame over a 24th of the velocity before it, and the logarithm of the remaining share of the
+    // speed.
     assert!((moved[0].norm() * 24.0 / velocity.norm() - 0.993_364_92).abs() < 1e-6);
     for pair in moved.windows(2) {
         let ratio = (pair[1].norm() / pair[0].norm()).ln();
@@ -121,7 +122,7 @@ fn a_collision_of_two_particles_keeps_their_momentum_at_any_speed() {
             let momentum = light + heavy * 3.0;
             let off = (momentum + Vec3::x() * (2.0 * speed)).norm() / speed;
             assert!(off < 1e-5, "{speed} m/s at {substeps}, {beside} beside: {off:e}");
-            // Head on they go on as one. Beside each other they are turned aside, the less the farther they go in a step.
+            // Head on they move on together. Off centre they are deflected, the less the farther they move in a step.
             let turned = (light - Vec3::x() * speed).norm() / speed;
             assert!(turned > 0.01, "{speed} m/s at {substeps}, {beside} beside: {light} {heavy}");
             assert!(beside > 0.0 || (light - heavy).norm() < 1e-3 * speed, "{speed} m/s at {substeps}");
@@ -136,7 +137,7 @@ fn a_collision_of_two_particles_keeps_their_momentum_at_any_speed() {
 }
 
 #[test]
-fn particles_that_fly_past_each_other_or_past_cloth_are_not_held_up() {
+fn particles_that_miss_each_other_and_cloth_are_not_slowed() {
     for substeps in [1, 3, 8] {
         let sheet = grid(9, 9, Vec3::z(), -Vec3::y());
         let places = [Vec3::new(-1.0, 0.1, 0.5), Vec3::new(1.0, 0.15, 0.5), Vec3::new(-1.0, -0.5, -0.1)];
@@ -203,7 +204,7 @@ fn a_particle_weighs_on_cloth_that_carries_it() {
             ..frame(3, physical(96.0))
         };
         let mut solver = Solver::<f32>::new(builder, 1);
-        // Let fall, it bobs as on a trampoline: the mean over the last two seconds.
+        // It oscillates like on a trampoline: the mean over the last two seconds.
         let height = |_| {
             let report = solver.step(&input, &mut ());
             assert!(report.min_cloth_gap > 0.9, "{report:?}");
@@ -218,7 +219,7 @@ fn a_particle_weighs_on_cloth_that_carries_it() {
 }
 
 #[test]
-fn a_heap_of_particles_comes_to_rest_and_none_is_in_another() {
+fn a_heap_of_particles_comes_to_rest_without_overlap() {
     let radius = 0.01;
     let places = layers(8, 4, 0.021);
     let mut solver = Solver::<f32>::new(built([beads(&places, &[], 0.005)]), 1);
@@ -230,13 +231,13 @@ fn a_heap_of_particles_comes_to_rest_and_none_is_in_another() {
         speeds.push((2.0 * energy / (0.005 * places.len() as f64)).sqrt());
         let now = points(&solver, BEADS, places.len());
         let apart = nearest(&now) / (2.0 * radius);
-        // While they fall on each other they are pressed: the ground has the last word.
+        // During impact they are compressed, because contact with the ground is resolved last.
         let least = if step < 60 { 0.95 } else { 0.99 };
         assert!(apart > least, "frame {step}: {apart} of the contact distance");
         let lowest = now.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         assert!(lowest > 0.99 * radius, "frame {step}: {lowest}");
     }
-    // Now and then one drops from the heap: what counts is the speed in between.
+    // Single beads still drop from the heap; the test is on the speed in between.
     let last = &mut speeds[80..];
     last.sort_by(f64::total_cmp);
     let speed = last[last.len() / 2];
@@ -244,7 +245,7 @@ fn a_heap_of_particles_comes_to_rest_and_none_is_in_another() {
 }
 
 #[test]
-fn particles_stay_out_of_colliders_that_stand_and_that_move() {
+fn particles_stay_outside_of_static_and_moving_colliders() {
     for speed in [0.0, 1.0, 50.0] {
         for resistance in [CLASSIC, physical(48.0)] {
             let mut places = layers(3, 6, 0.05);
@@ -254,7 +255,7 @@ fn particles_stay_out_of_colliders_that_stand_and_that_move() {
             builder.collider(Collider { surface: ball.clone() }).expect("a good mesh");
             let mut solver = Solver::<f32>::new(builder, 1);
             for step in 0..24 {
-                // It goes up by half a metre and stays there.
+                // The collider rises by half a metre and stays there.
                 let height = |step: u32| (f64::from(step) * speed * COUNT_PERIOD).min(0.5);
                 let at = |step: u32| ball.positions.iter().map(|p| p + Vec3::y() * height(step)).collect();
                 let end: Vec<Vec3> = if speed > 0.0 { at(step + 1) } else { Vec::new() };
@@ -272,7 +273,7 @@ fn particles_stay_out_of_colliders_that_stand_and_that_move() {
     }
 }
 
-/// Beads that fall on a sheet which is held by its corners.
+/// Beads that fall on a sheet pinned at its corners.
 fn poured(threads: usize, far_away: bool) -> (Vec<u64>, Vec<Vec3>) {
     let mut sheet = grid(17, 17, Vec3::x() * 0.5, Vec3::z() * 0.5);
     sheet.positions.iter_mut().for_each(|p| *p -= Vec3::new(0.2, 0.0, 0.2));

@@ -171,7 +171,7 @@ fn measure<R: Real, const N: usize>(
     let n: [R::Lanes; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
     let length = dot(c, c).sqrt();
     let sign = dot(c, n).choose_by_sign(one, zero - one);
-    let fold = R::Lanes::from_array(hinge.fold);
+    let fold = R::Lanes::from_array(hinge.inverse_square_max);
     // The twist of a quad has no fold: its chord is measured by its own rest.
     let longest = (fold - tiny).choose_by_sign(one / (fold.most(tiny)).sqrt(), length + tiny);
     let flat = longest * splat(NEAR_FLAT);
@@ -217,7 +217,7 @@ pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
         let bent = (size / (longest + tiny)).least(one);
         let grown = (one - dropoff) + dropoff * bent;
         // cos²(θ/2), within bounds: the moment grows with the angle.
-        let cosine = one - chord * chord * R::Lanes::from_array(hinge.fold);
+        let cosine = one - chord * chord * R::Lanes::from_array(hinge.inverse_square_max);
         let cosine = (cosine - least).choose_by_sign(cosine, least);
         let (share, compliance) = map.scale(error, share * grown, compliance / (grown + tiny));
         let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
@@ -266,7 +266,7 @@ impl<R: Real> AngleMemory<R> {
         let now = measure(hinge, &unflipped, &x);
         let (chord, longest) = (now.chord.to_array(), now.longest.to_array());
         for lane in 0..4 {
-            if hinge.fold[lane] == R::ZERO {
+            if hinge.inverse_square_max[lane] == R::ZERO {
                 continue; // the twist of a quad has no angle
             }
             if self.tracks_flips {

@@ -1,9 +1,10 @@
-//! Bend: faces that share an edge keep the angle between them, and quads stay flat.
+//! Bending: faces that share an edge keep the angle between them, and quads stay flat.
 //!
-//! C(x) = |c| - |c_rest|, where c is the bending vector of a [`hinge`](super::hinge): it is nought where the cloth is
-//! flat, at right angles to it, and as long as it is bent. Being linear in the positions it needs no angle, has no
-//! singular shape, and cannot turn or shift the cloth. What is bent at rest keeps the length of its vector. Far from flat
-//! a hinge is stiffer along c, so that its moment grows with the angle.
+//! C(x) = |c| - |c_rest|, where c is the bending vector of a [`hinge`](super::hinge) (Bergou et al. 2006): zero where
+//! the cloth is flat, else at right angles to it, with a length that grows with the angle. The vector is linear in the
+//! positions, so it needs no angle, has no singular shape, and cannot rotate or translate the cloth. A hinge that is
+//! bent at rest keeps the length of its vector. Far from flat a hinge is stiffer along c, so that its moment grows with
+//! the angle.
 
 use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
@@ -11,19 +12,19 @@ use crate::parallel::disjoint::DisjointSlice;
 use super::hinge::{HingeGroup, MIN_COSINE};
 use super::strength_map::StrengthMap;
 
-/// How strongly a sweep acts.
+/// The strength of a sweep over hinges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BendStrength<R> {
-    /// The share of the error that is taken away, 0 to 1.
+    /// The share of the error that a sweep removes, 0 to 1.
     pub share: R,
-    /// 1 / (B h²), where h is the time the sweep stands for; 0 is rigid.
+    /// 1 / (B h²), with the bending stiffness B in N·m and the time step h in seconds; 0 is rigid.
     pub compliance: R,
 }
 
-/// Sweeps the hinges of `groups` once, each group with its map of the strength.
+/// Sweeps the hinges of `groups` once, each group with its strength map.
 ///
 /// # Safety
-/// The rows of `groups` share no point within a group, and no other task of the phase touches their points.
+/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
 #[allow(unsafe_code)]
 #[inline]
 pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>, const N: usize>(
@@ -49,8 +50,8 @@ pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>, const N: usize>(
         }
         let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
         let length = square.sqrt();
-        // cos²(θ/2), within bounds.
-        let cosine = one - square * R::Lanes::from_array(group.fold);
+        // cos²(θ/2), bounded from below.
+        let cosine = one - square * R::Lanes::from_array(group.inverse_square_max);
         let cosine = (cosine - least).choose_by_sign(cosine, least);
         let bent = one - R::Lanes::from_array(group.rest) / (length + tiny);
         let (share, compliance) = map.scale(bent, share, compliance);

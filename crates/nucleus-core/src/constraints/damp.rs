@@ -1,7 +1,7 @@
-//! Damping of relative velocity between linked points, once per substep.
+//! Damping of the relative velocity of linked points, once per substep.
 //!
-//! `stretchDamp` acts along the links only, `damp` in all directions. Both are given by pairs, equal and
-//! opposite, so they change no momentum: a cloth that flies or falls as one is not slowed.
+//! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite,
+//! so they conserve momentum: a cloth that moves as a rigid body is not slowed.
 
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};
@@ -29,9 +29,9 @@ pub fn damp<R: Real>(
         if !damping.is_felt() {
             continue;
         }
-        for_all_rows(pool, &cloth.blocks, &cloth.stretch, |part| {
-            let (links, factors) = (cloth.stretch.part(part), cloth.strength_maps.damp.part(part));
-            // SAFETY: inner rows of two blocks, and cross rows of one colour, share no point.
+        for_all_rows(pool, &cloth.blocks, &cloth.stretch, |batch| {
+            let (links, factors) = (cloth.stretch.batch(batch), cloth.strength_maps.damp.batch(batch));
+            // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
             #[allow(unsafe_code)]
             unsafe {
                 relax(velocity, displacement, links, factors, &damping);
@@ -40,7 +40,7 @@ pub fn damp<R: Real>(
     }
 }
 
-/// What damps a cloth in a substep.
+/// The damping of a cloth in a substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// `stretchDamp`.
@@ -57,30 +57,30 @@ impl Damping {
         self.stretch_damp > 0.0 || self.damp > 0.0
     }
 
-    /// What it comes to in a link with a factor on `damp`.
+    /// The strength in a link with this factor on `damp`.
     pub fn strength<R: Real>(&self, factor: f64) -> DampStrength<R> {
-        // Implicit, so that it slows but never turns back, however large.
+        // Implicit: a velocity shrinks but never changes its sign, however large the rate.
         let share = |attribute: f64| {
             let rate = attribute.max(0.0) * self.substep / COUNT_PERIOD;
             R::from_f64(rate / (1.0 + rate))
         };
         let all = share(self.damp * factor);
-        // What acts in all directions has acted along the link too.
+        // `all` has acted along the link too.
         DampStrength { along: share(self.stretch_damp) * (R::ONE - all), all }
     }
 }
 
-/// StrengthMaps of the relative velocity of two linked points that one sweep takes away.
+/// The shares of the relative velocity of two linked points that one sweep removes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampStrength<R> {
     along: R,
     all: R,
 }
 
-/// Sweeps the links of `groups` once; `factors` on `damp` are as many, or none.
+/// Sweeps the links of `groups` once. `factors` on `damp` has one entry per group, or is empty.
 ///
 /// # Safety
-/// No other task of the phase touches the points of `groups`.
+/// No other task of the loop touches the points of `groups`.
 #[allow(unsafe_code)]
 pub unsafe fn relax<R: Real>(
     velocity: DisjointSlice<'_, Row4<R>>,

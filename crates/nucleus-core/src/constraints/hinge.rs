@@ -1,25 +1,25 @@
-//! What bends: hinges between two faces, and the twist of quads.
+//! Bending rows: hinges between two faces, and the twist of quads.
 //!
 //! The bending vector of a row is c = Σ K_i x_i, with Σ K_i = 0 and, where the cloth is flat, Σ K_i x_i = 0. For
-//! triangles K are the weights of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", §3;
-//! |c| is then the length of the edge times the angle. The energy is B/2 · |c|², with K scaled so that B is the
-//! bending stiffness of a plate in N·m, whatever the mesh:
+//! triangles K are the weights of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", §3; |c| is
+//! then the length of the edge times the angle. The energy is B/2 · |c|², with K scaled so that B is the bending
+//! stiffness of a plate in N·m on any mesh:
 //!
-//! So far for small angles. At a large one |c| is 2 sin(θ/2) times what it is at an angle of 1, and an energy of its square
-//! would give a moment of sin θ, which is a third too little at 90° and goes back to nought for what is folded shut.
-//! A hinge therefore resists with a moment of 2 sin(θ/2): along c it gets stiffer by 1 / cos(θ/2). The tip of a strip of
-//! 50 elements that hangs under its weight (Γ = 1000, 50° at the first hinge) is then 0.4 % off the exact elastica, with
-//! the square it is 2.2 %, with a moment of θ 1.2 %.
+//! - A hinge stands for half the cloth between the centres of its faces: K is divided by the root of A_0 + A_1 for
+//!   triangles, of which three families cover the plane, and of (A_0 + A_1) / 2 for quads, of which two families do.
+//! - In a quad a hinge uses the midpoint of the opposite edge. The two families of a grid then measure the two
+//!   curvatures only, and the result does not depend on a diagonal.
+//! - The twist of a quad is x_a - x_b + x_c - x_d, and stands for all of it. With it a grid is an isotropic plate: its
+//!   energy is B/2 · (z_xx² + z_yy² + 2 z_xy²), Poisson's ratio zero.
 //!
-//! - A hinge answers for half the cloth between the middles of its faces: K is divided by the root of A_0 + A_1
-//!   for triangles, of which three families cover the plane, and of (A_0 + A_1) / 2 for quads, where two do.
-//! - On the far side of a quad a hinge looks at the middle of the opposite edge. So the two families of a grid
-//!   measure the two curvatures and nothing else, and no diagonal has a say in it.
-//! - The twist of a quad is x_a - x_b + x_c - x_d, and answers for all of it. With it a grid is a plate without
-//!   preference: its energy is B/2 · (z_xx² + z_yy² + 2 z_xy²), Poisson's ratio nought.
+//! Equilateral triangles are a plate of the same B and a Poisson's ratio of -1/3 (Seung and Nelson 1988). A grid that
+//! is cut along one diagonal is up to three times as stiff across that diagonal, so quads should stay quads.
 //!
-//! Equilateral triangles are a plate of the same B and a Poisson's ratio of -1/3 (Seung and Nelson 1988). A grid
-//! cut along one diagonal is up to three times as stiff across that diagonal: quads are better left whole.
+//! **Large angles.** |c| is 2 sin(θ/2) times its value at an angle of 1, and an energy of its square gives a moment of
+//! sin θ: a third too small at 90°, and zero for a hinge that is folded shut. A hinge therefore resists with a moment
+//! of 2 sin(θ/2), because along c its stiffness is divided by cos(θ/2). The tip of a strip of 50 elements that hangs
+//! under its weight (Γ = 1000, 50° at the first hinge) is then 0.4 % off the exact elastica; with the square it is
+//! 2.2 % off, with a moment of θ 1.2 %.
 
 use nalgebra::Vector3;
 
@@ -29,13 +29,13 @@ use crate::model::surface::Surface;
 use super::angle::{AngleRow, bisector, spans};
 use crate::model::{Row, Seam, fan_triangles, seams, triangle_area};
 
-/// `N` points that bend, between points of the solver, before they are laid out.
+/// A hinge of `N` points between rows of the solver's columns, before it is laid out.
 #[derive(Debug, Clone, Copy)]
 pub struct HingeRow<R, const N: usize> {
     points: [u32; N],
     weights: [R; N],
     rest: R,
-    fold: R,
+    inverse_square_max: R,
 }
 
 /// Four hinges side by side. In `f32` 52 bytes a hinge of four points, 68 of six.
@@ -43,21 +43,22 @@ pub struct HingeRow<R, const N: usize> {
 pub struct HingeGroup<R, const N: usize> {
     /// The points.
     pub points: [[u32; 4]; N],
-    /// Their weights, which add up to nought.
+    /// Their weights K, whose sum is zero.
     pub weights: [[R; 4]; N],
-    /// The bending vector of the anchors. Set at the start of each frame.
+    /// The bending vector of the anchors. Written at the start of each frame.
     pub anchored: [[R; 4]; 3],
-    /// Length of the bending vector at rest; nought where flat.
+    /// Length of the bending vector at rest; zero where flat.
     pub rest: [R; 4],
-    /// One over the square of its length when folded shut: times |c|² that is sin²(θ/2). Nought for the twist of a quad,
-    /// which has no such angle.
-    pub fold: [R; 4],
+    /// One over the square of the vector's length when the hinge is folded shut: times |c|² it is sin²(θ/2). Zero for
+    /// the twist of a quad, which has no such angle.
+    pub inverse_square_max: [R; 4],
 }
 
-/// A hinge gets no stiffer than twice, beyond 120°: folded shut it would be rigid, and spring open in one step.
+/// Lower bound of cos(θ/2): beyond 120° a hinge is not stiffer than twice. Folded shut it would be rigid, and open in
+/// one step.
 pub const MIN_COSINE: f64 = 0.5;
 
-/// The rows of a mesh, by how many points they have.
+/// The rows of a mesh, by their number of points.
 #[derive(Debug, Clone, Default)]
 pub struct HingeRows<R> {
     /// Hinges between triangles, and twists of quads.
@@ -66,7 +67,7 @@ pub struct HingeRows<R> {
     pub of_six: Vec<HingeRow<R, 6>>,
 }
 
-/// All that bends in a mesh, between the solver's places of its points.
+/// The bending rows of a mesh; `place` maps a point of the mesh to its row in the columns.
 pub fn rows<R: Real>(surface: &Surface, place: impl Fn(u32) -> u32) -> HingeRows<R> {
     let mut rows = HingeRows { of_four: Vec::new(), of_six: Vec::new() };
     for seam in seams(surface) {
@@ -96,7 +97,7 @@ enum Hinge<R> {
     Wide(HingeRow<R, 6>),
 }
 
-/// The hinge of an edge; nothing where a face has no area, for then there is no angle.
+/// The hinge of an edge; `None` where a face has no area, and so no angle.
 fn hinge<R: Real>(surface: &Surface, seam: &Seam, place: impl Fn(u32) -> u32) -> Option<Hinge<R>> {
     let faces = seam.faces.map(|face| surface.faces.face(face as usize));
     let [a, b] = seam.ends;
@@ -123,7 +124,7 @@ fn narrow<R: Real>(
     let weights = bending_weights(points.map(|point| position(surface, point)))?;
     let edge = (position(surface, b) - position(surface, a)).norm();
     let row = HingeRow::new(surface, points, weights.map(|weight| weight / area.sqrt()), place);
-    Some(row.folding_at(2.0 * edge / area.sqrt()))
+    Some(row.with_max_length(2.0 * edge / area.sqrt()))
 }
 
 /// Two quads: the ends of their edge, then those of the edges opposite.
@@ -135,11 +136,11 @@ fn wide<R: Real>(surface: &Surface, points: [u32; 6], place: impl Fn(u32) -> u32
     let root = (area(near) + area(far)).sqrt();
     let [k0, k1, k2, k3] = weights.map(|weight| weight / root);
     let weights = [k0, k1, k2 / 2.0, k2 / 2.0, k3 / 2.0, k3 / 2.0];
-    Some(HingeRow::new(surface, points, weights, place).folding_at(2.0 * (b - a).norm() / root))
+    Some(HingeRow::new(surface, points, weights, place).with_max_length(2.0 * (b - a).norm() / root))
 }
 
-/// How far a quad is from a plane: its diagonals as a hinge, scaled so that all four weights of a parallelogram
-/// are as large.
+/// The distance of a quad from a plane: its diagonals as a hinge, scaled so that all four weights of a parallelogram
+/// are equal.
 fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32) -> Option<HingeRow<R, 4>> {
     let [a, b, c, d] = face;
     let points = [a, c, b, d];
@@ -149,7 +150,7 @@ fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32)
     Some(HingeRow::new(surface, points, weights.map(|weight| weight / size * (2.0 / area).sqrt()), place))
 }
 
-/// Bergou's weights, from cotangents of the angles at the edge; nothing where an angle is degenerate.
+/// The weights of Bergou et al. 2006, from cotangents of the angles at the edge; `None` where an angle is degenerate.
 fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
     let cotangent = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&v) / u.cross(&v).norm();
     let edge = x1 - x0;
@@ -177,28 +178,29 @@ impl<R: Real, const N: usize> HingeRow<R, N> {
     fn new(surface: &Surface, points: [u32; N], weights: [f64; N], place: impl Fn(u32) -> u32) -> Self {
         let x = points.map(|point| position(surface, point));
         let vector: Vector3<f64> = (0..N).map(|k| x[k] * weights[k]).sum();
-        // What is flat to rounding is flat: 1e-6 of the terms that cancel.
+        // Flat up to rounding counts as flat: 1e-6 of the terms that cancel.
         let flat = 1e-6 * (0..N).map(|k| weights[k].abs() * (x[k] - x[0]).norm()).sum::<f64>();
         let rest = if vector.norm() <= flat { 0.0 } else { vector.norm() };
         let mut weights = weights.map(R::from_f64);
-        // Rounded, they still add up to nought: else a cloth would be drawn to the origin.
+        // The rounded weights must still add up to zero: else the cloth would be attracted to the origin.
         weights[N - 1] = weights[..N - 1].iter().fold(R::ZERO, |sum, &weight| sum - weight);
-        Self { points: points.map(place), weights, rest: R::from_f64(rest), fold: R::ZERO }
+        Self { points: points.map(place), weights, rest: R::from_f64(rest), inverse_square_max: R::ZERO }
     }
 
-    /// With the length that its bending vector has when it is folded shut.
-    fn folding_at(self, most: f64) -> Self {
-        Self { fold: R::from_f64(1.0 / (most * most)), ..self }
+    /// Sets the length that the bending vector has when the hinge is folded shut.
+    fn with_max_length(self, most: f64) -> Self {
+        Self { inverse_square_max: R::from_f64(1.0 / (most * most)), ..self }
     }
 }
 
-/// What a hinge holds at a bending stiffness of 1, in joules: the moment of 2 (sin(θ/2) - sin(θ_0/2)), added up from rest.
-pub fn held(length: f64, rest: f64, fold: f64) -> f64 {
+/// The energy of a hinge in joules at a bending stiffness of 1: the moment 2 (sin(θ/2) - sin(θ_0/2)), integrated from
+/// rest.
+pub fn energy_of_length(length: f64, rest: f64, inverse_square_max: f64) -> f64 {
     let square = |length: f64| (length - rest).powi(2) / 2.0;
-    if fold == 0.0 {
+    if inverse_square_max == 0.0 {
         return square(length);
     }
-    let most = 1.0 / fold.sqrt();
+    let most = 1.0 / inverse_square_max.sqrt();
     let half_angle = |length: f64| (length / most).clamp(0.0, 1.0).asin();
     let sum = |half: f64| -most * most * half.cos() - rest * most * half;
     let turn = MIN_COSINE.acos();
@@ -215,8 +217,8 @@ impl<R: Real, const N: usize> Row for HingeRow<R, N> {
         self.points[k]
     }
 
-    fn idle(stand_in: u32) -> Self {
-        Self { points: [stand_in; N], weights: [R::ZERO; N], rest: R::ZERO, fold: R::ZERO }
+    fn idle(padding_point: u32) -> Self {
+        Self { points: [padding_point; N], weights: [R::ZERO; N], rest: R::ZERO, inverse_square_max: R::ZERO }
     }
 
     fn group(rows: [Self; 4]) -> HingeGroup<R, N> {
@@ -225,13 +227,13 @@ impl<R: Real, const N: usize> Row for HingeRow<R, N> {
             weights: std::array::from_fn(|k| rows.map(|row| row.weights[k])),
             anchored: [[R::ZERO; 4]; 3],
             rest: rows.map(|row| row.rest),
-            fold: rows.map(|row| row.fold),
+            inverse_square_max: rows.map(|row| row.inverse_square_max),
         }
     }
 }
 
 impl<R: Real, const N: usize> HingeGroup<R, N> {
-    /// Takes up where the anchors now are, in double precision.
+    /// Updates the bending vector of the anchors, in double precision.
     pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
         for lane in 0..4 {
             let x = self.points.map(|point| anchors[point[lane] as usize]);
@@ -248,13 +250,13 @@ fn position(surface: &Surface, point: u32) -> Vector3<f64> {
     surface.positions[point as usize]
 }
 
-/// The two corners of a quad that are not on an edge.
+/// The two corners of a quad that are not on this edge.
 fn far_side(face: &[u32], ends: [u32; 2]) -> [u32; 2] {
     let mut others = face.iter().copied().filter(|corner| !ends.contains(corner));
     [others.next().unwrap_or(ends[0]), others.next().unwrap_or(ends[0])]
 }
 
-/// The third corner of the triangle with this edge, the face being cut into a fan.
+/// The third corner of the triangle that has this edge, with the face cut into a fan.
 fn apex(face: &[u32], ends: [u32; 2]) -> Option<u32> {
     let triangle = fan_triangles(face).find(|triangle| ends.iter().all(|end| triangle.contains(end)))?;
     triangle.into_iter().find(|corner| !ends.contains(corner))
@@ -300,8 +302,8 @@ mod tests {
         rows.iter().map(|row| vector(row).norm_squared() / 2.0).sum()
     }
 
-    /// Energy per area and B of a mesh bent to z = (p x² + 2 q x y + r y²) / 2; a border of cells is left out of
-    /// the area by the growth of the energy from one size to the next.
+    /// Energy per area and B of a mesh bent to z = (p x² + 2 q x y + r y²) / 2. Second differences over three sizes
+    /// eliminate the border of cells.
     fn density(at: impl Fn(f64, f64) -> [f64; 2] + Copy, cell: Faced, [p, q, r]: [f64; 3]) -> f64 {
         let of = |n: u32| {
             let surface = mesh(n, at, cell);
@@ -311,7 +313,7 @@ mod tests {
             let area: f64 = surface.faces.triangles().map(|t| triangle_area(&surface, t)).sum();
             (energy(&rows.of_four, &bent) + energy(&rows.of_six, &bent), area)
         };
-        // What grows with the square of the size, without what grows with its border.
+        // Keeps the part that grows with the square of the size, and drops the part that grows with its border.
         let [(e1, a1), (e2, a2), (e3, a3)] = [of(11), of(21), of(31)];
         (e3 - 2.0 * e2 + e1) / (a3 - 2.0 * a2 + a1)
     }
@@ -320,7 +322,7 @@ mod tests {
         [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.5], [0.5, -0.5, 0.5]];
 
     #[test]
-    fn a_grid_of_any_cells_is_a_plate_without_preference() {
+    fn a_grid_of_any_cells_is_an_isotropic_plate() {
         for side in [[1.0, 1.0], [1.0, 2.5], [0.3, 0.1]] {
             for [p, q, r] in CURVATURES {
                 let found = density(|x, y| [x * side[0], y * side[1]], quads, [p, q, r]);
@@ -331,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn equilateral_triangles_are_a_plate_of_a_known_ratio() {
+    fn equilateral_triangles_are_a_plate_with_poissons_ratio_of_minus_a_third() {
         let at = |x: f64, y: f64| [x + y / 2.0, y * 0.75f64.sqrt()];
         for [p, q, r] in CURVATURES {
             let found = density(at, triangles, [p, q, r]);
@@ -342,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hinge_that_is_folded_shut_is_as_bent_as_its_fold_says() {
+    fn a_hinge_folded_shut_has_the_max_length_of_its_bending_vector() {
         for cell in [quads as Faced, triangles] {
             let mut surface = mesh(2, |x, y| [0.7 * x, 0.4 * y], cell);
             if cell(0, 2).len() == 1 {
@@ -361,8 +363,8 @@ mod tests {
                 points.iter().zip(weights).map(|(&k, &w)| x[k as usize] * w).sum::<Vector3<f64>>().norm()
             };
             let (length, fold) = match (rows.of_six.first(), rows.of_four.first()) {
-                (Some(row), _) => (length(&row.points, &row.weights), row.fold),
-                (None, Some(row)) => (length(&row.points, &row.weights), row.fold),
+                (Some(row), _) => (length(&row.points, &row.weights), row.inverse_square_max),
+                (None, Some(row)) => (length(&row.points, &row.weights), row.inverse_square_max),
                 _ => panic!("no hinge"),
             };
             assert!((length * length * fold - 1.0).abs() < 1e-9, "{length} {fold}");
@@ -370,22 +372,25 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hinge_holds_is_its_moment_added_up_over_the_angle() {
+    fn the_energy_of_a_hinge_is_its_moment_integrated_over_the_angle() {
         let (most, rest) = (3.0f64, 0.4f64);
-        let at = |angle: f64| held(most * (angle / 2.0).sin(), rest, 1.0 / (most * most));
+        let at = |angle: f64| energy_of_length(most * (angle / 2.0).sin(), rest, 1.0 / (most * most));
         for degrees in [10.0f64, 45.0, 90.0, 115.0] {
             let (angle, step) = (degrees.to_radians(), 1e-5);
             let moment = (at(angle + step) - at(angle - step)) / (2.0 * step);
             let expected = (most * (angle / 2.0).sin() - rest) * most / 2.0;
             assert!((moment / expected - 1.0).abs() < 1e-6, "{degrees}°: {moment} for {expected}");
         }
-        assert!((held(0.01, 0.0, 1.0 / 9.0) / 5e-5 - 1.0).abs() < 1e-4, "small angles: half the square");
-        let small = held(most * 1e-6, 0.0, 1.0 / 9.0);
-        assert!(small >= 0.0 && held(rest, rest, 1.0 / 9.0).abs() < 1e-12);
+        assert!(
+            (energy_of_length(0.01, 0.0, 1.0 / 9.0) / 5e-5 - 1.0).abs() < 1e-4,
+            "small angles: half the square"
+        );
+        let small = energy_of_length(most * 1e-6, 0.0, 1.0 / 9.0);
+        assert!(small >= 0.0 && energy_of_length(rest, rest, 1.0 / 9.0).abs() < 1e-12);
     }
 
     #[test]
-    fn crooked_quads_that_lie_flat_do_not_bend() {
+    fn irregular_quads_in_a_plane_have_no_bending_energy() {
         let crooked = |x: f64, y: f64| [x + 0.3 * (x * y).sin(), y + 0.2 * (x - y).cos()];
         let surface = mesh(9, crooked, quads);
         let rows = rows::<f64>(&surface, |point| point);

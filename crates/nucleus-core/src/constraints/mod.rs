@@ -1,5 +1,26 @@
-//! The effects that hold cloth together, one file each, named as the artist names them.
-//! Each has its rows, and a `relax` that sweeps them once.
+//! The internal constraints of cloth: one effect per file, named as the artist names it.
+//!
+//! A constraint is a function C(x) of a few points that is zero at rest. A Gauss-Seidel sweep projects the rows of a
+//! list one after the other (position-based dynamics: Müller et al. 2007, §3.2 and §4.1). With inverse masses w_i, the
+//! correction of a row is
+//!
+//! ```text
+//! dx_i = -w_i (grad_i C) lambda,    lambda = s C / (sum_j w_j |grad_j C|² + alpha / h²)
+//! ```
+//!
+//! * **Classic** (§2.2, §2.4 of the Nucleus paper): alpha = 0, several sweeps per time step, and s is the share of the
+//!   error that a sweep removes. Stiffness follows from mesh and substeps.
+//! * **Physical**: s = 1, and alpha is the compliance, one over the stiffness (XPBD: Macklin et al. 2016, eq. 18). A
+//!   substep has many time steps with one sweep each (small steps: Macklin et al. 2019), so the multiplier starts at
+//!   zero in every sweep.
+//!
+//! | Effect | Rows | Read |
+//! |---|---|---|
+//! | stretch, compression, shear | links | [`stretch`] |
+//! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
+//! | damping of relative velocities | links | [`damp`] |
+//! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
+//! | the order of rows in a sweep, and its parallel loops | all | [`sweep`](mod@sweep) |
 
 pub mod angle;
 pub mod attract;

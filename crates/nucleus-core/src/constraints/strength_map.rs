@@ -1,8 +1,8 @@
 //! Vertex maps of stiffness, row by row: cloth that is not equally stiff everywhere.
 //!
-//! A map has a factor of 0 to 1 on the resistance of each row. A sweep without compliance (Classic) removes a share of the error,
-//! and the factor scales that share. A sweep with compliance (Physical) stands for a stiffness, and the factor divides the
-//! compliance: half the stiffness is twice the compliance. A row with the factor 0 is skipped.
+//! A map has a factor of 0 to 1 on the resistance of each row. A sweep without compliance (Classic) removes a share of
+//! the error, and the factor scales that share. A sweep with compliance (Physical) stands for a stiffness, and the
+//! factor divides the compliance: half the stiffness is twice the compliance. A row with the factor 0 is skipped.
 
 use crate::math::{Lanes, Real};
 use crate::model::Row;
@@ -18,7 +18,8 @@ pub struct Sides<T> {
 
 /// Scales the strength of a sweep for four rows side by side.
 pub trait StrengthMap<R: Real>: Copy {
-    /// Share and compliance of the rows, from those of the sweep; the sign of `c` says on which side of rest each row is.
+    /// Share and compliance of the rows, from those of the sweep; the sign of `c` says on which side of rest each row
+    /// is.
     fn scale(self, c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes);
 }
 
@@ -77,8 +78,8 @@ impl<R: Real, const N: usize> Row for StrengthRow<R, N> {
         self.points[k]
     }
 
-    fn idle(stand_in: u32) -> Self {
-        Self { points: [stand_in; N], factor: Sides { above: R::ONE, below: R::ONE } }
+    fn idle(padding_point: u32) -> Self {
+        Self { points: [padding_point; N], factor: Sides { above: R::ONE, below: R::ONE } }
     }
 
     fn group(rows: [Self; 4]) -> StrengthGroup<R> {

@@ -1,8 +1,8 @@
 //! Stretch, compression and shear: links keep their length.
 //!
-//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of Macklin et al. 2016,
-//! eq. 18. The multiplier starts at zero in every sweep, because a time step has one sweep only (Physical), or there is no
-//! compliance (Classic).
+//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of Macklin et al.
+//! 2016, eq. 18. The multiplier starts at zero in every sweep, because a time step has one sweep only (Physical), or
+//! there is no compliance (Classic).
 //!
 //! Shear rows are links too: the cross links of quads, swept with the strength of `shearResistance`.
 
@@ -39,7 +39,8 @@ pub struct LinkRow<R> {
 }
 
 impl<R: Real> LinkRow<R> {
-    /// The row of a link; `place` maps a point of the mesh to its row in the columns, `rest` is a factor on the rest length.
+    /// The row of a link; `place` maps a point of the mesh to its row in the columns, `rest` is a factor on the rest
+    /// length.
     pub fn new(link: &Link, rest: f64, place: impl Fn(u32) -> u32) -> Self {
         Self {
             ends: link.ends.map(place),
@@ -51,8 +52,8 @@ impl<R: Real> LinkRow<R> {
 
 /// The shear rows of a mesh: its cross links. `rest` is the vertex map of rest length factors.
 ///
-/// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a resistance means the same
-/// stiffness here as along the edges.
+/// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a resistance means
+/// the same stiffness here as along the edges.
 pub fn shear_rows<R: Real>(surface: &Surface, rest: &[f64], place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
     let row =
         |link: &Link| LinkRow::new(link, mean(rest, link.ends.map(|end| end as usize).into_iter()), &place);
@@ -69,8 +70,8 @@ impl<R: Real> Row for LinkRow<R> {
         self.ends[k]
     }
 
-    fn idle(stand_in: u32) -> Self {
-        Self { ends: [stand_in; 2], rest_length: R::ZERO, slenderness: R::ONE }
+    fn idle(padding_point: u32) -> Self {
+        Self { ends: [padding_point; 2], rest_length: R::ZERO, slenderness: R::ONE }
     }
 
     fn group(rows: [Self; 4]) -> LinkGroup<R> {
@@ -95,8 +96,8 @@ pub struct LinkStrength<R> {
 }
 
 impl<R: Real> LinkGroup<R> {
-    /// Updates the spans from the anchors. Differences are in double precision, so a cloth far from the origin is as exact as one
-    /// near it.
+    /// Updates the spans from the anchors. Differences are in double precision, so a cloth far from the origin is as
+    /// exact as one near it.
     pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
         for lane in 0..4 {
             let [a, b] = self.ends.map(|end| anchors[end[lane] as usize]);

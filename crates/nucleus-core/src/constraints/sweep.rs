@@ -1,4 +1,8 @@
-//! Sweeps: each list of a round once, blocks side by side, then what crosses them, colour by colour.
+//! Coloured Gauss-Seidel sweeps: every row of a list once, in a fixed order that does not depend on the number of
+//! threads.
+//!
+//! Blocks of points are swept in parallel, each by one task, which sweeps its interior rows in order. Interface rows,
+//! which join several blocks, follow colour by colour: the rows of one colour share no point.
 
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
@@ -11,9 +15,10 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Direction, Effect, Sweep};
 
-/// Does the sweeps of a round. Inner rows of all lists come first, block by block, while the block is in the
-/// core's cache; then cross rows, list by list. Backward, all of that from the last to the first, in cloths that
-/// turn.
+/// Does the sweeps of one pass: writes displacements.
+///
+/// The interior rows of all lists come first, block by block, while the block is in the core's cache; then the
+/// interface rows, list by list. Backward reverses the unmapped order, in cloths that alternate their direction.
 pub fn sweep<R: Real>(
     cloths: &[ClothModel<R>],
     displacement: &mut [Row4<R>],
@@ -27,23 +32,23 @@ pub fn sweep<R: Real>(
         let backward = direction == Direction::Backward && cloth.alternates_direction;
         let sweeper = Sweeper { points, cloth, backward };
         if backward {
-            of_cloth.iter().rev().for_each(|sweep| sweeper.cross(pool, &sweep.effect));
+            of_cloth.iter().rev().for_each(|sweep| sweeper.interface(pool, &sweep.effect));
             pool.parallel_for(cloth.blocks.len(), |block| {
-                of_cloth.iter().rev().for_each(|sweep| sweeper.inner(block, &sweep.effect));
+                of_cloth.iter().rev().for_each(|sweep| sweeper.interior(block, &sweep.effect));
             });
         } else {
             pool.parallel_for(cloth.blocks.len(), |block| {
-                of_cloth.iter().for_each(|sweep| sweeper.inner(block, &sweep.effect));
+                of_cloth.iter().for_each(|sweep| sweeper.interior(block, &sweep.effect));
             });
-            of_cloth.iter().for_each(|sweep| sweeper.cross(pool, &sweep.effect));
+            of_cloth.iter().for_each(|sweep| sweeper.interface(pool, &sweep.effect));
         }
     }
 }
 
 /// Sweeps the lists of one cloth in one direction.
 ///
-/// Safety of all its passes: inner rows of two blocks, and cross rows of one colour, share no point; the lists are
-/// laid out so, and tests hold them to it.
+/// Safety of all its loops: interior rows of two blocks, and interface rows of one colour, share no point. [`RowList`]
+/// lays rows out so, and its tests check it.
 struct Sweeper<'a, R: Real> {
     points: DisjointSlice<'a, Row4<R>>,
     cloth: &'a ClothModel<R>,
@@ -51,57 +56,57 @@ struct Sweeper<'a, R: Real> {
 }
 
 impl<R: Real> Sweeper<'_, R> {
-    fn inner(&self, block: usize, effect: &Effect<R>) {
-        let (cloth, part) = (self.cloth, RowBatch::Interior(block));
+    fn interior(&self, block: usize, effect: &Effect<R>) {
+        let (cloth, batch) = (self.cloth, RowBatch::Interior(block));
         match effect {
             Effect::Stretch(strength) => {
-                self.links(&cloth.stretch, &cloth.strength_maps.stretch, part, strength)
+                self.links(&cloth.stretch, &cloth.strength_maps.stretch, batch, strength)
             }
-            Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), part, strength),
+            Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), batch, strength),
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
-                self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, part, strength);
-                self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, part, strength);
+                self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, batch, strength);
+                self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, batch, strength);
             }
         }
     }
 
-    fn cross(&self, pool: &ThreadPool, effect: &Effect<R>) {
+    fn interface(&self, pool: &ThreadPool, effect: &Effect<R>) {
         let (cloth, backward) = (self.cloth, self.backward);
         match effect {
-            Effect::Stretch(strength) => for_interface_rows(pool, &cloth.stretch, backward, |part| {
-                self.links(&cloth.stretch, &cloth.strength_maps.stretch, part, strength);
+            Effect::Stretch(strength) => for_interface_rows(pool, &cloth.stretch, backward, |batch| {
+                self.links(&cloth.stretch, &cloth.strength_maps.stretch, batch, strength);
             }),
-            Effect::Shear(strength) => for_interface_rows(pool, &cloth.shear, backward, |part| {
-                self.links(&cloth.shear, &RowList::default(), part, strength);
+            Effect::Shear(strength) => for_interface_rows(pool, &cloth.shear, backward, |batch| {
+                self.links(&cloth.shear, &RowList::default(), batch, strength);
             }),
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
-                for_interface_rows(pool, &cloth.bend, backward, |part| {
-                    self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, part, strength);
+                for_interface_rows(pool, &cloth.bend, backward, |batch| {
+                    self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, batch, strength);
                 });
-                for_interface_rows(pool, &cloth.bend_six, backward, |part| {
-                    self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, part, strength);
+                for_interface_rows(pool, &cloth.bend_six, backward, |batch| {
+                    self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, batch, strength);
                 });
             }
         }
     }
 
-    /// Where there are maps they lie as the rows do.
+    /// A strength map has the layout of the rows it scales.
     #[allow(unsafe_code)]
     fn links(
         &self,
         rows: &RowList<LinkGroup<R>>,
         maps: &RowList<StrengthGroup<R>>,
-        part: RowBatch,
+        batch: RowBatch,
         strength: &LinkStrength<R>,
     ) {
-        let (rows, maps) = (rows.part(part).iter(), maps.part(part).iter());
-        // SAFETY: see above.
+        let (rows, maps) = (rows.batch(batch).iter(), maps.batch(batch).iter());
+        // SAFETY: see `Sweeper`.
         unsafe {
             match (self.backward, maps.len() > 0) {
-                (false, false) => stretch::relax(self.points, rows.map(whole), strength),
-                (true, false) => stretch::relax(self.points, rows.rev().map(whole), strength),
+                (false, false) => stretch::relax(self.points, rows.map(unmapped), strength),
+                (true, false) => stretch::relax(self.points, rows.rev().map(unmapped), strength),
                 (false, true) => stretch::relax(self.points, rows.zip(maps), strength),
                 (true, true) => stretch::relax(self.points, rows.zip(maps).rev(), strength),
             }
@@ -113,13 +118,13 @@ impl<R: Real> Sweeper<'_, R> {
         &self,
         (rows, angles): (&RowList<HingeGroup<R, N>>, &RowList<AngleGroup<R>>),
         maps: &RowList<StrengthGroup<R>>,
-        part: RowBatch,
+        batch: RowBatch,
         (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
-        let (rows, maps) = (rows.part(part).iter(), maps.part(part).iter());
-        if !angles.part(part).is_empty() {
-            let rows = rows.zip(angles.part(part));
-            // SAFETY: see above.
+        let (rows, maps) = (rows.batch(batch).iter(), maps.batch(batch).iter());
+        if !angles.batch(batch).is_empty() {
+            let rows = rows.zip(angles.batch(batch));
+            // SAFETY: see `Sweeper`.
             unsafe {
                 match (self.backward, maps.len() > 0) {
                     (false, false) => angle::relax(self.points, rows.map(uniform), strength, reading),
@@ -130,11 +135,11 @@ impl<R: Real> Sweeper<'_, R> {
             }
             return;
         }
-        // SAFETY: see above.
+        // SAFETY: see `Sweeper`.
         unsafe {
             match (self.backward, maps.len() > 0) {
-                (false, false) => bend::relax(self.points, rows.map(whole), strength),
-                (true, false) => bend::relax(self.points, rows.rev().map(whole), strength),
+                (false, false) => bend::relax(self.points, rows.map(unmapped), strength),
+                (true, false) => bend::relax(self.points, rows.rev().map(unmapped), strength),
                 (false, true) => bend::relax(self.points, rows.zip(maps), strength),
                 (true, true) => bend::relax(self.points, rows.zip(maps).rev(), strength),
             }
@@ -142,8 +147,8 @@ impl<R: Real> Sweeper<'_, R> {
     }
 }
 
-/// A group that gets all of a sweep's strength.
-fn whole<G>(group: &G) -> (&G, Uniform) {
+/// A group without a strength map.
+fn unmapped<G>(group: &G) -> (&G, Uniform) {
     (group, Uniform)
 }
 
@@ -152,7 +157,7 @@ fn uniform<G>(group: G) -> (G, Uniform) {
     (group, Uniform)
 }
 
-/// Does `work` on all parts of a list once: inner rows, then cross rows.
+/// Does `work` on all batches of a list once: interior rows, then interface rows.
 pub fn for_all_rows<G: Sync>(
     pool: &ThreadPool,
     blocks: &Blocks,
@@ -163,7 +168,7 @@ pub fn for_all_rows<G: Sync>(
     for_interface_rows(pool, list, false, work);
 }
 
-/// Does `work` on the cross rows of a list, colour by colour.
+/// Does `work` on the interface rows of a list, colour by colour.
 fn for_interface_rows<G: Sync>(
     pool: &ThreadPool,
     list: &RowList<G>,

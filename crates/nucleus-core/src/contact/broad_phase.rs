@@ -15,7 +15,7 @@ use crate::input::frame::{ColliderFrame, FrameInput};
 use crate::math::{Real, dot, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::{Schedule, StepInterval};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Model, Solver};
 
 /// Shares of the thickness by which a point may stray from what is foreseen, in a window and in a substep.
 const STRAY_NEAR: f64 = 0.05;
@@ -37,19 +37,24 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         let step = [times.from, times.to];
-        if step[1] <= self.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth, step[1]) {
+        if step[1] <= self.contact.windows[cloth][1] + 1e-9 && !self.has_strayed(cloth, step[1]) {
             return;
         }
-        if step[1] > self.spans[cloth][1] + 1e-9 {
+        if step[1] > self.contact.spans[cloth][1] + 1e-9 {
             self.begin_span(frame, cloth, times);
         }
-        let rest = [step[0], self.spans[cloth][1].min(self.horizon(frame, cloth, times))];
+        let rest = [step[0], self.contact.spans[cloth][1].min(self.horizon(frame, cloth, times))];
         let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW)];
         if self.foresee_points(frame, cloth, schedule, step, [window, rest]) {
             self.find_pairs(cloth, schedule, step[0], tally);
         }
-        self.windows[cloth] = window;
-        let Self { cloths, colliders, pairs, near, drifts, terms, pool, .. } = self;
+        self.contact.windows[cloth] = window;
+        let Self {
+            pool,
+            model: Model { cloths, colliders, .. },
+            contact: ContactSystem { pairs, near, drifts, terms, .. },
+            ..
+        } = self;
         let foreseen = Foreseen { cover: near, drift: drifts[cloth] };
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             if let Some(terms) = &terms[cloth * colliders.len() + list.collider] {
@@ -63,22 +68,27 @@ impl<R: Real> Solver<R> {
     /// around colliders at rest a pair holds for as long as its points stay where they are foreseen.
     fn begin_span(&mut self, frame: &FrameInput, cloth: usize, times: StepInterval) {
         let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
-        let mut colliders = self.collider_states.iter().zip(&frame.colliders).filter(touching);
+        let mut colliders = self.contact.collider_states.iter().zip(&frame.colliders).filter(touching);
         if colliders.any(|(collider, _)| collider.moves) {
-            self.spans[cloth] = [times.from, self.horizon(frame, cloth, times)];
-            self.drifts[cloth] = self.drift(cloth).map(R::from_f64);
-            let points = self.cloths[cloth].points();
-            self.strayed[points.start as usize..points.end as usize].fill(true);
+            self.contact.spans[cloth] = [times.from, self.horizon(frame, cloth, times)];
+            self.contact.drifts[cloth] = self.drift(cloth).map(R::from_f64);
+            let points = self.model.cloths[cloth].points();
+            self.contact.strayed[points.start as usize..points.end as usize].fill(true);
         } else {
-            self.spans[cloth] = [0.0, 1.0];
-            self.drifts[cloth] = [R::ZERO; 3];
+            self.contact.spans[cloth] = [0.0, 1.0];
+            self.contact.drifts[cloth] = [R::ZERO; 3];
         }
     }
 
     /// The drift of the max_speed collider that a cloth meets, in metres in a frame: what it takes along stays where it is
     /// for one who goes with it, and whom that one sees moving has room on its way.
     fn drift(&self, cloth: usize) -> [f64; 3] {
-        let met = self.collider_states.iter().zip(self.terms_of(cloth)).filter(|(_, terms)| terms.is_some());
+        let met = self
+            .contact
+            .collider_states
+            .iter()
+            .zip(self.terms_of(cloth))
+            .filter(|(_, terms)| terms.is_some());
         let max_speed = met
             .map(|(collider, _)| collider.drift)
             .reduce(|most, drift| if drift.norm_squared() > most.norm_squared() { drift } else { most });
@@ -89,12 +99,13 @@ impl<R: Real> Solver<R> {
     /// edges. Boxes over a longer way would meet everything on it.
     fn horizon(&self, frame: &FrameInput, cloth: usize, times: StepInterval) -> f64 {
         let (step, end_of_substep) = ([times.from, times.to], times.end_of_substep);
-        let model = &self.cloths[cloth];
+        let model = &self.model.cloths[cloth];
         let points = model.points();
         let rows = &self.state.velocity[points.start as usize..points.end as usize];
         let squares = rows.iter().map(|row| dot(row.xyz(), row.xyz()).to_f64());
         let max_speed = squares.fold(0.0, f64::max).sqrt() * frame.duration;
-        let ways = self.collider_states.iter().zip(&frame.colliders).filter(|(_, theirs)| theirs.collide);
+        let ways =
+            self.contact.collider_states.iter().zip(&frame.colliders).filter(|(_, theirs)| theirs.collide);
         let farthest = ways.map(|(collider, _)| collider.way).fold(max_speed, f64::max);
         let length = step[1] - step[0];
         let steps = (MAX_COORDINATE * model.edge_length / (farthest * length)).floor().max(1.0);
@@ -109,18 +120,10 @@ impl<R: Real> Solver<R> {
     /// Finds the pairs of a cloth with every collider, for all points of which something new is foreseen.
     fn find_pairs(&mut self, cloth: usize, schedule: &Schedule<R>, now: f64, tally: &mut Tally) {
         let Self {
-            cloths,
-            colliders,
             state,
-            collider_states,
-            pairs,
-            far,
-            spans,
-            drifts,
-            strayed,
-            terms,
-            maps,
             pool,
+            model: Model { cloths, colliders, .. },
+            contact: ContactSystem { collider_states, pairs, far, spans, drifts, strayed, terms, maps, .. },
             ..
         } = self;
         let span = spans[cloth];
@@ -166,7 +169,13 @@ impl<R: Real> Solver<R> {
         step: [f64; 2],
         [window, rest]: [[f64; 2]; 2],
     ) -> bool {
-        let Self { cloths, state, near, far, drifts, strayed, pool, .. } = self;
+        let Self {
+            state,
+            pool,
+            model: Model { cloths, .. },
+            contact: ContactSystem { near, far, drifts, strayed, .. },
+            ..
+        } = self;
         let [gone_before, gone_now] = step.map(|time| gone(drifts[cloth], time));
         let thickness = frame.cloths[cloth].thickness.max(LEAST_THICKNESS);
         let most = R::from_f64(cloths[cloth].edge_length);
@@ -202,12 +211,12 @@ impl<R: Real> Solver<R> {
 
     /// Whether a point of the cloth is not where it was foreseen to be at a time of the frame.
     fn has_strayed(&self, cloth: usize, now: f64) -> bool {
-        let gone = gone(self.drifts[cloth], now);
+        let gone = gone(self.contact.drifts[cloth], now);
         let foreseen = |row: u32| {
-            is_foreseen(&self.near[row as usize], self.state.displacement[row as usize].xyz(), gone)
+            is_foreseen(&self.contact.near[row as usize], self.state.displacement[row as usize].xyz(), gone)
         };
         let strayed = AtomicBool::new(false);
-        let blocks = &self.cloths[cloth].blocks;
+        let blocks = &self.model.cloths[cloth].blocks;
         self.pool.parallel_for(blocks.len(), |block| {
             if !blocks.range(block).all(foreseen) {
                 strayed.store(true, Ordering::Relaxed);
@@ -219,22 +228,26 @@ impl<R: Real> Solver<R> {
     /// Takes pairs over into a new frame, before anchors move; they are found anew if a collider moved or will
     /// move, or if what touches has changed.
     pub(crate) fn take_over_pairs(&mut self, frame: &FrameInput) {
-        self.windows.fill([0.0, 0.0]);
-        self.spans.fill([0.0, 0.0]);
+        self.contact.windows.fill([0.0, 0.0]);
+        self.contact.spans.fill([0.0, 0.0]);
         let is_same = self.take_up_terms(frame);
         let moves =
             frame.colliders.iter().any(|collider| !collider.start.is_empty() || !collider.end.is_empty());
-        let moved = self.collider_states.iter().any(|collider| collider.moves);
+        let moved = self.contact.collider_states.iter().any(|collider| collider.moves);
         if !is_same || moves || moved {
-            self.strayed.fill(true);
-            for cloth in 0..self.cloths.len() {
+            self.contact.strayed.fill(true);
+            for cloth in 0..self.model.cloths.len() {
                 if !self.can_touch(cloth) {
-                    self.pairs.iter_mut().filter(|list| list.cloth == cloth).for_each(PairList::clear);
+                    self.contact
+                        .pairs
+                        .iter_mut()
+                        .filter(|list| list.cloth == cloth)
+                        .for_each(PairList::clear);
                 }
             }
             return;
         }
-        let Self { pairs, state, far, strayed, .. } = self;
+        let Self { state, contact: ContactSystem { pairs, far, strayed, .. }, .. } = self;
         // They are looked at in every frame.
         for &(point, _) in pairs.iter().flat_map(|list| &list.trapped.points) {
             strayed[point as usize] = true;
@@ -250,7 +263,7 @@ impl<R: Real> Solver<R> {
 
     /// Sets how every cloth meets colliders and the ground; whether pairs are found as before.
     fn take_up_terms(&mut self, frame: &FrameInput) -> bool {
-        let settings = || frame.cloths.iter().zip(&self.maps.thickest);
+        let settings = || frame.cloths.iter().zip(&self.contact.maps.thickest);
         let with_ground = |(cloth, &thickest)| {
             frame.plane.as_ref().and_then(|ground| Terms::with_ground(cloth, ground, thickest))
         };
@@ -259,9 +272,9 @@ impl<R: Real> Solver<R> {
                 frame.colliders.iter().map(move |collider| Terms::with_collider(cloth, collider, thickest))
             })
             .collect();
-        self.ground_terms = settings().map(with_ground).collect();
-        let is_same = Terms::find_alike(&terms, &self.terms);
-        self.terms = terms;
+        self.contact.ground_terms = settings().map(with_ground).collect();
+        let is_same = Terms::find_alike(&terms, &self.contact.terms);
+        self.contact.terms = terms;
         is_same
     }
 }

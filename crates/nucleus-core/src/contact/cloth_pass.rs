@@ -19,7 +19,7 @@ use crate::math::{Real, Row4, scale, sub};
 use crate::output::{Stage, StepObserver};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::{Schedule, StepInterval};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Model, Solver};
 use crate::state::State;
 
 /// Length of a span in seconds, and the least in time steps: for longer ones more is found, shorter ones are searched more
@@ -39,12 +39,15 @@ const ENDLESS: f64 = 1e9;
 impl<R: Real> Solver<R> {
     /// Sets who meets whom in this frame, and carries what is foreseen over to it. Before anchors move.
     pub(crate) fn begin_contact(&mut self, frame: &FrameInput) {
-        let Some(mutual) = &mut self.mutual else { return };
-        let (cloths, thickest) = (&frame.cloths, &self.maps.thickest);
+        let Some(mutual) = &mut self.contact.mutual else { return };
+        let (cloths, thickest) = (&frame.cloths, &self.contact.maps.thickest);
         let terms: Vec<Option<Terms<R>>> =
             (0..cloths.len()).flat_map(|cloth| terms_of(cloth, frame, thickest)).collect();
         let holds = |terms: &[Option<Terms<R>>]| -> Vec<bool> {
-            terms.iter().map(|terms| terms.as_ref().is_some_and(|terms| !terms.is_weak(&self.maps))).collect()
+            terms
+                .iter()
+                .map(|terms| terms.as_ref().is_some_and(|terms| !terms.is_weak(&self.contact.maps)))
+                .collect()
         };
         if holds(&terms) != holds(&mutual.terms) {
             mutual.tangle.is_suspected = true; // what was let pass may be amid it
@@ -67,14 +70,14 @@ impl<R: Real> Solver<R> {
 
     /// Forgets what is foreseen for a point that was put somewhere else, among cloths and colliders.
     pub(crate) fn invalidate_bounds(&mut self, row: usize) {
-        let Self { mutual, strayed, .. } = self;
+        let Self { contact: ContactSystem { mutual, strayed, .. }, .. } = self;
         let among_cloths = mutual.as_mut().and_then(|mutual| mutual.strayed.get_mut(row));
         strayed.get_mut(row).into_iter().chain(among_cloths).for_each(|strayed| *strayed = true);
     }
 
     /// How a cloth meets itself and every other cloth that it meets.
     pub(crate) fn mutual_terms(&self, frame: &FrameInput, cloth: usize) -> Vec<Terms<R>> {
-        terms_of(cloth, frame, &self.maps.thickest).flatten().collect()
+        terms_of(cloth, frame, &self.contact.maps.thickest).flatten().collect()
     }
 
     /// Pushes apart all that is too near, once; `squeeze` is the share of every thickness that is kept.
@@ -87,13 +90,15 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
-        if !self.mutual.as_ref().is_some_and(Mutual::is_on) {
+        if !self.contact.mutual.as_ref().is_some_and(Mutual::is_on) {
             return;
         }
         watch.enter(Stage::BroadPhase);
         self.watch_contacts(frame, span, tally);
         watch.enter(Stage::Contact);
-        let Self { mutual: Some(mutual), state, maps, pool, .. } = self else { return };
+        let Self { state, pool, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+            return;
+        };
         let Mutual { bodies, terms, active, began_at, tangle, .. } = mutual;
         if tangle.is_there() {
             let most = bodies.edge_length * SPEED * schedule.h;
@@ -116,9 +121,12 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         let sticks = |mutual: &Mutual<R>| mutual.terms.iter().flatten().any(Terms::sticks);
-        if self.mutual.as_ref().is_some_and(sticks) {
+        if self.contact.mutual.as_ref().is_some_and(sticks) {
             self.watch_contacts(frame, span, tally);
-            let Self { mutual: Some(mutual), state, maps, pool, .. } = self else { return };
+            let Self { state, pool, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self
+            else {
+                return;
+            };
             mutual.active.stick(&motion(state, &mutual.terms, maps, schedule.h), pool);
         }
     }
@@ -126,7 +134,7 @@ impl<R: Real> Solver<R> {
     /// Makes sure that the contacts are all that can touch in this step. As long as every point stays where
     /// it was foreseen to, nothing needs to be done.
     pub(crate) fn watch_contacts(&mut self, frame: &FrameInput, now: StepInterval, tally: &mut Tally) {
-        let Some(mutual) = &mut self.mutual else { return };
+        let Some(mutual) = &mut self.contact.mutual else { return };
         let is_late = now.to <= mutual.span[1] + 1e-9;
         let since = mutual.span[0];
         if is_late {
@@ -144,7 +152,16 @@ impl<R: Real> Solver<R> {
             }
         }
         self.foresee(frame, now, since, is_late);
-        let Self { mutual: Some(mutual), cloths, state, maps, pool, .. } = self else { return };
+        let Self {
+            state,
+            pool,
+            model: Model { cloths, .. },
+            contact: ContactSystem { mutual: Some(mutual), maps, .. },
+            ..
+        } = self
+        else {
+            return;
+        };
         let begun = (now.from - mutual.span[0]) / (mutual.span[1] - mutual.span[0]);
         let moved = [&state.start[..], &state.displacement[..]];
         search(
@@ -160,7 +177,16 @@ impl<R: Real> Solver<R> {
     /// Marks the points that are not where they were foreseen to be at the end of the step. Whether there
     /// are any.
     fn find_strays(&mut self, now: StepInterval) -> bool {
-        let Self { mutual: Some(mutual), cloths, state, pool, .. } = self else { return false };
+        let Self {
+            state,
+            pool,
+            model: Model { cloths, .. },
+            contact: ContactSystem { mutual: Some(mutual), .. },
+            ..
+        } = self
+        else {
+            return false;
+        };
         let Mutual { span: [from, to], strayed, paths, .. } = mutual;
         let share = R::from_f64((now.to - *from) / (*to - *from));
         let any = AtomicBool::new(false);
@@ -186,7 +212,16 @@ impl<R: Real> Solver<R> {
     /// Writes what is foreseen for the points that strayed from what was foreseen before. As a span begins, those that stay
     /// where they are foreseen to be as the last one ends are foreseen to stay there. `since` is when the last one began.
     fn foresee(&mut self, frame: &FrameInput, now: StepInterval, since: f64, is_late: bool) {
-        let Self { mutual: Some(mutual), cloths, state, pool, .. } = self else { return };
+        let Self {
+            state,
+            pool,
+            model: Model { cloths, .. },
+            contact: ContactSystem { mutual: Some(mutual), .. },
+            ..
+        } = self
+        else {
+            return;
+        };
         let Mutual { paths, began_at, span, strayed, active, .. } = mutual;
         let of_last = R::from_f64((now.to - now.from) / (now.from - since).max(now.to - now.from));
         let (paths, strayed) = (paths.shared(), DisjointSlice::new(strayed));

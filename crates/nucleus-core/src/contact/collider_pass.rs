@@ -15,7 +15,7 @@ use crate::math::Real;
 use crate::output::{Stage, StepObserver};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Schedule, StepInterval};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Model, Solver};
 use crate::state::State;
 
 impl<R: Real> Solver<R> {
@@ -32,7 +32,7 @@ impl<R: Real> Solver<R> {
     ) {
         watch.enter(Stage::BroadPhase);
         self.lift_from_ground(squeeze, schedule, span, tally);
-        for cloth in 0..self.cloths.len() {
+        for cloth in 0..self.model.cloths.len() {
             if !self.can_touch(cloth) {
                 continue;
             }
@@ -54,10 +54,10 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         tally: &mut Tally,
     ) {
-        if frame.plane.is_some() && self.ground_terms.iter().flatten().any(Terms::sticks) {
+        if frame.plane.is_some() && self.contact.ground_terms.iter().flatten().any(Terms::sticks) {
             self.on_ground(1.0, schedule, span, |ground, points| ground.adhere(points));
         }
-        for cloth in 0..self.cloths.len() {
+        for cloth in 0..self.model.cloths.len() {
             if self.terms_of(cloth).iter().flatten().any(Terms::sticks) {
                 self.watch_pairs(frame, cloth, schedule, span, tally);
                 self.work_on(cloth, schedule, span, |list, step, _, pool| {
@@ -94,12 +94,12 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         let mut held =
-            self.mutual.as_mut().map(|mutual| std::mem::take(&mut mutual.held)).unwrap_or_default();
+            self.contact.mutual.as_mut().map(|mutual| std::mem::take(&mut mutual.held)).unwrap_or_default();
         let mut hold = |point: u32| held.get_mut(point as usize).into_iter().for_each(|held| *held = true);
         self.for_lists(frame, schedule, span, tally, |list, step, _, tally| {
             hold_back(list, step, tally, &mut hold)
         });
-        if let Some(mutual) = &mut self.mutual {
+        if let Some(mutual) = &mut self.contact.mutual {
             mutual.held = held;
         }
     }
@@ -116,9 +116,9 @@ impl<R: Real> Solver<R> {
         let mut tell = |point: u32| released.push(point);
         self.for_lists(frame, schedule, span, tally, |list, step, _, _| release(list, step, &mut tell));
         for point in released {
-            self.strayed[point as usize] = true;
+            self.contact.strayed[point as usize] = true;
         }
-        self.windows.fill([0.0, 0.0]);
+        self.contact.windows.fill([0.0, 0.0]);
     }
 
     /// Does something with all that can touch, of each cloth and collider.
@@ -130,7 +130,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
         mut work: impl FnMut(&mut PairList<R>, &Step<'_, R>, &ThreadPool, &Tally),
     ) {
-        for cloth in 0..self.cloths.len() {
+        for cloth in 0..self.model.cloths.len() {
             if self.can_touch(cloth) {
                 self.watch_pairs(frame, cloth, schedule, span, tally);
                 self.work_on(cloth, schedule, span, |list, step, _, pool| work(list, &step, pool, tally));
@@ -146,7 +146,13 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         mut work: impl FnMut(&mut PairList<R>, Step<'_, R>, &[crate::model::ColliderModel], &ThreadPool),
     ) {
-        let Self { colliders, state, collider_states, pairs, terms, maps, pool, .. } = self;
+        let Self {
+            state,
+            pool,
+            model: Model { colliders, .. },
+            contact: ContactSystem { collider_states, pairs, terms, maps, .. },
+            ..
+        } = self;
         for list in pairs.iter_mut().filter(|list| list.cloth == cloth) {
             let Some(terms) = terms[cloth * colliders.len() + list.collider] else { continue };
             let view = StepParts { terms, maps, h: schedule.h, time: [span.from, span.to], span: list.span };
@@ -157,8 +163,8 @@ impl<R: Real> Solver<R> {
 
     /// How a cloth meets each collider in this frame.
     pub(crate) fn terms_of(&self, cloth: usize) -> &[Option<Terms<R>>] {
-        let colliders = self.colliders.len();
-        self.terms.get(cloth * colliders..(cloth + 1) * colliders).unwrap_or_default()
+        let colliders = self.model.colliders.len();
+        self.contact.terms.get(cloth * colliders..(cloth + 1) * colliders).unwrap_or_default()
     }
 
     /// Whether a cloth meets any collider in this frame.
@@ -180,7 +186,13 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         work: impl Fn(&GroundContact<'_, R>, std::ops::Range<u32>) + Sync,
     ) {
-        let Self { cloths, state, ground, ground_terms, maps, pool, .. } = self;
+        let Self {
+            state,
+            pool,
+            model: Model { cloths, .. },
+            contact: ContactSystem { ground, ground_terms, maps, .. },
+            ..
+        } = self;
         let Some(plane) = ground.in_step(span) else { return };
         let State { displacement, predicted, led, parted, start, .. } = state;
         let mover = Mover::new([displacement, led, parted], predicted);

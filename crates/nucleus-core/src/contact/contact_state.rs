@@ -45,13 +45,13 @@ impl Ladder {
 impl<R: Real> Solver<R> {
     /// Replaces `out` by how contact stands at each point of every cloth, in the user's order.
     pub(crate) fn list_contact_states(&self, out: &mut Vec<Vec<ContactState>>) {
-        out.resize_with(self.cloths.len(), Vec::new);
+        out.resize_with(self.model.cloths.len(), Vec::new);
         out.iter_mut().for_each(Vec::clear);
         if !self.can_meet() {
             return;
         }
         let contact_states = self.contact_states();
-        for (model, out) in self.cloths.iter().zip(out) {
+        for (model, out) in self.model.cloths.iter().zip(out) {
             let first = model.points().start;
             out.extend(model.order.places().iter().map(|&place| contact_states[(first + place) as usize]));
         }
@@ -59,24 +59,24 @@ impl<R: Real> Solver<R> {
 
     /// Whether anything of this scene can touch anything.
     fn can_meet(&self) -> bool {
-        self.ground.is_there() || !self.pairs.is_empty() || self.mutual.is_some()
+        self.contact.ground.is_there() || !self.contact.pairs.is_empty() || self.contact.mutual.is_some()
     }
 
     /// How contact stands at each place of the solver.
     fn contact_states(&self) -> Vec<ContactState> {
         let mut ladder = Ladder(vec![ContactState::Free; self.state.anchor.len()]);
         self.on_the_ground(&mut ladder);
-        self.pairs.iter().for_each(|list| self.at_collider(list, &mut ladder));
+        self.contact.pairs.iter().for_each(|list| self.at_collider(list, &mut ladder));
         self.among_cloths(&mut ladder);
         ladder.0
     }
 
     fn on_the_ground(&self, ladder: &mut Ladder) {
-        let grounded = self.cloths.iter().zip(&self.ground_terms);
+        let grounded = self.model.cloths.iter().zip(&self.contact.ground_terms);
         for (cloth, terms) in grounded.filter_map(|(cloth, terms)| Some((cloth, terms.as_ref()?))) {
             for row in cloth.points() {
                 let thickness = self.kept(terms, [row], [R::ONE]);
-                if let Some(height) = self.ground.height_at_end(self.state.position(row)) {
+                if let Some(height) = self.contact.ground.height_at_end(self.state.position(row)) {
                     ladder.near(row, height / thickness);
                 }
             }
@@ -101,7 +101,7 @@ impl<R: Real> Solver<R> {
         terms: &Terms<R>,
         ladder: &mut Ladder,
     ) {
-        let state = &self.collider_states[collider];
+        let state = &self.contact.collider_states[collider];
         let ours = pair.points.map(|point| self.state.position(point));
         let theirs = pair.collider_points.map(|point| state.point(point, state.now).into());
         let (_, (shares, _), distance) = shortest::<f64, N, M>((ours, theirs));
@@ -112,11 +112,11 @@ impl<R: Real> Solver<R> {
     /// The thickness that is kept where a cloth's element touches something that is no cloth, in metres.
     fn kept<const N: usize>(&self, terms: &Terms<R>, points: [u32; N], shares: [R; N]) -> f64 {
         let most = R::from_f64(terms.thickness);
-        terms.thickness_at(&self.maps, (points, [], &(shares, [])), most).to_f64()
+        terms.thickness_at(&self.contact.maps, (points, [], &(shares, [])), most).to_f64()
     }
 
     fn among_cloths(&self, ladder: &mut Ladder) {
-        let Some(mutual) = self.mutual.as_ref().filter(|mutual| mutual.is_on()) else { return };
+        let Some(mutual) = self.contact.mutual.as_ref().filter(|mutual| mutual.is_on()) else { return };
         let active = &mutual.active;
         let terms = &mutual.terms[..];
         active.point_face.iter().for_each(|near| self.meets(near, terms, ladder));
@@ -138,7 +138,7 @@ impl<R: Real> Solver<R> {
         let place = |point: u32| self.state.position(point);
         let (_, (ours, theirs), distance) = shortest((near.ours.map(place), near.theirs.map(place)));
         let weights = (ours.map(R::from_f64), theirs.map(R::from_f64));
-        let closeness = distance / near.thickness_at(terms, &self.maps, &weights).to_f64();
+        let closeness = distance / near.thickness_at(terms, &self.contact.maps, &weights).to_f64();
         ladder.near_all(near.ours, ours, closeness);
         ladder.near_all(near.theirs, theirs, closeness);
     }

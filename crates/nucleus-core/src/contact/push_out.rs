@@ -32,18 +32,18 @@ impl<R: Real> Solver<R> {
     /// Pushes points out of everything that does so, at the start of a substep that begins at a share of the frame.
     pub(crate) fn push_out(&mut self, frame: &FrameInput, time: f64) {
         let pushes = |push_out: &PushOut| push_out.share != 0.0 && push_out.radius > 0.0;
-        for at in (0..self.colliders.len()).filter(|&at| pushes(&frame.colliders[at].push_out)) {
-            let state = &self.collider_states[at];
-            let faces = self.colliders[at].skin.triangles.iter();
+        for at in (0..self.model.colliders.len()).filter(|&at| pushes(&frame.colliders[at].push_out)) {
+            let state = &self.contact.collider_states[at];
+            let faces = self.model.colliders[at].skin.triangles.iter();
             let triangles = faces.map(|face| face.map(|point| state.point(point, time))).collect();
             let pusher = Pusher::new(triangles, frame.colliders[at].push_out, frame.colliders[at].thickness);
-            (0..self.cloths.len()).for_each(|cloth| self.push_out_of(&pusher, frame, cloth));
+            (0..self.model.cloths.len()).for_each(|cloth| self.push_out_of(&pusher, frame, cloth));
         }
-        for at in (0..self.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
+        for at in (0..self.model.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
             let place = |row: u32| Point::from(self.state.position(row));
-            let triangles = self.cloths[at].skin.triangles.iter().map(|face| face.map(place)).collect();
+            let triangles = self.model.cloths[at].skin.triangles.iter().map(|face| face.map(place)).collect();
             let pusher = Pusher::new(triangles, frame.cloths[at].push_out, frame.cloths[at].thickness);
-            let others = (0..self.cloths.len()).filter(|&cloth| cloth != at);
+            let others = (0..self.model.cloths.len()).filter(|&cloth| cloth != at);
             others.for_each(|cloth| self.push_out_of(&pusher, frame, cloth));
         }
     }
@@ -52,7 +52,7 @@ impl<R: Real> Solver<R> {
     fn push_out_of(&mut self, pusher: &Pusher, frame: &FrameInput, cloth: usize) {
         let thickness = pusher.thickness + frame.cloths[cloth].thickness;
         let mut is_moved = false;
-        for row in self.cloths[cloth].points() {
+        for row in self.model.cloths[cloth].points() {
             let mut moved = self.state.displacement[row as usize];
             let way = pusher.way(Point::from(self.state.position(row)), thickness);
             let Some(way) = way.filter(|_| moved.0[3] > R::ZERO) else { continue };
@@ -62,8 +62,8 @@ impl<R: Real> Solver<R> {
             self.invalidate_bounds(row as usize);
         }
         if is_moved {
-            self.windows.fill([0.0; 2]);
-            if let Some(mutual) = &mut self.mutual {
+            self.contact.windows.fill([0.0; 2]);
+            if let Some(mutual) = &mut self.contact.mutual {
                 mutual.span = [0.0; 2];
                 mutual.tangle.is_suspected = true;
             }

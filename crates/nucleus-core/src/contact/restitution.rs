@@ -8,7 +8,7 @@ use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::{Schedule, StepInterval};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Solver};
 
 impl<R: Real> Solver<R> {
     /// Gives back, after the step, part of the speed to what hit something that bounces.
@@ -17,20 +17,22 @@ impl<R: Real> Solver<R> {
         let slowest = R::from_f64(2.0 * frame.gravity.norm() * schedule.h);
         let rebound = Bounce { bounce: R::ZERO, slowest, h: R::from_f64(schedule.h) };
         self.bounce_off_ground(rebound, span);
-        for cloth in 0..self.cloths.len() {
+        for cloth in 0..self.model.cloths.len() {
             self.bounce_off_colliders(frame, rebound, span.to, cloth);
         }
         self.bounce_off_cloth(schedule, rebound);
     }
 
     fn bounce_off_ground(&mut self, rebound: Bounce<R>, span: StepInterval) {
-        for cloth in 0..self.cloths.len() {
-            let Some(terms) = self.ground_terms[cloth].filter(|terms| terms.bounces()) else { continue };
-            for row in self.cloths[cloth].points() {
+        for cloth in 0..self.model.cloths.len() {
+            let Some(terms) = self.contact.ground_terms[cloth].filter(|terms| terms.bounces()) else {
+                continue;
+            };
+            for row in self.model.cloths[cloth].points() {
                 let (sides, hit) = (([row], [], &([R::ONE], [])), self.hit(row as usize));
-                let thickness = terms.thickness_at(&self.maps, sides, R::from_f64(terms.thickness));
-                let rebound = Bounce { bounce: terms.bounce_at(&self.maps, sides), ..rebound };
-                let Some(plane) = self.ground.in_step(span) else { return };
+                let thickness = terms.thickness_at(&self.contact.maps, sides, R::from_f64(terms.thickness));
+                let rebound = Bounce { bounce: terms.bounce_at(&self.contact.maps, sides), ..rebound };
+                let Some(plane) = self.contact.ground.in_step(span) else { return };
                 let height = plane.height_now(row, hit.displacement);
                 if rebound.bounce > R::ZERO && Bounce::touches(height, thickness) {
                     let surface = plane.velocity(row, hit.displacement, rebound.h);
@@ -42,15 +44,15 @@ impl<R: Real> Solver<R> {
     }
 
     fn bounce_off_colliders(&mut self, frame: &FrameInput, rebound: Bounce<R>, end: f64, cloth: usize) {
-        for index in 0..self.pairs.len() {
-            let collider = self.pairs[index].collider;
-            if self.pairs[index].cloth != cloth {
+        for index in 0..self.contact.pairs.len() {
+            let collider = self.contact.pairs[index].collider;
+            if self.contact.pairs[index].cloth != cloth {
                 continue;
             }
             let terms = self.terms_of(cloth)[collider].filter(|terms| terms.bounces());
             let Some(terms) = terms else { continue };
-            for active in 0..self.pairs[index].active.point_face.len() {
-                let Self { state, collider_states, pairs, maps, .. } = self;
+            for active in 0..self.contact.pairs[index].active.point_face.len() {
+                let Self { state, contact: ContactSystem { collider_states, pairs, maps, .. }, .. } = self;
                 let pair = pairs[index].point_face[pairs[index].active.point_face[active] as usize];
                 let (h, span) = (rebound.h.to_f64(), pairs[index].span);
                 let view = StepParts { terms, maps, h, time: [end; 2], span };
@@ -66,7 +68,9 @@ impl<R: Real> Solver<R> {
     }
 
     fn bounce_off_cloth(&mut self, schedule: &Schedule<R>, rebound: Bounce<R>) {
-        let Self { mutual: Some(mutual), state, maps, pool, .. } = self else { return };
+        let Self { state, pool, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+            return;
+        };
         let Mutual { active, terms, .. } = mutual;
         if !terms.iter().flatten().any(|terms| terms.bounces()) {
             return;

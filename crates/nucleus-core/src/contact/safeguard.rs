@@ -13,7 +13,7 @@ use crate::input::frame::FrameInput;
 use crate::math::Real;
 use crate::output::{Stage, StepObserver};
 use crate::schedule::{Schedule, StepInterval};
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Solver};
 
 /// How often each remedy is tried before the next.
 const PUSHES: usize = 4;
@@ -34,7 +34,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
         watch: &mut dyn StepObserver,
     ) {
-        let meets = self.mutual.as_ref().is_some_and(Mutual::is_on);
+        let meets = self.contact.mutual.as_ref().is_some_and(Mutual::is_on);
         for attempt in 0..=SQUEEZED + CLIPS + STOPS {
             watch.enter(Stage::BroadPhase);
             if meets {
@@ -73,27 +73,33 @@ impl<R: Real> Solver<R> {
     }
 
     fn prove_cloths(&mut self, schedule: &Schedule<R>) -> u64 {
-        let Self { mutual: Some(mutual), state, maps, pool, .. } = self else { return 0 };
+        let Self { state, pool, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+            return 0;
+        };
         let Mutual { active, terms, .. } = mutual;
         active.prove(&motion(state, terms, maps, schedule.h), pool)
     }
 
     fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
+        let Self { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+            return;
+        };
         let Mutual { active, terms, .. } = mutual;
         *tally.pairs_reverted.get_mut() += active.clip(&motion(state, terms, maps, schedule.h));
     }
 
     /// Lets contacts that are not proven go nowhere, or where one of their points is held already.
     fn stop(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let Self { mutual: Some(mutual), state, maps, .. } = self else { return };
+        let Self { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+            return;
+        };
         let Mutual { active, held, terms, .. } = mutual;
         *tally.pairs_reverted.get_mut() += active.stop(&motion(state, terms, maps, schedule.h), held);
     }
 
     /// Begins with no point held but those that are pinned.
     fn hold_none(&mut self) {
-        let Self { mutual: Some(mutual), state, .. } = self else { return };
+        let Self { state, contact: ContactSystem { mutual: Some(mutual), .. }, .. } = self else { return };
         mutual.held.clear();
         mutual.held.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
     }
@@ -108,7 +114,7 @@ impl<R: Real> Solver<R> {
         tally: &mut Tally,
     ) {
         self.release_sides(frame, schedule, span, tally);
-        if let Some(mutual) = &mut self.mutual {
+        if let Some(mutual) = &mut self.contact.mutual {
             mutual.tangle.is_suspected |= among_cloths;
         }
     }

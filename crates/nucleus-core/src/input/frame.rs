@@ -1,7 +1,7 @@
-//! What a frame brings: everything that may change from frame to frame. Metres, kilograms, seconds.
+//! The input of a frame: everything that may change from frame to frame. Metres, kilograms, seconds; world space.
 //!
-//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so whatever
-//! moves comes as two states, one for the start of the frame and one for its end.
+//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so every moving thing has two
+//! positions, at the start of the frame and at its end.
 
 use nalgebra::Vector3;
 
@@ -10,16 +10,16 @@ use crate::input::{ClothId, PointId};
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
 pub const COUNT_PERIOD: f64 = 1.0 / 24.0;
 
-/// How the number of a resistance is read.
+/// The reading of a resistance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ResistanceModel {
-    /// The paper's reading: a resistance is a count of evaluations in 1/24 s, shared among substeps.
-    /// How stiff that makes the cloth depends on mesh and substeps.
+    /// The paper's reading: a resistance is a count of evaluations in 1/24 s, shared among substeps. The stiffness
+    /// follows from mesh and substeps.
     Classic,
     /// A resistance is a stiffness that depends on neither mesh nor substeps.
     Physical {
-        /// The budget: evaluations in 1/24 s, each spent as a small time step with one sweep over
-        /// every list. More only lessens the error.
+        /// The budget: evaluations in 1/24 s, each a small time step with one sweep over every list. More of them only
+        /// reduce the error.
         evaluations: f64,
     },
 }
@@ -29,11 +29,11 @@ pub enum ResistanceModel {
 pub struct FrameInput {
     /// Simulated time of the frame in seconds (1/24 at 24 frames per second and `timeScale` 1).
     pub duration: f64,
-    /// Substeps in the frame, at least 1. The paper's smallest unit of time.
+    /// Substeps in the frame, at least 1: the paper's smallest unit of time.
     pub substeps: u32,
     /// Collision passes in 1/24 s (`maxCollisionIterations`).
     pub collision_iterations: f64,
-    /// How resistances are read.
+    /// The reading of all resistances.
     pub resistance: ResistanceModel,
     /// Acceleration of gravity in m/s².
     pub gravity: Vector3<f64>,
@@ -52,7 +52,7 @@ pub struct FrameInput {
     pub layer_range: f64,
     /// Collision passes of cloth with itself and other cloth in 1/24 s (`maxSelfCollisionIterations`).
     pub self_collision_iterations: f64,
-    /// Points that are held in this frame; a point that is named by none moves freely.
+    /// The pinned points of this frame; all other points move freely.
     pub pins: Vec<Pin>,
     /// `windNoise`: gusts as a multiple of the wind's speed; 0 is a steady wind.
     pub wind_noise: f64,
@@ -99,7 +99,7 @@ pub struct InputMesh {
 pub struct GroundPlane {
     /// A point of the plane in metres.
     pub origin: Vector3<f64>,
-    /// Its normal; need not be of unit length.
+    /// Its normal, of any length.
     pub normal: Vector3<f64>,
     /// `planeBounce`: 0 none, 1 all.
     pub bounce: f64,
@@ -109,17 +109,17 @@ pub struct GroundPlane {
     pub stickiness: f64,
 }
 
-/// Stiffnesses of a cloth as a laboratory gives them. Where there is one, the resistance beside it has no say; nought
-/// is none at all. Only the Physical reading has them: in the Classic one stiffness is a consequence.
+/// Measured stiffnesses of a cloth. One that is given replaces the resistance of the same effect; zero switches the
+/// effect off. Only the Physical reading uses them: in the Classic reading stiffness follows from mesh and substeps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stiffness {
-    /// Against being longer than at rest, in N/m: Young's modulus times the thickness of the cloth.
+    /// Of links longer than at rest, in N/m: Young's modulus times the thickness of the cloth.
     pub stretch: Option<f64>,
-    /// Against being shorter than at rest, in N/m.
+    /// Of links shorter than at rest, in N/m.
     pub compression: Option<f64>,
-    /// Against shear, in N/m, on top of what stretch resists through cross links.
+    /// Against shear, in N/m, in addition to that of stretch through cross links.
     pub shear: Option<f64>,
-    /// Against bending, in N·m: moment for a width, over curvature.
+    /// Against bending, in N·m: moment per width, over curvature.
     pub bend: Option<f64>,
 }
 
@@ -135,7 +135,7 @@ pub struct ClothFrame {
     pub shear_resistance: f64,
     /// Resistance of the angle between faces.
     pub bend_resistance: f64,
-    /// Physical stiffnesses that stand in for what the resistances come to.
+    /// Measured stiffnesses that replace resistances.
     pub stiffness: Stiffness,
     /// Factor on all rest lengths.
     pub rest_length_scale: f64,
@@ -157,32 +157,31 @@ pub struct ClothFrame {
     pub local_force: Vector3<f64>,
     /// Wind for this cloth alone, in m/s (`localWind`).
     pub local_wind: Vector3<f64>,
-    /// Whether it meets colliders and the plane.
+    /// Whether it collides with colliders and the ground plane.
     pub collide: bool,
-    /// Thickness in metres; two things touch at the sum of theirs.
+    /// Thickness in metres; two objects touch at the sum of theirs.
     pub thickness: f64,
     /// Friction; the two sides' values are added.
     pub friction: f64,
-    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never separate.
     pub stickiness: f64,
-    /// Bounce, 0 to 1; the max of the two sides counts.
+    /// Bounce, 0 to 1; the larger of the two sides' values counts.
     pub bounce: f64,
-    /// How much of a collision is carried out; the two sides' values are multiplied. At 1 and above nothing passes, below
-    /// it things may, at 0 there is no collision.
+    /// Strength of contacts; the two sides' values are multiplied. From 1 on nothing passes through, below 1 objects
+    /// may, at 0 there is no contact.
     pub collide_strength: f64,
-    /// How it moves points of other objects to its own side.
+    /// Moves points of other objects to a side of its surface.
     pub push_out: PushOut,
-    /// How much faster than by itself the solver works it and other cloth apart where they pass through each other; the
-    /// two sides' values are added.
+    /// Additional speed of untangling where it intersects other cloth; the two sides' values are added.
     pub crossover_push: f64,
-    /// The same where it passes through itself.
+    /// The same where it intersects itself.
     pub self_crossover_push: f64,
-    /// Which of its elements meet other cloth (`collisionFlag`).
+    /// Its elements of contact with other cloth (`collisionFlag`).
     pub elements: Elements,
-    /// `collisionLayer`: of two cloths the one in the lower layer is the heavier, and at a difference of one
-    /// is not moved by the other at all.
+    /// `collisionLayer`: in contacts the cloth in the lower layer is heavier, and from a difference of one on the other
+    /// does not move it.
     pub layer: f64,
-    /// How it meets itself.
+    /// Self-collision.
     pub self_collision: SelfCollision,
     /// Rest angles, their scale, and which bends stay.
     pub bending: Bending,
@@ -279,7 +278,7 @@ impl InputAttract {
     }
 }
 
-/// Which elements of a mesh meet the points of another.
+/// The elements of a mesh that touch the points of another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Elements {
     /// Points alone.
@@ -290,35 +289,35 @@ pub enum Elements {
     Faces,
 }
 
-/// How an object moves points of others to a side of its surface (`pushOut`).
+/// Moves points of other objects to a side of the surface (`pushOut`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PushOut {
-    /// Share of the way that points go in a substep, 0 to 1; below nought to the inner side.
+    /// Share of the distance that points move in a substep, 0 to 1; negative towards the inner side.
     pub share: f64,
-    /// Metres from the surface within which points are moved (`pushOutRadius`).
+    /// Distance from the surface within which points are moved, in metres (`pushOutRadius`).
     pub radius: f64,
 }
 
 impl PushOut {
-    /// None.
+    /// Off.
     pub const OFF: Self = Self { share: 0.0, radius: 0.0 };
 }
 
-/// How a cloth meets itself.
+/// Self-collision of a cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfCollision {
-    /// Whether it does (`selfCollide`).
+    /// Whether it is on (`selfCollide`).
     pub on: bool,
     /// Thickness of each side in metres: `thickness` times `selfCollideWidthScale`.
     pub thickness: f64,
-    /// Which elements meet its points (`selfCollisionFlag`).
+    /// The elements that touch its points (`selfCollisionFlag`).
     pub elements: Elements,
-    /// Whether its edges meet each other too, so that nothing at all can pass (`selfCollisionFlag` full surface).
+    /// Whether edges touch edges too, so that nothing can pass through (`selfCollisionFlag` full surface).
     pub edges: bool,
 }
 
 impl SelfCollision {
-    /// None.
+    /// Off.
     pub const OFF: Self = Self { on: false, thickness: 0.0, elements: Elements::Faces, edges: true };
 }
 
@@ -363,34 +362,34 @@ impl Default for ClothFrame {
     }
 }
 
-/// One collider in one frame: where its points start and end, and how it feels.
+/// One collider in one frame: its motion and contact attributes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColliderFrame {
-    /// Positions at the start of the frame in metres, in the mesh's order. Empty: as the frame before ended.
+    /// Positions at the start of the frame in metres, in the mesh's order. Empty: those at the end of the frame before.
     pub start: Vec<Vector3<f64>>,
     /// Positions at the end of the frame in metres, in the mesh's order. Empty: it does not move.
     pub end: Vec<Vector3<f64>>,
-    /// Whether anything meets it in this frame.
+    /// Whether cloth collides with it in this frame.
     pub collide: bool,
     /// Thickness in metres.
     pub thickness: f64,
     /// Friction; the two sides' values are added.
     pub friction: f64,
-    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never part.
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never separate.
     pub stickiness: f64,
-    /// Bounce, 0 to 1; the max of the two sides counts.
+    /// Bounce, 0 to 1; the larger of the two sides' values counts.
     pub bounce: f64,
-    /// How much of a collision is carried out, as of a cloth.
+    /// Strength of contacts, as of a cloth.
     pub collide_strength: f64,
-    /// How it moves points of other objects to its own side.
+    /// Moves points of other objects to a side of its surface.
     pub push_out: PushOut,
-    /// Whether points that are inside it, where it is closed, are led out; otherwise they stay in (`trappedCheck`).
+    /// Whether points inside it, if it is closed, are depenetrated; otherwise they stay inside (`trappedCheck`).
     pub trapped_check: bool,
 }
 
 impl Default for ColliderFrame {
-    /// Maya's defaults of an nRigid, except that it stays where it is and nothing meets it, and `friction` and
-    /// `thickness`, which are nought.
+    /// Maya's defaults of an nRigid, except that it does not move or collide, and that `friction` and `thickness` are
+    /// zero.
     fn default() -> Self {
         Self {
             start: Vec::new(),
@@ -407,15 +406,15 @@ impl Default for ColliderFrame {
     }
 }
 
-/// A point that is held and carried along a straight line during the frame (a transform constraint).
+/// A pinned point, which moves along a straight line during the frame (a transform constraint).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pin {
     /// The cloth the point belongs to.
     pub cloth: ClothId,
     /// The point, in the mesh's order.
     pub point: PointId,
-    /// Where it is at the start of the frame, in metres.
+    /// Position at the start of the frame, in metres.
     pub start: Vector3<f64>,
-    /// Where it is at the end of the frame, in metres.
+    /// Position at the end of the frame, in metres.
     pub end: Vector3<f64>,
 }

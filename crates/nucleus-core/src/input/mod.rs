@@ -1,7 +1,7 @@
 //! Input of one frame: positions of pins and colliders, forces and attributes; and its validation.
 //!
-//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4). Everything is in metres, kilograms and
-//! seconds.
+//! Animation is evaluated once per frame and interpolated linearly inside it (§2.4). Everything is in metres, kilograms
+//! and seconds.
 //!
 //! | You want to know… | Read |
 //! |---|---|

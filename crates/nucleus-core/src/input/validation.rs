@@ -1,5 +1,5 @@
-//! Validation of a frame's input: a value that is NaN, infinite or beyond [`MAX_COORDINATE`] is replaced and counted, so
-//! that one bad point does not end the run.
+//! Validation of a frame's input: a value that is NaN, infinite or beyond [`MAX_COORDINATE`] is replaced and counted,
+//! so that one bad point does not end the run.
 //!
 //! | Invalid value | Replaced by |
 //! |---|---|

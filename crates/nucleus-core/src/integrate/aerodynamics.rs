@@ -1,12 +1,12 @@
-//! Air: drag, lift and wind, by which way the surface faces.
+//! Aerodynamic forces: drag, lift and wind, by the orientation of the surface.
 //!
-//! Wind has no force of its own; it is the air that drag and lift are reckoned against, so cloth that faces
-//! it catches more than cloth on edge (§3.1). Drag is linear in velocity and per 1/24 s, acts along the
-//! normal, and along the surface by the share `tangentialDrag`, as recorded output of the original shows.
-//! Its discrete form, two implicit half-steps, is also the one measured there.
+//! Wind is the velocity of the air, relative to which drag and lift act; cloth that faces it therefore catches more
+//! than cloth on edge (§3.1). Drag is linear in velocity and per 1/24 s. It acts along the normal, and along the
+//! surface with the share `tangentialDrag`, as recorded output of the original shows. Its discrete form, two implicit
+//! half-steps, also matches that output.
 //!
-//! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no
-//! work. Its strength is reckoned in time, not length, so it needs no scaling by hand in large scenes.
+//! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no work. Its
+//! rate is per unit of time, not of length, so large scenes need no manual scaling.
 
 use std::ops::Range;
 
@@ -19,17 +19,17 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-/// What the air does to a point in one time step.
+/// The aerodynamic forces on a point in one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air<R> {
     wind: [R; 3],
-    /// What is left of the velocity along the normal, and along the surface.
+    /// Factors on the relative velocity along the normal, and along the surface.
     along_normal: R,
     along_surface: R,
     lift: R,
 }
 
-/// The air that a cloth feels, before it is told where on the cloth.
+/// The aerodynamic forces on a cloth, before vertex maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AirForces {
     wind: Vector3<f64>,
@@ -41,9 +41,9 @@ pub struct AirForces {
 }
 
 impl AirForces {
-    /// What a cloth of `weight` (its `pointMass`) feels in steps of `h` seconds; nothing in a vacuum.
-    pub fn new(frame: &FrameInput, cloth: &ClothFrame, weight: f64, h: f64) -> Option<Self> {
-        let rate = |attribute: f64| attribute * frame.air_density / (COUNT_PERIOD * weight);
+    /// The forces on a cloth with this `pointMass` in steps of `h` seconds; `None` in a vacuum.
+    pub fn new(frame: &FrameInput, cloth: &ClothFrame, point_mass: f64, h: f64) -> Option<Self> {
+        let rate = |attribute: f64| attribute * frame.air_density / (COUNT_PERIOD * point_mass);
         let (drag, lift) = (rate(cloth.drag), rate(cloth.lift));
         if drag <= 0.0 && lift <= 0.0 {
             return None;
@@ -52,17 +52,17 @@ impl AirForces {
         Some(Self { wind, drag, lift, tangential_drag: cloth.tangential_drag, h })
     }
 
-    /// What a point feels.
+    /// The forces on a point with these factors.
     pub fn at<R: Real>(&self, factors: &AirFactors) -> Air<R> {
-        let left = |rate: f64| {
+        let remaining = |rate: f64| {
             let half = 1.0 + rate * self.h / 2.0;
             R::from_f64(1.0 / (half * half))
         };
         let drag = self.drag * factors.drag;
         Air {
             wind: [self.wind.x, self.wind.y, self.wind.z].map(R::from_f64),
-            along_normal: left(drag),
-            along_surface: left(drag * (self.tangential_drag * factors.tangential_drag)),
+            along_normal: remaining(drag),
+            along_surface: remaining(drag * (self.tangential_drag * factors.tangential_drag)),
             lift: R::from_f64((self.lift * factors.lift * self.h).min(1.0)),
         }
     }
@@ -75,7 +75,7 @@ impl<R: Real> Air<R> {
         Self { wind: std::array::from_fn(|axis| self.wind[axis] + gust[axis]), ..*self }
     }
 
-    /// A velocity after the step.
+    /// The velocity after the step.
     #[inline(always)]
     pub fn slow(&self, velocity: [R; 4], normal: [R; 3]) -> [R; 4] {
         let through: [R; 3] = std::array::from_fn(|axis| velocity[axis] - self.wind[axis]);
@@ -90,7 +90,7 @@ impl<R: Real> Air<R> {
         [slowed(0), slowed(1), slowed(2), velocity[3]]
     }
 
-    /// Lift turns the velocity without changing its length.
+    /// Lift rotates the relative velocity and keeps its length.
     #[inline(always)]
     fn turn(&self, through: [R; 3], normal: [R; 3], facing: R, speed_squared: R) -> [R; 3] {
         if self.lift == R::ZERO || speed_squared <= R::MIN_DENOMINATOR {
@@ -127,7 +127,7 @@ pub fn update_normals<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, p
 /// Sets the normals of a block of points, weighted by area, from the triangles that touch it.
 ///
 /// # Safety
-/// No other task of the phase touches these normals.
+/// No other task of the loop touches these normals.
 #[allow(unsafe_code)]
 unsafe fn normals_of_block<R: Real>(
     normals: DisjointSlice<'_, Row4<R>>,

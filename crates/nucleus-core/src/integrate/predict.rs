@@ -1,6 +1,7 @@
 //! Prediction at the start of a time step, and velocities at its end.
 //!
-//! Velocities change before points move, and drag acts before the move: recorded output of the original shows this order.
+//! Velocities change before points move, and drag acts before the move: recorded output of the original shows this
+//! order.
 //!
 //! At the end v += (x - p) / h, where p is the predicted displacement, less the motion by which contacts resolve a
 //! penetration. The form v = (x - x_start) / h would take velocity from a difference of rounded positions: a free

@@ -1,7 +1,7 @@
 //! Scalars and small vectors: `f32` or `f64`, and four of them side by side.
 //!
-//! Every operation is `+ - * /` or a square root, which IEEE 754 rounds in one way only. Four lanes therefore give the same
-//! bits as four scalars, on any machine; there is no fused multiply-add and no libm here.
+//! Every operation is `+ - * /` or a square root, which IEEE 754 rounds in one way only. Four lanes therefore give the
+//! same bits as four scalars, on any machine; there is no fused multiply-add and no libm here.
 
 mod real;
 #[cfg(target_arch = "x86_64")]

@@ -2,7 +2,7 @@
 
 use crate::input::validation::MAX_COORDINATE;
 
-/// What is wrong with an object, and with which element of it.
+/// An invalid object, with the element at fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -25,7 +25,7 @@ pub enum BuildError {
         face: usize,
         /// The point it names.
         point: u32,
-        /// How many there are.
+        /// Their number.
         points: usize,
     },
     /// A face has fewer than three corners or names a point twice.
@@ -40,17 +40,17 @@ pub enum BuildError {
     /// The mesh has no points at all.
     #[error("the mesh has no points")]
     NoPoints,
-    /// A column of the start is not as long as the mesh has points.
+    /// A column of the start has not one entry per point.
     #[error("there are {given} {what} to start from, but {points} points")]
     StartCount {
         /// `positions` or `velocities`.
         what: &'static str,
-        /// How many were given.
+        /// The number of entries given.
         given: usize,
-        /// How many points the mesh has.
+        /// The number of points of the mesh.
         points: usize,
     },
-    /// A position or velocity to start from cannot be reckoned with.
+    /// A start position or velocity is not finite, or too large.
     #[error("point {point} cannot start so: its {what} is not finite, or more than {MAX_COORDINATE:e}")]
     BadStart {
         /// `position` or `velocity`.
@@ -58,34 +58,34 @@ pub enum BuildError {
         /// The point, in the mesh's order.
         point: usize,
     },
-    /// A column of factors is not as long as the mesh has points.
+    /// A vertex map has not one factor per point.
     #[error("there are {factors} factors on {column}, but {points} points")]
     FactorCount {
-        /// What it is a factor on.
+        /// The attribute of the map.
         column: &'static str,
-        /// How many there are.
+        /// Their number.
         factors: usize,
-        /// How many points the mesh has.
+        /// The number of points of the mesh.
         points: usize,
     },
-    /// A factor is not a number, or out of range.
+    /// A factor is NaN or out of range.
     #[error("the factor on {column} of point {point} must be between {least} and {most}, not {factor}")]
     BadFactor {
-        /// What it is a factor on.
+        /// The attribute of the map.
         column: &'static str,
         /// The point, in the mesh's order.
         point: usize,
-        /// What was given.
+        /// The given value.
         factor: f64,
-        /// The least it may be.
+        /// The smallest valid value.
         least: f64,
-        /// The most it may be.
+        /// The largest valid value.
         most: f64,
     },
     /// The mass is not a positive number.
     #[error("the mass must be above zero and finite, not {mass}")]
     BadMass {
-        /// What was given.
+        /// The given value.
         mass: f64,
     },
 }

@@ -1,5 +1,5 @@
-//! The door: what comes in here is checked once, and refused with the element named.
-//! From [`ModelBuilder::finish`] on, nothing can be invalid.
+//! The builder of a solver's objects. It checks every mesh once, and refuses an invalid one with the element named
+//! ([`BuildError`]); later code relies on it.
 
 use nalgebra::Vector3;
 
@@ -10,31 +10,31 @@ use crate::model::surface::Surface;
 use crate::model::topology::point_areas;
 use crate::model::vertex_maps::VertexMaps;
 
-/// How the mass of a cloth is given.
+/// The mass of a cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mass {
-    /// Kilograms at every point, as Maya's `pointMass` means it.
+    /// Kilograms at every point, like Maya's `pointMass`.
     PerPoint(f64),
-    /// Kilograms per square metre, shared out by the area round each point; does not depend on the mesh.
+    /// Kilograms per square metre, distributed by the area of each point; independent of the mesh.
     PerArea(f64),
 }
 
-/// Which lists a cloth can ever need. A list that is off is never built and never visited.
+/// The lists that a cloth can ever need. A list that is off is never built and never swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClothLists {
-    /// Links along edges (stretch or compression resistance is ever non-zero).
+    /// Links along edges: stretch or compression resistance is ever non-zero.
     pub stretch: bool,
-    /// Cross links of quads among them, so that stretch resistance holds shear too (`addCrossLinks`).
+    /// Cross links of quads among them, so that stretch resistance also resists shear (`addCrossLinks`).
     pub cross_links: bool,
-    /// Cross links of quads once more (shear resistance is ever non-zero).
+    /// A second list of the cross links of quads: shear resistance is ever non-zero.
     pub shear: bool,
-    /// Bending between faces (bend resistance is ever non-zero).
+    /// Hinges between faces: bend resistance is ever non-zero.
     pub bend: bool,
-    /// Drag, lift or wind is ever felt.
+    /// Drag, lift or wind is ever non-zero.
     pub air: bool,
     /// Damping of relative velocities is ever non-zero.
     pub damp: bool,
-    /// It ever meets itself.
+    /// Self-collision is ever on.
     pub self_collision: bool,
     /// Hinges that are bent at rest know which way (`bendSolver` above Simple).
     pub signed_bend: bool,
@@ -89,48 +89,49 @@ impl ClothLists {
     };
 }
 
-/// A mesh that becomes cloth. Its shape is how it is at rest, and where it starts unless `start` says otherwise.
+/// A mesh that becomes cloth. Its shape is the rest shape, and the start unless `start` gives another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cloth {
-    /// The mesh at the start, in metres. Faces may be empty: then the points are free.
+    /// The mesh in world space, in metres. Without faces its points are free particles.
     pub surface: Surface,
-    /// How heavy it is.
+    /// Its mass.
     pub mass: Mass,
-    /// The lists it can ever need.
+    /// The lists that it can ever need.
     pub lists: ClothLists,
-    /// Where its attributes differ from point to point.
+    /// Vertex maps of its attributes.
     pub factors: VertexMaps,
-    /// How it starts, where that is not at rest as the mesh is.
+    /// Positions and velocities at the start, where they differ from the mesh at rest.
     pub start: Start,
 }
 
-/// How a cloth starts, point by point in the mesh's order. What it is at rest is still the mesh.
+/// The start of a cloth, one entry per point in the mesh's order. The rest shape is still the mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Start {
-    /// In metres; empty for where the mesh has its points.
+    /// In metres; empty for those of the mesh.
     pub positions: Vec<Vector3<f64>>,
-    /// In m/s; empty for none.
+    /// In m/s; empty for zero.
     pub velocities: Vec<Vector3<f64>>,
 }
 
 impl Cloth {
-    /// A cloth that is the same everywhere and starts at rest as its mesh is.
+    /// A cloth without vertex maps, at rest in the shape of its mesh.
     pub fn new(surface: Surface, mass: Mass, lists: ClothLists) -> Self {
         Self { surface, mass, lists, factors: VertexMaps::default(), start: Start::default() }
     }
 
-    /// Where its points start, in metres.
+    /// The positions at the start, in metres.
     pub fn positions(&self) -> &[Vector3<f64>] {
         if self.start.positions.is_empty() { &self.surface.positions } else { &self.start.positions }
     }
 
-    /// The mass of each point in kilograms, in the mesh's order: what the solver goes by.
+    /// The mass of each point in kilograms, in the mesh's order, as the solver uses it.
     pub fn point_masses(&self) -> Vec<f64> {
         point_masses(self)
     }
 }
 
-/// A mesh that others collide with (an nRigid): given in world space, moved by [`ColliderFrame`](crate::ColliderFrame).
+/// A passive mesh that cloth collides with (an nRigid), in world space; [`ColliderFrame`](crate::ColliderFrame) moves
+/// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collider {
     /// The mesh at the start, in metres.
@@ -172,7 +173,7 @@ impl ModelBuilder {
         &self.cloths
     }
 
-    /// Where the points of a cloth start, in metres.
+    /// The positions of a cloth at the start, in metres.
     pub fn positions(&self, cloth: ClothId) -> &[Vector3<f64>] {
         self.cloths[cloth.index()].positions()
     }
@@ -188,7 +189,7 @@ impl ModelBuilder {
     }
 }
 
-/// The mass of each point in kilograms, in the user's order.
+/// The mass of each point in kilograms, in the mesh's order.
 pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
     let mut masses = even_masses(cloth);
     masses.iter_mut().zip(&cloth.factors.mass).for_each(|(mass, factor)| *mass *= factor);
@@ -200,7 +201,7 @@ fn even_masses(cloth: &Cloth) -> Vec<f64> {
         Mass::PerPoint(mass) => vec![mass; cloth.surface.positions.len()],
         Mass::PerArea(density) => {
             let areas = point_areas(&cloth.surface);
-            // A point of no face has no area: it weighs like an average one.
+            // A point of no face has no area: it gets the average mass.
             let faces = areas.iter().filter(|&&area| area > 0.0).count().max(1);
             let average = areas.iter().sum::<f64>() / faces as f64;
             let average = if average > 0.0 { average } else { 1.0 };
@@ -209,7 +210,7 @@ fn even_masses(cloth: &Cloth) -> Vec<f64> {
     }
 }
 
-/// Refuses a start that is not one of every point.
+/// Refuses a start that lacks a point, or has an invalid value.
 fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
     for (column, [one, what]) in
         [(&start.positions, ["position", "positions"]), (&start.velocities, ["velocity", "velocities"])]
@@ -224,7 +225,7 @@ fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Refuses what no pass could work with.
+/// Refuses meshes that the solver cannot handle.
 fn check_surface(surface: &Surface) -> Result<(), BuildError> {
     let points = surface.positions.len();
     if points == 0 {

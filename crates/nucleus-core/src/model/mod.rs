@@ -1,4 +1,19 @@
-//! What is fixed once a scene is compiled: the lists of each cloth, laid out to be swept.
+//! The model: everything about the objects of a scene that is fixed once it is compiled.
+//!
+//! A mesh becomes lists of constraint rows. Links keep lengths (stretch, compression, shear) and hinges keep angles
+//! (bending, Bergou et al. 2006); the Nucleus paper has the same two kinds (§2.2, §2.4). Points are reordered along a
+//! Morton curve and cut into blocks, and rows are coloured, so that a Gauss-Seidel sweep of position-based dynamics
+//! (Müller et al. 2007) runs in parallel with the same bits on any number of threads. Stiffness is scaled by the strip
+//! of cloth that each row stands for, so that it does not depend on the mesh.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | what a cloth or collider is built from, and what is refused | [`builder`], [`build_error`] |
+//! | polygon meshes | [`surface`] |
+//! | edges, cross links, seams, areas | `topology.rs` |
+//! | the order of points | `order.rs` |
+//! | blocks, colours and lane groups of rows | `rows.rs` |
+//! | vertex maps, as given and per row | [`vertex_maps`], `strength_maps.rs` |
 
 pub mod build_error;
 pub mod builder;
@@ -32,20 +47,20 @@ use crate::model::builder::{Cloth, Collider, Mass, point_masses};
 use crate::model::surface::Surface;
 use crate::model::vertex_maps::mean;
 
-/// One cloth: where its points are in the columns of the state, and its lists.
+/// One cloth: its range in the columns of the state, and its lists. Points are numbered by their row in the columns.
 #[derive(Debug, Clone)]
 pub struct ClothModel<R> {
-    /// Between the user's points and the solver's places (counted from the cloth's first).
+    /// Between points of the mesh and places, counted from the cloth's first row.
     pub order: Order,
-    /// Its points in the columns, in blocks.
+    /// Its rows in the columns, in blocks.
     pub blocks: Blocks,
-    /// Links along edges and, where they are asked for, cross links.
+    /// Links along edges and, with `addCrossLinks`, cross links.
     pub stretch: RowList<LinkGroup<R>>,
-    /// Cross links again, held by a resistance of their own.
+    /// Cross links with the shear resistance.
     pub shear: RowList<LinkGroup<R>>,
-    /// Hinges between triangles, and twists of quads.
+    /// Hinges of four points: between triangles, and twists of quads.
     pub bend: RowList<HingeGroup<R, 4>>,
-    /// Hinges between quads.
+    /// Hinges of six points: between quads.
     pub bend_six: RowList<HingeGroup<R, 6>>,
     /// Signed angles of `bend`; empty where only the size of an angle matters.
     pub bend_angles: RowList<AngleGroup<R>>,
@@ -59,27 +74,27 @@ pub struct ClothModel<R> {
     pub plastic: bool,
     /// Factors on the attraction to the input mesh, by the user's points; empty where it is the same everywhere.
     pub attract: Vec<f64>,
-    /// The triangles that touch each block, for normals; empty where no air is felt.
+    /// By block: the triangles with a point in it, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
-    /// What can touch; empty where the scene has no collider.
+    /// The elements of contact; empty where no contact is possible.
     pub skin: Skin,
-    /// Whether its sweeps turn round from time to time: its links close rings of an odd number (triangles, or
-    /// quads with cross links), and swept always in one order they would stir it.
+    /// Whether its sweeps alternate their direction: its links form odd rings (triangles, or quads with cross links),
+    /// and sweeps in one direction would stir it; see [`Schedule::direction`](crate::schedule::Schedule::direction).
     pub alternates_direction: bool,
-    /// `pointMass`, as a number: air forces are divided by it.
+    /// The number of `pointMass`, whatever its unit; aerodynamic forces are divided by it.
     pub point_mass: f64,
-    /// Mean length of an edge at rest in metres; nought without edges.
+    /// Mean rest length of an edge in metres; zero without edges, and where no contact is possible.
     pub edge_length: f64,
-    /// Whether velocities are ever damped.
+    /// Whether damping is ever non-zero.
     pub damps: bool,
-    /// What its rows get of the strength of a sweep; empty where all get all of it.
+    /// Vertex maps per row; empty where there are none.
     pub strength_maps: StrengthMaps<R>,
-    /// Factors on what its points feel of the air; empty where they are none.
+    /// Vertex maps of the aerodynamic forces, by row; empty where there are none.
     pub air: Vec<AirFactors>,
 }
 
 impl<R: Real> ClothModel<R> {
-    /// Compiles a cloth whose first point is `first` in the columns.
+    /// Compiles a cloth whose first row in the columns is `first`. `collides`: contact is possible.
     pub fn new(cloth: &Cloth, first: u32, collides: bool) -> Self {
         let surface = &cloth.surface;
         let order = Order::morton(&surface.positions);
@@ -168,36 +183,36 @@ impl<R: Real> ClothModel<R> {
         model
     }
 
-    /// Its points in the columns.
+    /// Its rows in the columns.
     pub fn points(&self) -> Range<u32> {
         self.blocks.range(0).start..self.blocks.range(self.blocks.len() - 1).end
     }
 
-    /// The factors on what some of its points feel of the air; none where they are none.
+    /// The maps of the aerodynamic forces at these rows; empty where there are none.
     pub fn air_factors(&self, points: &Range<u32>) -> &[AirFactors] {
         let at = |point: u32| (point - self.points().start) as usize;
         if self.air.is_empty() { &[] } else { &self.air[at(points.start)..at(points.end)] }
     }
 
-    /// How many rows and points have factors of their own.
+    /// The number of rows and points with factors of vertex maps.
     pub fn factors(&self) -> usize {
         self.strength_maps.len() + self.air.len()
     }
 
-    /// The place in the columns of one of the user's points.
+    /// The row of a point of the mesh.
     pub fn place(&self, point: usize) -> u32 {
         self.points().start + self.order.place(point)
     }
 }
 
-/// One collider: its mesh, in the user's order.
+/// One collider: its mesh, in its own order.
 #[derive(Debug, Clone)]
 pub struct ColliderModel {
-    /// Where it starts, in metres.
+    /// Positions at the start, in metres.
     pub positions: Vec<Vector3<f64>>,
-    /// What can touch.
+    /// The elements of contact.
     pub skin: Skin,
-    /// Its outside, if it has one: every edge has two faces.
+    /// Pseudonormals for the inside test, where every edge has two faces.
     pub outside: Option<Outside>,
 }
 
@@ -225,7 +240,7 @@ fn mean_length(surface: &Surface) -> f64 {
     links.iter().map(|link| link.rest_length).sum::<f64>() / links.len().max(1) as f64
 }
 
-/// Each block's triangles: all that touch one of its points, so that a block's normals need no other's work.
+/// The triangles of each block: all with a point in it, so that the normals of a block need no other block.
 pub fn triangles_by_block(
     surface: &Surface,
     place: impl Fn(u32) -> u32,

@@ -1,19 +1,19 @@
-//! The solver's own order of points: along a Morton curve, so that points near in space are near in memory.
-//! The user's order stays outside; [`Order`] maps between them.
+//! The solver's order of points: along a Morton curve, so that points near in space are near in memory. [`Order`] maps
+//! between it and the order of the mesh.
 
 use nalgebra::Vector3;
 
 /// A permutation of the points of one object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Order {
-    /// The user's point at each place of the solver.
+    /// The mesh's point at each place of the solver's order.
     user: Vec<u32>,
-    /// The solver's place of each of the user's points.
+    /// The place of each point of the mesh in the solver's order.
     place: Vec<u32>,
 }
 
 impl Order {
-    /// Points in the order of a Morton curve through their bounding box; equal places keep the user's order.
+    /// The order along a Morton curve through the bounding box; points in the same cell keep the order of the mesh.
     pub fn morton(positions: &[Vector3<f64>]) -> Self {
         let zero = positions.first().copied().unwrap_or_default();
         let (low, high) = positions.iter().fold((zero, zero), |(low, high), p| (low.inf(p), high.sup(p)));
@@ -30,29 +30,30 @@ impl Order {
         Self { user, place }
     }
 
-    /// The user's point at a place of the solver.
+    /// The mesh's point at a place of the solver's order.
     pub fn user(&self, place: usize) -> usize {
         self.user[place] as usize
     }
 
-    /// The solver's place of one of the user's points.
+    /// The place of a point of the mesh in the solver's order.
     pub fn place(&self, point: usize) -> u32 {
         self.place[point]
     }
 
-    /// The solver's places in the user's order.
+    /// The places of all points, in the order of the mesh.
     pub fn places(&self) -> &[u32] {
         &self.place
     }
 }
 
-/// Things in leaves of so many, by where they are: halved across the longest side again and again, so that each leaf, and
-/// each half of any, lies together. The lower half is as large as a full tree of leaves; what is over is in the upper one.
+/// An order of positions for a tree with leaves of `leaf` elements: halved across the longest side recursively, so that
+/// the elements of each subtree are close together. The lower half is as large as a full tree of leaves; the upper half
+/// has the remainder.
 pub fn by_halves(centres: &[Vector3<f64>], leaf: usize) -> Vec<u32> {
     let zero = centres.first().copied().unwrap_or_default();
     let (low, high) = centres.iter().fold((zero, zero), |(low, high), p| (low.inf(p), high.sup(p)));
-    let scale = STEPS / (high - low).max().max(f64::MIN_POSITIVE);
-    // In steps, so that places a rounding apart count as one wherever the whole lies.
+    let scale = HALVING_CELLS / (high - low).max().max(f64::MIN_POSITIVE);
+    // Rounded to a grid, so that positions a rounding error apart have the same key wherever the object is.
     let cells: Vec<[i64; 3]> =
         centres.iter().map(|p| ((p - low) * scale).map(|x| x.round() as i64).into()).collect();
     let mut order: Vec<u32> = (0..centres.len() as u32).collect();
@@ -60,8 +61,8 @@ pub fn by_halves(centres: &[Vector3<f64>], leaf: usize) -> Vec<u32> {
     order
 }
 
-/// Steps along the longest side of the bounding box that places are told apart by when they are halved.
-const STEPS: f64 = 1e6;
+/// Grid cells along the longest side of the bounding box, for halving.
+const HALVING_CELLS: f64 = 1e6;
 
 fn halve(order: &mut [u32], cells: &[[i64; 3]], leaf: usize) {
     if order.len() <= leaf {
@@ -80,7 +81,7 @@ fn halve(order: &mut [u32], cells: &[[i64; 3]], leaf: usize) {
     halve(upper, cells, leaf);
 }
 
-/// Cells along the longest side of the bounding box.
+/// Cells of the Morton curve along the longest side of the bounding box.
 const CELLS: u32 = (1 << 21) - 1;
 
 /// The low 21 bits of a number, two zeros after each.
@@ -100,7 +101,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_two_directions_of_an_order_undo_each_other(
+        fn user_is_the_inverse_of_place(
             points in proptest::collection::vec(proptest::array::uniform3(-1e3..1e3f64), 1..200)
         ) {
             let order = Order::morton(&points.iter().map(|&p| p.into()).collect::<Vec<_>>());
@@ -109,13 +110,13 @@ mod tests {
     }
 
     #[test]
-    fn the_leaves_of_a_grid_that_is_halved_are_squares() {
+    fn halving_a_grid_gives_square_leaves() {
         let grid: Vec<_> =
             (0..32 * 32).map(|k| Vector3::new(f64::from(k % 32), 0.0, f64::from(k / 32))).collect();
         let order = by_halves(&grid, 16);
         let mut all = order.clone();
         all.sort_unstable();
-        assert!(all.into_iter().eq(0..32 * 32), "each is there once");
+        assert!(all.into_iter().eq(0..32 * 32), "each element occurs once");
         for leaf in order.chunks(16) {
             let places = || leaf.iter().map(|&at| grid[at as usize]);
             let (low, high) = (places().reduce(|a, b| a.inf(&b)), places().reduce(|a, b| a.sup(&b)));

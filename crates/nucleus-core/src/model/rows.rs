@@ -1,19 +1,19 @@
-//! Lists of rows, laid out to be swept: by block, by colour, four at a time.
+//! Lists of constraint rows, laid out for parallel Gauss-Seidel sweeps: by block, by colour, four at a time.
 //!
-//! Points are cut into blocks of about a thousand, small enough for a core's nearest cache. Rows whose points
-//! all lie in one block are that block's *interior* rows, swept by one task; the others are *interface* rows, swept
-//! after them colour by colour. Inside a block rows are in colour order too: rows of one colour share no
-//! point, so four can be computed side by side. A fixed coloured order is also what keeps a single sweep per
-//! time step from creating energy; the order of indices does not.
+//! Points are cut into blocks of about a thousand, small enough for a core's nearest cache. A row whose points are all
+//! in one block is an *interior* row of that block, swept by one task. The others are *interface* rows, swept after
+//! them colour by colour. Inside a block rows are in colour order too: rows of one colour share no point, so four of
+//! them are computed side by side. A fixed coloured order also keeps a single sweep per time step from creating energy;
+//! the order of indices does not.
 
 use std::ops::Range;
 
 /// Points per block, about.
-const BLOCK: usize = 1024;
-/// Lane groups that a task of interface rows sweeps.
-const CHUNK: u32 = 32;
+const POINTS_PER_BLOCK: usize = 1024;
+/// Lane groups per task of interface rows.
+const GROUPS_PER_TASK: u32 = 32;
 
-/// The blocks of one cloth: runs of the solver's points.
+/// The blocks of one cloth: runs of rows in the columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     first: u32,
@@ -24,10 +24,10 @@ pub struct Blocks {
 impl Blocks {
     /// Cuts the points from `first` on into blocks.
     pub fn new(first: u32, points: usize) -> Self {
-        Self { first, points: points as u32, count: (points / BLOCK).max(1) as u32 }
+        Self { first, points: points as u32, count: (points / POINTS_PER_BLOCK).max(1) as u32 }
     }
 
-    /// How many.
+    /// The number of blocks.
     pub fn len(&self) -> usize {
         self.count as usize
     }
@@ -38,40 +38,40 @@ impl Blocks {
         cut(block as u64)..cut(block as u64 + 1)
     }
 
-    /// The block a point lies in.
+    /// The block of a point.
     pub fn of(&self, point: u32) -> u32 {
         let at = u64::from(point - self.first);
         // The inverse of the cut above, exact for every point.
         (((at + 1) * u64::from(self.count) - 1) / u64::from(self.points)) as u32
     }
 
-    /// A point of no mass that stands in for missing rows of a lane group: one per block, and one (`block` =
-    /// `len()`) for interface rows. It is never moved, and no two tasks of a phase share it.
-    pub fn stand_in(&self, block: usize) -> u32 {
+    /// A padding point without mass, for missing rows of a lane group: one per block, and one (`block` = `len()`) for
+    /// interface rows. It never moves, and no two tasks of a loop share it.
+    pub fn padding_point(&self, block: usize) -> u32 {
         self.first + self.points + block as u32
     }
 
-    /// Points and stand-ins together.
+    /// The number of points and padding points.
     pub fn columns(&self) -> u32 {
         self.points + self.count + 1
     }
 }
 
-/// A row before it is laid out: the points it joins decide where it goes.
+/// A row before it is laid out; its points determine its block and colour.
 pub trait Row: Copy {
-    /// Four of them side by side.
+    /// Four rows side by side.
     type Group;
-    /// How many points a row joins.
+    /// Points per row.
     const POINTS: usize;
-    /// The `k`th of its points.
+    /// The `k`th point.
     fn point(&self, k: usize) -> u32;
-    /// A row that joins only `stand_in` and does nothing.
-    fn idle(stand_in: u32) -> Self;
-    /// Four side by side.
+    /// A row of the padding point only, which does nothing.
+    fn idle(padding_point: u32) -> Self;
+    /// Puts four rows side by side.
     fn group(rows: [Self; 4]) -> Self::Group;
 }
 
-/// A list of rows of one kind and one cloth, ready to be swept.
+/// The rows of one kind in one cloth, laid out in lane groups.
 #[derive(Debug, Clone)]
 pub struct RowList<G> {
     groups: Vec<G>,
@@ -80,7 +80,7 @@ pub struct RowList<G> {
     rows: usize,
 }
 
-/// Rows that are swept by one task.
+/// The rows that one task sweeps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowBatch {
     /// The interior rows of a block.
@@ -96,7 +96,7 @@ impl<G> Default for RowList<G> {
 }
 
 impl<G> RowList<G> {
-    /// Lays out rows. Their order within a colour is the given one.
+    /// Lays out rows; within a colour they keep their order.
     pub fn new<T: Row<Group = G>>(rows: &[T], blocks: &Blocks) -> Self {
         let mut list = Self { rows: rows.len(), ..Self::default() };
         if rows.is_empty() {
@@ -112,26 +112,28 @@ impl<G> RowList<G> {
         let mut colours = Colours::new(blocks);
         for (block, rows) in by_block.into_iter().enumerate() {
             let start = list.groups.len() as u32;
-            colours.sort(rows).for_each(|of_colour| list.push_groups(&of_colour, blocks.stand_in(block)));
+            colours
+                .sort(rows)
+                .for_each(|of_colour| list.push_groups(&of_colour, blocks.padding_point(block)));
             list.interior.push(start..list.groups.len() as u32);
         }
         for of_colour in colours.sort(interface) {
             let start = list.groups.len() as u32;
-            list.push_groups(&of_colour, blocks.stand_in(blocks.len()));
+            list.push_groups(&of_colour, blocks.padding_point(blocks.len()));
             list.interface.push(start..list.groups.len() as u32);
         }
         list.groups.shrink_to_fit();
         list
     }
 
-    fn push_groups<T: Row<Group = G>>(&mut self, rows: &[T], stand_in: u32) {
+    fn push_groups<T: Row<Group = G>>(&mut self, rows: &[T], padding_point: u32) {
         for four in rows.chunks(4) {
-            let row = |k: usize| four.get(k).copied().unwrap_or_else(|| T::idle(stand_in));
+            let row = |k: usize| four.get(k).copied().unwrap_or_else(|| T::idle(padding_point));
             self.groups.push(T::group([row(0), row(1), row(2), row(3)]));
         }
     }
 
-    /// Rows, stand-ins not counted.
+    /// The number of rows, without padding.
     pub fn len(&self) -> usize {
         self.rows
     }
@@ -141,29 +143,29 @@ impl<G> RowList<G> {
         &self.groups
     }
 
-    /// All lane groups, to be refreshed.
+    /// All lane groups, to be updated.
     pub fn groups_mut(&mut self) -> &mut [G] {
         &mut self.groups
     }
 
-    /// The interior rows of a block. Nothing for a list without rows.
+    /// The interior rows of a block; empty for a list without rows.
     pub fn interior(&self, block: usize) -> &[G] {
         self.interior.get(block).map_or(&[], |range| &self.groups[range.start as usize..range.end as usize])
     }
 
-    /// How many colours the interface rows have.
+    /// The number of colours of the interface rows.
     pub fn interface_colours(&self) -> usize {
         self.interface.len()
     }
 
-    /// How many tasks the interface rows of a colour are.
+    /// The number of tasks for the interface rows of a colour.
     pub fn interface_tasks(&self, colour: usize) -> usize {
-        self.interface[colour].len().div_ceil(CHUNK as usize)
+        self.interface[colour].len().div_ceil(GROUPS_PER_TASK as usize)
     }
 
-    /// The rows of a task. Nothing for a list without rows.
-    pub fn part(&self, part: RowBatch) -> &[G] {
-        match part {
+    /// The rows of a batch; empty for a list without rows.
+    pub fn batch(&self, batch: RowBatch) -> &[G] {
+        match batch {
             RowBatch::Interior(block) => self.interior(block),
             RowBatch::Interface(..) if self.rows == 0 => &[],
             RowBatch::Interface(colour, task) => self.interface(colour, task),
@@ -173,15 +175,15 @@ impl<G> RowList<G> {
     /// The interface rows of one task.
     pub fn interface(&self, colour: usize, task: usize) -> &[G] {
         let Range { start, end } = self.interface[colour].clone();
-        let from = start + task as u32 * CHUNK;
-        &self.groups[from as usize..end.min(from + CHUNK) as usize]
+        let from = start + task as u32 * GROUPS_PER_TASK;
+        &self.groups[from as usize..end.min(from + GROUPS_PER_TASK) as usize]
     }
 }
 
-/// Gives each row the lowest colour that none of its points has had.
+/// Greedy colouring: each row gets the lowest colour that none of its points has.
 struct Colours {
     first: u32,
-    /// Colours taken, per point, 64 at a time.
+    /// The colours of each point's rows, as bits, 64 colours at a time.
     taken: Vec<u64>,
 }
 
@@ -190,8 +192,8 @@ impl Colours {
         Self { first: blocks.first, taken: vec![0; blocks.points as usize] }
     }
 
-    /// The rows by colour. A fan of many rows round one point needs as many colours as it has rows: they are
-    /// given out 64 at a time.
+    /// The rows by colour. A fan of many rows round one point needs as many colours as it has rows, so colours are
+    /// assigned 64 at a time.
     fn sort<T: Row>(&mut self, rows: Vec<T>) -> std::vec::IntoIter<Vec<T>> {
         let mut colours: Vec<Vec<T>> = Vec::new();
         let mut left = rows;
@@ -236,8 +238,8 @@ mod tests {
         fn point(&self, k: usize) -> u32 {
             if k == 0 { self.0 } else { self.1 }
         }
-        fn idle(stand_in: u32) -> Self {
-            Pair(stand_in, stand_in)
+        fn idle(padding_point: u32) -> Self {
+            Pair(padding_point, padding_point)
         }
         fn group(rows: [Self; 4]) -> [Pair; 4] {
             rows
@@ -261,7 +263,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_point_lies_in_the_block_that_says_so(points in 1usize..10_000, first in 0u32..100) {
+        fn the_block_of_a_point_is_the_one_whose_range_contains_it(points in 1usize..10_000, first in 0u32..100) {
             let blocks = Blocks::new(first, points);
             for block in 0..blocks.len() {
                 prop_assert!(blocks.range(block).all(|point| blocks.of(point) == block as u32));
@@ -282,11 +284,11 @@ mod tests {
                 prop_assert!(list.interior(block).iter().flatten().filter(|p| p.0 < points as u32)
                     .all(|p| blocks.of(p.0) == block as u32 && blocks.of(p.1) == block as u32));
             }
-            let mut kept: Vec<_> = list.groups().iter().flatten().filter(|p| p.0 < points as u32).map(|p| (p.0, p.1)).collect();
+            let mut stored: Vec<_> = list.groups().iter().flatten().filter(|p| p.0 < points as u32).map(|p| (p.0, p.1)).collect();
             let mut given: Vec<_> = rows.iter().map(|p| (p.0, p.1)).collect();
-            kept.sort_unstable();
+            stored.sort_unstable();
             given.sort_unstable();
-            prop_assert_eq!(kept, given);
+            prop_assert_eq!(stored, given);
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Vertex maps per row: the factor of each link and hinge, laid out like the rows themselves, and those of the air per point.
+//! Vertex maps per row: the factor of each link and hinge, laid out like the rows themselves, and those of the air per
+//! point.
 
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
-//! A polygon mesh as the solver takes it: positions and faces, in the user's order.
+//! A polygon mesh: positions and faces, as the builder receives them.
 
 use nalgebra::Vector3;
 
-/// Polygons of any size, as one run of corners cut by offsets.
+/// Polygons of any size: one list of corners, with the offset of each face.
 ///
-/// Quads are kept as quads, because their diagonals become cross links (shear).
+/// Quads stay quads, because their diagonals become cross links (shear).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Faces {
     /// First corner of each face, and one past the last corner of the last: `len() + 1` entries.
@@ -53,12 +53,12 @@ impl Faces {
         (0..self.len()).map(|face| self.face(face))
     }
 
-    /// The corners of all faces in one run.
+    /// The corners of all faces in one list.
     pub fn corners(&self) -> &[u32] {
         &self.corners
     }
 
-    /// The faces cut into triangles: a fan round each polygon, a quad along its first diagonal.
+    /// The triangulated faces: a fan in each polygon, a quad along its first diagonal.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.iter().flat_map(|face| (2..face.len()).map(move |k| [face[0], face[k - 1], face[k]]))
     }
@@ -72,7 +72,7 @@ impl<'a> FromIterator<&'a [u32]> for Faces {
     }
 }
 
-/// A polygon mesh in world space. Lengths in metres.
+/// A polygon mesh in world space, in metres.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Surface {
     /// Positions of the points, in metres.

@@ -1,19 +1,19 @@
-//! A mesh taken apart into the simple lists the solver works on (§2.2, §2.4): edges, cross links of quads,
-//! seams between faces, and the areas and lengths that weigh them.
+//! The topology of a mesh as simple lists (§2.2, §2.4): edges, cross links of quads and seams between faces, with the
+//! areas and lengths that determine their stiffness and mass.
 
 use nalgebra::Vector3;
 
 use crate::model::surface::Surface;
 
-/// Two points to be kept at a distance, and how much cloth the link stands for.
+/// Two points at a rest length, and the cloth between them that the link stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
     /// The two points.
     pub ends: [u32; 2],
-    /// Distance at rest in metres.
+    /// Rest length in metres.
     pub rest_length: f64,
-    /// Length over width of the strip of cloth it stands for: a stiffness in N/m of the cloth, divided by
-    /// this, is the stiffness of the link.
+    /// Length over width of the strip of cloth that the link stands for. The stiffness of the cloth in N/m, divided by
+    /// it, is the stiffness of the link.
     pub slenderness: f64,
 }
 
@@ -26,38 +26,38 @@ pub struct Seam {
     pub faces: [u32; 2],
 }
 
-/// A line between two corners of a face, the lower first, and how much of the face's area it answers for.
+/// A line between two corners of a face, the lower index first, and the area of its strip of cloth in m².
 #[derive(Clone, Copy)]
 struct Line {
     ends: [u32; 2],
     strip: f64,
 }
 
-/// The edges of the mesh as links, each once, sorted by ends, and where `with_cross_links` the cross links after
-/// them: both diagonals of each quad (`addCrossLinks`), and of max polygons every line between two points that
-/// are not neighbours. A triangle has none.
+/// The edges of the mesh as links, each once, sorted by ends; then, `with_cross_links`, the cross links
+/// (`addCrossLinks`): both diagonals of each quad, and in larger polygons every line between two corners that are not
+/// neighbours. A triangle has none.
 ///
-/// A stiffness K of the cloth in N/m becomes one of K strip / l² of a link, where the strip is the area of cloth
-/// that the link answers for. The strips are such that the links together pull back with K along the edges of a
-/// grid, and in every direction in equilateral triangles and in squares with cross links, which then also narrow
-/// by a third of what they are stretched, and resist shear with 3/8 K.
+/// A stiffness K of the cloth in N/m gives a link the stiffness K strip / l², where the strip is the area of cloth that
+/// the link stands for. The strips are chosen so that the links together have the stiffness K along the edges of a
+/// grid, and in every direction in equilateral triangles and in squares with cross links. The latter then also have a
+/// Poisson's ratio of 1/3 and a shear stiffness of 3/8 K.
 pub fn stretch_links(surface: &Surface, with_cross_links: bool) -> Vec<Link> {
-    let mut links = joined(surface, sides(surface, with_cross_links));
+    let mut links = merged(surface, sides(surface, with_cross_links));
     if with_cross_links {
-        links.extend(joined(surface, diagonals(surface, strip_of_diagonal)));
+        links.extend(merged(surface, diagonals(surface, strip_of_diagonal)));
     }
     links
 }
 
-/// The cross links alone, each as long as it is wide: what `shearResistance` holds.
+/// The cross links without_cross_links, each as long as it is wide: the links of `shearResistance`.
 pub fn shear_links(surface: &Surface) -> Vec<Link> {
-    let mut links = joined(surface, diagonals(surface, |_, _, _| 0.0));
+    let mut links = merged(surface, diagonals(surface, |_, _, _| 0.0));
     links.iter_mut().for_each(|link| link.slenderness = 1.0);
     links
 }
 
-/// Lines as links: those between the same two points are one.
-fn joined(surface: &Surface, mut lines: Vec<Line>) -> Vec<Link> {
+/// The lines as links; lines between the same two points become one link.
+fn merged(surface: &Surface, mut lines: Vec<Line>) -> Vec<Link> {
     lines.sort_by_key(|line| line.ends);
     let strips = lines.chunk_by(|a, b| a.ends == b.ends);
     let link = |shared: &[Line]| {
@@ -74,15 +74,15 @@ fn sides(surface: &Surface, with_cross_links: bool) -> Vec<Line> {
     let mut sides = Vec::with_capacity(surface.faces.corners().len());
     for face in surface.faces.iter() {
         let area = polygon_area(surface, face);
-        // Sides alone cover every direction once and share twice the area; those of a triangle brace each other,
-        // and share it three times.
-        let alone = if face.len() == 3 { area } else { 2.0 * area / face.len() as f64 };
+        // Without cross links the sides cover every direction once and share twice the area; the sides of a triangle
+        // brace each other, and share it three times.
+        let without_cross_links = if face.len() == 3 { area } else { 2.0 * area / face.len() as f64 };
         let cell = (with_cross_links && face.len() == 4).then(|| Cell::of(surface, face));
         for (k, ends) in around(face).enumerate() {
             let strip = match (&cell, face.len()) {
                 (Some(cell), _) => cell.side(k % 2) * area / 2.0,
                 (None, 5..) if with_cross_links => polygon_strip(surface, face, ends),
-                _ => alone,
+                _ => without_cross_links,
             };
             sides.push(Line { ends, strip });
         }
@@ -103,7 +103,7 @@ fn strip_of_diagonal(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
     }
 }
 
-/// All links of a large polygon are as stiff, and their strips make three times its area.
+/// All links of a polygon of five or more corners have the same stiffness, and their strips have three times its area.
 fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
     let pairs = (1..face.len()).flat_map(|k| (0..k).map(move |j| [face[j], face[k]]));
     let squares: f64 = pairs.map(|pair| distance(surface, pair).powi(2)).sum();
@@ -114,10 +114,10 @@ fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
     }
 }
 
-/// A quad as a rectangle, which it mostly is: the squares of the cosines between its diagonal and its sides.
+/// A quad, approximated by a rectangle: the squares of the cosines between its diagonal and its sides.
 ///
-/// With diagonals of D = 3 c_x² c_y² of its area each, the cross stiffness is 6 c_x⁴ c_y⁴, that is 3/8 in a square;
-/// the sides get what is missing to pull back with exactly 1 along both of them.
+/// With strips of D = 3 c_x² c_y² of its area for each diagonal, the shear stiffness is 6 c_x⁴ c_y⁴, that is 3/8 in a
+/// square. The strips of the sides supply the remainder to a stiffness of exactly 1 along both of them.
 struct Cell {
     cosine: [f64; 2],
 }
@@ -160,7 +160,7 @@ fn diagonals(surface: &Surface, strip: impl Fn(&Surface, &[u32], [u32; 2]) -> f6
     lines
 }
 
-/// Where two faces share an edge. Where more than two do (not a manifold), each is joined to the next.
+/// The edges that two faces share. Where more than two do (a non-manifold edge), each face is joined to the next.
 pub fn seams(surface: &Surface) -> Vec<Seam> {
     let sides = (0..).zip(surface.faces.iter());
     let mut sides: Vec<([u32; 2], u32)> =
@@ -210,7 +210,7 @@ pub fn fan_triangles(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])
 }
 
-/// The edges of the triangulated mesh, each once, sorted: the edges that collide.
+/// The edges of the triangulated mesh, each once, sorted: the edges of contact.
 pub fn triangle_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
     let mut edges: Vec<_> = triangles.iter().flat_map(sides).collect();
@@ -219,7 +219,7 @@ pub fn triangle_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     edges
 }
 
-/// The area round each point in m²: a third of each triangle that meets there.
+/// The area of each point in m²: a third of each of its triangles.
 pub fn point_areas(surface: &Surface) -> Vec<f64> {
     let mut areas = vec![0.0; surface.positions.len()];
     for triangle in surface.faces.triangles() {
@@ -235,7 +235,7 @@ pub fn triangle_area(surface: &Surface, triangle: [u32; 3]) -> f64 {
     (b - a).cross(&(c - a)).norm() / 2.0
 }
 
-/// A link of no length has no direction, and one without faces no width: both get the width of their length.
+/// A link of zero length, or without faces, counts as long as it is wide.
 fn slenderness(length: f64, strip_area: f64) -> f64 {
     if length > 0.0 && strip_area > 0.0 { length * length / strip_area } else { 1.0 }
 }

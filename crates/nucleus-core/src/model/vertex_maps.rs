@@ -1,21 +1,21 @@
-//! Attributes that differ from point to point: a factor on each, column by column.
+//! Vertex maps: factors on attributes, point by point.
 //!
-//! An empty column is 1 everywhere: nothing is kept for it and no pass looks at it. A link or hinge takes the mean
-//! over its points. How strongly a sweep acts is told as a share, 0 to 1, of what the cloth's own attribute says:
-//! in the Classic reading there is no evaluation that does more than all.
+//! An empty map is 1 everywhere: it takes no memory, and no pass reads it. A link or hinge has the mean over its
+//! points. A factor on a resistance is a share, 0 to 1, of the cloth's attribute, because a Classic evaluation cannot
+//! remove more than the whole error.
 
 use crate::model::build_error::BuildError;
 
-/// Factors on attributes, point by point in the mesh's order.
+/// Factors on attributes, one per point in the mesh's order; an empty map is 1 everywhere.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct VertexMaps {
-    /// On the mass; above nought.
+    /// On the mass; above zero.
     pub mass: Vec<f64>,
-    /// Share of the resistance against being longer than at rest.
+    /// Share of the resistance of links longer than at rest, 0 to 1.
     pub stretch: Vec<f64>,
-    /// Share of the resistance against being shorter than at rest.
+    /// Share of the resistance of links shorter than at rest, 0 to 1.
     pub compression: Vec<f64>,
-    /// Share of the resistance against bending.
+    /// Share of the bend resistance, 0 to 1.
     pub bend: Vec<f64>,
     /// On the rest length of links.
     pub rest_length: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct VertexMaps {
     pub tangential_drag: Vec<f64>,
     /// On `lift`.
     pub lift: Vec<f64>,
-    /// On `thickness`; here and below, where an element touches, the mean by how near each of its points is.
+    /// On `thickness`. This and the following maps are interpolated at the contact point, by its barycentric weights.
     pub thickness: Vec<f64>,
     /// On `friction`.
     pub friction: Vec<f64>,
@@ -45,11 +45,11 @@ pub struct VertexMaps {
     pub deform: Vec<f64>,
 }
 
-/// Smaller shares than this are none: so soft a link is not there.
-const LEAST_SHARE: f64 = 1e-6;
+/// Smaller shares count as zero.
+const MIN_SHARE: f64 = 1e-6;
 
 impl VertexMaps {
-    /// Every column, with the least and the most it may hold.
+    /// Every map, with its name and range.
     fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 17] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
@@ -74,7 +74,7 @@ impl VertexMaps {
         ]
     }
 
-    /// Refuses columns that are not as long as the mesh has points, and factors that are out of range.
+    /// Refuses maps whose length is not the number of points, and factors out of range.
     pub(crate) fn check(&self, points: usize) -> Result<(), BuildError> {
         for (column, factors, [least, most]) in self.columns() {
             if !factors.is_empty() && factors.len() != points {
@@ -89,14 +89,14 @@ impl VertexMaps {
     }
 }
 
-/// The mean of a column over some points; 1 where there is no column.
+/// The mean of a map over some points; 1 for an empty map.
 pub(crate) fn mean(column: &[f64], points: impl ExactSizeIterator<Item = usize>) -> f64 {
     let count = points.len() as f64;
     if column.is_empty() { 1.0 } else { points.map(|point| column[point]).sum::<f64>() / count }
 }
 
-/// The same for shares.
+/// The mean of a map of shares; at most 1, and 0 below [`MIN_SHARE`].
 pub(crate) fn mean_share(column: &[f64], points: impl ExactSizeIterator<Item = usize>) -> f64 {
     let share = mean(column, points);
-    if share < LEAST_SHARE { 0.0 } else { share.min(1.0) }
+    if share < MIN_SHARE { 0.0 } else { share.min(1.0) }
 }

@@ -1,21 +1,21 @@
-//! Columns that several tasks write at once, each its own rows.
+//! A column that several tasks write at once, each in rows of its own.
 
 #![allow(unsafe_code)]
 
 use std::marker::PhantomData;
 
-/// A column lent to the tasks of a phase.
+/// A column that the tasks of a parallel loop borrow together.
 ///
-/// A phase is laid out so that no two of its tasks touch one row: tasks work on blocks of points that do not
-/// overlap, or on rows of one colour, which share no point. That is decided when the lists are built and
-/// checked there; the compiler cannot see it, hence the raw pointer.
+/// No two tasks of a loop touch the same row: tasks work on blocks of points that do not overlap, or on constraint rows
+/// of one colour, which share no point. Building the lists ensures it, and tests check it; the compiler cannot see it,
+/// hence the raw pointer.
 pub struct DisjointSlice<'a, T> {
     first: *mut T,
     len: usize,
     column: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: handing a row to another thread is handing over a `T`; see the type's note on disjointness.
+// SAFETY: each row is used by one thread at a time, like a `T` that is sent to it; see the type's note on disjointness.
 unsafe impl<T: Send> Sync for DisjointSlice<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: Send> Send for DisjointSlice<'_, T> {}
@@ -28,7 +28,7 @@ impl<T> Clone for DisjointSlice<'_, T> {
 impl<T> Copy for DisjointSlice<'_, T> {}
 
 impl<'a, T: Copy> DisjointSlice<'a, T> {
-    /// Lends a column.
+    /// Borrows a column.
     pub fn new(column: &'a mut [T]) -> Self {
         Self { first: column.as_mut_ptr(), len: column.len(), column: PhantomData }
     }
@@ -36,7 +36,7 @@ impl<'a, T: Copy> DisjointSlice<'a, T> {
     /// Reads a row.
     ///
     /// # Safety
-    /// `row` is inside the column, and no other task of this phase writes it.
+    /// `row` is inside the column, and no other task of this loop writes it.
     #[inline(always)]
     pub unsafe fn get(&self, row: u32) -> T {
         debug_assert!((row as usize) < self.len);
@@ -46,7 +46,7 @@ impl<'a, T: Copy> DisjointSlice<'a, T> {
     /// Writes a row.
     ///
     /// # Safety
-    /// `row` is inside the column, and no other task of this phase reads or writes it.
+    /// `row` is inside the column, and no other task of this loop reads or writes it.
     #[inline(always)]
     pub unsafe fn set(&self, row: u32, value: T) {
         debug_assert!((row as usize) < self.len);
@@ -56,7 +56,7 @@ impl<'a, T: Copy> DisjointSlice<'a, T> {
     /// A run of rows, to be read and written.
     ///
     /// # Safety
-    /// The run is inside the column, and no other task of this phase touches it.
+    /// The run is inside the column, and no other task of this loop touches it.
     #[inline(always)]
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn run(&self, rows: std::ops::Range<u32>) -> &mut [T] {

@@ -1,5 +1,10 @@
-//! Parallel loops with the same bits on any number of threads: a loop is cut into fixed tasks, and no two tasks of one
-//! loop write the same row.
+//! Parallel loops with the same bits on any number of threads: a loop has fixed tasks, and no two tasks of a loop write
+//! the same row.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | how idle threads claim tasks | [`thread_pool`] |
+//! | how tasks share a column | [`disjoint`] |
 
 pub mod disjoint;
 pub mod thread_pool;

@@ -23,11 +23,11 @@ type Work = *const (dyn Fn(usize) + Sync);
 const SPINS_BEFORE_YIELD: u32 = 2_000;
 const SPINS_BEFORE_SLEEP: u32 = 4_000;
 
-/// One word holds the number of the loop, how many tasks it has and which is next, so that one exchange claims a task.
+/// One word holds the number of the loop, its number of tasks and the next task, so that one exchange claims a task.
 const TASK_BITS: u32 = 20;
 const TASK_MASK: u64 = (1 << TASK_BITS) - 1;
 
-struct DisjointSlice {
+struct Shared {
     /// loop << 40 | tasks << 20 | next task.
     ticket: AtomicU64,
     /// Tasks of this loop that are finished.
@@ -35,29 +35,30 @@ struct DisjointSlice {
     work: UnsafeCell<Option<Work>>,
     /// A loop is running.
     is_busy: AtomicBool,
-    /// What the first task that panicked panicked with.
+    /// The payload of the first panic of a task.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
     closing: AtomicBool,
     sleepers: Mutex<usize>,
     wake: Condvar,
 }
 
-// SAFETY: `work` is written only by the caller that holds `is_busy`, while no task is open (see `ThreadPool::phase`), and read
-// only by holders of a claimed, unfinished task; the claim's acquire orders the read after the write.
-unsafe impl Sync for DisjointSlice {}
+// SAFETY: `work` is written only by the caller that holds `is_busy`, while no task is open (see
+// `ThreadPool::parallel_for`), and read only by holders of a claimed, unfinished task; the claim's acquire orders the
+// read after the write.
+unsafe impl Sync for Shared {}
 // SAFETY: the pointer in `work` is to a `Sync` closure that outlives the loop.
-unsafe impl Send for DisjointSlice {}
+unsafe impl Send for Shared {}
 
 /// Threads that run parallel loops together.
 pub struct ThreadPool {
-    shared: Arc<DisjointSlice>,
+    shared: Arc<Shared>,
     workers: Vec<JoinHandle<()>>,
 }
 
 impl ThreadPool {
     /// A pool of `threads` in all, the caller's own among them; zero counts as one.
     pub fn new(threads: usize) -> Self {
-        let shared = Arc::new(DisjointSlice {
+        let shared = Arc::new(Shared {
             ticket: AtomicU64::new(0),
             finished: AtomicUsize::new(0),
             work: UnsafeCell::new(None),
@@ -79,10 +80,10 @@ impl ThreadPool {
     /// Runs `work(0)` to `work(tasks - 1)`, in any order and in parallel, and returns when all are done.
     ///
     /// # Panics
-    /// With what a task panicked with, after all other tasks are done.
+    /// With the payload of a task's panic, after all other tasks are done.
     pub fn parallel_for(&self, tasks: usize, work: impl Fn(usize) + Sync) {
         assert!((tasks as u64) < TASK_MASK, "a loop has at most a million tasks");
-        // A task may begin a loop of its own: it runs on the thread of the task.
+        // A task may start a nested loop, which runs on the task's thread.
         if self.workers.is_empty() || tasks <= 1 || self.shared.is_busy.swap(true, Ordering::Acquire) {
             return (0..tasks).for_each(work);
         }
@@ -111,11 +112,12 @@ impl Drop for ThreadPool {
     }
 }
 
-impl DisjointSlice {
-    /// Opens the tasks of a loop; called by who holds `is_busy`.
+impl Shared {
+    /// Opens the tasks of a loop; the caller holds `is_busy`.
     fn open(&self, tasks: usize, work: &(dyn Fn(usize) + Sync)) {
-        // SAFETY: every task of the loop before is finished, so nobody reads `work` now; and `ThreadPool::phase` neither
-        // returns nor unwinds before every task of this loop is finished, so the closure outlives all its readers.
+        // SAFETY: every task of the loop before is finished, so no thread reads `work` now; and
+        // `ThreadPool::parallel_for` neither returns nor unwinds before every task of this loop is finished, so the
+        // closure outlives all its readers.
         unsafe { *self.work.get() = Some(std::mem::transmute::<&(dyn Fn(usize) + Sync), Work>(work)) };
         self.finished.store(0, Ordering::Relaxed);
         let number = (self.ticket.load(Ordering::Relaxed) >> (2 * TASK_BITS)) + 1;
@@ -124,7 +126,7 @@ impl DisjointSlice {
         self.wake_sleepers();
     }
 
-    /// Claims the next open task, if there is one, and does it.
+    /// Claims and runs the next open task, if there is one.
     fn do_one_task(&self) -> bool {
         let mut ticket = self.ticket.load(Ordering::Acquire);
         loop {
@@ -142,7 +144,7 @@ impl DisjointSlice {
     fn run(&self, task: usize) -> bool {
         // SAFETY: the claimed task is not finished, so its loop is still open and `work` points to its closure.
         let work = unsafe { (*self.work.get()).map(|work| &*work) };
-        // The caller resumes the panic, so nobody sees what the task left half done without knowing of it.
+        // The caller resumes the panic, so half-done work of the task is never used as a result.
         if let Some(work) = work
             && let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(task)))
         {
@@ -237,8 +239,8 @@ mod tests {
         }
     }
 
-    /// Runs a loop of 64 tasks of which some panic, each with its number; how many others ran, and with what the loop
-    /// panicked.
+    /// Runs a loop of 64 tasks of which some panic, each with its number. The number of others that ran, and the loop's
+    /// panic.
     fn panicking(pool: &ThreadPool, panics: fn(usize) -> bool) -> (usize, Option<usize>) {
         let ran = AtomicUsize::new(0);
         let run = || {

@@ -1,11 +1,11 @@
-//! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail; whatever it could
-//! not satisfy is counted here.
+//! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail;
+//! whatever it could not satisfy is counted here.
 
 use std::sync::atomic::Ordering::Relaxed;
 
 use nalgebra::Vector3;
 
-use crate::constraints::hinge::{HingeGroup, held};
+use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::Mutual;
@@ -18,7 +18,7 @@ use crate::model::ClothModel;
 use crate::output::StepReport;
 use crate::schedule::Schedule;
 use crate::schedule::resistance::PhysicalStiffness;
-use crate::solver::Solver;
+use crate::solver::{ContactSystem, Model, Solver};
 use crate::state::State;
 
 /// Strains are counted in `BINS` bins of this width; the last bin also has everything above.
@@ -32,21 +32,25 @@ pub fn report<R: Real>(
     schedule: &Schedule<R>,
     tally: &Tally,
 ) -> StepReport {
-    let (max_strain, strain_99) = strains(&solver.cloths, &solver.state, frame);
-    let (kinetic_energy, finite) = kinetic_energy(&solver.cloths, &solver.state);
+    let (max_strain, strain_99) = strains(&solver.model.cloths, &solver.state, frame);
+    let (kinetic_energy, finite) = kinetic_energy(&solver.model.cloths, &solver.state);
     StepReport {
         max_strain,
         strain_99,
         min_gap: smallest_gap(solver, frame, schedule),
         min_cloth_gap: smallest_cloth_gap(solver),
-        rest_limited: solver.mutual.as_ref().map_or(0, |mutual| mutual.active.count_rest_limited()),
+        rest_limited: solver.contact.mutual.as_ref().map_or(0, |mutual| mutual.active.count_rest_limited()),
         contacts: tally.contacts.load(Relaxed),
         candidate_pairs: tally.pairs.load(Relaxed),
         broad_phases: tally.broad_phases.load(Relaxed) as u32,
         pairs_reverted: tally.pairs_reverted.load(Relaxed),
         pairs_unresolved: tally.pairs_unresolved.load(Relaxed),
-        depenetrating: solver.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
-        intersections: solver.mutual.as_ref().map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
+        depenetrating: solver.contact.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
+        intersections: solver
+            .contact
+            .mutual
+            .as_ref()
+            .map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
         kinetic_energy,
         finite,
         ..StepReport::default()
@@ -133,8 +137,9 @@ fn hinge_energy<R: Real, const N: usize>(
     let energy = |(k, lane): (usize, usize)| {
         let group = &groups[k];
         let stiffness = stiffness * share_of(maps.get(k).map(|share| &share.above), lane);
-        let [rest, fold] = [group.rest, group.fold].map(|column| column[lane].to_f64());
-        stiffness * held(bending(state, group, lane), rest, fold)
+        let [rest, inverse_square_max] =
+            [group.rest, group.inverse_square_max].map(|column| column[lane].to_f64());
+        stiffness * energy_of_length(bending(state, group, lane), rest, inverse_square_max)
     };
     (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
 }
@@ -164,7 +169,9 @@ fn kinetic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>) -> (f64, 
 
 /// The smallest gap ratio of two elements of cloth.
 fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
-    let Solver { mutual: Some(mutual), state, maps, .. } = solver else { return f64::INFINITY };
+    let Solver { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = solver else {
+        return f64::INFINITY;
+    };
     let Mutual { active, terms, .. } = mutual;
     let closeness = active.closeness(&motion(state, terms, maps, 0.0));
     closeness.map_or(f64::INFINITY, R::to_f64)
@@ -172,7 +179,12 @@ fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
 
 /// The smallest gap ratio to a collider or the ground plane.
 fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> f64 {
-    let Solver { cloths, state, collider_states, pairs, terms, maps, .. } = solver;
+    let Solver {
+        state,
+        model: Model { cloths, .. },
+        contact: ContactSystem { collider_states, pairs, terms, maps, .. },
+        ..
+    } = solver;
     let mut least = smallest_ground_gap(cloths, state, frame);
     for list in pairs.iter() {
         let Some(terms) = terms[list.cloth * collider_states.len() + list.collider] else { continue };

@@ -1,4 +1,5 @@
-//! The passes of a frame: how long their lists are, and how often each is swept. A pass that a scene does not use is absent.
+//! The passes of a frame: how long their lists are, and how often each is swept. A pass that a scene does not use is
+//! absent.
 
 use crate::constraints::damp::Damping;
 use crate::contact::terms::Terms;
@@ -15,28 +16,29 @@ use crate::solver::Solver;
 pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> {
     let schedule = Schedule::<R>::new(frame);
     let steps = schedule.substeps * schedule.steps;
-    let points: usize = solver.cloths.iter().map(|cloth| cloth.points().len()).sum();
+    let points: usize = solver.model.cloths.iter().map(|cloth| cloth.points().len()).sum();
     let mut passes = vec![PassCost { name: "predict", rows: points, sweeps: f64::from(steps) }];
     let breathes = |(cloth, settings)| {
         let cloth: &ClothModel<R> = cloth;
         !cloth.triangles.is_empty() && AirForces::new(frame, settings, cloth.point_mass, schedule.h).is_some()
     };
-    let airy = solver.cloths.iter().zip(&frame.cloths).filter(|&pair| breathes(pair));
+    let airy = solver.model.cloths.iter().zip(&frame.cloths).filter(|&pair| breathes(pair));
     let in_air: usize = airy.map(|(cloth, _)| cloth.points().len()).sum();
     passes.push(PassCost { name: "air", rows: in_air, sweeps: f64::from(steps) });
     for name in ["stretch", "compress", "shear", "bend"] {
-        passes.push(sweeps_of(&solver.cloths, name, &schedule));
+        passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
     passes.extend(whole_passes(solver, frame, &schedule));
     let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
         let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
         cloth.damps && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
     };
-    let damped = solver.cloths.iter().zip(&frame.cloths).filter(damped);
+    let damped = solver.model.cloths.iter().zip(&frame.cloths).filter(damped);
     let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
     passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
     passes.extend(contact_passes(solver, frame, &schedule));
-    let factors: usize = solver.cloths.iter().map(ClothModel::factors).sum::<usize>() + solver.maps.len();
+    let factors: usize =
+        solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>() + solver.contact.maps.len();
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes
@@ -47,15 +49,15 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
     let steps = f64::from(schedule.substeps * schedule.steps);
     let cost = |name, wanted: fn(&WholeEffect) -> bool, length: fn(&ClothModel<R>) -> usize| {
         let sweeps: Vec<_> = schedule.wholes.iter().filter(|whole| wanted(&whole.effect)).collect();
-        let evaluations: usize = sweeps.iter().map(|whole| length(&solver.cloths[whole.cloth])).sum();
+        let evaluations: usize = sweeps.iter().map(|whole| length(&solver.model.cloths[whole.cloth])).sum();
         let mut cloths: Vec<usize> = sweeps.iter().map(|whole| whole.cloth).collect();
         cloths.sort_unstable();
         cloths.dedup();
-        let rows: usize = cloths.iter().map(|&cloth| length(&solver.cloths[cloth])).sum();
+        let rows: usize = cloths.iter().map(|&cloth| length(&solver.model.cloths[cloth])).sum();
         PassCost { name, rows, sweeps: evaluations as f64 / rows.max(1) as f64 * steps }
     };
     let sum = |length: &dyn Fn(&ClothModel<R>, &ClothFrame) -> usize| -> usize {
-        solver.cloths.iter().zip(&frame.cloths).map(|(cloth, settings)| length(cloth, settings)).sum()
+        solver.model.cloths.iter().zip(&frame.cloths).map(|(cloth, settings)| length(cloth, settings)).sum()
     };
     let yields = |cloth: &ClothModel<R>, settings: &ClothFrame| {
         let Bending { yield_sine, solver, .. } = settings.bending;
@@ -87,7 +89,7 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
     let steps = f64::from(schedule.substeps * schedule.steps);
     let rounds =
         |wanted: Pass| schedule.passes.iter().filter(|round| **round == wanted).count() as f64 * steps;
-    let (cloths, thickest) = (&frame.cloths, &solver.maps.thickest);
+    let (cloths, thickest) = (&frame.cloths, &solver.contact.maps.thickest);
     let at_colliders = |cloth: usize| {
         let with = |collider| Terms::<R>::with_collider(&cloths[cloth], collider, thickest[cloth]);
         frame.colliders.iter().filter_map(with).collect::<Vec<_>>()
@@ -96,15 +98,15 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
         let with = |ground| Terms::<R>::with_ground(&cloths[cloth], ground, thickest[cloth]);
         frame.plane.as_ref().and_then(with)
     };
-    let each_other = |cloth: usize| match solver.mutual {
+    let each_other = |cloth: usize| match solver.contact.mutual {
         Some(_) => solver.mutual_terms(frame, cloth),
         None => Vec::new(),
     };
     let elements = |cloth: usize| {
-        let skin = &solver.cloths[cloth].skin;
+        let skin = &solver.model.cloths[cloth].skin;
         skin.points.len() + skin.edges.len() + skin.triangles.len()
     };
-    let points = |cloth: usize| solver.cloths[cloth].points().len();
+    let points = |cloth: usize| solver.model.cloths[cloth].points().len();
     let all = 0..cloths.len();
     let with_any = |does: fn(&Terms<R>) -> bool| -> usize {
         let of = |cloth: &usize| {
@@ -161,8 +163,8 @@ fn sweeps_of<R: Real>(cloths: &[ClothModel<R>], name: &'static str, schedule: &S
     PassCost { name, rows, sweeps: if rows > 0 { evaluations / rows as f64 } else { 0.0 } }
 }
 
-/// Whether an effect has this name. A Classic sweep of links below their rest length is `compress`; a Physical sweep handles
-/// both sides and is `stretch`.
+/// Whether an effect has this name. A Classic sweep of links below their rest length is `compress`; a Physical sweep
+/// handles both sides and is `stretch`.
 fn named<R: Real>(effect: &Effect<R>, name: &str) -> bool {
     match effect {
         Effect::Stretch(strength) if strength.share.above == R::ZERO => name == "compress",

@@ -31,12 +31,12 @@ impl<R: Real> Solver<R> {
         max_speed: &[f64],
     ) -> u32 {
         let mut parts = 1.0f64;
-        for (at, collider) in self.collider_states.iter().enumerate() {
+        for (at, collider) in self.contact.collider_states.iter().enumerate() {
             let leap = collider.way * (span.to - span.from);
             if leap == 0.0 {
                 continue;
             }
-            for (index, cloth) in self.cloths.iter().enumerate() {
+            for (index, cloth) in self.model.cloths.iter().enumerate() {
                 let Some(terms) = &self.terms_of(index)[at] else { continue };
                 let edges = leap / cloth.edge_length;
                 let room = terms.thickness + max_speed[index] * schedule.h;
@@ -54,7 +54,7 @@ impl<R: Real> Solver<R> {
     /// The largest strain of any link of a cloth.
     fn largest_strain(&self, cloth: usize, rest_scale: f64) -> f64 {
         let rest_scale = R::from_f64(rest_scale);
-        let groups = self.cloths[cloth].stretch.groups().iter();
+        let groups = self.model.cloths[cloth].stretch.groups().iter();
         let strains = groups.flat_map(|group| group.strain(&self.state.displacement, rest_scale));
         strains.fold(R::ZERO, |most, strain| if strain > most { strain } else { most }).to_f64()
     }
@@ -62,7 +62,7 @@ impl<R: Real> Solver<R> {
     /// Whether a collider comes near a cloth in a time step, by the boxes round them.
     fn is_near(&self, cloth: usize, collider: &ColliderState, span: StepInterval, room: f64) -> bool {
         let place = |row: u32| Vector3::from(self.state.position(row));
-        let points = self.cloths[cloth].points();
+        let points = self.model.cloths[cloth].points();
         let first = place(points.start);
         let cloth =
             points.fold([first, first], |[low, high], row| [low.inf(&place(row)), high.sup(&place(row))]);

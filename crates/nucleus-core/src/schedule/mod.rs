@@ -1,8 +1,21 @@
-//! The order of things within a frame: substeps, time steps, and the sweeps of each, as data.
+//! The schedule of a frame, as data: substeps, time steps, and the passes of each.
 //!
-//! Effects are interleaved, not run one after the other, each as often as its resistance says (§2.2), and
-//! the last pass of a step is always collision. Classic: a substep is one time step with many sweeps.
-//! Physical: a substep is many time steps with one sweep of each effect.
+//! A resistance has two readings, chosen by [`ResistanceModel`]:
+//!
+//! * **Classic** (§2.2, §2.4 of the Nucleus paper): a count of evaluations in 1/24 s, shared among the substeps. A
+//!   substep is one time step. Its sweeps of all effects are interleaved, not run one effect after the other: the k-th
+//!   of n sweeps of an effect is due in the middle of the k-th of n equal parts of the substep.
+//! * **Physical** (small steps: Macklin et al. 2019): a stiffness. A substep has many time steps, each with one sweep
+//!   of every effect, which converges faster than as many sweeps of one step.
+//!
+//! A time step ends with the contact passes and the safeguard. All time steps of a frame have the same passes, because
+//! passes that change from step to step feed energy in. Adaptive substepping splits single time steps
+//! ([`Schedule::split`]): `adaptive.rs` finds how often, and the schedule says which passes and intervals that gives.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | what a resistance means, how counts are shared among substeps | [`resistance`] |
+//! | when a time step is split | `adaptive.rs` |
 
 mod adaptive;
 pub mod resistance;
@@ -18,23 +31,23 @@ use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, Pressure, Resist
 use crate::math::Real;
 use crate::schedule::resistance::{PhysicalStiffness, Share, share, steps};
 
-/// One pass of one effect over one cloth.
+/// One sweep of one effect over one cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sweep<R> {
     /// The cloth, by its index.
     pub cloth: usize,
-    /// What is swept.
+    /// The effect and its strength.
     pub effect: Effect<R>,
 }
 
-/// What a sweep does, and how strongly.
+/// An effect, with the strength of its sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effect<R> {
     /// Links along edges: stretch, compression or both.
     Stretch(LinkStrength<R>),
     /// Cross links of quads.
     Shear(LinkStrength<R>),
-    /// Hinges between faces.
+    /// Hinges between faces, and twists of quads.
     Bend(BendStrength<R>, AngleStrength<R>),
 }
 
@@ -58,22 +71,22 @@ pub enum WholeEffect {
     Attract(Option<f64>),
 }
 
-/// What comes next in a time step.
+/// One pass of a time step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pass {
-    /// These sweeps together, a run of [`Schedule::sweeps`].
+    /// A run of [`Schedule::sweeps`], swept together.
     Constraints(std::ops::Range<usize>),
     /// An effect on a whole cloth, of [`Schedule::wholes`].
     Whole(usize),
-    /// A pass over contacts of cloth with itself and other cloth.
+    /// One pass over the contacts of cloth with itself and with other cloth.
     ClothContact,
-    /// A pass over contacts with colliders and the plane.
+    /// One pass over the contacts with colliders and the ground plane.
     ColliderContact,
-    /// The proof that nothing passed anything.
+    /// The penetration safeguard.
     Safeguard,
 }
 
-/// Which way the rows of a list are swept.
+/// The order of the rows in a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// From the first to the last.
@@ -82,10 +95,10 @@ pub enum Direction {
     Backward,
 }
 
-/// Time steps that are swept one way before the direction turns, at least.
-const RUN: u32 = 16;
+/// Least number of time steps with one direction before it alternates.
+const MIN_RUN: u32 = 16;
 
-/// Everything a frame will do.
+/// The plan of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule<R> {
     /// Substeps in the frame.
@@ -100,7 +113,7 @@ pub struct Schedule<R> {
     pub sweeps: Vec<Sweep<R>>,
     /// All effects on whole cloths of a time step.
     pub wholes: Vec<WholeSweep>,
-    /// The rounds of a time step: the same in every one, for sweeps that change would feed energy in.
+    /// The passes of a time step, in order; the same in every one.
     pub passes: Vec<Pass>,
 }
 
@@ -132,26 +145,26 @@ impl<R: Real> Schedule<R> {
         Cow::Owned(split)
     }
 
-    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start of
-    /// the frame as if all were split alike, and its interval.
+    /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start
+    /// of the frame as if all were split alike, and its interval.
     pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, StepInterval)> + use<R> {
         let (span, splits) = (self.span(step), self.splits);
         (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
     }
 
-    /// Sets the sweeps and rounds of a time step.
+    /// Sets the sweeps and passes of a time step.
     fn plan(&mut self, frame: &FrameInput) {
         self.passes = match frame.resistance {
             ResistanceModel::Classic => classic(frame, self.h, &mut self.sweeps, &mut self.wholes),
             ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps, &mut self.wholes),
         };
         self.push_outwards(frame);
-        let meets = |cloth: &ClothFrame| cloth.self_collision.on;
-        let is_mutual = frame.cloths.len() > 1 || frame.cloths.iter().any(meets);
-        if !is_mutual {
-            self.passes.retain(|round| *round != Pass::ClothContact);
+        let self_collides = |cloth: &ClothFrame| cloth.self_collision.on;
+        let has_cloth_contact = frame.cloths.len() > 1 || frame.cloths.iter().any(self_collides);
+        if !has_cloth_contact {
+            self.passes.retain(|pass| *pass != Pass::ClothContact);
         }
-        if is_mutual || frame.colliders.iter().any(|collider| collider.collide) {
+        if has_cloth_contact || frame.colliders.iter().any(|collider| collider.collide) {
             self.passes.push(Pass::Safeguard);
         }
     }
@@ -165,25 +178,25 @@ impl<R: Real> Schedule<R> {
         }
     }
 
-    /// When in the frame a time step is.
+    /// The interval of a time step in the frame.
     pub fn span(&self, step: u32) -> StepInterval {
         let steps = f64::from(self.substeps * self.steps);
         let end_of_substep = f64::from(step / self.steps + 1) / f64::from(self.substeps);
         StepInterval { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
     }
 
-    /// Which way a time step sweeps, counted from the start of the frame.
+    /// The direction of the sweeps of a time step, counted from the start of the frame.
     ///
-    /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small part that turns modes
-    /// into each other, and feeds them. Where links close odd rings that part is there in every order, and an
-    /// undamped cloth is stirred, from rounding to 1 % of strain within a second. The order backward has the same
-    /// part with the other sign. Taken in runs of 4 to 32 steps the two cancel, and nothing grows; turned in every
-    /// step or two they drive the cloth at its own high tones, and it explodes. A frame of few steps has no room
-    /// for runs, and hardly stirs: it is swept one way.
+    /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small antisymmetric part, which
+    /// couples modes and feeds them energy. Where links form odd rings every order has that part, and an undamped cloth
+    /// is stirred, from rounding to 1 % of strain within a second. The backward order has the same part with the
+    /// opposite sign. In runs of 4 to 32 steps the two cancel, and nothing grows; alternated in every step or two they
+    /// excite the cloth at its highest frequencies, and it explodes. A frame of few steps has no room for runs, and
+    /// hardly stirs: all its sweeps are forward.
     pub fn direction(&self, step: u32) -> Direction {
         let steps = self.substeps * self.steps;
-        // As many runs one way as the other.
-        let runs = steps / (2 * RUN) * 2;
+        // As many runs forward as backward.
+        let runs = steps / (2 * MIN_RUN) * 2;
         let run = u64::from(step) * u64::from(runs) / u64::from(steps);
         if run % 2 == 1 { Direction::Backward } else { Direction::Forward }
     }
@@ -198,7 +211,7 @@ pub struct TimeStep<'a, R> {
     pub schedule: &'a Schedule<R>,
     /// Counted from the start of the frame.
     pub index: u32,
-    /// When in the frame it is.
+    /// Its interval in the frame.
     pub span: StepInterval,
     /// The direction of its sweeps.
     pub direction: Direction,
@@ -206,7 +219,7 @@ pub struct TimeStep<'a, R> {
     pub max_speeds: &'a [f64],
 }
 
-/// When a time step is, in shares of the frame.
+/// The interval of a time step, in shares of the frame (0 to 1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepInterval {
     /// Its start.
@@ -218,7 +231,7 @@ pub struct StepInterval {
 }
 
 impl StepInterval {
-    /// One of so many equal parts.
+    /// The `part`th of so many equal parts.
     pub fn part(self, part: u32, parts: u32) -> Self {
         let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);
         let to = if part + 1 == parts { self.to } else { cut(part + 1) };
@@ -226,63 +239,64 @@ impl StepInterval {
     }
 }
 
-/// All passes of a substep in the order of the moments at which they are due: the k-th of n sweeps in the
-/// middle of its n-th part, the k-th of n collision passes at the end of its.
+/// The passes of a Classic substep in the order of their due times: the k-th of n sweeps is due in the middle of the
+/// k-th of n equal parts of the substep, the k-th of n contact passes at its end.
 fn classic<R: Real>(
     frame: &FrameInput,
     substep: f64,
     sweeps: &mut Vec<Sweep<R>>,
     wholes: &mut Vec<WholeSweep>,
 ) -> Vec<Pass> {
-    let mut due: Vec<(f64, Due<R>)> = Vec::new();
+    let mut due: Vec<(f64, PassOrSweep<R>)> = Vec::new();
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         for (count, effect) in classic_effects(settings) {
             let Share { sweeps, strength } = share(count, substep);
             let effect = effect(R::from_f64(strength));
-            let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
-            due.extend((0..sweeps).map(|k| (moment(k), Due::Sweep(Sweep { cloth, effect }))));
+            let due_time = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
+            due.extend((0..sweeps).map(|k| (due_time(k), PassOrSweep::Sweep(Sweep { cloth, effect }))));
         }
         for (count, effect) in classic_wholes(settings, substep) {
             let moment = |k: u32| (f64::from(k) + 0.5) / f64::from(count);
-            due.extend((0..count).map(|k| (moment(k), Due::Whole(WholeSweep { cloth, effect }))));
+            due.extend((0..count).map(|k| (moment(k), PassOrSweep::Whole(WholeSweep { cloth, effect }))));
         }
     }
-    let mut passes = |count: f64, round: Pass| {
+    let mut passes = |count: f64, pass: Pass| {
         let passes = share(count, substep).sweeps.max(1);
-        due.extend((1..=passes).map(|k| (f64::from(k) / f64::from(passes), Due::Pass(round.clone()))));
+        due.extend((1..=passes).map(|k| (f64::from(k) / f64::from(passes), PassOrSweep::Pass(pass.clone()))));
     };
     passes(frame.self_collision_iterations, Pass::ClothContact);
     passes(frame.collision_iterations, Pass::ColliderContact);
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut rounds = Vec::new();
+    let mut passes = Vec::new();
     for (_, next) in due {
         match next {
-            Due::Sweep(sweep) => {
-                rounds.push(Pass::Constraints(sweeps.len()..sweeps.len() + 1));
+            PassOrSweep::Sweep(sweep) => {
+                passes.push(Pass::Constraints(sweeps.len()..sweeps.len() + 1));
                 sweeps.push(sweep);
             }
-            Due::Whole(whole) => {
-                rounds.push(Pass::Whole(wholes.len()));
+            PassOrSweep::Whole(whole) => {
+                passes.push(Pass::Whole(wholes.len()));
                 wholes.push(whole);
             }
-            Due::Pass(round) => rounds.push(round),
+            PassOrSweep::Pass(pass) => passes.push(pass),
         }
     }
-    rounds
+    passes
 }
 
-/// What is due at a moment of a substep.
-enum Due<R> {
+/// An entry of the Classic schedule, before sweeps become passes.
+enum PassOrSweep<R> {
     Sweep(Sweep<R>),
     Whole(WholeSweep),
     Pass(Pass),
 }
 
-/// What makes an effect of a strength.
-type Strengthen<R> = Box<dyn Fn(R) -> Effect<R>>;
+/// Makes an effect from its strength.
+type EffectOfStrength<R> = Box<dyn Fn(R) -> Effect<R>>;
 
-/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each its own side.
-fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, Strengthen<R>); 4] {
+/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each on its own side of
+/// rest.
+fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, EffectOfStrength<R>); 4] {
     let rest_scale = R::from_f64(cloth.rest_length_scale);
     let rigid = Sides { above: R::ZERO, below: R::ZERO };
     let angles = angle_strength(cloth);
@@ -318,10 +332,10 @@ fn classic_wholes(cloth: &ClothFrame, substep: f64) -> Vec<(u32, WholeEffect)> {
     wholes
 }
 
-/// One sweep of every effect, then collision.
+/// The passes of a Physical time step: one sweep of every effect, then contact.
 ///
-/// Bending too is swept in every step, although it is soft: swept in every fourth for four, it takes away a
-/// bend at once, the velocity carries on for three steps more, and fine meshes of triangles boil.
+/// Bending is swept in every step too, although it is soft. Swept in every fourth step with four times the strength, it
+/// removes a bend at once, the velocity continues for three steps more, and fine meshes of triangles become noisy.
 fn physical<R: Real>(
     frame: &FrameInput,
     h: f64,
@@ -368,7 +382,7 @@ fn angle_strength<R: Real>(cloth: &ClothFrame) -> AngleStrength<R> {
     }
 }
 
-/// Links as stiff as two numbers in N/m say; a side without stiffness is left alone.
+/// The strength of links with these stiffnesses in N/m; a side without stiffness is not corrected.
 fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -> LinkStrength<R> {
     let side = |stiffness: f64| match stiffness > 0.0 {
         true => (R::ONE, compliance(stiffness, h)),
@@ -382,11 +396,11 @@ fn physical_links<R: Real>(cloth: &ClothFrame, above: f64, below: f64, h: f64) -
     }
 }
 
-/// 1 / (stiffness h²), but never so much that it is no number in `f32`: a resistance that is keyed down to
-/// nought passes through all sizes.
+/// 1 / (stiffness h²), bounded so that it is finite in `f32`: a resistance that is keyed down to zero passes through
+/// all sizes.
 fn compliance<R: Real>(stiffness: f64, h: f64) -> R {
-    const SOFTEST: f64 = 1e30;
-    R::from_f64((1.0 / (stiffness * h * h)).min(SOFTEST))
+    const MAX_COMPLIANCE: f64 = 1e30;
+    R::from_f64((1.0 / (stiffness * h * h)).min(MAX_COMPLIANCE))
 }
 
 #[cfg(test)]
@@ -398,7 +412,8 @@ mod tests {
         FrameInput { substeps, cloths: vec![cloth], ..FrameInput::default() }
     }
 
-    /// The rounds of a step as letters: stretch, compress, shear, bend, Collide.
+    /// The passes of a step as letters: stretch (s), compress (c), shear (h), bend (b), collider contact (C), cloth
+    /// contact (M), safeguard (S).
     fn letters(schedule: &Schedule<f64>) -> String {
         let letter = |sweep: &Sweep<f64>| match sweep.effect {
             Effect::Stretch(strength) if strength.share.above == 0.0 => 'c',
@@ -406,7 +421,7 @@ mod tests {
             Effect::Shear(_) => 'h',
             Effect::Bend(..) => 'b',
         };
-        let round = |round: &Pass| match round {
+        let pass = |pass: &Pass| match pass {
             Pass::Constraints(sweeps) => schedule.sweeps[sweeps.clone()].iter().map(letter).collect(),
             Pass::Whole(at) => String::from(match schedule.wholes[*at].effect {
                 WholeEffect::Pressure => "P",
@@ -417,7 +432,7 @@ mod tests {
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),
         };
-        schedule.passes.iter().map(round).collect()
+        schedule.passes.iter().map(pass).collect()
     }
 
     // EVIDENCE: N2.2-1  attributes say how often each effect is evaluated
@@ -435,7 +450,7 @@ mod tests {
         assert_eq!(letters(&Schedule::new(&frame(1, cloth))), "scCshCscCsC");
     }
 
-    /// A frame of two cloths that meet each other and a collider, and have every resistance.
+    /// A frame of two cloths that collide with each other and with a collider, and have every resistance.
     fn in_contact(substeps: u32, resistance: ResistanceModel) -> FrameInput {
         let cloth = ClothFrame { shear_resistance: 3.0, bend_resistance: 7.0, ..ClothFrame::default() };
         let colliders = vec![ColliderFrame { collide: true, ..ColliderFrame::default() }];
@@ -469,7 +484,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_resistance_is_never_swept() {
+    fn an_effect_without_resistance_is_never_swept() {
         let cloth = ClothFrame { bend_resistance: 0.0, shear_resistance: 0.0, ..ClothFrame::default() };
         let letters = letters(&Schedule::new(&frame(3, cloth)));
         assert!(!letters.contains(['b', 'h']), "{letters}");

@@ -1,37 +1,36 @@
-//! What the number of a resistance means, in its two readings.
+//! The meaning of a resistance, in its two readings.
 //!
-//! *Classic* (§2.2, §2.4): a count of evaluations in 1/24 s. It is shared among the substeps; where a substep
-//! would get less than one, it gets one that does less. How stiff the cloth becomes is a consequence of mesh
-//! and substeps: see [`classic_stiffness`].
+//! *Classic* (§2.2, §2.4): a count of evaluations in 1/24 s, shared among the substeps. A substep whose share is below
+//! one gets one evaluation of less strength. The stiffness of the cloth follows from mesh and substeps: see
+//! [`classic_stiffness`].
 //!
-//! *Physical*: a stiffness. The cloth is the same on every mesh and at every setting; what a setting changes
-//! is the error.
+//! *Physical*: a stiffness. The cloth is the same on every mesh and at every setting; a setting changes only the error.
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame};
 
-/// N/m of membrane stiffness for a stretch, compression or shear resistance of 1. The default of 20 is then
-/// 10 kN/m, a usual woven cloth.
+/// Membrane stiffness in N/m of a stretch, compression or shear resistance of 1. The default of 20 is then 10 kN/m, a
+/// usual woven cloth.
 pub const STIFFNESS_PER_RESISTANCE: f64 = 500.0;
 
-/// N·m of bending stiffness for a bend resistance of 1. The presets for T-shirt (0.1), denim (0.4) and
-/// leather (10) are then 1e-5, 4e-5 and 1e-3 N·m, as such cloths are.
+/// Bending stiffness in N·m of a bend resistance of 1. The presets for T-shirt (0.1), denim (0.4) and leather (10) are
+/// then 1e-5, 4e-5 and 1e-3 N·m, the magnitudes of such cloths.
 pub const BENDING_PER_RESISTANCE: f64 = 1e-4;
 
-/// What a cloth's resistances come to in the Physical reading, in SI units.
+/// The stiffnesses of a cloth in the Physical reading, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhysicalStiffness {
-    /// N/m against being longer than at rest.
+    /// In N/m, of links longer than at rest.
     pub stretch: f64,
-    /// N/m against being shorter than at rest.
+    /// In N/m, of links shorter than at rest.
     pub compression: f64,
-    /// N/m against shear, on top of cross links.
+    /// In N/m, against shear, in addition to that of cross links.
     pub shear: f64,
-    /// N·m against bending.
+    /// In N·m, against bending.
     pub bend: f64,
 }
 
 impl PhysicalStiffness {
-    /// A stiffness that is given counts as it is; else it is the resistance times its unit.
+    /// A stiffness that is given counts; otherwise it is the resistance times its unit.
     pub fn of(cloth: &ClothFrame) -> Self {
         let given = &cloth.stiffness;
         let or = |given: Option<f64>, resistance: f64, unit: f64| given.unwrap_or(resistance * unit).max(0.0);
@@ -44,27 +43,27 @@ impl PhysicalStiffness {
     }
 }
 
-/// Most evaluations of one effect in a substep, whatever the scene asks for (`maxIterations`).
-const MOST_SWEEPS: f64 = 10_000.0;
+/// Upper limit of the evaluations of one effect in a substep (`maxIterations`).
+const MAX_SWEEPS: f64 = 10_000.0;
 
 /// An effect's share of one substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Share {
-    /// How often it is evaluated.
+    /// Number of evaluations.
     pub sweeps: u32,
-    /// How much each evaluation does, at most 1.
+    /// Strength of each evaluation, at most 1.
     pub strength: f64,
 }
 
-/// Shares a count per 1/24 s among substeps of `substep` seconds (§2.4): 10 is 10 evaluations at 1 substep,
-/// 5 at 2, 1 at 10, and 1 of half the strength at 20. The same in every substep: changing sweeps from one
-/// to the next would feed energy in.
+/// Shares a count per 1/24 s among substeps of `substep` seconds (§2.4): 10 is 10 evaluations at 1 substep, 5 at 2, 1
+/// at 10, and 1 of half the strength at 20. Every substep gets the same: sweeps that change from one to the next feed
+/// energy in.
 pub fn share(count: f64, substep: f64) -> Share {
-    let wanted = (count * substep / COUNT_PERIOD).clamp(0.0, MOST_SWEEPS);
+    let wanted = (count * substep / COUNT_PERIOD).clamp(0.0, MAX_SWEEPS);
     if wanted <= 0.0 {
         return Share { sweeps: 0, strength: 0.0 };
     }
-    // Not a whole number only by rounding counts as whole.
+    // A number that misses a whole one by rounding counts as whole.
     let sweeps = (wanted - 1e-9).ceil().max(1.0);
     Share { sweeps: sweeps as u32, strength: (wanted / sweeps).min(1.0) }
 }
@@ -74,9 +73,8 @@ pub fn steps(evaluations: f64, substep: f64) -> u32 {
     share(evaluations, substep).sweeps.max(1)
 }
 
-/// The membrane stiffness in N/m that a Classic resistance amounts to, about: K = 3.5 n ρ d² / h², where n
-/// evaluations in a substep of h seconds act on points of ρ d² kilograms. Measured for coloured sweeps, the
-/// factor is between 3.4 and 4.5.
+/// Approximate membrane stiffness in N/m of a Classic resistance: K = 3.5 n ρ d² / h², where n evaluations in a substep
+/// of h seconds act on points of ρ d² kilograms. Measured for coloured sweeps, the factor is between 3.4 and 4.5.
 pub fn classic_stiffness(resistance: f64, substep: f64, point_mass: f64) -> f64 {
     let Share { sweeps, strength } = share(resistance, substep);
     3.5 * f64::from(sweeps) * strength * point_mass / (substep * substep)
@@ -93,7 +91,7 @@ mod tests {
     // EVIDENCE: N2.4-11  10 is 10 at one substep, 5 each at 2, 1 each at 10, 1 weakened each at 20
     // EVIDENCE: N2.2-8  a count is per 1/24 s
     #[test]
-    fn a_resistance_of_ten_is_shared_as_the_paper_says() {
+    fn a_resistance_of_ten_is_shared_among_substeps_as_in_the_paper() {
         assert_eq!(per_frame(10.0, 1), Share { sweeps: 10, strength: 1.0 });
         assert_eq!(per_frame(10.0, 2), Share { sweeps: 5, strength: 1.0 });
         assert_eq!(per_frame(10.0, 10), Share { sweeps: 1, strength: 1.0 });
@@ -103,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_overall_resistance_does_not_depend_on_the_substeps() {
+    fn sweeps_times_strength_per_frame_do_not_depend_on_the_substeps() {
         for count in [0.1, 2.5, 10.0, 20.0, 333.0] {
             for substeps in 1..60 {
                 let Share { sweeps, strength } = per_frame(count, substeps);
@@ -115,13 +113,13 @@ mod tests {
     }
 
     #[test]
-    fn at_another_frame_rate_a_frame_gets_its_part_of_the_count() {
+    fn a_count_is_per_film_frame_at_any_frame_rate() {
         assert_eq!(share(10.0, 1.0 / 48.0).sweeps, 5);
         assert_eq!(share(10.0, 1.0 / 12.0).sweeps, 20);
     }
 
     #[test]
-    fn a_resistance_of_nought_is_never_evaluated() {
+    fn a_resistance_of_zero_is_never_evaluated() {
         assert_eq!(per_frame(0.0, 3), Share { sweeps: 0, strength: 0.0 });
         assert_eq!(per_frame(-1.0, 3), Share { sweeps: 0, strength: 0.0 });
     }

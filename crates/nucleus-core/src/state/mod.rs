@@ -1,8 +1,8 @@
-//! All that changes: copy it and you can go on from here.
+//! The state: the columns that a frame changes.
 //!
-//! Positions are an `f32` displacement from an `f64` anchor that is set anew at each frame, and velocity is
-//! kept and corrected, never taken from large positions. With plain `f32` positions a body 10 units up stops
-//! falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
+//! A position is a displacement, in the solver's scalar, from an `f64` anchor that moves to the point at the start of
+//! each frame. A velocity is stored and corrected, never derived from large positions. With plain `f32` positions a
+//! body 10 units up stops falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
 
 pub mod kinematics;
 
@@ -12,28 +12,29 @@ use crate::math::{Real, Row4, sub};
 use crate::model::ClothModel;
 use crate::model::builder::{Cloth, point_masses};
 
-/// The points of all cloths, in the solver's places.
+/// The points of all cloths, in the solver's order; positions in world space.
 #[derive(Debug, Clone)]
 pub struct State<R> {
-    /// Where each point was at the start of the frame, in metres. Written when a frame begins.
+    /// Position at the start of the frame, in metres. Written when a frame begins.
     pub anchor: Vec<[f64; 3]>,
-    /// Displacement from the anchor in metres, and the inverse mass in 1/kg that holds in this frame (0: pinned).
+    /// Displacement from the anchor in metres, and inverse mass in 1/kg in this frame (0: pinned).
     pub displacement: Vec<Row4<R>>,
     /// Velocity in m/s.
     pub velocity: Vec<Row4<R>>,
-    /// Displacement at the start of the time step; empty where nothing can be met.
+    /// Displacement at the start of the time step, in metres; empty where no contact is possible.
     pub start: Vec<Row4<R>>,
-    /// How far colliders led the point in the time step, in metres: a motion without velocity. Empty where nothing can be
-    /// met.
+    /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where
+    /// no contact is possible.
     pub led: Vec<Row4<R>>,
-    /// How far contacts with cloth led the point in the time step, in metres: as little a velocity, but what a collider takes
-    /// back of it is one, for what is between the two has to bear the load. Empty where nothing can be met.
+    /// Displacement by depenetration from cloth in the time step, in metres: a motion without velocity. The part that a
+    /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
+    /// is possible.
     pub parted: Vec<Row4<R>>,
     /// Length of the last time step in seconds.
     pub step_length: f64,
-    /// Displacement before anything held the point. Written by predict, read by velocity.
+    /// Displacement before constraints and contacts, in metres. Written by prediction, read by the velocity update.
     pub predicted: Vec<Row4<R>>,
-    /// Normal of unit length; empty where no air is felt. Written once per substep.
+    /// Normal of unit length; empty where no cloth feels air. Written once per substep.
     pub normal: Vec<Row4<R>>,
     /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
     pub area: Vec<Row4<R>>,
@@ -45,12 +46,12 @@ pub struct State<R> {
     pub chambers: Vec<Chamber>,
     /// The rotation of each shell of each cloth that keeps its shape, as a quaternion x, y, z, w.
     pub rotations: Vec<[f64; 4]>,
-    /// Inverse mass in 1/kg of the point when it is free.
+    /// Inverse mass in 1/kg of the unpinned point.
     pub inverse_mass: Vec<R>,
 }
 
 impl<R: Real> State<R> {
-    /// Columns for all cloths, everything at rest where the meshes are. Stand-ins have no mass.
+    /// Columns for all cloths, at the start that each cloth gives. Padding points have no mass.
     pub fn new(cloths: &[Cloth], models: &[ClothModel<R>]) -> Self {
         let rows = models.last().map_or(0, |last| last.points().start + last.blocks.columns()) as usize;
         let air = models.iter().any(|model| !model.triangles.is_empty());
@@ -79,21 +80,22 @@ impl<R: Real> State<R> {
                 if let Some(velocity) = cloth.start.velocities.get(point) {
                     state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
                 }
-                // The point of a sliver weighs next to nothing: still a number in `f32`, and never pinned by rounding.
+                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins
+                // it.
                 state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
             }
         }
         state
     }
 
-    /// Where a point is, in metres.
+    /// The position of a point in metres, in world space.
     pub fn position(&self, row: u32) -> [f64; 3] {
         let (anchor, moved) = (self.anchor[row as usize], self.displacement[row as usize].0);
         std::array::from_fn(|axis| anchor[axis] + moved[axis].to_f64())
     }
 
-    /// How fast a point moves, in m/s: its velocity, or how it moved in the last time step where contacts led it. What lies
-    /// still has a velocity there that contacts undo in every step.
+    /// The velocity of a point in m/s, for observers: where contacts displaced the point without velocity, its motion
+    /// in the last time step. Resting cloth has a stored velocity there that contacts cancel in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
         let row = row as usize;
         let is_led = |column: &[Row4<R>]| column.get(row).is_some_and(|led| led.xyz() != [R::ZERO; 3]);
@@ -104,7 +106,7 @@ impl<R: Real> State<R> {
         self.velocity[row].xyz().map(R::to_f64)
     }
 
-    /// A fingerprint of all positions and velocities: equal bits, equal hash (FNV-1a over words).
+    /// A hash of all positions and velocities: equal bits give equal hashes.
     pub fn hash(&self) -> u64 {
         let words = |row: &Row4<R>| row.xyz().map(R::to_bits);
         let anchors = self.anchor.iter().flatten().map(|x| x.to_bits());

@@ -54,11 +54,10 @@ pub fn sphere(radius: f64, centre: Vec3) -> Surface {
     surface
 }
 
-/// The least distance from the centre of any point of [`sphere`]'s surface, over its radius: within it a point
-/// is inside for certain.
+/// Radius of the largest ball inside [`sphere`]'s faces, over its radius: every point within it is inside the mesh.
 pub const INSCRIBED: f64 = 0.993;
 
-/// A frame at 24 per second in which a cloth feels gravity and nothing else.
+/// A frame of 1/24 s with a cloth under gravity only.
 pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
     FrameInput {
         duration: COUNT_PERIOD,
@@ -78,12 +77,12 @@ pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
     }
 }
 
-/// The ground at height nought.
+/// The ground plane at height zero.
 pub fn ground(friction: f64) -> GroundPlane {
     GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction, stickiness: 0.0 }
 }
 
-/// A cloth without damping, drag or bending, as stiff against compression as against stretch.
+/// A cloth without damping, drag or bending, equally stiff in compression and stretch.
 pub fn still() -> ClothFrame {
     ClothFrame {
         compression_resistance: 20.0,
@@ -125,7 +124,7 @@ pub fn drape(points: u32, evaluations: f64) -> (ModelBuilder, FrameInput) {
     (builder, frame)
 }
 
-/// The objects of [`drape`], put elsewhere.
+/// The objects of [`drape`], with transformed positions.
 pub fn drape_placed(points: u32, place: impl Fn(Vec3) -> Vec3) -> ModelBuilder {
     let mut sheet = grid(points, points, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| *p = place(*p + Vec3::new(-0.5, 0.35, -0.5)));

@@ -1,4 +1,4 @@
-//! What a frame brings that is no number costs nothing but itself.
+//! An invalid value in the input of a frame is replaced and reported; the rest of the frame is solved as usual.
 
 mod scenes;
 
@@ -7,13 +7,13 @@ use nucleus_core::{
 };
 use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 
-/// The ball's points when it has risen so far.
+/// The points of the ball at this height in metres.
 fn ball(height: f64) -> Vec<Vec3> {
     scenes::sphere(0.31, Vec3::y() * height).positions
 }
 
-/// A solver over some frames; `plant` may spoil what the sixth brings. The hash of its state at the end, and what was
-/// refused.
+/// Runs a solver for twelve frames; `plant` may change the input of the sixth. The hash of the state at the end, the
+/// number of replaced values and the first of them, and whether every state was finite.
 fn run(mut plant: impl FnMut(&mut FrameInput)) -> (u64, u64, Option<InvalidInput>, bool) {
     let (builder, mut usual) = drape(9, 24.0);
     let mut solver: Solver = Solver::new(builder, 1);
@@ -34,17 +34,17 @@ fn run(mut plant: impl FnMut(&mut FrameInput)) -> (u64, u64, Option<InvalidInput
 }
 
 #[test]
-fn a_good_frame_is_refused_nothing() {
+fn no_value_of_a_valid_frame_is_replaced() {
     let (_, count, first, finite) = run(|_| {});
     assert_eq!((count, first, finite), (0, None, true));
 }
 
 #[test]
-fn a_collider_point_that_is_no_number_stays_where_it_was() {
+fn an_invalid_collider_point_keeps_its_last_position() {
     for bad in [f64::NAN, f64::INFINITY, -2.0 * MAX_COORDINATE] {
         let held = run(|input| input.colliders[0].end[17] = ball(0.04)[17]);
         let planted = run(|input| input.colliders[0].end[17].z = bad);
-        assert_eq!(planted.0, held.0, "as if the point had been held, bit for bit");
+        assert_eq!(planted.0, held.0, "the same bits as with a fixed point");
         assert_eq!(planted.1, 1);
         assert_eq!(planted.2, Some(InvalidInput::ColliderPoint(ColliderId(0), PointId(17))));
         assert!(planted.3);
@@ -52,13 +52,13 @@ fn a_collider_point_that_is_no_number_stays_where_it_was() {
 }
 
 #[test]
-fn a_collider_with_the_wrong_number_of_points_stands_still() {
+fn a_collider_with_the_wrong_number_of_points_does_not_move() {
     let (_, count, first, finite) = run(|input| input.colliders[0].end.truncate(3));
     assert_eq!((count, first, finite), (1, Some(InvalidInput::ColliderMotion(ColliderId(0))), true));
 }
 
 #[test]
-fn attributes_that_are_no_numbers_are_named_and_left_out() {
+fn invalid_attributes_are_replaced_and_reported_with_their_object() {
     let (_, _, first, finite) = run(|input| input.cloths[0].thickness = f64::NAN);
     assert_eq!((first, finite), (Some(InvalidInput::Cloth(ClothId(0))), true));
     let (_, _, first, finite) = run(|input| input.gravity.x = f64::NAN);
@@ -68,7 +68,7 @@ fn attributes_that_are_no_numbers_are_named_and_left_out() {
 }
 
 #[test]
-fn a_frame_without_a_length_changes_nothing() {
+fn a_frame_without_a_valid_duration_changes_nothing() {
     for duration in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let (builder, input) = drape(9, 24.0);
         let mut solver: Solver = Solver::new(builder, 1);
@@ -81,7 +81,7 @@ fn a_frame_without_a_length_changes_nothing() {
 }
 
 #[test]
-fn a_pin_that_is_no_number_holds_its_point_where_it_is() {
+fn an_invalid_pin_holds_its_point_at_its_current_position() {
     let sheet = grid(5, 5, Vec3::x(), Vec3::y());
     let mut input = frame(3, physical(24.0));
     input.pins = pins(&sheet, [20, 24]);

@@ -1,4 +1,4 @@
-//! Attributes that differ from point to point.
+//! Vertex maps: factors on attributes, point by point; and the start of a cloth.
 
 mod scenes;
 
@@ -13,7 +13,7 @@ const SIDE: u32 = 9;
 const PATCH: usize = 81;
 const AIRY: ClothLists = ClothLists { self_collision: false, ..ClothLists::ALL };
 
-/// Two sheets of 1 m that have nothing to do with each other, as one mesh.
+/// Two unconnected sheets of 1 m, as one mesh.
 fn two_sheets() -> Surface {
     let mut sheets = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
     let other = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
@@ -25,12 +25,12 @@ fn two_sheets() -> Surface {
     sheets
 }
 
-/// A factor on the points of the first sheet; the second is as it is.
+/// A map with this factor on the first sheet, and 1 on the second.
 fn on_the_first(factor: f64) -> Vec<f64> {
     (0..2 * PATCH).map(|point| if point < PATCH { factor } else { 1.0 }).collect()
 }
 
-/// Where the points of two sheets are after some frames, each held at two corners.
+/// The positions of two sheets after twelve frames, each pinned at two corners.
 fn swung(factors: VertexMaps, settings: &ClothFrame, mass: f64, resistance: ResistanceModel) -> Vec<Vec3> {
     let surface = two_sheets();
     let held = [0, SIDE as usize - 1].into_iter().flat_map(|k| [k, k + PATCH]);
@@ -54,7 +54,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// A column, and what of the cloth the same factor everywhere amounts to.
+/// A map, and the attribute on which the same factor everywhere acts.
 type Column = (&'static str, fn(Vec<f64>) -> VertexMaps, fn(&mut ClothFrame, &mut f64, f64));
 
 const COLUMNS: [Column; 9] = [
@@ -85,7 +85,7 @@ const COLUMNS: [Column; 9] = [
     ("lift", |lift| VertexMaps { lift, ..VertexMaps::default() }, |cloth, _, f| cloth.lift *= f),
 ];
 
-/// Resistances of which a substep gets less than one evaluation in Classic: half of one is half as strong.
+/// Resistances with less than one evaluation per substep in Classic: half the resistance is half the strength.
 fn lively() -> ClothFrame {
     ClothFrame {
         stretch_resistance: 2.5,
@@ -102,7 +102,7 @@ fn lively() -> ClothFrame {
 }
 
 #[test]
-fn each_point_is_as_if_all_of_the_cloth_had_its_factor() {
+fn a_sheet_with_a_uniform_map_moves_like_one_with_the_scaled_attribute() {
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
         let plain = swung(VertexMaps::default(), &lively(), 0.2, resistance);
         for (name, column, scale) in COLUMNS {
@@ -112,16 +112,16 @@ fn each_point_is_as_if_all_of_the_cloth_had_its_factor() {
             let scaled = swung(VertexMaps::default(), &settings, mass, resistance);
             let first = farthest(&varied[..PATCH], &scaled[..PATCH]);
             let second = farthest(&varied[PATCH..], &plain[PATCH..]);
-            // Gravity is rounded to a grain that goes by the max_speed point of the cloth.
+            // Gravity kicks are rounded to a grid that depends on the largest speed of the whole cloth.
             assert!(first < 1e-9 && second < 1e-9, "{name}, {resistance:?}: {first:e}, {second:e}");
-            let told_apart = farthest(&scaled[..PATCH], &plain[..PATCH]);
-            assert!(told_apart > 1e-6, "{name}, {resistance:?} does nothing here: {told_apart:e}");
+            let effect = farthest(&scaled[..PATCH], &plain[..PATCH]);
+            assert!(effect > 1e-6, "{name}, {resistance:?} has no effect here: {effect:e}");
         }
     }
 }
 
 #[test]
-fn a_column_of_ones_changes_no_bit() {
+fn a_map_of_ones_changes_no_bit() {
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
         let plain = swung(VertexMaps::default(), &lively(), 0.2, resistance);
         for (name, column, _) in COLUMNS {
@@ -130,7 +130,7 @@ fn a_column_of_ones_changes_no_bit() {
     }
 }
 
-/// How long the links of a hanging strip are, from the top down, when it has come to rest.
+/// The lengths of the links of a hanging strip at rest, from the top down, in metres.
 fn hanging(factors: VertexMaps) -> Vec<f64> {
     let rows = 11;
     let strip = grid(2, rows, Vec3::x() * 0.1, -Vec3::y());
@@ -143,13 +143,13 @@ fn hanging(factors: VertexMaps) -> Vec<f64> {
     (0..240).for_each(|_| {
         solver.step(&input, &mut ());
     });
-    // Corners of a quad do not all weigh the same: the mean of both sides hangs by the weight of the row.
+    // The two sides differ in mass; their mean carries the weight of the row.
     let height =
         |row: u32| [0, 1].map(|k| solver.point(CLOTH, 2 * row as usize + k).y).iter().sum::<f64>() / 2.0;
     (1..rows).map(|row| height(row - 1) - height(row)).collect()
 }
 
-/// The strip is 0.1 m wide and has K = 20 · 500 N/m. A point weighs what is round it, so the lowest row weighs half.
+/// The exact strains. The strip is 0.1 m wide and has K = 20 · 500 N/m. Mass is by area, so the lowest row has half.
 fn strains(mass: impl Fn(usize) -> f64, share: impl Fn(usize) -> f64) -> Vec<f64> {
     let weight = |row: usize| 9.81 * 20.0 * 0.1 * 0.1 * mass(row) * if row == 10 { 0.5 } else { 1.0 };
     let strain = |link: usize| (link + 1..=10).map(weight).sum::<f64>() / (10_000.0 * 0.1 * share(link));
@@ -161,7 +161,7 @@ fn of_rows(factor: impl Fn(usize) -> f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_strip_that_is_heavy_below_stretches_by_the_weight_that_hangs_on_each_link() {
+fn each_link_of_a_strip_with_a_mass_map_stretches_by_the_weight_below_it() {
     let heavy = |row: usize| if row > 5 { 3.0 } else { 1.0 };
     let lengths = hanging(VertexMaps { mass: of_rows(heavy), ..VertexMaps::default() });
     for (link, (length, strain)) in lengths.iter().zip(strains(heavy, |_| 1.0)).enumerate() {
@@ -170,9 +170,9 @@ fn a_strip_that_is_heavy_below_stretches_by_the_weight_that_hangs_on_each_link()
 }
 
 #[test]
-fn a_strip_that_is_soft_below_stretches_more_there() {
+fn a_strip_with_a_stretch_map_stretches_by_the_local_stiffness() {
     let soft = |row: usize| if row > 5 { 0.25 } else { 1.0 };
-    // A link takes the mean of its two ends.
+    // A link has the mean of its two ends.
     let of_link = |link: usize| (soft(link) + soft(link + 1)) / 2.0;
     let lengths = hanging(VertexMaps { stretch: of_rows(soft), ..VertexMaps::default() });
     for (link, (length, strain)) in lengths.iter().zip(strains(|_| 1.0, of_link)).enumerate() {
@@ -181,10 +181,10 @@ fn a_strip_that_is_soft_below_stretches_more_there() {
 }
 
 #[test]
-fn a_link_without_a_share_is_not_there() {
+fn a_link_with_the_factor_zero_exerts_no_force() {
     let surface = grid(2, 3, Vec3::x(), -Vec3::y());
     for resistance in [ResistanceModel::Classic, physical(24.0)] {
-        // The upper links have a half, the lower ones nothing.
+        // The upper links have the factor 1/2, the lower ones 0.
         let column: Vec<f64> = (0..6).map(|point| if point < 2 { 1.0 } else { 0.0 }).collect();
         let factors = VertexMaps { stretch: column.clone(), compression: column, ..VertexMaps::default() };
         let mut builder = ModelBuilder::new();
@@ -195,7 +195,7 @@ fn a_link_without_a_share_is_not_there() {
         (0..24).for_each(|_| {
             solver.step(&input, &mut ());
         });
-        // Velocity first, in 72 steps at least: up to one in 72 more than 9.81/2 m.
+        // Symplectic Euler in 72 steps or more: up to 1/72 more than 9.81/2 m.
         let fall = -1.0 - solver.point(CLOTH, 4).y;
         assert!((fall / 4.905 - 1.0).abs() < 0.015, "{resistance:?}: {fall}");
         assert!((solver.point(CLOTH, 2).y + 0.5).abs() < 0.1, "{resistance:?}");
@@ -208,19 +208,20 @@ fn refused(cloth: impl Fn(Cloth) -> Cloth) -> BuildError {
 }
 
 #[test]
-fn factors_that_do_not_fit_are_refused_by_name() {
+fn an_invalid_vertex_map_is_refused_with_its_attribute_and_point() {
     let none = VertexMaps::default;
-    let said = |factors: VertexMaps| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
-    let few = said(VertexMaps { drag: vec![1.0; 3], ..none() });
+    let message =
+        |factors: VertexMaps| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
+    let few = message(VertexMaps { drag: vec![1.0; 3], ..none() });
     assert_eq!(few, "there are 3 factors on drag, but 4 points");
-    let weightless = said(VertexMaps { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
+    let weightless = message(VertexMaps { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
     assert_eq!(weightless, "the factor on mass of point 2 must be between 0.000001 and 1000000, not 0");
-    let no_number = said(VertexMaps { bend: vec![1.0, f64::NAN, 0.0, 1.0], ..none() });
+    let no_number = message(VertexMaps { bend: vec![1.0, f64::NAN, 0.0, 1.0], ..none() });
     assert_eq!(no_number, "the factor on bend of point 1 must be between 0 and 1, not NaN");
 }
 
 #[test]
-fn a_cloth_goes_on_from_where_it_is_told_to_start() {
+fn a_cloth_that_starts_from_another_runs_state_continues_like_it() {
     let surface = grid(SIDE, SIDE, Vec3::x(), Vec3::z());
     let cloth = ClothFrame { bend_resistance: 0.5, ..still() };
     let input = FrameInput { cloths: vec![cloth], pins: pins(&surface, [0, 8]), ..frame(3, physical(48.0)) };
@@ -245,7 +246,7 @@ fn a_cloth_goes_on_from_where_it_is_told_to_start() {
     assert_eq!(points(&again), points(&whole));
     run(&mut whole);
     run(&mut again);
-    // Velocities are shown as `f32`: 1e-7 of some m/s, for a quarter of a second.
+    // Observers read velocities as `f32`: 1e-7 of some m/s, for a quarter of a second.
     let apart = farthest(&points(&again), &points(&whole));
     assert!(apart < 1e-5, "{apart:e}");
     let fallen = points(&whole).iter().map(|p| p.y).fold(0.0, f64::min);
@@ -253,7 +254,7 @@ fn a_cloth_goes_on_from_where_it_is_told_to_start() {
 }
 
 #[test]
-fn a_start_that_does_not_fit_is_refused() {
+fn an_invalid_start_is_refused() {
     let few = Start { positions: vec![Vec3::zeros(); 3], ..Start::default() };
     let few = refused(|cloth| Cloth { start: few.clone(), ..cloth });
     assert_eq!(few, BuildError::StartCount { what: "positions", given: 3, points: 4 });
@@ -264,16 +265,17 @@ fn a_start_that_does_not_fit_is_refused() {
     assert_eq!(endless, BuildError::BadStart { what: "velocity", point: 2 });
 }
 
-/// What a sheet lies on.
+/// The ground under a sheet.
 #[derive(Debug, Clone, Copy)]
 enum Floor {
     Plane,
     Collider,
-    /// Cloth of which every point is held.
+    /// Cloth with every point pinned.
     Cloth,
 }
 
-/// How far a sheet slides in half a second down a slope of 30 degrees. It has a friction of 0.4, the slope one of 0.1.
+/// The distance that a sheet slides in half a second down a slope of 30 degrees, in metres. Its friction is 0.4, that
+/// of the slope 0.1.
 fn slid(floor: Floor, factor: f64) -> f64 {
     let lying = |mut surface: Surface, height: f64, middle: f64| {
         surface.positions.iter_mut().for_each(|p| *p += Vec3::new(-middle, height, -middle));
@@ -319,14 +321,14 @@ fn slid(floor: Floor, factor: f64) -> f64 {
 }
 
 #[test]
-fn a_sheet_slides_down_a_slope_by_its_own_friction_and_that_of_the_slope() {
+fn a_sheet_slides_down_a_slope_by_its_mapped_friction_plus_that_of_the_slope() {
     for floor in [Floor::Plane, Floor::Collider, Floor::Cloth] {
         for factor in [0.0, 0.5, 1.0, 2.0] {
             let friction = 0.4 * factor + 0.1;
             let down = (0.5 - friction * 0.75f64.sqrt()).max(0.0);
             let expected = 9.81 * down * 0.125;
             let found = slid(floor, factor);
-            // Of what it slides without friction, 0.61 m. It falls a tenth of a millimetre first.
+            // Relative to the 0.61 m without friction. The sheet falls a tenth of a millimetre first.
             assert!((found - expected).abs() < 0.03 * 0.61, "{floor:?}, {factor}: {found} for {expected}");
         }
     }
