@@ -1,13 +1,10 @@
-//! What must hold during a run: `checks: [noPenetration, maxStretch(0.02)]`.
+//! Checks of a run: `checks: [noPenetration, maxStretch(0.02)]`.
 //!
-//! Every check is a row: a figure that is read off each frame, and a bound on it. To add one, add a row to
-//! `FORMS`.
+//! A check is a figure of each frame and a bound on it. A new kind of check is a new row of `FORMS`.
 
 use std::fmt;
 
 use nucleus_core::StepReport;
-
-use crate::simulation::FrameReport;
 
 /// A check of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,73 +18,84 @@ pub struct Check {
 pub struct Form {
     /// Its name in scenes.
     pub name: &'static str,
-    /// What it says, in one line.
+    /// Description in one line.
     pub doc: &'static str,
     /// Names of its arguments.
     pub parameters: &'static [&'static str],
-    /// Which values they take.
+    /// Their type.
     pub values: Values,
     bound: Bound,
     limit: fn(&[f64]) -> f64,
-    figure: fn(&Seen, &[f64]) -> Option<f64>,
+    figure: fn(&Sample, &[f64]) -> Option<f64>,
 }
 
-/// Which values the arguments of a check take.
+/// The type of the arguments of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Values {
     /// Any number.
     Numbers,
-    /// Whole numbers from 0.
+    /// Whole numbers, at least 0.
     Counts,
 }
 
-/// On which side of its limit a figure has to stay.
+/// The direction of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bound {
-    /// It must not be larger.
+    /// The figure must not be larger.
     AtMost,
-    /// It must not be smaller.
+    /// The figure must not be smaller.
     AtLeast,
 }
 
-/// How a check ended.
+/// The result of a check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// The check.
     pub check: Check,
-    /// Whether it held in every frame it is about, and there was at least one.
+    /// Whether it held in every frame that it applies to, and it applied to at least one.
     pub passed: bool,
-    /// The worst figure, and the first frame that had it; `None` when no frame was looked at.
+    /// The worst figure and its first frame; `None` if it applied to no frame.
     pub worst: Option<(f64, i64)>,
 }
 
-/// Follows a run and judges it.
+/// The result of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameReport {
+    /// The frame. If the observer stopped the run, it is the frame that was not completed.
+    pub frame: i64,
+    /// The report of the solver, combined over all nuclei.
+    pub report: StepReport,
+    /// Count of penetrations that the audit found in the frame; `None` without an audit.
+    pub passed_through: Option<u64>,
+}
+
+/// Evaluates checks frame by frame.
 #[derive(Debug, Clone)]
 pub struct Judge {
     outcomes: Vec<Outcome>,
     mass: f64,
 }
 
-/// What a check can look at.
-struct Seen<'a> {
+/// The input of a check at one frame.
+struct Sample<'a> {
     frame: i64,
     report: &'a StepReport,
-    /// Nothing where no audit looks.
+    /// Count of penetrations; `None` without an audit.
     passed_through: Option<u64>,
-    /// All points together, in kilograms.
+    /// Total mass of all cloths in kilograms.
     mass: f64,
 }
 
-/// The check that only an audit can answer.
+/// The check that requires an audit.
 const NO_CROSSING: &str = "noCrossing";
 
-/// The check that limits unresolved pairs; a run without it is held to none.
+/// The check of unresolved pairs. A run without it fails at the first.
 pub const MAX_UNRESOLVED: &str = "maxUnresolved";
-/// The check that limits points inside colliders; a run without it has to end with none.
+/// The check of points inside colliders. A run without it fails if it ends with any.
 pub const MAX_TRAPPED: &str = "maxTrapped";
-/// The check that limits edges of cloth through faces; a run without it has to end with none.
+/// The check of cloth edges that intersect cloth faces. A run without it fails if it ends with any.
 pub const MAX_TANGLED: &str = "maxTangled";
-/// The check that limits strain; a run without it warns of large strain.
+/// The check of strain. A run without it warns of large strain.
 pub const MAX_STRETCH: &str = "maxStretch";
 
 static FORMS: [Form; 11] = [
@@ -98,7 +106,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
+        figure: |sample, _| Some(sample.report.pairs_unresolved as f64),
     },
     Form {
         name: MAX_UNRESOLVED,
@@ -107,7 +115,7 @@ static FORMS: [Form; 11] = [
         values: Values::Counts,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
+        figure: |sample, _| Some(sample.report.pairs_unresolved as f64),
     },
     Form {
         name: MAX_TRAPPED,
@@ -116,7 +124,7 @@ static FORMS: [Form; 11] = [
         values: Values::Counts,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.depenetrating as f64),
+        figure: |sample, _| Some(sample.report.depenetrating as f64),
     },
     Form {
         name: MAX_TANGLED,
@@ -125,7 +133,7 @@ static FORMS: [Form; 11] = [
         values: Values::Counts,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.intersections as f64),
+        figure: |sample, _| Some(sample.report.intersections as f64),
     },
     Form {
         name: NO_CROSSING,
@@ -134,7 +142,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, _| seen.passed_through.map(|count| count as f64),
+        figure: |sample, _| sample.passed_through.map(|count| count as f64),
     },
     Form {
         name: MAX_STRETCH,
@@ -143,7 +151,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.max_strain),
+        figure: |sample, _| Some(sample.report.max_strain),
     },
     Form {
         name: "maxStretch99",
@@ -152,7 +160,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.strain_99),
+        figure: |sample, _| Some(sample.report.strain_99),
     },
     Form {
         name: "minGap",
@@ -161,7 +169,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtLeast,
         limit: |arguments| arguments[0],
-        figure: |seen, _| Some(seen.report.min_gap),
+        figure: |sample, _| Some(sample.report.min_gap),
     },
     Form {
         name: "finite",
@@ -170,7 +178,7 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, _| Some(if seen.report.finite { 0.0 } else { 1.0 }),
+        figure: |sample, _| Some(if sample.report.finite { 0.0 } else { 1.0 }),
     },
     Form {
         name: "untangledBy",
@@ -179,8 +187,8 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |_| 0.0,
-        figure: |seen, arguments| {
-            (seen.frame as f64 >= arguments[0]).then_some(seen.report.intersections as f64)
+        figure: |sample, arguments| {
+            (sample.frame as f64 >= arguments[0]).then_some(sample.report.intersections as f64)
         },
     },
     Form {
@@ -190,17 +198,18 @@ static FORMS: [Form; 11] = [
         values: Values::Numbers,
         bound: Bound::AtMost,
         limit: |arguments| arguments[1],
-        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then(|| seen.speed()),
+        figure: |sample, arguments| (sample.frame as f64 >= arguments[0]).then(|| sample.speed()),
     },
 ];
 
-impl Seen<'_> {
+impl Sample<'_> {
+    /// Root mean square speed in m/s.
     fn speed(&self) -> f64 {
         if self.mass > 0.0 { (2.0 * self.report.kinetic_energy / self.mass).sqrt() } else { 0.0 }
     }
 }
 
-/// There is one static per kind, compared by identity.
+/// Compares by identity: there is one static per kind.
 impl PartialEq for Form {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
@@ -208,28 +217,28 @@ impl PartialEq for Form {
 }
 
 impl Check {
-    /// A check by its name; `None` when there is none of this name that takes so many arguments.
+    /// A check by its name; `None` if the name is unknown or takes another number of arguments.
     pub fn new(name: &str, arguments: &[f64]) -> Option<Self> {
         let form = Form::all().iter().find(|form| form.name == name)?;
         (form.parameters.len() == arguments.len()).then(|| Self { form, arguments: arguments.to_vec() })
     }
 
-    /// What kind of check it is.
+    /// Its kind.
     pub fn form(&self) -> &'static Form {
         self.form
     }
 
-    /// Whether it is answered only where the run is audited.
+    /// Whether it requires an audit.
     pub fn needs_audit(&self) -> bool {
         self.form.name == NO_CROSSING
     }
 
-    /// Which side of which limit its figure has to keep to.
+    /// Its bound and limit.
     pub fn limit(&self) -> (Bound, f64) {
         (self.form.bound, (self.form.limit)(&self.arguments))
     }
 
-    /// Whether a figure is on the right side. NaN never is.
+    /// Whether a figure is within the limit. NaN never is.
     pub fn accepts(&self, figure: f64) -> bool {
         match self.limit() {
             (Bound::AtMost, limit) => figure <= limit,
@@ -237,17 +246,17 @@ impl Check {
         }
     }
 
-    /// Whether one figure is worse than another. NaN is the worst.
+    /// Whether one figure is worse than another. NaN is worst.
     fn is_worse(&self, figure: f64, than: f64) -> bool {
-        let farther = match self.form.bound {
+        let is_beyond = match self.form.bound {
             Bound::AtMost => figure > than,
             Bound::AtLeast => figure < than,
         };
-        farther || (figure.is_nan() && !than.is_nan())
+        is_beyond || (figure.is_nan() && !than.is_nan())
     }
 }
 
-/// As a scene writes it: `noPenetration`, `maxStretch(0.02)`, `restsBy(frame: 100, speed: 0.01)`.
+/// The syntax of a scene: `noPenetration`, `maxStretch(0.02)`, `restsBy(frame: 100, speed: 0.01)`.
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Form { name, parameters, .. } = self.form;
@@ -271,19 +280,19 @@ impl Form {
 }
 
 impl Judge {
-    /// Begins with checks of which nothing is known. `mass` is that of all cloth together in kilograms.
+    /// Checks that apply to no frame yet. `mass` is the total mass of all cloths in kilograms.
     pub fn new(checks: &[Check], mass: f64) -> Self {
         let open = |check: &Check| Outcome { check: check.clone(), passed: false, worst: None };
         Self { outcomes: checks.iter().map(open).collect(), mass }
     }
 
-    /// Looks at the next frame.
+    /// Evaluates the checks at the next frame.
     pub fn see(&mut self, frame: &FrameReport) {
         let FrameReport { frame, ref report, passed_through } = *frame;
-        let seen = Seen { frame, report, passed_through, mass: self.mass };
+        let sample = Sample { frame, report, passed_through, mass: self.mass };
         for outcome in &mut self.outcomes {
             let check = &outcome.check;
-            let Some(figure) = (check.form.figure)(&seen, &check.arguments) else { continue };
+            let Some(figure) = (check.form.figure)(&sample, &check.arguments) else { continue };
             if outcome.worst.is_none_or(|(worst, _)| check.is_worse(figure, worst)) {
                 outcome.worst = Some((figure, frame));
                 outcome.passed = check.accepts(figure);
@@ -291,7 +300,7 @@ impl Judge {
         }
     }
 
-    /// How every check stands, in the order of the scene.
+    /// The results so far, in the order of the scene.
     pub fn outcomes(&self) -> &[Outcome] {
         &self.outcomes
     }

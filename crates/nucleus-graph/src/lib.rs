@@ -35,5 +35,6 @@ pub mod paint;
 pub mod scene;
 mod simulation;
 
+pub use checks::FrameReport;
 pub use files::Piece;
-pub use simulation::{FrameReport, Simulation};
+pub use simulation::Simulation;

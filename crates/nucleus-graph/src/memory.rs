@@ -1,8 +1,8 @@
-//! How much memory a scene may take. What its parts will take is estimated before anything is allocated for them, and added
-//! up; a part that would go past the limit is refused where it stands.
+//! The memory limit of a scene. The memory of each part is estimated before it is allocated, and added up. A part that
+//! would exceed the limit is an error at its place in the scene.
 //!
-//! The figures are from runs of `nucleus run` on planes of 90 000 and 360 000 points and on scenes of 50 000 and 200 000
-//! nodes. They are typical, not the most that could be: what contacts take depends on how many there are.
+//! The estimates are measured with `nucleus run` on planes of 90 000 and 360 000 points and on scenes of 50 000 and 200 000
+//! nodes. They are typical values, not upper bounds: the memory of contacts depends on their number.
 
 use std::fmt;
 
@@ -10,11 +10,11 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Memory(pub u64);
 
-/// The limit where the system does not say how much memory it has.
+/// The limit where the memory of the machine is unknown.
 const UNKNOWN: Memory = Memory(16_000_000_000);
 
 impl Memory {
-    /// Three quarters of what the machine has.
+    /// Three quarters of the memory of the machine.
     pub fn of_machine() -> Self {
         let about = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
         let total = about.lines().find_map(|line| line.strip_prefix("MemTotal:"));
@@ -33,16 +33,16 @@ impl fmt::Display for Memory {
     }
 }
 
-/// How many points a mesh has, and how many corners all of its faces together.
+/// Size of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Size {
-    /// Points.
+    /// Count of points.
     pub points: u64,
-    /// Corners of faces: four for each quad.
+    /// Count of face corners: four for each quad.
     pub corners: u64,
 }
 
-/// What a part of a scene takes for each of its points and corners, in bytes.
+/// Memory of an object in bytes per point and per face corner.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cost {
     point: u64,
@@ -50,14 +50,14 @@ pub(crate) struct Cost {
 }
 
 impl Cost {
-    /// A mesh while it is made.
+    /// A mesh during its construction.
     pub(crate) const MESH: Self = Self { point: 50, corner: 15 };
-    /// Cloth or particles: measured were 2.5 to 5.7 kB for a point of four corners.
+    /// Cloth or particles: measured 2.5 to 5.7 kB per point with four corners.
     pub(crate) const CLOTH: Self = Self { point: 600, corner: 500 };
-    /// A collider: measured were 0.7 kB.
+    /// A collider: measured 0.7 kB per point with four corners.
     pub(crate) const COLLIDER: Self = Self { point: 200, corner: 120 };
 
-    /// What something of this size takes.
+    /// Bytes for an object of this size.
     pub(crate) fn of(self, size: Size) -> u64 {
         let [points, corners] = [(size.points, self.point), (size.corners, self.corner)];
         let bytes = |(count, each): (u64, u64)| count.saturating_mul(each);
@@ -65,35 +65,35 @@ impl Cost {
     }
 }
 
-/// A value in the text of a scene.
+/// Bytes per value in the text of a scene.
 pub(crate) const VALUE: u64 = 100;
-/// A node of a scene.
+/// Bytes per node of a scene.
 pub(crate) const NODE: u64 = 3_000;
-/// A point that a constraint holds.
+/// Bytes per point that a constraint holds.
 pub(crate) const HELD_POINT: u64 = 100;
-/// The points of a mesh that changes its shape, at a frame.
+/// Bytes per point and frame of an animated mesh.
 pub(crate) const SHAPE_POINT: u64 = 24;
-/// A byte of a file of a mesh, while it is read: `v 0 0 0` is 24 bytes of position.
+/// Bytes per byte of a mesh file, while it is read: `v 0 0 0` is 24 bytes of position.
 pub(crate) const MESH_BYTE: u64 = 8;
-/// A byte of a file of numbers, while it is read.
+/// Bytes per byte of a file of numbers, while it is read.
 pub(crate) const NUMBER_BYTE: u64 = 10;
 
-/// A limit, and how much of it is taken.
+/// A limit, and the memory that is claimed of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Budget {
     limit: Memory,
     taken: u64,
-    /// Whether a part has been refused already.
+    /// Whether a claim has been refused.
     is_exceeded: bool,
 }
 
-/// A part of a scene would go past the limit.
+/// A part of a scene that would exceed the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct TooLarge {
     part: Memory,
     all: Memory,
     limit: Memory,
-    /// Those after the first say nothing new.
+    /// The first refusal of a scene. Later ones are not reported.
     pub(crate) is_first: bool,
 }
 
@@ -108,7 +108,7 @@ impl Budget {
         Self { limit, taken: 0, is_exceeded: false }
     }
 
-    /// Takes a part of it, for as long as the scene is there.
+    /// Claims memory for the lifetime of the scene.
     pub(crate) fn claim(&mut self, bytes: u64) -> Result<(), TooLarge> {
         let checked = self.check(bytes);
         match checked {
@@ -118,7 +118,7 @@ impl Budget {
         checked
     }
 
-    /// Whether there is room for something that is soon given back.
+    /// Checks memory that is freed soon after.
     pub(crate) fn check(&self, bytes: u64) -> Result<(), TooLarge> {
         let all = self.taken.saturating_add(bytes);
         if all <= self.limit.0 {
@@ -140,14 +140,14 @@ impl fmt::Display for TooLarge {
 }
 
 impl TooLarge {
-    /// What can be done about it.
-    pub(crate) fn help(&self, else_this: &str) -> String {
-        format!("{else_this}, or allow more: `--memory {}`", self.all.asked())
+    /// Help for the error: `alternative`, or a larger limit.
+    pub(crate) fn help(&self, alternative: &str) -> String {
+        format!("{alternative}, or allow more: `--memory {}`", self.all.asked())
     }
 }
 
 impl Memory {
-    /// As `--memory` takes it, rounded up.
+    /// The argument of `--memory`, rounded up.
     fn asked(self) -> String {
         match self.0 {
             bytes if bytes < 1_000_000_000 => format!("{}M", bytes.div_ceil(1_000_000)),
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_are_added_up_and_the_one_that_goes_past_the_limit_is_told_with_all_figures() {
+    fn a_claim_beyond_the_limit_is_refused_with_the_sum_of_all_claims() {
         let mut budget = Budget::new(Memory(3_000_000_000));
         budget.claim(2_000_000_000).unwrap();
         budget.check(1_000_000_000).unwrap();
@@ -171,12 +171,12 @@ mod tests {
             "about 1.1 GB of memory, 3.1 GB with all before it; the limit is 3.0 GB"
         );
         assert_eq!(refused.help("x"), "x, or allow more: `--memory 4G`");
-        // What was refused has not been taken.
+        // A refused claim takes no memory.
         budget.claim(1_000_000_000).unwrap();
     }
 
     #[test]
-    fn no_size_is_too_large_to_be_estimated() {
+    fn estimates_of_huge_sizes_do_not_overflow() {
         let size = Size { points: u64::MAX, corners: u64::MAX };
         assert!(Budget::default().claim(Cost::CLOTH.of(size)).is_err());
     }

@@ -10,6 +10,7 @@ use nucleus_core::{
 };
 
 use crate::audit::{Audit, Audited, Closeness, GroundPlanes, collision_rules};
+use crate::checks::FrameReport;
 use crate::compile::{Object, Program};
 
 use combined::{CombinedObserver, CombinedState, combined_report};
@@ -32,17 +33,6 @@ pub struct Simulation<R: Real = f32> {
     frame: i64,
     threads: usize,
     audit: Option<Audit>,
-}
-
-/// The result of a frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameReport {
-    /// The frame. If the observer stopped the run, it is the frame that was not completed.
-    pub frame: i64,
-    /// The report of the solver, combined over all nuclei.
-    pub report: StepReport,
-    /// Count of penetrations that the audit found in the frame; `None` without an audit.
-    pub passed_through: Option<u64>,
 }
 
 impl<R: Real> Simulation<R> {

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::key::{choice, components, float, int, node, plug, ramp, toggle};
-use super::table::node_table;
-use super::transform::TRANSFORM;
+use super::node_type::node_table;
+use super::scene_nodes::transform::TRANSFORM;
 use super::{Choice, Component, Data, Plugged, RampPoint};
 
 /// 1 everywhere.

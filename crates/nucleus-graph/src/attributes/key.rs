@@ -1,4 +1,4 @@
-//! Typed keys: a row, and the Rust type its values are read as.
+//! Typed keys: a row with the Rust type of its values, and the functions that define rows.
 
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -15,13 +15,13 @@ pub struct Key<T> {
     read_as: PhantomData<fn() -> T>,
 }
 
-/// A type that an attribute's value can be read as.
+/// A Rust type that attribute values can be read as.
 pub trait FromValue: Sized {
-    /// The value as this type; `None` when it is of another kind.
+    /// The value as this type; `None` if it is of another kind.
     fn from_value(value: &Value) -> Option<Self>;
 }
 
-/// Stands for what has no value to read: a plug, the name of a node.
+/// The type of attributes without a value: connections and node names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plugged {}
 
@@ -41,7 +41,7 @@ read_as! {
     Cow<'static, [ColorPoint]>: ColorRamp, Vec<Component>: Components,
 }
 
-/// A switch.
+/// `true` or `false`.
 pub(super) const fn toggle(name: &'static str, short: &'static str, default: bool) -> Key<bool> {
     Key::new(name, short, Kind::Bool, Some(Value::Bool(default)))
 }
@@ -56,12 +56,12 @@ pub(super) const fn float(name: &'static str, short: &'static str, default: f64)
     Key::new(name, short, Kind::Float, Some(Value::Float(default)))
 }
 
-/// A number, or a texture to take it from.
+/// A number or a texture.
 pub(super) const fn texture(name: &'static str, short: &'static str, default: f64) -> Key<f64> {
     Key::new(name, short, Kind::Texture, Some(Value::Float(default))).fixed()
 }
 
-/// A vector; its parts have short names of their own.
+/// A vector, with a short name per component.
 pub(super) const fn vector(
     name: &'static str,
     short: &'static str,
@@ -71,7 +71,7 @@ pub(super) const fn vector(
     Key::new(name, short, Kind::Vector(parts), Some(Value::Vector(default)))
 }
 
-/// One of some words, by Maya's index.
+/// An enum: Maya's index and name of each value.
 pub(super) const fn choice(
     name: &'static str,
     short: &'static str,
@@ -81,7 +81,7 @@ pub(super) const fn choice(
     Key::new(name, short, Kind::Choice(words), Some(Value::Choice(Choice(default))))
 }
 
-/// Text, empty when not set.
+/// Text, empty by default.
 pub(super) const fn text(name: &'static str, short: &'static str) -> Key<String> {
     Key::new(name, short, Kind::Text, Some(Value::Text(String::new()))).fixed()
 }
@@ -110,32 +110,32 @@ pub(super) const fn ramp(
     Key::new(name, short, Kind::Ramp, Some(Value::Ramp(Cow::Borrowed(default)))).fixed()
 }
 
-/// A ramp of colours, empty when not set.
+/// A ramp of colours, empty by default.
 pub(super) const fn color_ramp(name: &'static str, short: &'static str) -> Key<Cow<'static, [ColorPoint]>> {
     Key::new(name, short, Kind::ColorRamp, Some(Value::ColorRamp(Cow::Borrowed(&[])))).fixed()
 }
 
-/// Parts of objects.
+/// Components of objects.
 pub(super) const fn components(name: &'static str, short: &'static str) -> Key<Vec<Component>> {
     Key::new(name, short, Kind::Components, Some(Value::Components(Vec::new()))).fixed()
 }
 
-/// The name of another node, and what flows from it.
+/// The name of another node, and the data of the connection from it.
 pub(super) const fn node(name: &'static str, short: &'static str, data: Option<Data>) -> Key<Plugged> {
     Key::new(name, short, Kind::Node(data), None).fixed()
 }
 
-/// What is only ever connected.
+/// A connection without a value.
 pub(super) const fn plug(name: &'static str, short: &'static str, data: Data) -> Key<Plugged> {
     Key::new(name, short, Kind::Plug(data), None).fixed().hidden()
 }
 
-/// Several attributes in one go.
+/// Sets several attributes at once.
 pub(super) const fn together(name: &'static str, parts: &'static [&'static str]) -> Key<Plugged> {
     Key::new(name, name, Kind::Together(parts), None).fixed()
 }
 
-/// What a row says beyond name, type and default.
+/// Further properties of a row.
 impl<T> Key<T> {
     const fn new(name: &'static str, short: &'static str, kind: Kind, default: Option<Value>) -> Self {
         let range = Range { min: None, max: None, soft: None };
@@ -159,79 +159,79 @@ impl<T> Key<T> {
         Self { row, read_as: PhantomData }
     }
 
-    /// InvalidInput below this.
+    /// Hard minimum: smaller values are errors.
     pub(super) const fn min(mut self, min: f64) -> Self {
         self.row.range.min = Some(min);
         self
     }
 
-    /// InvalidInput above this.
+    /// Hard maximum: larger values are errors.
     pub(super) const fn max(mut self, max: f64) -> Self {
         self.row.range.max = Some(max);
         self
     }
 
-    /// Where Maya's slider begins and ends.
+    /// Range of Maya's slider.
     pub(super) const fn soft(mut self, from: f64, to: f64) -> Self {
         self.row.range.soft = Some((from, to));
         self
     }
 
-    /// Unit of the numbers.
+    /// Unit of the values.
     pub(super) const fn unit(mut self, unit: &'static str) -> Self {
         self.row.unit = unit;
         self
     }
 
-    /// The module where it takes effect, as a path from its crate on.
+    /// The path of the module that implements it, starting with its crate.
     pub(super) const fn solved(mut self, module: &'static str) -> Self {
         self.row.effect = Effect::Solved(module);
         self
     }
 
-    /// Not shown to users.
+    /// Not listed for users.
     pub(super) const fn hidden(mut self) -> Self {
         self.row.hidden = true;
         self
     }
 
-    /// It holds many.
+    /// An array of plugs.
     pub(super) const fn multi(mut self) -> Self {
         self.row.multi = true;
         self
     }
 
-    /// Worked out by the node: nothing can be connected to it.
+    /// An output: it cannot be the destination of a connection.
     pub(super) const fn output(mut self) -> Self {
         self.row.writable = false;
         self
     }
 
-    /// Taken in by the node: nothing can be connected from it.
+    /// An input only: it cannot be the source of a connection.
     pub(super) const fn sink(mut self) -> Self {
         self.row.readable = false;
         self
     }
 
-    /// Without effect in Maya too.
+    /// Without effect in Maya.
     pub(super) const fn unused(mut self) -> Self {
         self.row.effect = Effect::Never;
         self
     }
 
-    /// Ours, unknown to Maya.
+    /// Not an attribute of Maya.
     pub(super) const fn extension(mut self) -> Self {
         self.row.extension = true;
         self
     }
 
-    /// Read once, before the first frame.
+    /// Read once, at the start frame.
     pub(super) const fn fixed(mut self) -> Self {
         self.row.keyable = false;
         self
     }
 
-    /// Section and description, which the table knows.
+    /// Section and description, from the table.
     pub(super) const fn described(mut self, group: &'static str, doc: &'static str) -> Self {
         self.row.group = group;
         self.row.doc = doc;

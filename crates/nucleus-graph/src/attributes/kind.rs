@@ -1,11 +1,11 @@
-//! What an attribute can hold, and how a scene may write it.
+//! Types of attributes, and the data that flows through connections.
 
 use super::value::{Choice, Painting, Value};
 
-/// What flows through a plug; only plugs of the same data can be connected.
+/// The data of a plug. Only plugs of the same data can be connected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Data {
-    /// Numbers of all kinds, switches, words and times: each is read as what the input holds.
+    /// Numbers, booleans, enums and times. The destination converts the value to its own kind.
     Number,
     /// Three numbers.
     Vector,
@@ -21,30 +21,30 @@ pub enum Data {
     ColorRamp,
     /// A surface.
     Mesh,
-    /// State of an object: initial, current, or solved.
+    /// State of an object: initial, current or solved.
     State,
     /// A constraint.
     Constraint,
-    /// A part of an object.
+    /// A component of an object.
     Component,
-    /// Which object of its nucleus something is.
+    /// The id of an object in its nucleus.
     ObjectId,
-    /// Particles that are emitted.
+    /// Emitted particles.
     NewParticles,
-    /// Particles as fields see them.
+    /// Particles as the input of a field.
     FieldData,
-    /// Settings of fields that differ by particle.
+    /// Settings of a field per particle.
     FieldSettings,
-    /// A placement.
+    /// A transformation matrix.
     Matrix,
-    /// Nothing but that two nodes belong together.
+    /// No value: two nodes belong together.
     Message,
-    /// Several things that only Maya's own nodes exchange.
+    /// Compound data that only Maya's nodes exchange.
     Bundle,
 }
 
 impl Data {
-    /// For messages: `a mesh`, `numbers` ...
+    /// A noun for messages: `a mesh`, `a number`.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Number => "a number",
@@ -78,11 +78,11 @@ pub enum Kind {
     Int,
     /// A number.
     Float,
-    /// A number, or a texture to take it from.
+    /// A number or a texture.
     Texture,
-    /// Three numbers; each also has a name of its own: the short names of x, y and z.
+    /// Three numbers, with the short names of x, y and z.
     Vector([&'static str; 3]),
-    /// One of some words: Maya's index and Maya's name of each.
+    /// An enum: Maya's index and name of each value.
     Choice(&'static [(i32, &'static str)]),
     /// Text.
     Text,
@@ -96,18 +96,18 @@ pub enum Kind {
     Ramp,
     /// A list of `(position, (red, green, blue))`.
     ColorRamp,
-    /// Parts of objects.
+    /// Components of objects.
     Components,
-    /// The name of another node; it becomes a connection if this is what flows through it.
+    /// The name of another node; with data, it becomes a connection.
     Node(Option<Data>),
-    /// Several attributes of the same node set in one go, by their names.
+    /// Sets several attributes of the same node at once; their names.
     Together(&'static [&'static str]),
-    /// Something that is only ever connected, never set.
+    /// A connection without a value.
     Plug(Data),
 }
 
 impl Kind {
-    /// What a scene has to write, for messages and lists: `a number`, `true or false` ...
+    /// The syntax in a scene, for messages and lists: `a number`, `true or false`.
     pub fn expects(self) -> &'static str {
         match self {
             Self::Bool => "true or false",
@@ -129,12 +129,12 @@ impl Kind {
         }
     }
 
-    /// Whether such an attribute could be keyed at all.
+    /// Whether keys can animate attributes of this kind.
     pub fn can_be_keyed(self) -> bool {
         matches!(self, Self::Bool | Self::Int | Self::Float | Self::Vector(_) | Self::Choice(_))
     }
 
-    /// What flows through a plug of this kind; nothing if it cannot be connected.
+    /// The data of a plug of this kind; `None` if it cannot be connected.
     pub fn carries(self) -> Option<Data> {
         match self {
             Self::Bool | Self::Int | Self::Float | Self::Texture | Self::Choice(_) => Some(Data::Number),

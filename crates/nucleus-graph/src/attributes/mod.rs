@@ -1,58 +1,85 @@
-//! What every node type holds: one table per type, one row per attribute.
+//! Attribute tables: one table per node type, one row per attribute.
 //!
 //! | You want to know...                          | Read                           |
 //! |----------------------------------------------|--------------------------------|
-//! | what a row says                              | [`Attribute`]                  |
-//! | what an attribute can hold                   | [`Value`], [`Kind`]            |
-//! | how a value is read with its type            | [`Key`]                        |
-//! | how a type inherits, and which row wins      | [`NodeType`]                   |
-//! | which types there are                        | [`node_types`]                 |
-//! | what one type holds                          | the module of its name         |
+//! | what a row holds                             | [`Attribute`]                  |
+//! | the types of values                          | [`Value`], [`Kind`]            |
+//! | how a value is read as a Rust type           | [`Key`]                        |
+//! | how node types inherit rows                  | [`NodeType`]                   |
+//! | which node types exist                       | [`node_types`]                 |
+//! | the attributes of a node type                | the module of its name         |
+//! | transforms, cameras, meshes, primitives      | `scene_nodes.rs`               |
+//! | fields                                       | `fields.rs`                    |
 //!
-//! **Invariant:** reading, writing, defaults, ranges, warnings and reference pages all come from these
-//! rows. An attribute that is not here does not exist.
+//! **Invariant:** reading, writing, defaults, ranges, warnings and reference pages all use these rows. There are no
+//! other attributes.
 
-pub mod air_field;
-pub mod camera;
-pub mod drag_field;
-pub mod dyn_base;
 pub mod dynamic_constraint;
-pub mod field;
-pub mod gravity_field;
+mod fields;
 mod key;
 mod kind;
-pub mod mesh;
 pub mod n_base;
 pub mod n_cloth;
 pub mod n_component;
 pub mod n_particle;
 pub mod n_rigid;
-pub mod newton_field;
 mod node_type;
 pub mod nucleus;
 pub mod particle;
 pub mod point_emitter;
-pub mod poly_cube;
-pub mod poly_cylinder;
-pub mod poly_plane;
-pub mod poly_sphere;
-pub mod radial_field;
 mod row;
-pub mod surface_shape;
-mod table;
-pub mod time;
-pub mod transform;
-pub mod turbulence_field;
-pub mod uniform_field;
+mod scene_nodes;
 mod value;
-pub mod volume_axis_field;
-pub mod vortex_field;
 
+pub use fields::{
+    air_field, drag_field, dyn_base, field, gravity_field, newton_field, radial_field, turbulence_field,
+    uniform_field, volume_axis_field, vortex_field,
+};
 pub use key::{FromValue, Key, Plugged};
 pub use kind::{Data, Kind};
-pub use node_type::{NodeType, node_type, node_types};
+pub use node_type::NodeType;
 pub use row::{Attribute, Effect, Range};
+pub use scene_nodes::{
+    camera, mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere, surface_shape, time, transform,
+};
 pub use value::{Choice, ColorPoint, Component, Painting, RampPoint, Selection, Value};
+
+/// All node types that a scene can name, in the order of the reference pages.
+pub fn node_types() -> &'static [&'static NodeType] {
+    &TYPES
+}
+
+/// The node type of a name, if a scene can name it.
+pub fn node_type(name: &str) -> Option<&'static NodeType> {
+    TYPES.iter().copied().find(|node_type| node_type.name == name)
+}
+
+static TYPES: [&NodeType; 24] = [
+    &nucleus::NUCLEUS,
+    &n_cloth::N_CLOTH,
+    &n_rigid::N_RIGID,
+    &n_particle::N_PARTICLE,
+    &dynamic_constraint::DYNAMIC_CONSTRAINT,
+    &n_component::N_COMPONENT,
+    &point_emitter::POINT_EMITTER,
+    &gravity_field::GRAVITY_FIELD,
+    &turbulence_field::TURBULENCE_FIELD,
+    &vortex_field::VORTEX_FIELD,
+    &drag_field::DRAG_FIELD,
+    &air_field::AIR_FIELD,
+    &radial_field::RADIAL_FIELD,
+    &uniform_field::UNIFORM_FIELD,
+    &volume_axis_field::VOLUME_AXIS_FIELD,
+    &newton_field::NEWTON_FIELD,
+    &mesh::MESH,
+    &poly_plane::POLY_PLANE,
+    &poly_sphere::POLY_SPHERE,
+    &poly_cube::POLY_CUBE,
+    &poly_cylinder::POLY_CYLINDER,
+    &camera::CAMERA,
+    &transform::TRANSFORM,
+    &time::TIME,
+];
 
 #[cfg(test)]
 mod tests;

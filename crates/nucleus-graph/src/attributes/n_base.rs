@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::key::{choice, float, floats, int, node, plug, ramp, text, texture, toggle, vector, vectors};
+use super::node_type::node_table;
 use super::particle::PARTICLE;
-use super::table::node_table;
 use super::{Choice, Data, Plugged, RampPoint};
 
 /// What a map is taken from.

@@ -2,7 +2,7 @@
 
 use super::key::{choice, float, floats, int, plug, texture, toggle};
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
-use super::table::node_table;
+use super::node_type::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {

@@ -2,7 +2,7 @@
 
 use super::key::{choice, float, floats, int, ints, plug};
 use super::n_base::MAP_TYPES;
-use super::table::node_table;
+use super::node_type::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {

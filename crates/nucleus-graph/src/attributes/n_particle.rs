@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::key::{choice, color_ramp, float, floats, int, plug, ramp, toggle, vectors};
 use super::n_base::N_BASE;
-use super::table::node_table;
+use super::node_type::node_table;
 use super::{Choice, ColorPoint, Data, Plugged, RampPoint};
 
 /// What a ramp can be read by.

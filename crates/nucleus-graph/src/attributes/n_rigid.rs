@@ -3,7 +3,7 @@
 use super::Choice;
 use super::key::{choice, float, floats, texture, toggle};
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
-use super::table::node_table;
+use super::node_type::node_table;
 
 /// What an object that nothing moves has no use for.
 #[rustfmt::skip] // a name per line would be a page of its own

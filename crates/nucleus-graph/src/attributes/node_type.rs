@@ -1,11 +1,11 @@
-//! Node types, and how they inherit: the nearest row wins.
+//! Node types: their rows, inheritance, and the macro that writes a table. Of rows with the same name, that of the
+//! derived type applies.
 
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::OnceLock;
 
 use super::row::Attribute;
-use super::*;
 
 /// A type of node.
 pub struct NodeType {
@@ -13,72 +13,35 @@ pub struct NodeType {
     pub name: &'static str,
     /// The type it inherits from.
     pub parent: Option<&'static NodeType>,
-    /// Its own rows, in the order of the table.
+    /// Its rows without inherited ones, in the order of the table.
     pub rows: &'static [&'static Attribute],
-    /// Inherited attributes that it does not show. They can still be read and written.
+    /// Inherited attributes that it hides, in groups. They can still be read and written.
     pub hides: &'static [&'static [&'static str]],
     pub(super) doc: &'static str,
     pub(super) index: OnceLock<HashMap<&'static str, &'static Attribute>>,
 }
 
-/// Its name is enough to tell it by.
+/// Prints the name.
 impl fmt::Debug for NodeType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)
     }
 }
 
-/// Types are compared by identity: there is one static per type.
+/// Compares by identity: there is one static per type.
 impl PartialEq for NodeType {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
-/// All types that a scene can name, in the order in which they are best read about.
-pub fn node_types() -> &'static [&'static NodeType] {
-    &TYPES
-}
-
-/// The type of this name that a scene can name.
-pub fn node_type(name: &str) -> Option<&'static NodeType> {
-    TYPES.iter().copied().find(|node_type| node_type.name == name)
-}
-
-static TYPES: [&NodeType; 24] = [
-    &nucleus::NUCLEUS,
-    &n_cloth::N_CLOTH,
-    &n_rigid::N_RIGID,
-    &n_particle::N_PARTICLE,
-    &dynamic_constraint::DYNAMIC_CONSTRAINT,
-    &n_component::N_COMPONENT,
-    &point_emitter::POINT_EMITTER,
-    &gravity_field::GRAVITY_FIELD,
-    &turbulence_field::TURBULENCE_FIELD,
-    &vortex_field::VORTEX_FIELD,
-    &drag_field::DRAG_FIELD,
-    &air_field::AIR_FIELD,
-    &radial_field::RADIAL_FIELD,
-    &uniform_field::UNIFORM_FIELD,
-    &volume_axis_field::VOLUME_AXIS_FIELD,
-    &newton_field::NEWTON_FIELD,
-    &mesh::MESH,
-    &poly_plane::POLY_PLANE,
-    &poly_sphere::POLY_SPHERE,
-    &poly_cube::POLY_CUBE,
-    &poly_cylinder::POLY_CYLINDER,
-    &camera::CAMERA,
-    &transform::TRANSFORM,
-    &time::TIME,
-];
-
 impl NodeType {
-    /// What such a node is, in one line.
+    /// Description in one line.
     pub fn doc(&self) -> &'static str {
         self.doc.trim_start()
     }
 
-    /// This type, the type it inherits from, and so on up.
+    /// This type and its ancestors, nearest first.
     pub fn lineage(&'static self) -> impl Iterator<Item = &'static NodeType> {
         std::iter::successors(Some(self), |node_type| node_type.parent)
     }
@@ -88,8 +51,8 @@ impl NodeType {
         self.lineage().any(|ancestor| ancestor == other)
     }
 
-    /// The attribute of this long or short name. A long name goes before a short one, and within each the
-    /// row nearest to this type wins.
+    /// The attribute of a long or short name. Long names take precedence over short ones, then derived types over their
+    /// ancestors.
     pub fn attribute(&'static self, name: &str) -> Option<&'static Attribute> {
         self.index.get_or_init(|| self.by_name()).get(name).copied()
     }
@@ -106,7 +69,7 @@ impl NodeType {
         index
     }
 
-    /// The vector attribute that has a part of this long or short name, and which part it is.
+    /// The vector attribute with a component of this long or short name, and the index of the component.
     pub fn part(&'static self, name: &str) -> Option<(&'static Attribute, usize)> {
         self.attributes().into_iter().find_map(|row| {
             let part = row.parts()?.iter().position(|(long, short)| long == name || *short == name)?;
@@ -114,7 +77,7 @@ impl NodeType {
         })
     }
 
-    /// All attributes, own ones first; what a nearer type redefines is left out.
+    /// All attributes, those of derived types first. Redefined rows appear once.
     pub fn attributes(&'static self) -> Vec<&'static Attribute> {
         let mut all: Vec<&'static Attribute> = Vec::new();
         for row in self.lineage().flat_map(|ancestor| ancestor.rows) {
@@ -125,13 +88,51 @@ impl NodeType {
         all
     }
 
-    /// Whether this type keeps an attribute from view.
+    /// Whether this type hides an attribute.
     pub fn keeps_from_view(&'static self, row: &Attribute) -> bool {
         row.hidden || self.has_no_use_for(row)
     }
 
-    /// Whether this type, or one that it inherits from, has no use for an attribute that it inherits.
+    /// Whether this type or an ancestor lists an inherited attribute in `hides`.
     pub fn has_no_use_for(&'static self, row: &Attribute) -> bool {
         self.lineage().any(|ancestor| ancestor.hides.iter().any(|names| names.contains(&row.name)))
     }
 }
+
+/// Defines a node type, and a typed key for each of its rows. A row is a doc comment, a key and its value type.
+///
+/// ```text
+/// node_table! {
+///     /// A mesh that behaves as cloth.
+///     N_CLOTH = "nCloth", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, &["mass"]];
+///     "Dynamic Properties" {
+///         /// How strongly faces keep the angle between them.
+///         BEND_RESISTANCE: f64 = float("bendResistance", "bnd", 0.1).soft(0.0, 200.0).solved("nucleus_core::constraints::bend");
+///     }
+/// }
+/// ```
+macro_rules! node_table {
+    (
+        $(#[doc = $type_doc:literal])+
+        $type:ident = $name:literal, inherits $parent:expr, hides [$($hides:expr),* $(,)?];
+        $($group:literal {
+            $($(#[doc = $doc:literal])+ $key:ident: $value:ty = $row:expr;)*
+        })*
+    ) => {
+        $(#[doc = $type_doc])+
+        pub static $type: crate::attributes::NodeType = crate::attributes::NodeType {
+            name: $name,
+            parent: $parent,
+            rows: &[$($(&$key.row,)*)*],
+            hides: &[$($hides),*],
+            doc: concat!($($type_doc),+),
+            index: std::sync::OnceLock::new(),
+        };
+        $($(
+            $(#[doc = $doc])+
+            pub static $key: crate::attributes::Key<$value> = ($row).described($group, concat!($($doc),+));
+        )*)*
+    };
+}
+
+pub(super) use node_table;

@@ -1,8 +1,8 @@
 //! The solver node.
 
 use super::key::{choice, float, int, plug, toggle, vector};
-use super::table::node_table;
-use super::transform::TRANSFORM;
+use super::node_type::node_table;
+use super::scene_nodes::transform::TRANSFORM;
 use super::{Choice, Data, Plugged};
 
 node_table! {

@@ -1,7 +1,7 @@
 //! What all dynamic objects inherit from classic particles. None of it takes effect yet.
 
 use super::key::{choice, float, floats, int, ints, plug, text, toggle, vector, vectors};
-use super::table::node_table;
+use super::node_type::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {

@@ -1,8 +1,8 @@
 //! Emitters.
 
-use super::dyn_base::DYN_BASE;
+use super::fields::dyn_base::DYN_BASE;
 use super::key::{choice, float, floats, int, plug, toggle, vector};
-use super::table::node_table;
+use super::node_type::node_table;
 use super::{Choice, Data, Plugged};
 
 node_table! {

@@ -1,4 +1,4 @@
-//! One row of a table: everything there is to say about one attribute.
+//! One row of a table: the properties of one attribute.
 
 use std::fmt;
 
@@ -11,64 +11,63 @@ pub struct Attribute {
     pub name: &'static str,
     /// Maya's short name, which scenes may use too.
     pub short: &'static str,
-    /// What it holds.
+    /// Type of its value.
     pub kind: Kind,
-    /// What it holds when nobody sets it; `None` for what can only be connected or is worked out.
+    /// Value where it is not set; `None` for connections and outputs.
     pub default: Option<Value>,
-    /// The numbers it takes.
+    /// Its range.
     pub range: Range,
-    /// Unit of its numbers; empty when they have none.
+    /// Unit of its values; empty if they have none.
     pub unit: &'static str,
-    /// The section it stands in, as in Maya's attribute editor.
+    /// Its section in Maya's attribute editor.
     pub group: &'static str,
-    /// Not shown to users, but it can be read and written.
+    /// Not listed for users. It can be read and written.
     pub hidden: bool,
-    /// Ours, unknown to Maya.
+    /// Not an attribute of Maya.
     pub extension: bool,
     /// Whether it may change from frame to frame.
     pub keyable: bool,
-    /// It holds many: each element is a plug of its own, `inputActive[2]`.
+    /// An array of plugs: `inputActive[2]`.
     pub multi: bool,
-    /// A connection can begin here.
+    /// It can be the source of a connection.
     pub readable: bool,
-    /// A connection can end here.
+    /// It can be the destination of a connection.
     pub writable: bool,
-    /// Where it takes effect.
+    /// The module that implements it, if any.
     pub effect: Effect,
     pub(super) doc: &'static str,
 }
 
-/// The numbers an attribute takes.
+/// The range of an attribute's values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Range {
-    /// Below this a scene is refused.
+    /// Hard minimum: a smaller value is an error.
     pub min: Option<f64>,
-    /// Above this a scene is refused.
+    /// Hard maximum: a larger value is an error.
     pub max: Option<f64>,
-    /// Where Maya's slider begins and ends; scenes may go beyond.
+    /// Range of Maya's slider. Values outside are valid.
     pub soft: Option<(f64, f64)>,
 }
 
-/// Where an attribute takes effect.
+/// Whether an attribute has an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// In the module of this path, from its crate on: `nucleus_core::constraints::bend`. `cargo xtask tidy` looks for its
-    /// file.
+    /// Implemented by the module of this path: `nucleus_core::constraints::bend`. `cargo xtask tidy` checks that it exists.
     Solved(&'static str),
-    /// Nowhere yet: it can be set, and whoever sets it is told.
+    /// Not implemented yet: setting it is a warning.
     NotYet,
-    /// Nowhere, and in Maya neither: it can be set, and whoever sets it is told.
+    /// Without effect in Maya: setting it is a warning.
     Never,
 }
 
-/// Its name is enough to tell it by.
+/// Prints the name.
 impl fmt::Debug for Attribute {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)
     }
 }
 
-/// Rows are compared by identity: there is one static per row.
+/// Compares by identity: there is one static per row.
 impl PartialEq for Attribute {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
@@ -89,7 +88,7 @@ impl Range {
 }
 
 impl Attribute {
-    /// What it does, in one line.
+    /// Description in one line.
     pub fn doc(&self) -> &'static str {
         self.doc.trim_start()
     }
@@ -99,7 +98,7 @@ impl Attribute {
         self.keyable && self.kind.can_be_keyed()
     }
 
-    /// Names of the three parts of a vector, long and short: `translateX` and `tx` ...
+    /// Long and short names of the components of a vector: `translateX` and `tx`.
     pub fn parts(&self) -> Option<[(String, &'static str); 3]> {
         let Kind::Vector(shorts) = self.kind else { return None };
         Some(shorts.map(|short| {
@@ -108,14 +107,14 @@ impl Attribute {
         }))
     }
 
-    /// The words of an enum as a scene writes them, with their index; empty for all other kinds.
+    /// The values of an enum: index, and name in a scene. Empty for all other kinds.
     pub fn words(&self) -> Vec<(Choice, String)> {
         let Kind::Choice(words) = self.kind else { return Vec::new() };
         words.iter().map(|&(index, name)| (Choice(index), camel_case(name))).collect()
     }
 }
 
-/// Maya's name of an enum field as one word: `Object Space` becomes `objectSpace`.
+/// Maya's name of an enum value in camel case: `Object Space` becomes `objectSpace`.
 fn camel_case(name: &str) -> String {
     let mut word = String::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {

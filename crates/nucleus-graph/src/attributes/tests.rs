@@ -8,7 +8,7 @@ fn all_types() -> impl Iterator<Item = &'static NodeType> {
 }
 
 #[test]
-fn every_row_is_described_and_has_a_default_within_its_range() {
+fn every_row_has_a_description_and_a_default_within_its_range() {
     for node_type in all_types() {
         assert!(!node_type.doc().is_empty(), "{}", node_type.name);
         for row in node_type.rows {
@@ -31,7 +31,7 @@ fn every_row_is_described_and_has_a_default_within_its_range() {
 }
 
 #[test]
-fn within_a_type_no_long_name_and_no_short_name_stands_twice() {
+fn long_names_and_short_names_are_unique_within_a_type() {
     for node_type in all_types() {
         let mut longs: Vec<_> = node_type.rows.iter().map(|row| row.name).collect();
         let mut shorts: Vec<_> = node_type.rows.iter().map(|row| row.short).collect();
@@ -45,7 +45,7 @@ fn within_a_type_no_long_name_and_no_short_name_stands_twice() {
 }
 
 #[test]
-fn every_word_of_an_enum_is_a_word_and_stands_once() {
+fn the_values_of_an_enum_have_unique_names_that_scenes_can_write() {
     for row in all_types().flat_map(|node_type| node_type.rows) {
         let mut words: Vec<String> = row.words().into_iter().map(|(_, word)| word).collect();
         let count = words.len();
@@ -57,7 +57,7 @@ fn every_word_of_an_enum_is_a_word_and_stands_once() {
 }
 
 #[test]
-fn the_parts_of_together_are_attributes_of_the_same_type() {
+fn attributes_that_are_set_at_once_belong_to_the_same_type() {
     for node_type in node_types() {
         for row in node_type.attributes() {
             let Kind::Together(parts) = row.kind else { continue };
@@ -67,7 +67,7 @@ fn the_parts_of_together_are_attributes_of_the_same_type() {
 }
 
 #[test]
-fn the_nearest_row_wins() {
+fn a_derived_type_overrides_inherited_rows() {
     let default = |node_type: &'static NodeType| node_type.attribute("trappedCheck")?.default.clone();
     assert_eq!(default(&n_cloth::N_CLOTH), Some(Value::Bool(false)));
     assert_eq!(default(&n_rigid::N_RIGID), Some(Value::Bool(true)));
@@ -76,20 +76,20 @@ fn the_nearest_row_wins() {
 }
 
 #[test]
-fn cloth_inherits_from_the_shared_base_and_from_classic_particles() {
+fn cloth_inherits_from_n_base_and_from_classic_particles() {
     assert!(n_cloth::N_CLOTH.is_a(&n_base::N_BASE) && n_cloth::N_CLOTH.is_a(&particle::PARTICLE));
     assert!(!n_cloth::N_CLOTH.is_a(&transform::TRANSFORM));
 }
 
 #[test]
-fn inherited_attributes_that_cloth_does_not_show_are_still_there() {
+fn inherited_attributes_that_cloth_hides_still_exist() {
     let row = n_cloth::N_CLOTH.attribute("lifespanMode").expect("it is inherited");
     assert!(n_cloth::N_CLOTH.keeps_from_view(row));
     assert!(!particle::PARTICLE.keeps_from_view(row));
 }
 
 #[test]
-fn short_names_and_parts_of_vectors_are_found() {
+fn attributes_are_found_by_short_names_and_by_vector_components() {
     let cloth = &n_cloth::N_CLOTH;
     assert_eq!(cloth.attribute("stch").map(|row| row.name), Some("stretchResistance"));
     let (row, part) = mesh::MESH.part("translateY").expect("a mesh has a transform");
@@ -100,7 +100,7 @@ fn short_names_and_parts_of_vectors_are_found() {
 
 /// Names, short names, defaults and ranges of a few attributes as Maya has them.
 #[test]
-fn rows_say_what_maya_says() {
+fn rows_have_mayas_names_defaults_and_ranges() {
     let row = |node_type: &'static NodeType, name| node_type.attribute(name).expect(name);
     let stretch = row(&n_cloth::N_CLOTH, "stretchResistance");
     assert_eq!((&stretch.default, stretch.range.soft), (&Some(Value::Float(20.0)), Some((0.0, 200.0))));

@@ -1,4 +1,4 @@
-//! What an attribute holds at one moment.
+//! Values of attributes.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 /// A value of any kind.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// On or off.
+    /// `true` or `false`.
     Bool(bool),
     /// A whole number.
     Int(i64),
@@ -14,7 +14,7 @@ pub enum Value {
     Float(f64),
     /// Three numbers.
     Vector([f64; 3]),
-    /// One of the words of the attribute.
+    /// A value of an enum.
     Choice(Choice),
     /// Text, such as the path of a file.
     Text(String),
@@ -24,29 +24,29 @@ pub enum Value {
     Floats(Vec<f64>),
     /// Vectors, one per point.
     Vectors(Vec<[f64; 3]>),
-    /// A curve over 0 to 1.
+    /// A function on 0 to 1.
     Ramp(Cow<'static, [RampPoint]>),
-    /// Colours over 0 to 1.
+    /// A function of colours on 0 to 1.
     ColorRamp(Cow<'static, [ColorPoint]>),
-    /// Parts of objects.
+    /// Components of objects.
     Components(Vec<Component>),
-    /// Something per point that is made elsewhere.
+    /// Values per point from a file, an expression or a texture.
     Painting(Painting),
 }
 
-/// Where what is given per point comes from, when it is no list.
+/// The source of values per point that are not a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Painting {
     /// A file of numbers: `file("weights.txt")`.
     File(String),
-    /// An expression of each point: `expression("x > 0 ? 2 : 1")`.
+    /// An expression, evaluated at each point: `expression("x > 0 ? 2 : 1")`.
     Expression(String),
-    /// A picture: `texture("weights.png")`.
+    /// An image: `texture("weights.png")`.
     Texture(String),
 }
 
 impl Painting {
-    /// The word that a scene writes for it, and what stands in its brackets.
+    /// The name of the source in a scene, and its argument.
     pub fn parts(&self) -> (&'static str, &str) {
         match self {
             Self::File(file) => ("file", file),
@@ -56,49 +56,49 @@ impl Painting {
     }
 }
 
-/// One of the words of an enum attribute, by Maya's index.
+/// A value of an enum attribute, by Maya's index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Choice(pub i32);
 
 /// One point of a ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RampPoint {
-    /// Where on the ramp, 0 to 1.
+    /// Position on the ramp, 0 to 1.
     pub position: f64,
-    /// Its value there.
+    /// Value at that position.
     pub value: f64,
-    /// How it goes on to the next point.
+    /// Interpolation to the next point.
     pub interpolation: Choice,
 }
 
 /// One point of a ramp of colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColorPoint {
-    /// Where on the ramp, 0 to 1.
+    /// Position on the ramp, 0 to 1.
     pub position: f64,
-    /// Red, green and blue there.
+    /// Red, green and blue at that position.
     pub color: [f64; 3],
-    /// How it goes on to the next point.
+    /// Interpolation to the next point.
     pub interpolation: Choice,
 }
 
-/// A part of an object: `cloth1.vtx[0:64]`.
+/// A component of an object: `cloth1.vtx[0:64]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Component {
     /// Name of the object's node.
     pub object: String,
-    /// Which of its elements.
+    /// Its elements.
     pub selection: Selection,
 }
 
-/// Which elements of an object.
+/// Elements of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Selection {
     /// The whole object: `cloth1`.
     Object,
-    /// All of its points: `cloth1.vtx[*]`.
+    /// All points: `cloth1.vtx[*]`.
     AllPoints,
-    /// A run of points, both ends included: `cloth1.vtx[3]`, `cloth1.vtx[0:64]`.
+    /// A range of points, including both ends: `cloth1.vtx[3]`, `cloth1.vtx[0:64]`.
     Points {
         /// The first point.
         first: u32,

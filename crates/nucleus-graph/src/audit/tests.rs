@@ -24,7 +24,7 @@ fn program(nodes: &str) -> Program {
 
 const SHEET_AND_BALL: &str = r#""c": nCloth(inputMesh: "sheet"), "r": nRigid(inputMesh: "ball")"#;
 
-/// A state in which the sheet is level, at a height.
+/// A state with the sheet horizontal, at a height in metres.
 struct Level<'a> {
     start: &'a dyn StateView,
     height: f64,
@@ -45,7 +45,7 @@ impl StateView for Level<'_> {
     }
 }
 
-/// What an audit finds of a sheet that is put at one height after the other.
+/// The audit of a sheet that moves from height to height.
 fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
     let program = program(nodes);
     let run = Simulation::<f64>::new(&program, 1);
@@ -60,14 +60,14 @@ fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
 }
 
 #[test]
-fn a_sheet_that_leaps_over_a_ball_is_seen_only_on_the_way() {
+fn a_sheet_that_moves_through_a_ball_in_one_step_is_found_only_in_its_motion() {
     let leap = [1.4, -1.5];
     assert!(found(SHEET_AND_BALL, Closeness::Steps, &leap).crossings > 0);
     assert!(found(SHEET_AND_BALL, Closeness::Frames, &leap).is_clean());
 }
 
 #[test]
-fn a_sheet_that_ends_inside_a_ball_is_seen_either_way() {
+fn a_sheet_that_ends_inside_a_ball_is_found_in_states_and_in_motions() {
     for closeness in [Closeness::Steps, Closeness::Frames] {
         assert!(!found(SHEET_AND_BALL, closeness, &[1.4, 0.3]).is_clean(), "{closeness:?}");
         assert!(found(SHEET_AND_BALL, closeness, &[1.4, 1.3]).is_clean(), "{closeness:?}");
@@ -75,7 +75,7 @@ fn a_sheet_that_ends_inside_a_ball_is_seen_either_way() {
 }
 
 #[test]
-fn what_is_shown_within_a_substep_is_followed() {
+fn states_within_a_substep_are_audited() {
     let program = program(SHEET_AND_BALL);
     let run = Simulation::<f64>::new(&program, 1);
     let rules = |world: &World| collision_rules(&program, 2, &[], world);
@@ -89,12 +89,12 @@ fn what_is_shown_within_a_substep_is_followed() {
     audited.step(1.0, &level(1.4));
     audited.substep(core::SubstepIndex { substep: 1, substeps: 1 }, &level(1.4));
     let account = audit.account();
-    assert_eq!((account.motions, account.overlaps), (2, 0), "the end of the substep is no motion of its own");
-    assert!(account.crossings > 0, "it leapt down and up again");
+    assert_eq!((account.motions, account.overlaps), (2, 0), "the end of the substep adds no motion");
+    assert!(account.crossings > 0, "the sheet moved down and up again");
 }
 
 #[test]
-fn what_is_told_to_pass_through_may() {
+fn objects_that_do_not_collide_and_pinned_points_are_not_audited() {
     let ghost = r#""c": nCloth(inputMesh: "sheet", collide: false), "r": nRigid(inputMesh: "ball")"#;
     assert!(found(ghost, Closeness::Steps, &[0.3]).is_clean());
     let held = format!(
@@ -113,7 +113,7 @@ fn what_is_told_to_pass_through_may() {
 }
 
 #[test]
-fn cloths_in_layers_far_apart_are_not_held_to_anything() {
+fn cloths_in_distant_collision_layers_are_not_audited() {
     let two = |layer: f64| {
         let nodes = format!(
             r#""other": polyPlane(width: 2, height: 2, translate: (0.01, 1, 0.02)),
@@ -127,7 +127,7 @@ fn cloths_in_layers_far_apart_are_not_held_to_anything() {
 }
 
 #[test]
-fn a_check_for_crossings_is_answered_by_an_audit_and_by_nothing_else() {
+fn the_check_for_crossings_passes_only_with_an_audit() {
     let program = program(SHEET_AND_BALL);
     let passes = |audited: bool| {
         let mut run = Simulation::<f32>::new(&program, 1);
@@ -144,7 +144,7 @@ fn a_check_for_crossings_is_answered_by_an_audit_and_by_nothing_else() {
 }
 
 #[test]
-fn an_audit_changes_nothing() {
+fn an_audit_does_not_change_the_result() {
     let program = program(SHEET_AND_BALL);
     let hash = |closeness: Option<Closeness>| {
         let mut run = Simulation::<f32>::new(&program, 1);
@@ -158,7 +158,7 @@ fn an_audit_changes_nothing() {
 }
 
 #[test]
-fn a_ground_plane_goes_from_where_the_last_span_left_it_to_where_the_next_puts_it() {
+fn a_ground_plane_moves_linearly_in_each_span_from_the_end_of_the_span_before() {
     let level = |height: f64| Plane::new(Vector3::y() * height, Vector3::y());
     let program = program(r#""c": nCloth(inputMesh: "sheet")"#);
     let mut input = program
@@ -172,9 +172,9 @@ fn a_ground_plane_goes_from_where_the_last_span_left_it_to_where_the_next_puts_i
     let mut planes = GroundPlanes::default();
     let at = |planes: &GroundPlanes, share: f64| planes.of(ClothId(0), share).map(|[_, now]| now);
     put(&mut planes, 1.0, [0.0, 1.0]);
-    assert_eq!(at(&planes, 0.0), level(1.0), "a plane that appears is there from the start");
+    assert_eq!(at(&planes, 0.0), level(1.0), "a plane that appears does not move");
     planes.begin_frame();
-    assert_eq!(at(&planes, 0.0), level(1.0), "it has not been moved yet");
+    assert_eq!(at(&planes, 0.0), level(1.0), "it has not moved yet");
     put(&mut planes, 2.0, [0.0, 0.5]);
     assert_eq!([0.0, 0.25, 0.5].map(|share| at(&planes, share)), [1.0, 1.5, 2.0].map(level));
     put(&mut planes, 4.0, [0.5, 1.0]);

@@ -10,7 +10,7 @@ fn judge(check: &str, arguments: &[f64], reports: &[StepReport]) -> Outcome {
 }
 
 #[test]
-fn the_worst_figure_decides_and_its_first_frame_is_named() {
+fn the_worst_figure_decides_and_its_first_frame_is_reported() {
     let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
     let outcome = judge("maxStretch", &[0.02], &[strain(0.01), strain(0.03), strain(0.03), strain(0.02)]);
     assert_eq!((outcome.passed, outcome.worst), (false, Some((0.03, 3))));
@@ -18,7 +18,7 @@ fn the_worst_figure_decides_and_its_first_frame_is_named() {
 }
 
 #[test]
-fn a_gap_must_not_be_smaller() {
+fn a_gap_below_the_limit_fails() {
     let gap = |min_gap| StepReport { min_gap, ..StepReport::default() };
     let outcome = judge("minGap", &[0.9], &[gap(f64::INFINITY), gap(0.95), gap(0.99)]);
     assert_eq!((outcome.passed, outcome.worst), (true, Some((0.95, 3))));
@@ -33,7 +33,7 @@ fn one_unresolved_pair_is_a_penetration() {
 }
 
 #[test]
-fn a_scene_may_allow_a_count_in_each_frame() {
+fn a_limit_on_counts_applies_to_each_frame() {
     let count = |pairs_unresolved, trapped, tangled| StepReport {
         pairs_unresolved,
         depenetrating: trapped,
@@ -49,14 +49,14 @@ fn a_scene_may_allow_a_count_in_each_frame() {
 }
 
 #[test]
-fn nan_never_passes_and_stays() {
+fn nan_fails_and_remains_the_worst_figure() {
     let strain = |max_strain| StepReport { max_strain, ..StepReport::default() };
     let outcome = judge("maxStretch", &[0.02], &[strain(f64::NAN), strain(0.0)]);
     assert!(!outcome.passed && outcome.worst.is_some_and(|(worst, frame)| worst.is_nan() && frame == 2));
 }
 
 #[test]
-fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
+fn rests_by_limits_the_root_mean_square_speed_from_its_frame_on() {
     // 4 J in 2 kg are 2 m/s.
     let moving = |kinetic_energy| StepReport { kinetic_energy, ..StepReport::default() };
     let outcome = judge("restsBy", &[3.0, 2.0], &[moving(100.0), moving(4.0), moving(1.0)]);
@@ -65,7 +65,7 @@ fn rest_is_judged_from_its_frame_on_by_the_root_mean_square_speed() {
 }
 
 #[test]
-fn what_is_still_tangled_by_its_frame_fails() {
+fn untangled_by_fails_for_intersections_from_its_frame_on() {
     let tangled = |tangled| StepReport { intersections: tangled, ..StepReport::default() };
     assert!(judge("untangledBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
     let outcome = judge("untangledBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
@@ -73,13 +73,13 @@ fn what_is_still_tangled_by_its_frame_fails() {
 }
 
 #[test]
-fn a_check_that_never_came_up_has_not_passed() {
+fn a_check_that_applies_to_no_frame_fails() {
     let outcome = judge("restsBy", &[100.0, 1.0], &[StepReport::default()]);
     assert_eq!((outcome.passed, outcome.worst), (false, None));
 }
 
 #[test]
-fn names_and_numbers_of_arguments_must_be_right() {
+fn unknown_names_and_wrong_counts_of_arguments_are_refused() {
     assert_eq!(Check::new("noPenetration", &[1.0]), None);
     assert_eq!(Check::new("maxStretch", &[]), None);
     assert_eq!(Check::new("maxStrech", &[1.0]), None);

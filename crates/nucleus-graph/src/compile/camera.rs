@@ -11,39 +11,39 @@ use crate::scene::TimeSpan;
 pub struct Camera {
     /// Name of its node.
     pub name: String,
-    /// How a picture of another shape than the film is laid on it.
+    /// Fit of an image whose aspect ratio differs from the film's.
     pub fit: FilmFit,
-    /// Where it stands in each frame from the first on; just one if it never moves.
+    /// Its view in each frame from the first on; one entry if it is constant.
     pub views: Vec<View>,
 }
 
 /// A camera at a frame. Lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Where the eye is.
+    /// Position of the eye.
     pub eye: Vector3<f64>,
-    /// Where it looks, of unit length.
+    /// View direction, of unit length.
     pub forward: Vector3<f64>,
-    /// What is up in the picture, of unit length.
+    /// Up direction of the image, of unit length.
     pub up: Vector3<f64>,
     /// Focal length in millimetres.
     pub focal_length: f64,
     /// Width and height of the film in inches.
     pub film: [f64; 2],
-    /// How far before the eye is what one looks at.
+    /// Distance from the eye to the centre of interest.
     pub interest: f64,
 }
 
-/// How a picture is laid on the film, by Maya's words.
+/// The fit of an image to the film, by Maya's names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilmFit {
-    /// The film is as wide or as high as the picture, and never smaller.
+    /// Fits width or height, so that the film contains the image.
     Fill,
-    /// It is as wide.
+    /// Fits the width.
     Horizontal,
-    /// It is as high.
+    /// Fits the height.
     Vertical,
-    /// It is as wide or as high, and never larger.
+    /// Fits width or height, so that the image contains the film.
     Overscan,
 }
 
@@ -51,10 +51,10 @@ pub enum FilmFit {
 pub(super) fn cameras(graph: &Graph, time: TimeSpan) -> Vec<Camera> {
     let mut nodes: Vec<NodeId> = graph.of_type(&camera::CAMERA).map(|(id, _)| id).collect();
     nodes.sort_by_key(|&id| graph.node(id).name());
-    nodes.into_iter().map(|node| of(graph, time, node)).collect()
+    nodes.into_iter().map(|node| camera(graph, time, node)).collect()
 }
 
-fn of(graph: &Graph, time: TimeSpan, node: NodeId) -> Camera {
+fn camera(graph: &Graph, time: TimeSpan, node: NodeId) -> Camera {
     let at = |frame: i64| view(&graph.at(frame as f64), node);
     let mut views: Vec<View> = (time.start..=time.end.max(time.start)).map(at).collect();
     if views.iter().all(|view| *view == views[0]) {

@@ -2,12 +2,13 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothFrame, ClothId, Elements, FrameInput, PointId, PushOut, ResistanceModel, SelfCollision, Stiffness,
+    ClothFrame, ClothId, ColliderFrame, Elements, FrameInput, PointId, PushOut, ResistanceModel,
+    SelfCollision, Stiffness,
 };
 use proptest::prelude::*;
 
 use super::*;
-use crate::attributes::{NodeType, n_cloth, n_rigid, nucleus, particle};
+use crate::attributes::{NodeType, Value, n_base, n_cloth, n_rigid, nucleus, particle};
 use crate::graph::Setting;
 use crate::scene::read_scene_text;
 
@@ -82,9 +83,9 @@ fn lengths_are_scaled_and_accelerations_are_not() {
     assert_eq!(centimetres.units_per_metre(), 100.0);
 }
 
-// EVIDENCE: N2.2-7  cloth is broken into simple lists, and only into those it has a use for
+// EVIDENCE: N2.2-7  cloth is divided into simple constraint lists, and only into those that it uses
 #[test]
-fn a_list_is_on_only_if_its_attribute_is_ever_other_than_zero() {
+fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
     let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: true";
@@ -114,7 +115,7 @@ fn there_is_no_air_list_in_a_vacuum() {
     assert!(model(&program(&sheet("airDensity: 0", ""))).contains("air: false"));
 }
 
-// EVIDENCE: N2.2-8  a number is a count in 1/24 s: it is handed on as it is, whatever a frame lasts
+// EVIDENCE: N2.2-8  a resistance is a count in 1/24 s: it does not depend on the length of a frame
 #[test]
 fn counts_do_not_depend_on_frame_rate_or_time_scale() {
     let mut scene = scene(&sheet("timeScale: 0.5", "stretchResistance: 30"));
@@ -127,7 +128,7 @@ fn counts_do_not_depend_on_frame_rate_or_time_scale() {
 }
 
 #[test]
-fn mass_is_by_point_or_by_area() {
+fn point_mass_is_per_point_in_classic_and_per_area_in_physical() {
     let classic = program(&sheet("resistanceModel: classic", "pointMass: 0.5"));
     assert!(model(&classic).contains("PerPoint(0.5)"));
     assert_eq!((classic.mass(), classic.first_input().resistance), (2.0, ResistanceModel::Classic));
@@ -138,7 +139,7 @@ fn mass_is_by_point_or_by_area() {
 }
 
 #[test]
-fn every_attribute_of_cloth_reaches_its_place() {
+fn every_attribute_of_cloth_reaches_the_frame_input() {
     let set = "stretchResistance: 1, compressionResistance: 2, shearResistance: 3, bendResistance: 4, \
         restLengthScale: 5, stretchDamp: 6, damp: 7, drag: 8, tangentialDrag: 9, lift: 10, \
         stretchStiffness: 20, compressionStiffness: 21, shearStiffness: 0, bendStiffness: -1, \
@@ -185,18 +186,31 @@ fn every_attribute_of_cloth_reaches_its_place() {
 }
 
 #[test]
-fn a_cloth_on_which_nothing_is_set_has_the_solvers_own_defaults() {
+fn a_cloth_without_settings_has_the_defaults_of_the_core() {
     let cloths = program(&sheet("", "")).first_input().cloths;
     let thickness = cloths[0].thickness;
-    // Cloth meets itself, unless it is told not to; the solver by itself knows of no thickness.
+    // The core's defaults leave out thickness and self-collision, which Maya derives from the mesh.
     let self_collision = SelfCollision { on: true, thickness, ..ClothFrame::default().self_collision };
     assert_eq!(cloths, [ClothFrame { thickness, self_collision, ..ClothFrame::default() }]);
     // Two sides of 2 by 2; one face. 0.5 % of sqrt(8).
     assert!((cloths[0].thickness - 0.005 * 8f64.sqrt()).abs() < 1e-15);
 }
 
-// EVIDENCE: N2.4-6  animation is evaluated once per frame: a key between two frames is not seen
-// EVIDENCE: N2.4-7  inside a frame there are only its two ends, for the solver to go between
+#[test]
+fn a_collider_without_settings_has_the_defaults_of_the_core() {
+    let boxed = program(r#""n": nucleus(), "box": polyCube(), "c": nRigid(inputMesh: "box")"#);
+    let collider = &boxed.first_input().colliders[0];
+    // The core's default collider does not collide, and has neither thickness nor friction.
+    let thickness = collider.thickness;
+    let expected = ColliderFrame { collide: true, thickness, friction: 0.1, ..ColliderFrame::default() };
+    assert_eq!(*collider, expected);
+    assert_eq!(n_base::FRICTION.row.default, Some(Value::Float(expected.friction)));
+    // Two sides of 1 by 1 in each of three directions; six faces. 0.3 % of sqrt(6).
+    assert!((thickness - 0.003 * 6f64.sqrt()).abs() < 1e-15);
+}
+
+// EVIDENCE: N2.4-6  animation is evaluated once per frame: a key between two frames has no effect
+// EVIDENCE: N2.4-7  inside a frame the solver interpolates between its two ends
 #[test]
 fn a_collider_moves_from_frame_to_frame() {
     let moving = program(
@@ -223,7 +237,7 @@ fn a_collider_that_never_moves_has_no_positions() {
 }
 
 #[test]
-fn the_nucleus_turns_what_it_gives() {
+fn gravity_wind_and_ground_plane_are_in_the_space_of_the_nucleus() {
     let turned =
         "rotate: (0, 0, 90), ty: 3, scale: (2, 1, 1), usePlane: true, windSpeed: 2, planeOrigin: (1, 0, 0)";
     let own = program(&sheet(turned, "")).first_input();
@@ -238,7 +252,7 @@ fn the_nucleus_turns_what_it_gives() {
 }
 
 #[test]
-fn the_length_of_a_direction_does_not_matter_and_zero_is_none() {
+fn a_direction_is_normalized_and_the_zero_direction_has_no_effect() {
     let gravity = |direction: &str| {
         program(&sheet(&format!("gravityDirection: {direction}"), "")).first_input().gravity
     };
@@ -246,9 +260,9 @@ fn the_length_of_a_direction_does_not_matter_and_zero_is_none() {
     assert_eq!(gravity("(0, 0, 0)"), Vector3::zeros());
 }
 
-// EVIDENCE: N2.4-1  what is built, is built from the start frame
+// EVIDENCE: N2.4-1  the model is built from the start frame
 #[test]
-fn a_run_begins_at_the_start_frame_with_things_where_they_are_then() {
+fn a_run_begins_at_the_start_frame_with_the_positions_of_that_frame() {
     let moving = r#""p": polyPlane(tx: keys([(1, 0), (11, 10)])), "c": nCloth(inputMesh: "p")"#;
     let late = program(&format!(r#""n": nucleus(startFrame: 5), {moving}"#));
     assert_eq!((late.time().start, late.model().positions(ClothId(0))[0].x), (5, 3.5));
@@ -258,7 +272,7 @@ fn a_run_begins_at_the_start_frame_with_things_where_they_are_then() {
 }
 
 #[test]
-fn what_could_not_run_is_refused() {
+fn scenes_that_cannot_run_are_refused() {
     assert_eq!(refused(r#""t": transform()"#), "there is nothing to solve: the scene has no nucleus");
     assert_eq!(
         refused(r#""n": nucleus(), "p": polyPlane(scale: (0, 1, 1)), "c": nCloth(inputMesh: "p")"#),
@@ -279,7 +293,7 @@ fn an_attribute_at_its_default_equals_the_attribute_left_out() {
     for node_type in types {
         let (id, _) = scene.graph.of_type(node_type).next().expect("one of each");
         for row in node_type.attributes() {
-            // These are worked out when they are left out.
+            // The defaults of these depend on the mesh or the scene.
             if ["thickness", "startFrame", "selfCollisionFlag", "selfCollideWidthScale"].contains(&row.name) {
                 continue;
             }
@@ -318,7 +332,7 @@ proptest! {
 }
 
 #[test]
-fn a_camera_moves_with_its_keys_and_with_the_transform_it_hangs_from() {
+fn a_camera_moves_with_its_keys_and_with_its_parent() {
     let rig = r#""rig": transform(rotateY: 90), "shot": camera(parent: "rig", translateZ: keys([(1, 5), (24, 7)]), focalLength: 50),"#;
     let cameras = program(&format!("{}{rig}", sheet("", ""))).cameras();
     let [shot] = &cameras[..] else { panic!("{cameras:?}") };

@@ -34,7 +34,7 @@ impl StepObserver for Counter {
     }
 }
 
-/// How far the cloth has fallen after all frames, in scene units.
+/// The distance that the cloth falls in all frames, in scene units.
 fn fall(program: &Program) -> f32 {
     let mut run = Simulation::<f64>::new(program, 1);
     while !run.is_done() {
@@ -45,18 +45,18 @@ fn fall(program: &Program) -> f32 {
     -positions[0][1]
 }
 
-// EVIDENCE: N1.3-1  with spaceScale 1 in metres and 0.01 in centimetres, a fall of one second is 4.9 m
+// EVIDENCE: N1.3-1  with spaceScale 1 in metres and 0.01 in centimetres, the cloth falls 4.9 m in one second
 #[test]
-fn a_fall_takes_the_right_time_in_metres_and_in_centimetres() {
+fn free_fall_is_correct_in_metres_and_in_centimetres() {
     let metres = fall(&program("subSteps: 100", 1.0));
     assert!((metres - 4.9).abs() < 0.01, "{metres}");
     let centimetres = fall(&program("subSteps: 100, spaceScale: 0.01", 100.0));
     assert!((centimetres - 490.0).abs() < 1.0, "{centimetres}");
 }
 
-// EVIDENCE: N3.1-6  every change of time makes one call of the solver, which goes through all substeps
+// EVIDENCE: N3.1-6  every change of time makes one solver call, which runs all substeps
 #[test]
-fn a_frame_is_one_call_of_the_solver() {
+fn a_frame_is_one_solver_call() {
     let program = program("subSteps: 3", 1.0);
     let mut run = Simulation::<f32>::new(&program, 1);
     let mut counter = Counter::default();
@@ -82,7 +82,7 @@ fn gravity_acts_in_every_substep() {
 }
 
 #[test]
-fn objects_are_listed_cloths_first() {
+fn cloths_precede_colliders_in_the_list_of_objects() {
     let run = Simulation::<f32>::new(&program("", 1.0), 1);
     let objects: Vec<_> = run.objects().iter().map(|o| (o.name.as_str(), o.points, o.faces.len())).collect();
     assert_eq!(objects, [("c", 9, 4), ("r", 382, 400)]);
@@ -90,7 +90,7 @@ fn objects_are_listed_cloths_first() {
 }
 
 #[test]
-fn the_state_at_the_start_is_that_of_the_meshes() {
+fn the_initial_state_has_the_positions_of_the_meshes() {
     let run = Simulation::<f32>::new(&program("spaceScale: 0.01", 100.0), 1);
     let mut positions = Vec::new();
     run.state().positions(ClothId(0), run.units_per_metre(), &mut positions);

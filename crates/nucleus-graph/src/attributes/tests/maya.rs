@@ -1,7 +1,6 @@
-//! The tables beside Maya's: every attribute with its names, type, default, ranges and words.
+//! Compares the tables with Maya: names, type, default, ranges and enum values of every attribute.
 //!
-//! `maya.csv` and `inherited.csv` hold facts of Maya's own nodes; where a table differs on purpose, it is
-//! listed here with the reason.
+//! `maya.csv` and `inherited.csv` hold facts about Maya's nodes. Intended differences are listed here with the reason.
 
 use super::*;
 
@@ -22,7 +21,7 @@ struct Fact<'a> {
     part_of: &'a str,
 }
 
-/// Types that no scene can name, and that others inherit from.
+/// A type by its name, including base types that a scene cannot name.
 fn any_type(name: &str) -> Option<&'static NodeType> {
     let base = [&particle::PARTICLE, &n_base::N_BASE, &dyn_base::DYN_BASE, &field::FIELD];
     node_type(name).or_else(|| base.into_iter().find(|known| known.name == name))
@@ -78,7 +77,7 @@ impl Fact<'_> {
         format!("{}.{}", self.node_type.name, self.name)
     }
 
-    /// The row; nothing where it is a part of a vector or of a ramp.
+    /// The row; `None` for a component of a vector or of a ramp.
     fn row(&self) -> Option<&'static Attribute> {
         let own = self.node_type.rows.iter().copied().find(|row| row.name == self.name);
         let inside = || {
@@ -96,7 +95,7 @@ impl Fact<'_> {
 
 // EVIDENCE: N3.1-1  the solver, its objects, constraints and components are here with all that they hold
 #[test]
-fn every_attribute_of_mayas_nodes_is_here_by_its_long_and_its_short_name() {
+fn every_attribute_of_mayas_nodes_exists_with_its_long_and_short_name() {
     let facts = facts();
     assert_eq!(facts.len(), 687);
     for fact in &facts {
@@ -107,7 +106,7 @@ fn every_attribute_of_mayas_nodes_is_here_by_its_long_and_its_short_name() {
 }
 
 #[test]
-fn every_attribute_holds_what_mayas_holds() {
+fn every_attribute_has_mayas_type() {
     for fact in facts() {
         let Some(row) = fact.row() else { continue };
         let multi = fact.multi && !matches!(row.kind, Kind::Ramp | Kind::ColorRamp);
@@ -135,7 +134,7 @@ fn every_attribute_holds_what_mayas_holds() {
     }
 }
 
-/// `gravityField` and its like stand in their tables as Maya's commands make them.
+/// Defaults that Maya's commands set at creation.
 const SET_BY_CREATION: [&str; 1] = ["gravityField.direction"];
 
 #[test]
@@ -165,8 +164,7 @@ fn every_default_is_mayas() {
     }
 }
 
-/// Where we refuse what Maya takes: the solver divides by these or takes their roots, or a negative
-/// value has no meaning.
+/// Ranges narrower than Maya's: the solver divides by the value or takes its root, or a negative value has no meaning.
 fn is_narrower_on_purpose(row: &Attribute, end: usize) -> bool {
     matches!(row.effect, Effect::Solved(_)) && end < 2
 }
@@ -189,7 +187,7 @@ fn every_range_is_mayas_or_narrower() {
 }
 
 #[test]
-fn every_word_is_mayas() {
+fn every_enum_value_is_mayas() {
     for fact in facts().iter().filter(|fact| !fact.words.is_empty()) {
         let Some(row) = fact.row() else { continue };
         let Kind::Choice(words) = row.kind else { panic!("{}", fact.label()) };
@@ -199,7 +197,7 @@ fn every_word_is_mayas() {
 }
 
 #[test]
-fn what_maya_works_out_or_only_takes_in_is_so_here() {
+fn outputs_and_inputs_of_maya_are_outputs_and_inputs() {
     for fact in facts() {
         let Some(row) = fact.row() else { continue };
         assert!(fact.readable || !row.readable, "{} can be read", fact.label());
@@ -208,17 +206,17 @@ fn what_maya_works_out_or_only_takes_in_is_so_here() {
 }
 
 #[test]
-fn what_maya_hides_or_does_not_use_is_hidden_or_without_effect() {
+fn attributes_that_maya_hides_or_does_not_use_are_hidden_or_without_effect() {
     for fact in facts() {
         let Some(row) = fact.row() else { continue };
-        // Scenes name the mesh in place of Maya's connection.
+        // A scene names the mesh instead of connecting it.
         let named = matches!(row.kind, Kind::Node(_));
         assert!(!fact.hidden || row.hidden || named, "{} is shown", fact.label());
         assert!(fact.used || !matches!(row.effect, Effect::Solved(_)), "{} has an effect", fact.label());
     }
 }
 
-/// Name of the type, of the attribute, and of the type that it comes from; whether it is used and shown.
+/// Type, attribute, and the type that defines it; whether it is used and shown.
 fn inherited() -> impl Iterator<Item = (&'static NodeType, &'static str, &'static str, bool, bool)> {
     include_str!("inherited.csv").lines().skip(1).map(|line| {
         let cells: Vec<&str> = line.split(',').collect();
@@ -242,7 +240,7 @@ fn objects_inherit_as_many_attributes_as_in_maya() {
 
 // EVIDENCE: N3.1-9  what a node inherits and does not use is hidden, and still there
 #[test]
-fn what_an_object_does_not_use_is_kept_from_view_and_still_there() {
+fn inherited_attributes_that_an_object_does_not_use_are_hidden_and_still_exist() {
     for (node_type, name, _, used, shown) in inherited() {
         let row = node_type.attribute(name).unwrap_or_else(|| panic!("{}.{name}", node_type.name));
         assert!(used && shown || node_type.keeps_from_view(row), "{}.{name} is shown", node_type.name);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn pins_are_carried_by_their_transform() {
+fn pins_move_with_the_transform_of_their_constraint() {
     let pinned = program(
         &(sheet("spaceScale: 0.1", "")
             + r#""pin": dynamicConstraint(components: ["cloth1.vtx[1]"], tx: 5,
@@ -20,9 +20,9 @@ fn pins_are_carried_by_their_transform() {
     assert!((second[0].end - Vector3::new(0.6, 0.2, 0.4)).norm() < 1e-15);
 }
 
-// EVIDENCE: N2.4-5  a constraint that is switched on takes hold of things where they are then
+// EVIDENCE: N2.4-5  a constraint that becomes enabled attaches points at their current positions
 #[test]
-fn a_constraint_that_is_switched_on_takes_hold_where_points_are() {
+fn a_constraint_that_becomes_enabled_attaches_points_at_their_current_positions() {
     let hand = program(
         &(sheet("", "")
             + r#""hand": dynamicConstraint(components: ["cloth1.vtx[0]"], tx: keys([(1, 0), (11, 10)]),
@@ -42,7 +42,7 @@ fn a_constraint_that_is_switched_on_takes_hold_where_points_are() {
 }
 
 #[test]
-fn a_point_is_held_once() {
+fn a_point_of_two_constraints_has_one_pin() {
     let twice = program(
         &(sheet("", "")
             + r#""a": dynamicConstraint(components: ["cloth1.vtx[0:2]", "cloth1.vtx[1]", "cloth1"]),

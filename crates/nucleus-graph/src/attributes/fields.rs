@@ -1,0 +1,289 @@
+//! Force fields of Maya's classic dynamics. None is solved yet.
+
+use std::borrow::Cow;
+
+use super::key::{choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::node_type::node_table;
+use super::scene_nodes::transform::TRANSFORM;
+use super::{Choice, Data, Plugged, RampPoint};
+
+use dyn_base::DYN_BASE;
+use field::FIELD;
+
+/// Attributes shared by emitters and fields.
+pub mod dyn_base {
+    use super::*;
+
+    node_table! {
+        /// Attributes shared by emitters and fields: an owner.
+        DYN_BASE = "dynBase", inherits Some(&TRANSFORM), hides [];
+        "Connections" {
+            /// The owner.
+            OWNER: Plugged = plug("owner", "ow", Data::Message);
+        }
+        "Nucleus (open)" {
+            /// The object that it acts on or emits into.
+            TARGET: Plugged = node("target", "target", None).solved("nucleus_graph::graph").extension();
+        }
+        "Owner" {
+            /// Out of use in Maya.
+            FROM_WHERE: i64 = int("fromWhere", "fw", 0).unused();
+            /// Out of use in Maya.
+            SUBSET_ID: i64 = int("subsetId", "sid", -1).unused();
+            /// Whether its position has an effect.
+            POSITIONAL: bool = toggle("positional", "psl", false).output();
+            /// Centroid of the owner's points.
+            OWNER_CENTROID: [f64; 3] = vector("ownerCentroid", "ocd", [0.0, 0.0, 0.0], ["ocx", "ocy", "ocz"]);
+            /// Positions of its owner's points.
+            OWNER_POS_DATA: Vec<[f64; 3]> = vectors("ownerPosData", "opd");
+            /// Velocities of its owner's points.
+            OWNER_VEL_DATA: Vec<[f64; 3]> = vectors("ownerVelData", "ovd");
+        }
+    }
+}
+
+/// Attributes shared by all fields.
+pub mod field {
+    use super::*;
+
+    node_table! {
+        /// Attributes shared by all fields: magnitude, range and volume. Not solved yet.
+        FIELD = "field", inherits Some(&DYN_BASE), hides [];
+        "Field" {
+            /// Strength of the field.
+            MAGNITUDE: f64 = float("magnitude", "mag", 1.0);
+            /// Falloff with distance; 0 is none.
+            ATTENUATION: f64 = float("attenuation", "att", 0.0);
+            /// Range of the field, if `useMaxDistance` is on.
+            MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0);
+            /// Acts from each of the owner's points, not from their centroid.
+            APPLY_PER_VERTEX: bool = toggle("applyPerVertex", "apv", false);
+            /// Whether `maxDistance` limits the range.
+            USE_MAX_DISTANCE: bool = toggle("useMaxDistance", "umd", false);
+            /// Their positions.
+            INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp");
+            /// Their velocities.
+            INPUT_VELOCITIES: Vec<[f64; 3]> = vectors("inputVelocities", "inv");
+            /// Their masses.
+            INPUT_MASS: Vec<f64> = floats("inputMass", "inm");
+            /// Length of the time step.
+            DELTA_TIME: f64 = float("deltaTime", "dt", 0.0);
+            /// Shape of the volume that it acts in.
+            VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "None"), (1, "Cube"), (2, "Sphere"), (3, "Cylinder"), (4, "Cone"), (5, "Torus")]);
+            /// Acts outside the volume instead.
+            VOLUME_EXCLUSION: bool = toggle("volumeExclusion", "vex", false);
+            /// Offset of the volume from the field.
+            VOLUME_OFFSET: [f64; 3] = vector("volumeOffset", "vfo", [0.0, 0.0, 0.0], ["vox", "voy", "voz"]);
+            /// Section radius of a torus.
+            SECTION_RADIUS: f64 = float("sectionRadius", "tsr", 0.5);
+            /// Sweep angle of a round volume.
+            VOLUME_SWEEP: f64 = float("volumeSweep", "vsw", 360.0);
+            /// Strength over the distance up to `maxDistance`.
+            FALLOFF_CURVE: Cow<'static, [RampPoint]> = ramp("falloffCurve", "fc", &[]);
+        }
+        "Connections" {
+            /// Particles that it acts on.
+            INPUT_DATA: Plugged = plug("inputData", "ind", Data::FieldData).multi();
+            /// Forces that it adds to.
+            INPUT_FORCE: Plugged = plug("inputForce", "inf", Data::Vectors).multi();
+            /// Force on each particle.
+            OUTPUT_FORCE: Plugged = plug("outputForce", "of", Data::Vectors).multi().output();
+            /// Settings per particle of the objects that it acts on.
+            INPUT_PP_DATA: Plugged = plug("inputPPData", "ppda", Data::FieldSettings).multi();
+            /// Settings per particle of the owner.
+            OWNER_PP_DATA: Plugged = plug("ownerPPData", "oppd", Data::FieldSettings);
+        }
+    }
+}
+
+/// Gravity fields.
+pub mod gravity_field {
+    use super::*;
+
+    node_table! {
+        /// A field of uniform acceleration.
+        GRAVITY_FIELD = "gravityField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Acceleration, in cm/s² where a scene unit is a centimetre.
+            MAGNITUDE: f64 = float("magnitude", "mag", 9.8);
+            /// Direction of the acceleration.
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, -1.0, 0.0], ["dx", "dy", "dz"]);
+        }
+    }
+}
+
+/// Turbulence fields.
+pub mod turbulence_field {
+    use super::*;
+
+    node_table! {
+        /// A field of noise.
+        TURBULENCE_FIELD = "turbulenceField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Spatial frequency of the noise.
+            FREQUENCY: f64 = float("frequency", "frq", 1.0);
+            /// Offset of the noise along x.
+            PHASE_X: f64 = float("phaseX", "phx", 0.0);
+            /// Offset of the noise along y.
+            PHASE_Y: f64 = float("phaseY", "phy", 0.0);
+            /// Offset of the noise along z.
+            PHASE_Z: f64 = float("phaseZ", "phz", 0.0);
+            /// Count of octaves added to the noise.
+            NOISE_LEVEL: i64 = int("noiseLevel", "nslv", 0);
+            /// Amplitude of each octave relative to the one before.
+            NOISE_RATIO: f64 = float("noiseRatio", "nsrt", 0.707);
+            /// Interpolation of the noise.
+            INTERPOLATION_TYPE: Choice = choice("interpolationType", "intr", 0, &[(0, "Linear"), (1, "Quadratic")]);
+        }
+    }
+}
+
+/// Vortex fields.
+pub mod vortex_field {
+    use super::*;
+
+    node_table! {
+        /// A field that rotates objects about an axis.
+        VORTEX_FIELD = "vortexField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// The axis of rotation.
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 0.0, 0.0], ["axx", "axy", "axz"]);
+        }
+    }
+}
+
+/// Drag fields.
+pub mod drag_field {
+    use super::*;
+
+    node_table! {
+        /// A field that damps motion.
+        DRAG_FIELD = "dragField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Direction of the drag.
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            /// Damps motion along `direction` only.
+            USE_DIRECTION: bool = toggle("useDirection", "ud", false);
+            /// Share of the field's velocity that the drag is relative to.
+            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0);
+            /// Reduces the drag of a field that moves slowly.
+            MOTION_ATTENUATION: f64 = float("motionAttenuation", "mna", 0.0);
+            /// Reduces the drag on objects that move slowly.
+            SPEED_ATTENUATION: f64 = float("speedAttenuation", "spa", 0.0);
+            /// Time of the evaluation; driven by `time1.outTime`.
+            CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
+        }
+    }
+}
+
+/// Air fields.
+pub mod air_field {
+    use super::*;
+
+    node_table! {
+        /// A field of moving air.
+        AIR_FIELD = "airField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Direction of the air.
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            /// Speed of the air.
+            SPEED: f64 = float("speed", "spd", 0.0);
+            /// Share of the field's velocity that is added.
+            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0);
+            /// Only accelerates objects, and only along `direction`.
+            COMPONENT_ONLY: bool = toggle("componentOnly", "co", false);
+            /// Spread of the air; 1 is a half space.
+            SPREAD: f64 = float("spread", "spr", 0.0);
+            /// Whether `spread` applies.
+            ENABLE_SPREAD: bool = toggle("enableSpread", "es", false);
+            /// Rotates the direction with the field.
+            INHERIT_ROTATION: bool = toggle("inheritRotation", "ir", false);
+        }
+    }
+}
+
+/// Radial fields.
+pub mod radial_field {
+    use super::*;
+
+    node_table! {
+        /// A field that repels from a point, or attracts to it.
+        RADIAL_FIELD = "radialField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Falloff at the maximum distance: 0 is gradual, 1 is abrupt.
+            RADIAL_TYPE: f64 = float("radialType", "typ", 0.0);
+        }
+    }
+}
+
+/// Uniform fields.
+pub mod uniform_field {
+    use super::*;
+
+    node_table! {
+        /// A field of uniform force.
+        UNIFORM_FIELD = "uniformField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Direction of the force.
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            /// Out of use in Maya.
+            INHERIT_FACTOR: f64 = float("inheritFactor", "inh", 0.0).unused();
+        }
+    }
+}
+
+/// Volume axis fields.
+pub mod volume_axis_field {
+    use super::*;
+
+    node_table! {
+        /// A field of flow in and around a volume.
+        VOLUME_AXIS_FIELD = "volumeAxisField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Strongest at the edge of the volume instead of its centre.
+            INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false);
+            /// Speed away from the centre.
+            AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0);
+            /// Speed away from the axis.
+            AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0);
+            /// Speed along the axis.
+            ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0);
+            /// Speed around the axis.
+            AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0);
+            /// Speed along `direction`.
+            DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0);
+            /// Direction of `directionalSpeed`.
+            DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            /// Whether Maya draws arrows.
+            DISPLAY_SPEED: bool = toggle("displaySpeed", "dss", true);
+            /// Strength of a turbulence that varies with time.
+            TURBULENCE: f64 = float("turbulence", "trb", 0.0);
+            /// Speed of the turbulence.
+            TURBULENCE_SPEED: f64 = float("turbulenceSpeed", "trs", 0.2);
+            /// Spatial frequency of the turbulence.
+            TURBULENCE_FREQUENCY: [f64; 3] = vector("turbulenceFrequency", "tf", [1.0, 1.0, 1.0], ["tfx", "tfy", "tfz"]);
+            /// Offset of the turbulence.
+            TURBULENCE_OFFSET: [f64; 3] = vector("turbulenceOffset", "to", [0.0, 0.0, 0.0], ["tox", "toy", "toz"]);
+            /// Strength of a second turbulence of higher frequency.
+            DETAIL_TURBULENCE: f64 = float("detailTurbulence", "dtr", 0.0);
+            /// The time of the turbulence.
+            TIME: f64 = float("time", "tim", 0.0);
+        }
+    }
+}
+
+/// Newton fields.
+pub mod newton_field {
+    use super::*;
+
+    node_table! {
+        /// A field of gravitational attraction between masses.
+        NEWTON_FIELD = "newtonField", inherits Some(&FIELD), hides [];
+        "Field" {
+            /// Minimum distance at which it acts.
+            MIN_DISTANCE: f64 = float("minDistance", "min", 0.0);
+            /// Masses of the owner's points.
+            OWNER_MASS_DATA: Vec<f64> = floats("ownerMassData", "omd");
+        }
+    }
+}
