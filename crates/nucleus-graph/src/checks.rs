@@ -84,11 +84,15 @@ const NO_CROSSING: &str = "noCrossing";
 /// The check that limits unresolved pairs; a run without it is held to none.
 pub const MAX_UNRESOLVED: &str = "maxUnresolved";
 /// The check that limits points inside colliders; a run without it has to end with none.
-pub const MAX_TRAPPED: &str = "maxTrapped";
+pub const MAX_DEPENETRATING: &str = "maxDepenetrating";
 /// The check that limits edges of cloth through faces; a run without it has to end with none.
-pub const MAX_TANGLED: &str = "maxTangled";
+pub const MAX_INTERSECTIONS: &str = "maxIntersections";
 /// The check that limits strain; a run without it warns of large strain.
 pub const MAX_STRETCH: &str = "maxStretch";
+
+/// Former names of checks, each with the name of today. A scene may use either; a former name is a warning.
+pub const RENAMED: &[(&str, &str)] =
+    &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
 static FORMS: [Form; 11] = [
     Form {
@@ -110,7 +114,7 @@ static FORMS: [Form; 11] = [
         figure: |seen, _| Some(seen.report.pairs_unresolved as f64),
     },
     Form {
-        name: MAX_TRAPPED,
+        name: MAX_DEPENETRATING,
         doc: "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
         parameters: &["points"],
         values: Values::Counts,
@@ -119,7 +123,7 @@ static FORMS: [Form; 11] = [
         figure: |seen, _| Some(seen.report.depenetrating as f64),
     },
     Form {
-        name: MAX_TANGLED,
+        name: MAX_INTERSECTIONS,
         doc: "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
         parameters: &["edges"],
         values: Values::Counts,
@@ -173,7 +177,7 @@ static FORMS: [Form; 11] = [
         figure: |seen, _| Some(if seen.report.finite { 0.0 } else { 1.0 }),
     },
     Form {
-        name: "untangledBy",
+        name: "separatedBy",
         doc: "From this frame on no edge of cloth goes through a face of cloth.",
         parameters: &["frame"],
         values: Values::Numbers,

@@ -1,11 +1,11 @@
 //! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
 
-use crate::checks::{Check, Form, Values};
+use crate::checks::{Check, Form, RENAMED, Values};
 use crate::scene::findings::Findings;
 use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::fields::{Fields, listed};
+use super::fields::{Fields, current_name, listed};
 use super::value::{found, number, whole_number};
 
 /// Reads what must hold.
@@ -28,6 +28,7 @@ fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
             return None;
         }
     };
+    let name = current_name(name, RENAMED, span, findings);
     let Some(form) = Form::all().iter().find(|form| form.name == name) else {
         let error = findings.error(span, format!("there is no check `{name}`"));
         match nearest(name, Form::all().iter().map(|form| form.name)) {

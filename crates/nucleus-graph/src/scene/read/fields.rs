@@ -90,6 +90,19 @@ impl<'a> Fields<'a> {
     }
 }
 
+/// The name that a word has today. `renamed` pairs former names with those of today; a former name is a warning.
+pub(super) fn current_name<'a>(
+    word: &'a str,
+    renamed: &[(&str, &'static str)],
+    span: &Range<usize>,
+    findings: &mut Findings,
+) -> &'a str {
+    let Some((_, current)) = renamed.iter().find(|(former, _)| *former == word) else { return word };
+    let warning = findings.warning(span, format!("`{word}` is now called `{current}`"));
+    warning.help(format!("write `{current}` in its place"));
+    current
+}
+
 /// Words for a sentence: `a`, `b` and `c`.
 pub(super) fn listed<S: AsRef<str>>(words: &[S]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();

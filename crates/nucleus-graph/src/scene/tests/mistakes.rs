@@ -428,12 +428,32 @@ fn checks_that_count_take_whole_numbers_from_zero() {
         );
         said(&text)[0].1.clone()
     };
-    for (check, parameter) in [("maxUnresolved", "pairs"), ("maxTrapped", "points"), ("maxTangled", "edges")]
+    for (check, parameter) in [("maxUnresolved", "pairs"), ("maxDepenetrating", "points"), ("maxIntersections", "edges")]
     {
         let of = format!("`{parameter}` of `{check}` takes a whole number");
         assert_eq!(found(&format!("{check}(-1)")), format!("{of} from 0, found -1"));
         assert_eq!(found(&format!("{check}(0.5)")), format!("{of}, found 0.5"));
         assert_eq!(found(check), format!("`{check}` takes `{parameter}`"));
+    }
+}
+
+#[test]
+fn a_former_name_of_a_check_is_read_with_a_warning_that_gives_the_new_one() {
+    let with_check = |check: &str| {
+        format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
+    };
+    for (former, current) in
+        [("maxTrapped", "maxDepenetrating"), ("maxTangled", "maxIntersections"), ("untangledBy", "separatedBy")]
+    {
+        let text = with_check(&format!("{former}(3)"));
+        let (read, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a former name is read");
+        assert_eq!(read.checks, scene(&with_check(&format!("{current}(3)"))).checks);
+        let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
+        assert_eq!(warning.severity, Severity::Warning);
+        assert_eq!(warning.message, format!("`{former}` is now called `{current}`"));
+        assert_eq!(&text[warning.span.clone()], former);
+        assert_eq!(warning.help, Some(format!("write `{current}` in its place")));
+        assert!(write_scene(&read).contains(&format!("checks: [{current}(3)]")));
     }
 }
 
