@@ -1,7 +1,7 @@
 //! What a run says at its end without being asked: contact that has not separated everything, which is trouble, and
 //! cloth that is stretched far, which is a warning.
 
-use nucleus_graph::checks::{MAX_STRETCH, MAX_INTERSECTIONS, MAX_DEPENETRATING, MAX_UNRESOLVED, Outcome};
+use nucleus_graph::checks::{MAX_DEPENETRATING, MAX_INTERSECTIONS, MAX_STRETCH, MAX_UNRESOLVED, Outcome};
 
 use crate::account::{Account, Count};
 use crate::figures;

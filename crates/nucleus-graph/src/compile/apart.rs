@@ -4,7 +4,7 @@ use nucleus_audit::{Rules, World};
 use nucleus_core::Pin;
 
 use crate::attributes::{n_base, nucleus};
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 
 use super::program::{ObjectKind, Program, Universe};
 
@@ -34,7 +34,7 @@ impl Program {
     }
 
     /// Whether two objects meet, or one itself. What hangs on different nuclei never does.
-    fn meet(&self, a: usize, b: usize, moment: &Moment) -> bool {
+    fn meet(&self, a: usize, b: usize, moment: &EvalContext) -> bool {
         let [(one, here), (other, there)] = [a, b].map(|object| self.node_of(self.objects()[object].kind));
         if a == b {
             return moment.get(one, &n_base::SELF_COLLIDE);

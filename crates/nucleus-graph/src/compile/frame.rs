@@ -11,7 +11,7 @@ use nucleus_core::{
 
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus};
-use crate::graph::{Graph, Moment, NodeId};
+use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::objects::{CLASSIC, ClothSource, ColliderSource};
 use super::pins::Grips;
@@ -26,8 +26,8 @@ const CREATED_PUSH_OUT_RADIUS: f64 = 4.0;
 pub(crate) struct Stretch<'p> {
     pub(super) universe: &'p Universe,
     pub(super) graph: &'p Graph,
-    pub(super) from: Moment<'p>,
-    pub(super) to: Moment<'p>,
+    pub(super) from: EvalContext<'p>,
+    pub(super) to: EvalContext<'p>,
     /// Seconds of the animation.
     pub(super) seconds: f64,
     /// It begins at the start frame: everything is where it was made.

@@ -10,7 +10,7 @@ use crate::attributes::{
     Choice, Key, NodeType, Plugged, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape,
 };
 use crate::files;
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 use crate::memory::{Cost, Size};
 use crate::scene::{Findings, Scene};
 
@@ -59,7 +59,7 @@ pub(super) struct Compiler<'a> {
     pub(super) findings: &'a mut Findings,
     pub(super) geometry: &'a mut Geometry,
     /// The graph at the start.
-    pub(super) start: Moment<'a>,
+    pub(super) start: EvalContext<'a>,
     pub(super) whole: Universe,
     pub(super) objects: Vec<Object>,
     mass: f64,

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nucleus_core::{ClothId, Pin, PointId};
 
 use crate::attributes::{Choice, Component, Selection, dynamic_constraint, n_component, nucleus};
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 
 use super::frame::Stretch;
 use super::objects::Compiler;
@@ -148,7 +148,7 @@ impl Compiler<'_> {
         }
         let listed = node.get(&n_component::COMPONENT_INDICES);
         // Where the constraint names its points itself, that has been looked at.
-        let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.made_by().is_none());
+        let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.created_by().is_none());
         if let Some(point) = missing {
             let place = self.scene.source.place(&format!("{name}.componentIndices"));
             let error =
@@ -204,7 +204,7 @@ impl Stretch<'_> {
     }
 
     /// Where the constraint has its points at a moment, in metres.
-    fn carried(&self, source: &PinSource, moment: &Moment, grip: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    fn carried(&self, source: &PinSource, moment: &EvalContext, grip: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         if !source.moves {
             return grip.to_vec();
         }

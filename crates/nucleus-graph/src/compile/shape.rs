@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::attributes::surface_shape;
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 
 /// Points in the space of a mesh, in scene units.
 pub(super) type Points = Arc<[Vector3<f64>]>;
@@ -44,7 +44,7 @@ impl Shape {
     }
 
     /// The points at a moment. Between files, points move in straight lines.
-    pub(super) fn at(&self, moment: &Moment) -> Points {
+    pub(super) fn at(&self, moment: &EvalContext) -> Points {
         let own = self.between(moment.frame());
         let Some((node, target)) = &self.blend else { return own };
         let share = moment.get(*node, &surface_shape::BLEND);

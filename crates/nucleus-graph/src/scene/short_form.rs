@@ -41,7 +41,7 @@ impl ShortForm {
     }
 
     fn new(graph: &Graph, creations: BTreeMap<NodeId, Creation>, again: &Graph) -> Self {
-        let is_made = |id: NodeId| graph.node(id).made_by().is_some_and(|by| creations.contains_key(&by));
+        let is_made = |id: NodeId| graph.node(id).created_by().is_some_and(|by| creations.contains_key(&by));
         let made = graph.iter().map(|(id, _)| id).filter(|id| is_made(*id)).collect();
         let known: BTreeSet<[String; 2]> = again.connections().map(|wire| plugs(again, wire)).collect();
         let all: BTreeSet<[String; 2]> = graph.connections().map(|wire| plugs(graph, wire)).collect();
@@ -90,7 +90,7 @@ impl ShortForm {
 /// A graph of the same names that is created anew, as reading does it: nodes in the order of names, then
 /// objects, constraints and effects. Also those that could be created.
 fn again(graph: &Graph, creations: &BTreeMap<NodeId, Creation>) -> (Graph, BTreeSet<NodeId>) {
-    let is_made = |id: NodeId| graph.node(id).made_by().is_some_and(|by| creations.contains_key(&by));
+    let is_made = |id: NodeId| graph.node(id).created_by().is_some_and(|by| creations.contains_key(&by));
     let mut nodes: Vec<_> = graph.iter().filter(|(id, _)| !is_made(*id)).collect();
     nodes.sort_by_key(|(_, node)| node.name());
     let (mut again, mut done) = (Graph::new(), BTreeSet::new());
@@ -144,7 +144,7 @@ fn odd(
             let by = graph.find(by);
             graph
                 .iter()
-                .filter(|(_, node)| node.made_by().is_some() && node.made_by() == by)
+                .filter(|(_, node)| node.created_by().is_some() && node.created_by() == by)
                 .map(|(id, _)| id)
                 .collect::<Vec<_>>()
         };
@@ -155,7 +155,7 @@ fn odd(
             && own.iter().all(|own| {
                 let own = again.node(*own);
                 graph.find(own.name()).map(|id| graph.node(id)).is_some_and(|other| {
-                    other.made_by() == Some(id)
+                    other.created_by() == Some(id)
                         && other.node_type() == own.node_type()
                         && other.settings() == own.settings()
                         && other.parent().is_none()

@@ -209,7 +209,7 @@ impl StateMachineTest for Whole {
         names_are_found(graph);
         inputs_have_one_source(graph);
         connections_fit(graph);
-        nothing_flows_in_a_circle(graph);
+        no_plug_depends_on_itself(graph);
         reads_back(graph);
     }
 }
@@ -260,7 +260,7 @@ fn names_are_found(graph: &Graph) {
         assert_eq!(graph.find(node.name()), Some(id));
         let ancestors: Vec<_> =
             std::iter::successors(Some(id), |&id| graph.node(id).parent()).take(200).collect();
-        assert!(ancestors.len() < 200, "parents form a circle");
+        assert!(ancestors.len() < 200, "parents form a cycle");
         assert!(node.settings().iter().all(|(name, setting)| {
             node.node_type().attribute(name).is_some_and(|row| setting.fits(row))
         }));
@@ -290,7 +290,7 @@ fn connections_fit(graph: &Graph) {
 
 /// What leaves a plug must not come back to it along connections alone. (Followed here from every plug, step
 /// by step, without what the graph itself uses.)
-fn nothing_flows_in_a_circle(graph: &Graph) {
+fn no_plug_depends_on_itself(graph: &Graph) {
     let wires: Vec<&Connection> = graph.connections().collect();
     for start in &wires {
         let (mut open, mut seen) = (vec![start.to], BTreeSet::new());
@@ -378,7 +378,8 @@ fn a_setting_that_is_refused_leaves_what_a_constraint_was_created_from() {
     let components = vec![Component { object: "b".to_owned(), selection: Selection::AllPoints }];
     graph.create(constraint, &Creation::Constraint { components, nucleus }).expect("it has a member");
     let before = graph.clone();
-    let (member, node) = graph.iter().find(|(_, node)| node.made_by() == Some(constraint)).expect("a member");
+    let (member, node) =
+        graph.iter().find(|(_, node)| node.created_by() == Some(constraint)).expect("a member");
     let row = node.node_type().attribute("componentIndices").expect("it lists points");
     let curve = Curve::new(vec![Key { frame: 1.0, value: 0.0, tangent: Tangent::Auto }]);
     let keyed = Setting::Keyed(curve.expect("one key"));

@@ -199,20 +199,20 @@ fn connections_made_by_hand_are_checked_at_their_place() {
         (
             r#"("c.nextState", "nucleus1.inputActive[3]")"#,
             "",
-            "`c.nextState` is an input: nothing comes out of it",
+            "`c.nextState` is an input: nothing can be connected from it",
             "",
         ),
         (r#"("b.tx[0]", "c.friction")"#, "", "`b.translateX[0]` does not hold many: it takes no index", ""),
         (
             r#"("b.tx", "b.ty"), ("b.ty", "b.tx")"#,
             "(\"b.ty\", \"b.tx\")",
-            "`b.translateY` depends on `b.translateX`: connecting them would make a circle",
+            "`b.translateY` depends on `b.translateX`: connecting them would make a cycle",
             "",
         ),
         (
             r#"("b.tx", "b.tx")"#,
             "",
-            "`b.translateX` depends on `b.translateX`: connecting them would make a circle",
+            "`b.translateX` depends on `b.translateX`: connecting them would make a cycle",
             "",
         ),
         (
@@ -236,8 +236,8 @@ fn a_blend_needs_a_mesh_of_as_many_points() {
     let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("they differ");
     assert!(errors[0].message.starts_with("`a` cannot be blended into `b`: one has "), "{errors:?}");
     assert_eq!(&text[errors[0].span.clone()], "\"b\"");
-    let circle = with_nodes(r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(blendTarget: "a")"#);
-    assert_eq!(said(&circle)[0].1, "`b` cannot be blended into `a`, which is blended into it");
+    let cycle = with_nodes(r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(blendTarget: "a")"#);
+    assert_eq!(said(&cycle)[0].1, "`b` cannot be blended into `a`, which is blended into it");
 }
 
 #[test]
@@ -359,10 +359,10 @@ fn pins_hold_points_of_cloth_that_are_there() {
 }
 
 #[test]
-fn parents_in_a_circle_are_refused() {
+fn parents_in_a_cycle_are_refused() {
     let found = said(&with_nodes(r#""a": transform(parent: "b"), "b": transform(parent: "a")"#));
     assert_eq!(found.len(), 1);
-    assert_eq!(found[0].1, "`b` cannot hang from `a`, which hangs from it");
+    assert_eq!(found[0].1, "`a` cannot be the parent of `b`: that would make a cycle");
 }
 
 #[test]
@@ -428,7 +428,8 @@ fn checks_that_count_take_whole_numbers_from_zero() {
         );
         said(&text)[0].1.clone()
     };
-    for (check, parameter) in [("maxUnresolved", "pairs"), ("maxDepenetrating", "points"), ("maxIntersections", "edges")]
+    for (check, parameter) in
+        [("maxUnresolved", "pairs"), ("maxDepenetrating", "points"), ("maxIntersections", "edges")]
     {
         let of = format!("`{parameter}` of `{check}` takes a whole number");
         assert_eq!(found(&format!("{check}(-1)")), format!("{of} from 0, found -1"));
@@ -442,9 +443,11 @@ fn a_former_name_of_a_check_is_read_with_a_warning_that_gives_the_new_one() {
     let with_check = |check: &str| {
         format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
     };
-    for (former, current) in
-        [("maxTrapped", "maxDepenetrating"), ("maxTangled", "maxIntersections"), ("untangledBy", "separatedBy")]
-    {
+    for (former, current) in [
+        ("maxTrapped", "maxDepenetrating"),
+        ("maxTangled", "maxIntersections"),
+        ("untangledBy", "separatedBy"),
+    ] {
         let text = with_check(&format!("{former}(3)"));
         let (read, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a former name is read");
         assert_eq!(read.checks, scene(&with_check(&format!("{current}(3)"))).checks);

@@ -109,7 +109,7 @@ fn settings(row: &'static Attribute) -> BoxedStrategy<Setting> {
 /// The scene of the other tests with anything set on any of its nodes.
 fn scenes() -> impl Strategy<Value = Scene> {
     let plain = scene(SHEET);
-    let nodes: Vec<_> = plain.graph.iter().filter(|(_, node)| node.made_by().is_none()).collect();
+    let nodes: Vec<_> = plain.graph.iter().filter(|(_, node)| node.created_by().is_none()).collect();
     let rows =
         nodes.iter().flat_map(|(id, node)| node.node_type().attributes().into_iter().map(|row| (*id, row)));
     let settable = |row: &&Attribute| {
