@@ -85,16 +85,16 @@ fn node<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
     let Value::Record { fields, .. } = &root.value else { return None };
     let (_, nodes) = fields.iter().find(|(word, _)| word.text == "nodes")?;
     let Value::Map(entries) = &nodes.value else { return None };
-    let is_it = |key: &Node| matches!(&key.value, Value::Text(text) if text == name);
-    entries.iter().find(|(key, _)| is_it(key)).map(|(_, body)| body)
+    let is_named = |key: &Node| matches!(&key.value, Value::Text(text) if text == name);
+    entries.iter().find(|(key, _)| is_named(key)).map(|(_, body)| body)
 }
 
 fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>, String)>) {
     let Value::Record { name, fields } = &body.value else { return };
     let row =
         name.as_ref().and_then(|name| node_type(&name.text)).and_then(|of| of.attribute(edit.attribute));
-    let is_it = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
-    match fields.iter().find(|(word, _)| is_it(&word.text)) {
+    let is_named = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
+    match fields.iter().find(|(word, _)| is_named(&word.text)) {
         Some((_, value)) => match &edit.to {
             NewValue::Text(new) => changes.push((value.span.clone(), new.clone())),
             NewValue::Scaled { factor, least, .. } => {

@@ -14,25 +14,19 @@
 //! warning, or an error; and all of them are found in one go.
 
 mod comments;
-mod diagnostic;
 mod document;
 pub mod edit;
-mod findings;
-mod nearest;
 mod preset;
 mod read;
 mod short_form;
-mod source;
 pub mod syntax;
 mod write;
 
-pub use diagnostic::{Diagnostic, Note, Severity};
-pub use document::{Record, Scene, TimeSpan};
-pub(crate) use findings::Findings;
-pub(crate) use nearest::nearest;
+pub(crate) use crate::diagnostic::Findings;
+pub use crate::diagnostic::{Diagnostic, Note, Severity};
+pub use document::{Record, Scene, Source, TimeSpan};
 pub use preset::{Preset, presets, read_preset};
 pub use read::{TextError, read_scene, read_scene_text, read_scene_within, read_text};
-pub use source::Source;
 pub use write::{format_scene, write_scene};
 
 #[cfg(test)]

@@ -11,11 +11,10 @@ use crate::attributes::{Attribute, NodeType};
 use crate::graph::Setting;
 use crate::memory::Memory;
 
-use super::diagnostic::Diagnostic;
-use super::findings::Findings;
 use super::read::{TextError, read_lone_node, read_text};
 use super::syntax;
 use super::write::setting_lines;
+use crate::diagnostic::{Diagnostic, Findings, nearest};
 
 /// A file that is longer is no preset.
 const LONGEST: Memory = Memory(1_000_000);
@@ -72,10 +71,10 @@ pub(super) fn preset(
     file: &dyn Fn(&str) -> std::path::PathBuf,
 ) -> Result<Preset, (String, String)> {
     if let Some((name, text)) = PRESETS.iter().find(|(known, _)| *known == name) {
-        return read_preset(name, text, Path::new(name)).map_err(|mistakes| told(name, &mistakes));
+        return read_preset(name, text, Path::new(name)).map_err(|mistakes| refusal(name, &mistakes));
     }
     if !name.ends_with(".ron") {
-        let near = super::nearest(name, PRESETS.iter().map(|(known, _)| *known));
+        let near = nearest(name, PRESETS.iter().map(|(known, _)| *known));
         let help =
             near.map_or("`nucleus presets` lists them".to_owned(), |near| format!("did you mean `{near}`?"));
         return Err((format!("there is no preset `{name}`"), help));
@@ -98,10 +97,10 @@ pub(super) fn preset(
             format!("the preset `{name}` cannot be read: line {line}, column {column} is not as in a scene");
         return Err((message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned()));
     }
-    read_preset(name, &text, &path).map_err(|mistakes| told(name, &mistakes))
+    read_preset(name, &text, &path).map_err(|mistakes| refusal(name, &mistakes))
 }
 
-fn told(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
+fn refusal(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
     let first = mistakes.first().map(|mistake| mistake.message.as_str()).unwrap_or_default();
     (
         format!("the preset `{name}` cannot be read: {first}"),

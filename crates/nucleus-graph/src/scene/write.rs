@@ -46,7 +46,7 @@ fn write(scene: &Scene, comments: &Comments) -> String {
         write_node(&scene.graph, id, node, (&short, comments), &mut text);
     }
     text.push_str("    },\n");
-    write_connections(&short.by_hand, &mut text);
+    write_connections(&short.explicit, &mut text);
     if !scene.checks.is_empty() {
         let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "    checks: [{}],", checks.join(", "));
@@ -104,7 +104,7 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     let target = match row.name {
         "parent" => node.parent(),
         "blendTarget" => graph.blend_target(id),
-        name => short.names(id, name),
+        name => short.named(id, name),
     };
     if let Some(target) = target {
         return vec![format!("{}: {}", row.name, quoted(graph.node(target).name()))];
@@ -112,8 +112,8 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     let is_particles = node.node_type().is_a(&n_particle::N_PARTICLE);
     if row.name == "nucleus"
         && is_particles
-        && short.names(id, "joined").is_none()
-        && !short.is_wired(node.name())
+        && short.named(id, "joined").is_none()
+        && !short.has_explicit_connections(node.name())
     {
         return vec!["nucleus: \"\"".to_owned()];
     }
@@ -123,13 +123,13 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
 /// What is set on an attribute: `name: value`, or a line for each part of it.
 pub(super) fn setting_lines(row: &Attribute, setting: &Setting) -> Vec<String> {
     match setting {
-        Setting::Fixed(value) => vec![format!("{}: {}", row.name, held(value, row))],
+        Setting::Fixed(value) => vec![format!("{}: {}", row.name, value_text(value, row))],
         Setting::Keyed(curve) => vec![format!("{}: {}", row.name, keyed(curve, row))],
         Setting::Parts(channels) => parts(channels, row),
     }
 }
 
-fn held(value: &Value, row: &Attribute) -> String {
+fn value_text(value: &Value, row: &Attribute) -> String {
     match value {
         Value::Bool(on) => on.to_string(),
         Value::Int(number) => number.to_string(),
@@ -150,12 +150,12 @@ fn held(value: &Value, row: &Attribute) -> String {
     }
 }
 
-/// A vector: as one if its parts are alike, else part by part.
+/// A vector: as one if its parts are have_equal_keys, else part by part.
 fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
     use Channel::{Fixed, Keyed};
     match channels {
         [Fixed(x), Fixed(y), Fixed(z)] => vec![format!("{}: {}", row.name, triple([*x, *y, *z]))],
-        [Keyed(x), Keyed(y), Keyed(z)] if alike(x, y) && alike(x, z) => {
+        [Keyed(x), Keyed(y), Keyed(z)] if have_equal_keys(x, y) && have_equal_keys(x, z) => {
             let key = |k: usize| {
                 let value = triple([x, y, z].map(|curve| curve.keys()[k].value));
                 key(x.keys()[k].frame, value, x.keys()[k].tangent, row)
@@ -174,7 +174,7 @@ fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
 }
 
 /// Whether two curves have keys at the same frames, with the same tangents, and go on in the same way.
-fn alike(a: &Curve, b: &Curve) -> bool {
+fn have_equal_keys(a: &Curve, b: &Curve) -> bool {
     a.infinities() == b.infinities()
         && a.keys().len() == b.keys().len()
         && a.keys()
@@ -206,24 +206,24 @@ fn keys(list: String, infinities: [Infinity; 2]) -> String {
 }
 
 fn key(frame: f64, value: String, tangent: Tangent, row: &Attribute) -> String {
-    let usual =
+    let default =
         if matches!(row.kind, Kind::Bool | Kind::Choice(_)) { Tangent::Stepped } else { Tangent::Linear };
     let word = Tangent::WORDS.iter().find(|(_, known)| *known == tangent).map_or("", |(word, _)| word);
-    if tangent == usual { format!("({frame}, {value})") } else { format!("({frame}, {value}, {word})") }
+    if tangent == default { format!("({frame}, {value})") } else { format!("({frame}, {value}, {word})") }
 }
 
 fn ramp_point(point: &RampPoint) -> String {
-    let way = way_on(point.interpolation);
-    format!("({}, {}{way})", point.position, point.value)
+    let suffix = interpolation_suffix(point.interpolation);
+    format!("({}, {}{suffix})", point.position, point.value)
 }
 
 fn color_point(point: &ColorPoint) -> String {
-    let way = way_on(point.interpolation);
-    format!("({}, {}{way})", point.position, triple(point.color))
+    let suffix = interpolation_suffix(point.interpolation);
+    format!("({}, {}{suffix})", point.position, triple(point.color))
 }
 
-/// How a ramp goes on to its next point, unless that is the usual way.
-fn way_on(interpolation: Choice) -> String {
+/// How a ramp goes on to its next point, unless that is the default way.
+fn interpolation_suffix(interpolation: Choice) -> String {
     match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
         Some(&"linear") | None => String::new(),
         Some(word) => format!(", {word}"),

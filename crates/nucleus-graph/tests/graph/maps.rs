@@ -353,7 +353,7 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
         ),
         (
             texture("text.png"),
-            format!("`{}` is not a sound PNG: Invalid PNG signature.", at("text.png")),
+            format!("`{}` is not a valid PNG: Invalid PNG signature.", at("text.png")),
             "texture(\"text.png\")",
         ),
     ] {
@@ -368,11 +368,12 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
     put("huge.png", &promise);
     let text = hanging(&texture("huge.png"));
     let found = told(&text, &file);
-    let message = format!("`{}` has 1000000 x 2000000 pixels; 67108864 are the most", at("huge.png"));
+    let message =
+        format!("`{}` has 1000000 x 2000000 pixels, more than the limit of 67108864", at("huge.png"));
     assert_eq!(found, [(message, "texture(\"huge.png\")")]);
     let text = hanging(&texture("half.png"));
     let found = told(&text, &file);
-    assert!(found[0].0.starts_with(&format!("`{}` is not a sound PNG: ", at("half.png"))), "{found:?}");
+    assert!(found[0].0.starts_with(&format!("`{}` is not a valid PNG: ", at("half.png"))), "{found:?}");
     for (mesh, message) in [
         (
             r#"mesh(file: "bare.obj")"#,

@@ -1,11 +1,10 @@
 //! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
 
 use crate::checks::{Check, Form, RENAMED, Values};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::fields::{Fields, current_name, listed};
+use super::fields::{Fields, current_name};
 use super::value::{found, number, whole_number};
 
 /// Reads what must hold.

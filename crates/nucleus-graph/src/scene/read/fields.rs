@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::value::found;
@@ -101,13 +100,4 @@ pub(super) fn current_name<'a>(
     let warning = findings.warning(span, format!("`{word}` is now called `{current}`"));
     warning.help(format!("write `{current}` in its place"));
     current
-}
-
-/// Words for a sentence: `a`, `b` and `c`.
-pub(super) fn listed<S: AsRef<str>>(words: &[S]) -> String {
-    let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
-    match quoted.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        _ => quoted.concat(),
-    }
 }

@@ -2,12 +2,10 @@
 
 use crate::animation::{Curve, Infinity, Key, Tangent};
 use crate::attributes::{Attribute, Kind, Value as Held};
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::graph::{Channel, Setting};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::fields::listed;
 use super::value::{expected, found, number, single, triple};
 
 /// What stands inside `keys(...)`.
@@ -17,23 +15,23 @@ pub(super) struct Keyed<'a> {
     /// How it goes on before and after them, where that is said.
     infinities: [Option<&'a Node>; 2],
     /// Fields that `keys(...)` does not have.
-    strange: Vec<&'a Word>,
+    unknown: Vec<&'a Word>,
 }
 
 /// What stands inside `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`, if that is what a value is.
 pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
     match &node.value {
         Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => {
-            Some(Keyed { list: items.first()?, infinities: [None, None], strange: Vec::new() })
+            Some(Keyed { list: items.first()?, infinities: [None, None], unknown: Vec::new() })
         }
         Value::Record { name: Some(name), fields } if name.text == "keys" => {
             let field = |name: &str| fields.iter().find(|(word, _)| word.text == name).map(|(_, node)| node);
-            let strange = fields.iter().map(|(word, _)| word);
-            let strange = strange.filter(|word| !["at", "pre", "post"].contains(&word.text.as_str()));
+            let unknown = fields.iter().map(|(word, _)| word);
+            let unknown = unknown.filter(|word| !["at", "pre", "post"].contains(&word.text.as_str()));
             Some(Keyed {
                 list: field("at").unwrap_or(node),
                 infinities: [field("pre"), field("post")],
-                strange: strange.collect(),
+                unknown: unknown.collect(),
             })
         }
         _ => None,
@@ -44,7 +42,7 @@ impl Keyed<'_> {
     /// How the curve goes on.
     fn infinities(&self, label: &str, findings: &mut Findings) -> Option<[Infinity; 2]> {
         let names: Vec<&str> = Infinity::WORDS.iter().map(|(name, _)| *name).collect();
-        for word in &self.strange {
+        for word in &self.unknown {
             let error = findings.error(&word.span, format!("the keys of {label} have no `{}`", word.text));
             error.help("keys take `at`, `pre` and `post`");
         }
@@ -63,7 +61,7 @@ impl Keyed<'_> {
             }
             known.map(|(_, infinity)| *infinity)
         });
-        if self.strange.is_empty() { Some([pre?, post?]) } else { None }
+        if self.unknown.is_empty() { Some([pre?, post?]) } else { None }
     }
 }
 
@@ -142,7 +140,7 @@ fn read_keys<T>(
     for item in items {
         let Some((frame, value, tangent)) = parts(label, item, findings) else { continue };
         let (frame, value) = (number("the frame of a key", frame, findings), read_value(value, findings));
-        let tangent = tangent.map_or(Some(usual_tangent(row)), |word| read_tangent(word, findings));
+        let tangent = tangent.map_or(Some(default_tangent(row)), |word| read_tangent(word, findings));
         let (Some(frame), Some(value), Some(tangent)) = (frame, value, tangent) else { continue };
         match keys.last() {
             Some(&(previous, ..)) if frame <= previous => {
@@ -178,7 +176,7 @@ fn parts<'a>(
 }
 
 /// Switches and words jump from key to key, numbers move.
-fn usual_tangent(row: &Attribute) -> Tangent {
+fn default_tangent(row: &Attribute) -> Tangent {
     match row.kind {
         Kind::Bool | Kind::Choice(_) => Tangent::Stepped,
         _ => Tangent::Linear,
@@ -216,7 +214,7 @@ fn curve(
     if let Err(error) = &curve {
         findings.error(&list.span, format!("the keys of {label} make no curve: {error}"));
     }
-    curve.ok().map(|curve| curve.going_on(before, after))
+    curve.ok().map(|curve| curve.with_infinity(before, after))
 }
 
 fn as_number(value: &Held) -> f64 {

@@ -12,14 +12,15 @@
 
 mod checks;
 mod component;
-mod drafts;
+mod connections;
+mod declaration;
 mod fields;
 mod keys;
-mod links;
 mod nodes;
+mod references;
+mod setting;
 mod time;
 mod value;
-mod wires;
 
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -31,14 +32,13 @@ use crate::files;
 use crate::graph::{NodeId, Setting};
 use crate::memory::{self, Budget, Memory};
 
-use super::diagnostic::Diagnostic;
-use super::document::{Record, Scene, TimeSpan};
-use super::findings::Findings;
-use super::source::Source;
+use super::document::{Scene, Source, TimeSpan};
 use super::syntax::{self, Node};
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Findings;
 
 use fields::Fields;
-pub(super) use value::INTERPOLATIONS;
+pub(super) use setting::INTERPOLATIONS;
 
 /// Reads a scene file. With the scene come warnings: what is set and has no effect.
 ///
@@ -161,46 +161,15 @@ fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option
     let mut fields = Fields::of_scene(root, findings)?;
     let time =
         time::read(fields.take_required("time", "`time: (start: 1, end: 120, fps: 24)`", findings), findings);
-    let record = fields.take("record").and_then(|node| read_record(node, findings));
+    let record = fields.take("record").and_then(|node| time::read_record(node, findings));
     let checks = fields.take("checks").map(|node| checks::read(node, findings));
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
-    let wires = wires::read(fields.take("connections"), findings);
+    let connections = connections::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
-    let (graph, broken) = nodes::read_nodes(nodes?, &wires, &mut source, findings);
+    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, findings);
     let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();
     Some((Scene { time, every, record, graph, checks: checks.unwrap_or_default(), source }, broken))
-}
-
-fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
-    match &node.value {
-        syntax::Value::Word(word) if word == "frames" => Some(Record::Frames),
-        syntax::Value::Word(word) if word == "substeps" => Some(Record::Substeps),
-        syntax::Value::Word(word) if word == "none" => Some(Record::None),
-        syntax::Value::Tuple { name: Some(name), items } if name.text == "every" => {
-            every(items).or_else(|| {
-                let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
-                error.help("`every(10)` records each tenth frame and the last");
-                None
-            })
-        }
-        other => {
-            let error =
-                findings.error(&node.span, format!("`record` takes a word, found {}", value::found(other)));
-            error.help("write `frames`, `substeps`, `every(10)` or `none`");
-            None
-        }
-    }
-}
-
-/// `every(10)`.
-fn every(items: &[Node]) -> Option<Record> {
-    match items {
-        [Node { value: syntax::Value::Number(n), .. }] if n.fract() == 0.0 && (1.0..=1e9).contains(n) => {
-            Some(Record::Every(*n as u32))
-        }
-        _ => None,
-    }
 }
 
 /// Reads a text that is one node without a name: what it sets.
@@ -217,10 +186,10 @@ pub(super) fn read_lone_node(
             return None;
         }
     };
-    let draft = drafts::lone(&root, findings)?;
-    let node_type = draft.node_type;
-    let graph = nodes::read_lone(&draft, findings);
-    let (_, node) = graph.iter().find(|(_, node)| node.name() == draft.name)?;
+    let declaration = declaration::unnamed(&root, findings)?;
+    let node_type = declaration.node_type;
+    let graph = nodes::read_lone(&declaration, findings);
+    let (_, node) = graph.iter().find(|(_, node)| node.name() == declaration.name)?;
     let row = |name: &&'static str| node_type.attribute(name);
     let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
     Some((node_type, set.collect()))

@@ -1,7 +1,7 @@
 //! `time: (start: 1, end: 120, fps: 24)`.
 
-use crate::scene::document::TimeSpan;
-use crate::scene::findings::Findings;
+use crate::diagnostic::Findings;
+use crate::scene::document::{Record, TimeSpan};
 use crate::scene::syntax::{Node, Value};
 
 use super::fields::Fields;
@@ -76,4 +76,33 @@ fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
     let message = format!("`every` must be a whole number of frames or a part of one, found {every}");
     findings.error(&node.span, message).help("2 evaluates every other frame, 0.25 four times in each");
     None
+}
+
+/// Reads `record`.
+pub(super) fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
+    match &node.value {
+        Value::Word(word) if word == "frames" => Some(Record::Frames),
+        Value::Word(word) if word == "substeps" => Some(Record::Substeps),
+        Value::Word(word) if word == "none" => Some(Record::None),
+        Value::Tuple { name: Some(name), items } if name.text == "every" => every(items).or_else(|| {
+            let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
+            error.help("`every(10)` records each tenth frame and the last");
+            None
+        }),
+        other => {
+            let error = findings.error(&node.span, format!("`record` takes a word, found {}", found(other)));
+            error.help("write `frames`, `substeps`, `every(10)` or `none`");
+            None
+        }
+    }
+}
+
+/// `every(10)`.
+fn every(items: &[Node]) -> Option<Record> {
+    match items {
+        [Node { value: Value::Number(n), .. }] if n.fract() == 0.0 && (1.0..=1e9).contains(n) => {
+            Some(Record::Every(*n as u32))
+        }
+        _ => None,
+    }
 }

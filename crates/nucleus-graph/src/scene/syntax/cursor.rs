@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::error::SyntaxError;
+use super::tree::SyntaxError;
 
 /// A text and how far it has been read.
 pub(super) struct Cursor<'a> {

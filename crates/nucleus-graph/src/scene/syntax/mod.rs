@@ -16,9 +16,7 @@
 //! purpose: numbers that are not finite, `Some` and `None`, single characters, byte strings, ranges, type
 //! suffixes, raw and non-ASCII identifiers, extensions, and plain text that runs over the end of a line.
 
-mod brackets;
 mod cursor;
-mod error;
 mod number;
 mod reader;
 #[cfg(test)]
@@ -26,6 +24,5 @@ mod tests;
 mod text;
 mod tree;
 
-pub use error::SyntaxError;
 pub use reader::parse;
-pub use tree::{Node, Value, Word};
+pub use tree::{Node, SyntaxError, Value, Word};

@@ -1,11 +1,31 @@
 //! Reading a text from left to right, one function per form of value.
 
-use super::brackets::Bracket;
 use super::cursor::Cursor;
-use super::error::SyntaxError;
 use super::number::{self, NumberError};
 use super::text;
-use super::tree::{Node, Value, Word};
+use super::tree::{Node, SyntaxError, Value, Word};
+
+/// Brackets inside brackets that are followed. Scenes need six; `ron` follows 128.
+const DEEPEST: usize = 64;
+
+/// An opening bracket.
+#[derive(Clone, Copy)]
+struct Bracket {
+    /// Its byte offset.
+    at: usize,
+    /// `(`, `[` or `{`.
+    opening: char,
+}
+
+impl Bracket {
+    fn closing(self) -> char {
+        match self.opening {
+            '[' => ']',
+            '{' => '}',
+            _ => ')',
+        }
+    }
+}
 
 /// Reads a text that holds one value.
 ///
@@ -20,17 +40,17 @@ pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
     }
 }
 
-pub(super) struct Reader<'a> {
-    pub(super) cursor: Cursor<'a>,
-    pub(super) errors: Vec<SyntaxError>,
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    errors: Vec<SyntaxError>,
     /// The brackets that are open here, outermost first.
-    pub(super) open: Vec<Bracket>,
+    open: Vec<Bracket>,
 }
 
 /// Reading cannot go on; why is the last of the errors.
-pub(super) struct Stop;
+struct Stop;
 
-pub(super) type Read<T> = Result<T, Stop>;
+type Read<T> = Result<T, Stop>;
 
 impl Reader<'_> {
     fn document(&mut self) -> Read<Node> {
@@ -168,17 +188,17 @@ impl Reader<'_> {
         Ok(Value::Text(String::new()))
     }
 
-    pub(super) fn skip_blank(&mut self) -> Read<()> {
+    fn skip_blank(&mut self) -> Read<()> {
         self.cursor.skip_blank().map_err(|error| self.stop(error))
     }
 
-    pub(super) fn stop(&mut self, error: SyntaxError) -> Stop {
+    fn stop(&mut self, error: SyntaxError) -> Stop {
         self.errors.push(error);
         Stop
     }
 
     /// Stops at what comes next, which is not what should.
-    pub(super) fn unexpected(&mut self, expected: &str) -> Stop {
+    fn unexpected(&mut self, expected: &str) -> Stop {
         let start = self.cursor.at();
         let Some(found) = self.cursor.peek() else { return self.ends_early(expected) };
         if self.cursor.take_while(continues_word).is_empty() {
@@ -200,8 +220,71 @@ impl Reader<'_> {
     }
 }
 
+impl Reader<'_> {
+    /// Items with commas between them, from the opening bracket that comes next to its closing one.
+    fn within_brackets<T>(&mut self, item: fn(&mut Self) -> Read<T>) -> Read<Vec<T>> {
+        let bracket = self.open_bracket()?;
+        let mut items = Vec::new();
+        loop {
+            self.skip_blank()?;
+            if self.cursor.peek() == Some(bracket.closing()) {
+                self.cursor.next();
+                self.open.pop();
+                return Ok(items);
+            }
+            items.push(item(self)?);
+            self.comma(bracket)?;
+        }
+    }
+
+    fn open_bracket(&mut self) -> Read<Bracket> {
+        let at = self.cursor.at();
+        let bracket = Bracket { at, opening: self.cursor.next().unwrap_or('(') };
+        self.open.push(bracket);
+        if self.open.len() > DEEPEST {
+            let message = format!("more than {DEEPEST} brackets inside each other");
+            return Err(self.stop(SyntaxError::new(message, at..at + 1)));
+        }
+        Ok(bracket)
+    }
+
+    /// A comma, unless the bracket closes. If it was only forgotten, that is noted and reading goes on.
+    fn comma(&mut self, bracket: Bracket) -> Read<()> {
+        let end = self.cursor.at();
+        self.skip_blank()?;
+        if self.cursor.eat(",") || self.cursor.peek() == Some(bracket.closing()) {
+            return Ok(());
+        }
+        let touches = self.cursor.at() == end;
+        if touches
+            || !self.cursor.peek().is_some_and(|c| begins_word(c) || matches!(c, '"' | '0'..='9' | '-'))
+        {
+            return Err(self.unexpected(&format!("`,` or `{}`", bracket.closing())));
+        }
+        self.errors.push(
+            SyntaxError::new("a comma is missing", end..end)
+                .help("write `,` between two values, `:` between a name and its value"),
+        );
+        Ok(())
+    }
+
+    /// The text is over: the place to look at is the innermost bracket that is still open.
+    fn ends_early(&mut self, expected: &str) -> Stop {
+        let end = self.cursor.at();
+        let error = match self.open.last() {
+            Some(bracket) => {
+                let message = format!("this `{}` is never closed", bracket.opening);
+                SyntaxError::new(message, bracket.at..bracket.at + 1)
+                    .help(format!("the file ends where {expected} or `{}` should come", bracket.closing()))
+            }
+            None => SyntaxError::new(format!("expected {expected}, found the end of the file"), end..end),
+        };
+        self.stop(error)
+    }
+}
+
 /// Names are Maya's: letters, digits and `_`.
-pub(super) fn begins_word(c: char) -> bool {
+fn begins_word(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 

@@ -1,7 +1,7 @@
 //! Text in quotes: `"..."` with escapes on one line, `r"..."` and `r#"..."#` as they stand.
 
 use super::cursor::Cursor;
-use super::error::SyntaxError;
+use super::tree::SyntaxError;
 
 /// Reads text in double quotes; the cursor is at the first quote. Escapes that mean nothing are added to
 /// `errors`, and reading goes on after them.

@@ -84,7 +84,7 @@ fn curves(row: &'static Attribute) -> BoxedStrategy<Curve> {
             };
             Curve::new(keys.into_iter().map(key).collect())
                 .expect("in order and finite")
-                .going_on(before, after)
+                .with_infinity(before, after)
         })
         .boxed()
 }

@@ -8,20 +8,19 @@ use crate::attributes::{
     n_particle, nucleus, particle, surface_shape, transform,
 };
 use crate::compile::most_points;
+use crate::diagnostic::{Findings, nearest};
 use crate::graph::{Creation, Graph, NodeId};
 use crate::memory;
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
-use crate::scene::source::Source;
+use crate::scene::document::Source;
 
-use super::wires::Wires;
+use super::connections::Connections;
 
 /// What has been named while nodes were read.
-pub(super) struct Links {
+pub(super) struct References {
     /// All names in the file; without a node where it could not be read.
     pub(super) names: BTreeMap<String, Option<NodeId>>,
     /// Names given as values.
-    pub(super) references: Vec<Reference>,
+    pub(super) all: Vec<Reference>,
 }
 
 /// A name given as a value.
@@ -40,42 +39,42 @@ pub(super) struct Reference {
 /// put on them.
 pub(super) fn connect(
     graph: &mut Graph,
-    links: &Links,
-    wires: &Wires,
+    references: &References,
+    connections: &Connections,
     source: &mut Source,
     findings: &mut Findings,
 ) {
-    let resolved = resolve(graph, links, findings);
-    hang(graph, links, &resolved, findings);
-    blend(graph, links, &resolved, source, findings);
-    let mut joiner = Joiner {
-        ends: wires.ends(graph),
+    let resolved = resolve(graph, references, findings);
+    set_parents(graph, references, &resolved, findings);
+    set_blend_targets(graph, references, &resolved, source, findings);
+    let mut resolver = Resolver {
+        ends: connections.ends(graph),
         all: graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect(),
-        named: links.references.iter().map(|r| (r.node, r.row.name)).collect(),
+        named: references.all.iter().map(|r| (r.node, r.row.name)).collect(),
         graph,
-        links,
+        references,
         resolved,
         source,
         findings,
         nuclei: BTreeMap::new(),
-        alone: false,
+        reported_no_nucleus: false,
     };
     let nodes: Vec<(NodeId, &'static NodeType)> =
-        joiner.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
+        resolver.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
     let of = |base: &'static NodeType| nodes.iter().filter(move |(_, node_type)| node_type.is_a(base));
-    of(&n_base::N_BASE).for_each(|&(id, node_type)| joiner.object(id, node_type));
-    of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| joiner.constraint(id));
-    of(&dyn_base::DYN_BASE).for_each(|&(id, _)| joiner.effect(id));
+    of(&n_base::N_BASE).for_each(|&(id, node_type)| resolver.connect_object(id, node_type));
+    of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| resolver.connect_constraint(id));
+    of(&dyn_base::DYN_BASE).for_each(|&(id, _)| resolver.connect_effect(id));
 }
 
 /// Finds the nodes that are named, each of the type that is wanted there.
 fn resolve(
     graph: &Graph,
-    links: &Links,
+    references: &References,
     findings: &mut Findings,
 ) -> BTreeMap<(NodeId, &'static str), NodeId> {
     let mut resolved = BTreeMap::new();
-    for Reference { node, row, name, span } in &links.references {
+    for Reference { node, row, name, span } in &references.all {
         let is_particles = graph.node(*node).node_type().is_a(&n_particle::N_PARTICLE);
         if name.is_empty() && row.name == "nucleus" && is_particles {
             continue;
@@ -86,7 +85,7 @@ fn resolve(
             "target" => (&particle::PARTICLE, "an object"),
             _ => (&surface_shape::SURFACE_SHAPE, "a mesh"),
         };
-        match links.names.get(name) {
+        match references.names.get(name) {
             Some(&Some(target)) if graph.node(target).node_type().is_a(wanted) => {
                 resolved.insert((*node, row.name), target);
             }
@@ -109,13 +108,13 @@ fn resolve(
 }
 
 /// Hangs nodes from their parents.
-fn hang(
+fn set_parents(
     graph: &mut Graph,
-    links: &Links,
+    references: &References,
     resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     findings: &mut Findings,
 ) {
-    for reference in &links.references {
+    for reference in &references.all {
         if reference.row == &transform::PARENT.row
             && let Some(&parent) = resolved.get(&(reference.node, reference.row.name))
             && let Err(error) = graph.set_parent(reference.node, parent)
@@ -126,22 +125,21 @@ fn hang(
 }
 
 /// Tells meshes what they are blended into.
-fn blend(
+fn set_blend_targets(
     graph: &mut Graph,
-    links: &Links,
+    references: &References,
     resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     source: &Source,
     findings: &mut Findings,
 ) {
-    for reference in links.references.iter().filter(|r| r.row == &surface_shape::BLEND_TARGET.row) {
+    for reference in references.all.iter().filter(|r| r.row == &surface_shape::BLEND_TARGET.row) {
         let Some(&target) = resolved.get(&(reference.node, reference.row.name)) else { continue };
         if let Err(error) = graph.blend_into(reference.node, target) {
             findings.error(&reference.span, error.to_string());
         }
     }
     for (id, node) in graph.of_type(&surface_shape::SURFACE_SHAPE) {
-        let given =
-            links.references.iter().any(|r| r.node == id && r.row == &surface_shape::BLEND_TARGET.row);
+        let given = references.all.iter().any(|r| r.node == id && r.row == &surface_shape::BLEND_TARGET.row);
         if node.setting(&surface_shape::BLEND).is_some() && !given && graph.blend_target(id).is_none() {
             let place = source.place(&format!("{}.blend", node.name()));
             let warning = findings.warning(
@@ -154,9 +152,9 @@ fn blend(
 }
 
 /// Joins nodes to their nuclei.
-struct Joiner<'a> {
+struct Resolver<'a> {
     graph: &'a mut Graph,
-    links: &'a Links,
+    references: &'a References,
     /// Attributes that connections made by hand leave from, and those they arrive at.
     ends: [BTreeSet<(NodeId, &'static str)>; 2],
     /// Attributes that name a node.
@@ -169,22 +167,22 @@ struct Joiner<'a> {
     /// The nucleus of each object so far.
     nuclei: BTreeMap<NodeId, NodeId>,
     /// That there is no nucleus has been said.
-    alone: bool,
+    reported_no_nucleus: bool,
 }
 
-impl Joiner<'_> {
-    fn object(&mut self, id: NodeId, node_type: &'static NodeType) {
+impl Resolver<'_> {
+    fn connect_object(&mut self, id: NodeId, node_type: &'static NodeType) {
         let is_particles = node_type.is_a(&n_particle::N_PARTICLE);
         let mesh = self.resolved.get(&(id, n_base::INPUT_MESH.row.name)).copied();
         if mesh.is_none() && !is_particles {
             self.check_mesh(id);
         }
-        if is_particles && self.is_left_alone(id) {
+        if is_particles && self.is_left_unconnected(id) {
             return;
         }
         // Its mesh may be broken: whether there is a nucleus for it can be told all the same.
         let meant = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
-        if !is_particles && !meant && self.is_wired(id) {
+        if !is_particles && !meant && self.has_explicit_connections(id) {
             return;
         }
         let Some(nucleus) = self.nucleus_of(id) else { return };
@@ -195,24 +193,25 @@ impl Joiner<'_> {
     }
 
     /// Whether connections by hand begin or end at a node.
-    fn is_wired(&self, id: NodeId) -> bool {
+    fn has_explicit_connections(&self, id: NodeId) -> bool {
         self.ends.iter().any(|ends| ends.range((id, "")..).next().is_some_and(|(node, _)| *node == id))
     }
 
     /// Particles have no mesh that would say that they are to be joined: they are, unless they are connected
     /// by hand or belong to no nucleus, `nucleus: ""`.
-    fn is_left_alone(&self, id: NodeId) -> bool {
-        let mut references = self.links.references.iter();
-        self.is_wired(id) || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
+    fn is_left_unconnected(&self, id: NodeId) -> bool {
+        let mut references = self.references.all.iter();
+        self.has_explicit_connections(id)
+            || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
     }
 
-    fn constraint(&mut self, id: NodeId) {
-        check_type(self.graph, id, self.source, self.findings);
+    fn connect_constraint(&mut self, id: NodeId) {
+        warn_of_unsolved_type(self.graph, id, self.source, self.findings);
         let listed = self.graph.node(id).setting(&dynamic_constraint::COMPONENTS).is_some();
-        if !listed && self.is_wired(id) {
+        if !listed && self.has_explicit_connections(id) {
             return;
         }
-        check_components(self.graph, id, self.links, self.source, self.findings);
+        check_components(self.graph, id, self.references, self.source, self.findings);
         if !listed {
             return;
         }
@@ -222,10 +221,10 @@ impl Joiner<'_> {
             .filter_map(|component| self.graph.find(&component.object))
             .filter(|object| self.nuclei.contains_key(object))
             .collect();
-        let theirs: BTreeSet<NodeId> = objects.iter().map(|object| self.nuclei[object]).collect();
-        let theirs: Vec<NodeId> = theirs.into_iter().collect();
-        let given = self.given(id);
-        let nucleus = match (given, theirs.as_slice()) {
+        let object_nuclei: BTreeSet<NodeId> = objects.iter().map(|object| self.nuclei[object]).collect();
+        let object_nuclei: Vec<NodeId> = object_nuclei.into_iter().collect();
+        let given = self.named_nucleus(id);
+        let nucleus = match (given, object_nuclei.as_slice()) {
             (Some(None), _) => return,
             (Some(Some(nucleus)), _) => nucleus,
             (None, &[only]) => only,
@@ -237,8 +236,8 @@ impl Joiner<'_> {
         if !self.check_points(id, &components) {
             return;
         }
-        if let Some(stranger) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
-            self.refuse_stranger(id, nucleus, *stranger);
+        if let Some(foreign) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
+            self.refuse_foreign_object(id, nucleus, *foreign);
             return;
         }
         self.create(id, &Creation::Constraint { components, nucleus });
@@ -272,8 +271,8 @@ impl Joiner<'_> {
         self.findings.errors() == before
     }
 
-    fn effect(&mut self, id: NodeId) {
-        self.not_solved(id, "fields and emitters are");
+    fn connect_effect(&mut self, id: NodeId) {
+        self.warn_not_solved(id, "fields and emitters are");
         if let Some(&target) = self.resolved.get(&(id, dyn_base::TARGET.row.name)) {
             self.create(id, &Creation::Effect { target });
         }
@@ -285,28 +284,28 @@ impl Joiner<'_> {
         }
     }
 
-    fn not_solved(&mut self, id: NodeId, what: &str) {
+    fn warn_not_solved(&mut self, id: NodeId, what: &str) {
         let name = self.graph.node(id).name();
         let message = format!("{what} not solved yet: `{name}` does nothing");
         self.findings.warning(&self.source.place(name), message);
     }
 
     /// The nucleus that is named for a node: nothing if none is, and nothing inside if it is not there.
-    fn given(&self, id: NodeId) -> Option<Option<NodeId>> {
+    fn named_nucleus(&self, id: NodeId) -> Option<Option<NodeId>> {
         self.named.contains(&(id, "nucleus")).then(|| self.resolved.get(&(id, "nucleus")).copied())
     }
 
     /// The nucleus that a node belongs to: the one that is named, or the only one.
     fn nucleus_of(&mut self, id: NodeId) -> Option<NodeId> {
-        if let Some(given) = self.given(id) {
+        if let Some(given) = self.named_nucleus(id) {
             return given;
         }
         let name = self.graph.node(id).name();
         let place = self.source.place(name);
         match self.all.as_slice() {
             &[only] => return Some(only),
-            [] if self.links.names.values().all(Option::is_some) && !self.alone => {
-                self.alone = true;
+            [] if self.references.names.values().all(Option::is_some) && !self.reported_no_nucleus => {
+                self.reported_no_nucleus = true;
                 let message = format!("there is no nucleus that `{name}` could belong to");
                 self.findings.error(&place, message).help("add `\"nucleus1\": nucleus()`");
             }
@@ -323,14 +322,14 @@ impl Joiner<'_> {
     }
 
     /// Only what hangs on the same nucleus can be joined.
-    fn refuse_stranger(&mut self, constraint: NodeId, nucleus: NodeId, stranger: NodeId) {
+    fn refuse_foreign_object(&mut self, constraint: NodeId, nucleus: NodeId, foreign: NodeId) {
         let name = |id: NodeId| self.graph.node(id).name();
         let message = format!(
             "`{}` under `{}` takes hold of `{}` under `{}`",
             name(constraint),
             name(nucleus),
-            name(stranger),
-            name(self.nuclei[&stranger])
+            name(foreign),
+            name(self.nuclei[&foreign])
         );
         let place = self.source.place(&format!("{}.components", name(constraint)));
         self.findings.error(&place, message).help("only what belongs to the same nucleus acts on each other");
@@ -351,7 +350,7 @@ impl Joiner<'_> {
 }
 
 /// Says so if constraints of a type do nothing yet.
-fn check_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
+fn warn_of_unsolved_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
     let node = graph.node(constraint);
     if node.get(&dynamic_constraint::CONSTRAINT_TYPE) != Choice(0) {
         let name = node.name();
@@ -365,7 +364,7 @@ fn check_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut
 fn check_components(
     graph: &Graph,
     constraint: NodeId,
-    links: &Links,
+    references: &References,
     source: &Source,
     findings: &mut Findings,
 ) {
@@ -381,7 +380,7 @@ fn check_components(
     for (k, component) in components.iter().enumerate() {
         let object = component.object.as_str();
         let place = source.place(&format!("{name}.components[{k}]"));
-        match links.names.get(object) {
+        match references.names.get(object) {
             Some(&Some(id)) if is_cloth(graph, id) || is_particles(graph, id) => {}
             // It could not be read, and that has been said.
             Some(None) => {}

@@ -1,4 +1,4 @@
-//! Meshes made from numbers: closed where they should be, facing outward, counted as Maya counts.
+//! Primitives are closed, face outward, and have Maya's order of points.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -18,7 +18,7 @@ fn euler_characteristic(mesh: &Surface) -> i64 {
     mesh.positions.len() as i64 - edges.len() as i64 + mesh.faces.len() as i64
 }
 
-/// Every edge is walked once in each direction: no hole, and all faces are turned alike.
+/// Every edge occurs once in each direction: there is no hole, and all faces have the same orientation.
 fn is_closed(mesh: &Surface) -> bool {
     let around = |face: &[u32]| {
         face.iter().copied().zip(face.iter().copied().cycle().skip(1)).take(face.len()).collect::<Vec<_>>()
@@ -34,7 +34,7 @@ fn volume(mesh: &Surface) -> f64 {
     mesh.faces.triangles().map(|[a, b, c]| point(a).dot(&point(b).cross(&point(c))) / 6.0).sum()
 }
 
-/// Equal as far as single precision goes, in which Maya keeps its points.
+/// Equal up to single precision, in which Maya stores points.
 fn close(a: Vector3<f64>, b: [f64; 3]) -> bool {
     (a - Vector3::from(b)).norm() < 1e-6
 }
@@ -110,7 +110,7 @@ fn finer_meshes_come_closer_to_the_exact_volume() {
 }
 
 #[test]
-fn numbers_that_make_no_mesh_are_refused() {
+fn invalid_parameters_are_refused() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             poly_plane(1.0, bad, (1, 1)),

@@ -4,16 +4,15 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::attributes::{Kind, NodeType};
+use crate::diagnostic::{Findings, nearest};
 use crate::graph::{CLOCK, Graph, NodeId, Plug, PlugError};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value};
 
 use super::value::{found, text};
 
 /// Connections as they are written.
 #[derive(Default)]
-pub(super) struct Wires<'a> {
+pub(super) struct Connections<'a> {
     pairs: Vec<Pair<'a>>,
 }
 
@@ -24,14 +23,14 @@ struct Pair<'a> {
 }
 
 /// Reads the list; what it names is looked for later.
-pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Wires<'a> {
-    let Some(node) = node else { return Wires::default() };
+pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Connections<'a> {
+    let Some(node) = node else { return Connections::default() };
     let Value::List(items) = &node.value else {
         let message = format!("`connections` takes a list, found {}", found(&node.value));
         findings.error(&node.span, message).help(EXAMPLE);
-        return Wires::default();
+        return Connections::default();
     };
-    Wires { pairs: items.iter().filter_map(|item| read_pair(item, findings)).collect() }
+    Connections { pairs: items.iter().filter_map(|item| read_pair(item, findings)).collect() }
 }
 
 const EXAMPLE: &str = "write `connections: [(\"ball.translateY\", \"cloth1.friction\")]`, output first";
@@ -49,7 +48,7 @@ fn read_pair<'a>(item: &'a Node, findings: &mut Findings) -> Option<Pair<'a>> {
     Some(Pair { span: &item.span, ends: [ends[0]?, ends[1]?] })
 }
 
-impl Wires<'_> {
+impl Connections<'_> {
     /// The attributes that connections leave from, and those that they arrive at.
     pub(super) fn ends(&self, graph: &Graph) -> [BTreeSet<(NodeId, &'static str)>; 2] {
         [0, 1].map(|end| {
@@ -59,8 +58,8 @@ impl Wires<'_> {
     }
 
     /// What the short form has connected without being told to makes room for what is connected by hand.
-    fn give_way(&self, graph: &mut Graph, to: Plug, by_hand: &[Plug]) {
-        if !IMPLICIT.contains(&to.attribute.name) || by_hand.iter().any(|taken| taken.overlaps(&to)) {
+    fn replace_implicit(&self, graph: &mut Graph, to: Plug, explicit: &[Plug]) {
+        if !IMPLICIT.contains(&to.attribute.name) || explicit.iter().any(|taken| taken.overlaps(&to)) {
             return;
         }
         let old = graph.arriving(to.node).find(|wire| wire.to == to).copied();
@@ -76,7 +75,7 @@ impl Wires<'_> {
         is_broken: &dyn Fn(&str) -> bool,
         findings: &mut Findings,
     ) {
-        let mut by_hand: Vec<Plug> = Vec::new();
+        let mut explicit: Vec<Plug> = Vec::new();
         for Pair { span, ends } in &self.pairs {
             let plugs = ends.map(|(text, span)| match graph.plug(text) {
                 Ok(plug) => Some(plug),
@@ -87,13 +86,13 @@ impl Wires<'_> {
                 }
             });
             let [Some(from), Some(to)] = plugs else { continue };
-            // What the short form has made already may be said once more.
+            // What the short form has made already may be error_diagnostic once more.
             if graph.arriving(to.node).any(|wire| wire.from == from && wire.to == to) {
                 continue;
             }
-            self.give_way(graph, to, &by_hand);
+            self.replace_implicit(graph, to, &explicit);
             match graph.connect(from, to) {
-                Ok(()) => by_hand.push(to),
+                Ok(()) => explicit.push(to),
                 Err(error) => {
                     findings.error(span, error.to_string());
                 }
@@ -106,17 +105,18 @@ impl Wires<'_> {
 const IMPLICIT: [&str; 2] = ["currentTime", "startFrame"];
 
 fn refuse(graph: &Graph, error: &PlugError, span: &Range<usize>, findings: &mut Findings) {
-    let said = findings.error(span, error.to_string());
+    let error_diagnostic = findings.error(span, error.to_string());
     match error {
         PlugError::NoNode { name } => {
             let names = graph.iter().map(|(_, node)| node.name());
-            said.did_you_mean(nearest(name, names));
+            error_diagnostic.did_you_mean(nearest(name, names));
         }
         PlugError::NoAttribute { node_type, attribute, .. } => {
-            said.did_you_mean(nearest_attribute(node_type, attribute).as_deref());
+            error_diagnostic.did_you_mean(nearest_attribute(node_type, attribute).as_deref());
         }
         _ => {
-            said.help(format!("a plug is `node.attribute` or `node.attribute[0]`, like `{CLOCK}.outTime`"));
+            error_diagnostic
+                .help(format!("a plug is `node.attribute` or `node.attribute[0]`, like `{CLOCK}.outTime`"));
         }
     }
 }
