@@ -1,51 +1,51 @@
-//! What is said about a scene file: what is wrong, where, and what can be done.
+//! Diagnostics of a scene file: message, place, and fix; and the name that a misspelt word probably means.
 
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The scene runs, but not all of it does what it says.
+    /// The scene runs, but part of it has no effect or not the expected one.
     Warning,
     /// The scene cannot run.
     Error,
 }
 
-/// Something to say about a place in a scene file.
+/// An error or a warning about a place in a scene file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Error or warning.
     pub severity: Severity,
     /// What is wrong: lower case, no full stop, names in backticks.
     pub message: String,
     /// The scene file.
     pub file: PathBuf,
-    /// Where in it: byte offsets. `0..0` when it is about the file as a whole.
+    /// The place: byte offsets into the file. `0..0` for the file as a whole.
     pub span: Range<usize>,
-    /// What can be done about it, in one line.
+    /// How to fix it, in one line.
     pub help: Option<String>,
-    /// Further places, and things worth knowing.
+    /// Related places and facts.
     pub notes: Vec<Note>,
 }
 
 /// An addition to a diagnostic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
-    /// What is to be known.
+    /// The text of the note.
     pub message: String,
-    /// Another place in the same file that it is about.
+    /// The place in the same file that it refers to.
     pub span: Option<Range<usize>>,
 }
 
 impl Diagnostic {
-    /// Adds what can be done about it.
+    /// Adds how to fix it.
     pub(crate) fn help(&mut self, help: impl Into<String>) -> &mut Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds `did you mean ...`, if there is anything near.
+    /// Adds the help `did you mean ...`, if there is a nearest name.
     pub(crate) fn did_you_mean(&mut self, nearest: Option<&str>) -> &mut Self {
         match nearest {
             Some(name) => self.help(format!("did you mean `{name}`?")),
@@ -53,14 +53,14 @@ impl Diagnostic {
         }
     }
 
-    /// Adds another place.
+    /// Adds a note with a related place.
     pub(crate) fn note_at(&mut self, span: &Range<usize>, message: impl Into<String>) -> &mut Self {
         self.notes.push(Note { message: message.into(), span: Some(span.clone()) });
         self
     }
 }
 
-/// Diagnostics of one file.
+/// Collects the diagnostics of one file.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     file: PathBuf,
@@ -68,32 +68,32 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Nothing to say yet.
+    /// An empty collection.
     pub(crate) fn new(file: PathBuf) -> Self {
         Self { file, all: Vec::new() }
     }
 
-    /// Adds an error; help and notes can be given to what comes back.
+    /// Adds an error. Help and notes can be added to the result.
     pub(crate) fn error(&mut self, span: &Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.push(Severity::Error, span, message.into())
     }
 
-    /// Adds a warning.
+    /// Adds a warning. Help and notes can be added to the result.
     pub(crate) fn warning(&mut self, span: &Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.push(Severity::Warning, span, message.into())
     }
 
-    /// How many there are; to see whether something has been found since.
+    /// The number of errors. A caller compares it before and after a step to see whether the step failed.
     pub(crate) fn errors(&self) -> usize {
         self.all.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).count()
     }
 
-    /// Adds what was found elsewhere.
+    /// Adds diagnostics from elsewhere.
     pub(crate) fn extend(&mut self, diagnostics: Vec<Diagnostic>) {
         self.all.extend(diagnostics);
     }
 
-    /// All of them in the order of the file.
+    /// All diagnostics in the order of their places.
     pub(crate) fn in_order(mut self) -> Vec<Diagnostic> {
         self.all.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.span.end));
         self.all
@@ -107,7 +107,7 @@ impl Findings {
     }
 }
 
-/// Words for a sentence: `a`, `b` and `c`.
+/// Joins words for a sentence: `a`, `b` and `c`.
 pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
     match quoted.split_last() {
@@ -116,7 +116,8 @@ pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
     }
 }
 
-/// The candidate that takes the fewest changes to reach, if that is few enough; the first of equals.
+/// The candidate with the smallest edit distance, if that is at most a third of the word's length (at least 1). Of
+/// equals, the first.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let most = (word.chars().count() / 3).max(1);
     let near = candidates.into_iter().map(|candidate| (changes(word, candidate), candidate));
@@ -124,7 +125,8 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
     (best.0 <= most).then_some(best.1)
 }
 
-/// How many letters to add, remove, replace or swap with the next; upper and lower case count as equal.
+/// Edit distance: letters added, removed, replaced, or swapped with the next (optimal string alignment). Case is
+/// ignored.
 fn changes(a: &str, b: &str) -> usize {
     let letters = |word: &str| word.chars().flat_map(char::to_lowercase).collect::<Vec<char>>();
     let (a, b) = (letters(a), letters(b));
@@ -159,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_near_is_suggested() {
+    fn only_near_names_are_suggested() {
         let names = ["stretchResistance", "bendResistance", "shearResistance"];
         assert_eq!(nearest("bendResistence", names), Some("bendResistance"));
         assert_eq!(nearest("colour", names), None);

@@ -5,7 +5,7 @@
 //! | which operations a graph has                       | [`Graph`]                  |
 //! | what a node stores, and how a value is read        | [`Node`], [`Setting`]      |
 //! | which connections Maya's creation commands make    | `creation.rs`              |
-//! | which plugs can be connected, and what is a cycle  | [`Graph::connect`]         |
+//! | which plugs can be connected, and the cycle test   | [`Graph::connect`]         |
 //! | the value of a plug at a frame                     | [`EvalContext::get`]       |
 //! | the transform of a node from its space to world    | [`EvalContext::placement`] |
 //! | how a plug is written                              | [`Graph::plug`]            |

@@ -1,4 +1,4 @@
-//! Comments of a scene file, and what each of them belongs to, so that they survive when it is written anew.
+//! Comments of a scene file, each with the node or attribute that it belongs to, so that formatting keeps them.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use super::document::Source;
 /// Comments of a file.
 #[derive(Debug, Default)]
 pub(super) struct Comments {
-    /// Before everything.
+    /// Before `Scene`.
     pub(super) head: Vec<String>,
-    /// On lines of their own, before a node (`cloth1`) or an attribute (`cloth1.friction`).
+    /// On their own lines before a node (`cloth1`) or an attribute (`cloth1.friction`).
     leading: BTreeMap<String, Vec<String>>,
-    /// At the end of the line of a node or an attribute.
+    /// On the line of a node or an attribute.
     trailing: BTreeMap<String, String>,
-    /// After everything else.
+    /// After the last node or attribute.
     pub(super) tail: Vec<String>,
 }
 
 impl Comments {
-    /// The comments of a text from which a scene was read.
+    /// The comments of a text. `source` has the places of its scene.
     pub(super) fn of(text: &str, source: &Source) -> Self {
         let mut comments = Self::default();
         let places: BTreeMap<usize, &str> = source.places().map(|(name, span)| (span.start, name)).collect();
@@ -42,7 +42,7 @@ impl Comments {
         comments
     }
 
-    /// Whether there is any comment at a node's attributes.
+    /// Whether any attribute of a node has a comment.
     pub(super) fn is_inside(&self, node: &str) -> bool {
         let prefix = format!("{node}.");
         let begins = |name: &&String| name.starts_with(&prefix);
@@ -62,8 +62,8 @@ impl Comments {
     }
 }
 
-/// Line comments and block comments with where they begin; not what stands in quotes. Block comments become
-/// line comments.
+/// All comments with their byte offsets. Text in quotes is skipped. Each line of a block comment becomes a line
+/// comment.
 fn find_comments(text: &str) -> Vec<(usize, String)> {
     let bytes = text.as_bytes();
     let (mut at, mut all) = (0, Vec::new());

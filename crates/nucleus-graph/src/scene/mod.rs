@@ -2,16 +2,16 @@
 //!
 //! | You want to know...                          | Read                          |
 //! |----------------------------------------------|-------------------------------|
-//! | what a scene is, besides its graph           | [`Scene`]                     |
+//! | which parts a scene has besides its graph    | [`Scene`]                     |
 //! | how a file becomes a scene                   | [`read_scene`], `read/`       |
 //! | how a scene becomes text                     | [`write_scene`]               |
-//! | what is said about mistakes, and where       | [`Diagnostic`]                |
+//! | how mistakes are reported                    | [`Diagnostic`]                |
 //! | how an attribute is changed in a text        | [`edit::edit`]                |
 //! | what a material preset is                    | [`Preset`]                    |
 //! | RON itself                                   | [`syntax`]                    |
 //!
-//! **Invariant:** nothing in a file is passed over in silence. Whatever is read has an effect, or is a
-//! warning, or an error; and all of them are found in one go.
+//! **Invariant:** every part of a file has an effect, or gives a warning or an error. One reading reports all
+//! mistakes.
 
 mod comments;
 mod document;

@@ -1,4 +1,6 @@
-//! Presets: values of a material, kept in a file that looks like a node of a scene.
+//! Material presets: a file with one node without a name.
+//!
+//! The settings of a preset count where the node of a scene has none.
 //!
 //! ```ron
 //! // Silk: light and smooth.
@@ -16,10 +18,10 @@ use super::syntax;
 use super::write::setting_lines;
 use crate::diagnostic::{Diagnostic, Findings, nearest};
 
-/// A file that is longer is no preset.
+/// Limit on the size of a preset file.
 const LONGEST: Memory = Memory(1_000_000);
 
-/// The presets that come along, by name.
+/// The built-in presets by name.
 static PRESETS: [(&str, &str); 13] = [
     ("burlap", include_str!("../../presets/burlap.ron")),
     ("canvas", include_str!("../../presets/canvas.ron")),
@@ -36,36 +38,36 @@ static PRESETS: [(&str, &str); 13] = [
     ("thickLeather", include_str!("../../presets/thickLeather.ron")),
 ];
 
-/// Values for the attributes of one type of node.
+/// Settings for a type of node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// What it is like, in one line: the comment that its file begins with.
+    /// A description in one line: the first comment of its file.
     pub doc: String,
-    /// The type of node it is for; types that inherit from it can take it too.
+    /// The type of node. Types that inherit from it can use the preset too.
     pub node_type: &'static NodeType,
-    /// What it sets.
+    /// The settings.
     pub settings: Vec<(&'static Attribute, Setting)>,
 }
 
 impl Preset {
-    /// What it sets, each as a scene writes it: `friction: 0.4`.
+    /// The settings as a scene writes them: `friction: 0.4`.
     pub fn lines(&self) -> Vec<String> {
         self.settings.iter().flat_map(|(row, setting)| setting_lines(row, setting)).collect()
     }
 }
 
-/// All presets that come along, in the order of their names.
+/// All built-in presets in the order of their names.
 pub fn presets() -> Vec<Preset> {
     PRESETS.iter().filter_map(|(name, text)| read_preset(name, text, Path::new(name)).ok()).collect()
 }
 
-/// The preset of this name, or in this file if the name ends in `.ron`. `file` turns the name of a file into
-/// its path.
+/// The built-in preset of this name, or the preset in this file if the name ends in `.ron`. `file` resolves the name
+/// of a file to a path.
 ///
 /// # Errors
-/// Why there is none, and what may have been meant.
+/// A message and a help: the preset does not exist, or its file cannot be read.
 pub(super) fn preset(
     name: &str,
     file: &dyn Fn(&str) -> std::path::PathBuf,
@@ -87,14 +89,14 @@ pub(super) fn preset(
         };
         (message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned())
     })?;
-    // What such a message quotes may be anything, if the file is not a preset.
+    // Syntax errors quote the text, and a file that is no preset may hold anything.
     if let Err(mistakes) = syntax::parse(&text) {
         let at = mistakes.first().map_or(0, |mistake| mistake.span.start.min(text.len()));
         let before = text.get(..at).unwrap_or_default();
         let (line, start) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |end| end + 1));
         let column = before[start..].chars().count() + 1;
         let message =
-            format!("the preset `{name}` cannot be read: line {line}, column {column} is not as in a scene");
+            format!("the preset `{name}` cannot be read: malformed at line {line}, column {column}");
         return Err((message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned()));
     }
     read_preset(name, &text, &path).map_err(|mistakes| refusal(name, &mistakes))
@@ -111,7 +113,7 @@ fn refusal(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
 /// Reads a preset from text.
 ///
 /// # Errors
-/// All mistakes in it.
+/// All mistakes in the text.
 pub fn read_preset(name: &str, text: &str, file: &Path) -> Result<Preset, Vec<Diagnostic>> {
     let mut findings = Findings::new(file.to_owned());
     let read = read_lone_node(text, &mut findings);

@@ -1,28 +1,29 @@
-//! Which connections a scene need not write, because reading makes them recreated.
+//! The short form of a graph: connections that a scene file leaves out, because reading makes them again.
 //!
-//! What a creation command has made is written in short (`inputMesh`, `components` ...) if doing the same recreated,
-//! in the order of names, gives the same. Everything else is written as it is, connection by connection.
+//! A node is written in short form (`inputMesh`, `components` ...) if its creation command, run again in the order of
+//! names, gives the same connections and nodes. All other connections are written one by one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::attributes::{dyn_base, n_base, n_particle, nucleus};
 use crate::graph::{Connection, Creation, Graph, NodeId};
 
-/// How a graph is written in short.
+/// The short form of a graph.
 pub(super) struct ShortForm {
-    /// Nodes whose connections are made recreated from a few names.
+    /// Nodes in short form, with the arguments of their creation commands.
     creations: BTreeMap<NodeId, Creation>,
-    /// Nodes that are made recreated with them.
+    /// Nodes that those creation commands make.
     created: BTreeSet<NodeId>,
     clock: NodeId,
-    /// Connections that have to be written, by their plugs.
+    /// Connections to write, by their plugs.
     pub(super) explicit: Vec<[String; 2]>,
-    /// Whether a node has to say to which nucleus it belongs.
+    /// Whether nodes have to name their nucleus.
     needs_nucleus_name: bool,
 }
 
 impl ShortForm {
-    /// The shortest form that is found.
+    /// Starts with all nodes that have a creation, and takes out those that reading would connect differently, until
+    /// none is left.
     pub(super) fn of(graph: &Graph) -> Self {
         let of_type = |id: NodeId| graph.creation(id).map(|creation| (id, creation));
         let mut creations: BTreeMap<NodeId, Creation> =
@@ -57,40 +58,44 @@ impl ShortForm {
         }
     }
 
-    /// Whether a node is written at all.
+    /// Whether a node is written: not the clock, nor a node that a creation command makes.
     pub(super) fn is_written(&self, id: NodeId) -> bool {
         !self.created.contains(&id) && id != self.clock
     }
 
-    /// Whether a connection that has to be written begins or ends at a node of this name.
+    /// Whether a node of this name has an explicit connection.
     pub(super) fn has_explicit_connections(&self, name: &str) -> bool {
         let mut plugs = self.explicit.iter().flatten();
         plugs.any(|plug| plug.split('.').next() == Some(name))
     }
 
-    /// Particles that reading does not join to a nucleus, because a connection by hand begins or ends at them.
+    /// Particles in short form with explicit connections: reading would not connect them to a nucleus.
     fn particles_with_explicit_connections(&self, graph: &Graph) -> Vec<NodeId> {
         let is_particles = |id: NodeId| graph.node(id).node_type().is_a(&n_particle::N_PARTICLE);
         let joined = self.creations.keys().copied().filter(|&id| is_particles(id));
         joined.filter(|&id| self.has_explicit_connections(graph.node(id).name())).collect()
     }
 
-    /// The node that an attribute names; as `joined` its nucleus, whether that has to be written or not.
+    /// Whether a node is an object in short form.
+    pub(super) fn is_object(&self, id: NodeId) -> bool {
+        matches!(self.creations.get(&id), Some(Creation::Object { .. }))
+    }
+
+    /// The node that an attribute names in short form.
     pub(super) fn named(&self, id: NodeId, attribute: &str) -> Option<NodeId> {
         match (self.creations.get(&id)?, attribute) {
             (Creation::Object { mesh, .. }, name) if name == n_base::INPUT_MESH.row.name => *mesh,
             (Creation::Object { nucleus, .. } | Creation::Constraint { nucleus, .. }, "nucleus") => {
                 self.needs_nucleus_name.then_some(*nucleus)
             }
-            (Creation::Object { nucleus, .. }, "joined") => Some(*nucleus),
             (Creation::Effect { target }, name) if name == dyn_base::TARGET.row.name => Some(*target),
             _ => None,
         }
     }
 }
 
-/// A graph of the same names that is created anew, as reading does it: nodes in the order of names, then
-/// objects, constraints and effects. Also those that could be created.
+/// A graph of the same nodes, connected as by reading: nodes in the order of names, then objects, constraints and
+/// effects. Also returns the nodes whose creation succeeded.
 fn recreate(graph: &Graph, creations: &BTreeMap<NodeId, Creation>) -> (Graph, BTreeSet<NodeId>) {
     let is_created = |id: NodeId| graph.node(id).created_by().is_some_and(|by| creations.contains_key(&by));
     let mut nodes: Vec<_> = graph.iter().filter(|(id, _)| !is_created(*id)).collect();
@@ -132,7 +137,7 @@ fn recreate(graph: &Graph, creations: &BTreeMap<NodeId, Creation>) -> (Graph, BT
     (recreated, done)
 }
 
-/// Nodes whose creation, done recreated, does not give what is there.
+/// Nodes whose recreation gives other connections or nodes than the graph has.
 fn different(
     graph: &Graph,
     recreated: &Graph,
@@ -165,7 +170,7 @@ fn different(
             });
         own.push(twin);
         let wires = own.iter().flat_map(|node| recreated.arriving(*node).chain(recreated.leaving(*node)));
-        // A creation also gives its nucleus the clock, which the graph may have taken away.
+        // A creation also connects the clock to its nucleus, and the graph may lack that connection.
         let clock = nucleus_of(creation).and_then(|id| recreated.find(graph.node(id).name())).into_iter();
         let clock = clock
             .flat_map(|nucleus| recreated.arriving(nucleus))
@@ -178,7 +183,7 @@ fn different(
     different
 }
 
-/// The nucleus that an object or a constraint joins.
+/// The nucleus of an object or a constraint.
 fn nucleus_of(creation: &Creation) -> Option<NodeId> {
     match creation {
         Creation::Object { nucleus, .. } | Creation::Constraint { nucleus, .. } => Some(*nucleus),

@@ -1,4 +1,4 @@
-//! Statements of an OBJ file: statements, joined where one ends in a backslash, and their words.
+//! Statements of an OBJ file (lines, continued after a backslash at their end) and their words.
 
 use std::io::{self, BufRead};
 use std::path::Path;

@@ -7,7 +7,7 @@ use crate::scene::syntax::{Node, Value, Word};
 use super::fields::{Fields, current_name};
 use super::value::{found, number, whole_number};
 
-/// Reads what must hold.
+/// Reads the checks of a scene.
 pub(super) fn read(node: &Node, findings: &mut Findings) -> Vec<Check> {
     let Value::List(items) = &node.value else {
         let message = format!("`checks` takes a list, found {}", found(&node.value));

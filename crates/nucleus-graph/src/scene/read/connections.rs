@@ -1,4 +1,4 @@
-//! `connections: [("ball.translateY", "cloth1.friction")]`: connections made by hand, from output to input.
+//! Explicit connections, from output to input: `connections: [("ball.translateY", "cloth1.friction")]`.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,19 +10,19 @@ use crate::scene::syntax::{Node, Value};
 
 use super::value::{found, text};
 
-/// Connections as they are written.
+/// The explicit connections of a scene, as texts.
 #[derive(Default)]
 pub(super) struct Connections<'a> {
     pairs: Vec<Pair<'a>>,
 }
 
-/// An output and an input, as they are written.
+/// An output and an input, as texts.
 struct Pair<'a> {
     span: &'a Range<usize>,
     ends: [(&'a str, &'a Range<usize>); 2],
 }
 
-/// Reads the list; what it names is looked for later.
+/// Reads the list. Its plugs are resolved later, when all nodes exist.
 pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Connections<'a> {
     let Some(node) = node else { return Connections::default() };
     let Value::List(items) = &node.value else {
@@ -49,7 +49,7 @@ fn read_pair<'a>(item: &'a Node, findings: &mut Findings) -> Option<Pair<'a>> {
 }
 
 impl Connections<'_> {
-    /// The attributes that connections leave from, and those that they arrive at.
+    /// The attributes at the output ends, and those at the input ends.
     pub(super) fn ends(&self, graph: &Graph) -> [BTreeSet<(NodeId, &'static str)>; 2] {
         [0, 1].map(|end| {
             let plugs = self.pairs.iter().filter_map(|pair| graph.plug(pair.ends[end].0).ok());
@@ -57,7 +57,7 @@ impl Connections<'_> {
         })
     }
 
-    /// What the short form has connected without being told to makes room for what is connected by hand.
+    /// Removes an implicit connection of the short form from an input that is about to be connected explicitly.
     fn replace_implicit(&self, graph: &mut Graph, to: Plug, explicit: &[Plug]) {
         if !IMPLICIT.contains(&to.attribute.name) || explicit.iter().any(|taken| taken.overlaps(&to)) {
             return;
@@ -68,7 +68,7 @@ impl Connections<'_> {
         }
     }
 
-    /// Makes the connections. A node that could not be read is not missed.
+    /// Makes the connections. Plugs of nodes with mistakes are skipped.
     pub(super) fn connect(
         &self,
         graph: &mut Graph,
@@ -86,7 +86,7 @@ impl Connections<'_> {
                 }
             });
             let [Some(from), Some(to)] = plugs else { continue };
-            // What the short form has made already may be error_diagnostic once more.
+            // A connection that the short form implies may be repeated.
             if graph.arriving(to.node).any(|wire| wire.from == from && wire.to == to) {
                 continue;
             }
@@ -101,7 +101,7 @@ impl Connections<'_> {
     }
 }
 
-/// Inputs that the short form connects without being told to.
+/// Inputs that the short form connects implicitly.
 const IMPLICIT: [&str; 2] = ["currentTime", "startFrame"];
 
 fn refuse(graph: &Graph, error: &PlugError, span: &Range<usize>, findings: &mut Findings) {
@@ -121,7 +121,7 @@ fn refuse(graph: &Graph, error: &PlugError, span: &Range<usize>, findings: &mut 
     }
 }
 
-/// The attribute that was probably meant, parts of vectors among them.
+/// The attribute with the nearest name, components of vectors included.
 pub(super) fn nearest_attribute(node_type: &'static NodeType, word: &str) -> Option<String> {
     let rows = node_type.attributes();
     let parts: Vec<String> =

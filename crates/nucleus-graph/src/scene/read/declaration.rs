@@ -1,4 +1,4 @@
-//! Nodes as they are written: a name, a type, fields.
+//! Declarations of nodes: a name, a type, and fields that are not read yet.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::scene::syntax::{Node, Value, Word};
 
 use super::value::{found, text};
 
-/// A node as it is written.
+/// A node as declared in the file.
 pub(super) struct Declaration<'a> {
     pub(super) name: &'a str,
     pub(super) span: &'a Range<usize>,
@@ -18,7 +18,7 @@ pub(super) struct Declaration<'a> {
     pub(super) fields: &'a [(Word, Node)],
 }
 
-/// The nodes that have a name and a type, and the names of all.
+/// The declarations that have a valid name and type. Also the names of all declared nodes, without ids.
 pub(super) fn read_declarations<'a>(
     entries: &'a [(Node, Node)],
     findings: &mut Findings,
@@ -45,7 +45,7 @@ pub(super) fn read_declarations<'a>(
     (declarations, names)
 }
 
-/// A node that is alone in its file and has no name.
+/// The only declaration of a preset file, which has no name.
 pub(super) fn unnamed<'a>(root: &'a Node, findings: &mut Findings) -> Option<Declaration<'a>> {
     let (node_type, fields) = typed("preset", root, findings)?;
     Some(Declaration { name: "preset", span: &root.span, node_type, fields })

@@ -1,4 +1,4 @@
-//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, and `keys(at: [...], post: cycle)` for those that go on.
+//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, or with infinities, `keys(at: [...], post: cycle)`.
 
 use crate::animation::{Curve, Infinity, Key, Tangent};
 use crate::attributes::{Attribute, Kind, Value as Held};
@@ -8,17 +8,17 @@ use crate::scene::syntax::{Node, Value, Word};
 
 use super::value::{expected, found, number, single, triple};
 
-/// What stands inside `keys(...)`.
+/// The parts of `keys(...)`, not read yet.
 pub(super) struct Keyed<'a> {
     /// The keys.
     list: &'a Node,
-    /// How it goes on before and after them, where that is said.
+    /// The values of `pre` and `post`.
     infinities: [Option<&'a Node>; 2],
-    /// Fields that `keys(...)` does not have.
+    /// Fields other than `at`, `pre` and `post`.
     unknown: Vec<&'a Word>,
 }
 
-/// What stands inside `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`, if that is what a value is.
+/// The parts of `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`. `None` for other values.
 pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
     match &node.value {
         Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => {
@@ -39,7 +39,7 @@ pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
 }
 
 impl Keyed<'_> {
-    /// How the curve goes on.
+    /// Reads the infinities. Refuses unknown fields.
     fn infinities(&self, label: &str, findings: &mut Findings) -> Option<[Infinity; 2]> {
         let names: Vec<&str> = Infinity::WORDS.iter().map(|(name, _)| *name).collect();
         for word in &self.unknown {
@@ -49,14 +49,14 @@ impl Keyed<'_> {
         let [pre, post] = self.infinities.map(|node| {
             let Some(node) = node else { return Some(Infinity::Constant) };
             let Value::Word(word) = &node.value else {
-                return expected(label, "a word for how its keys go on", node, findings);
+                return expected(label, "the word of an infinity, like `cycle`", node, findings);
             };
             let known = Infinity::WORDS.iter().find(|(name, _)| name == word);
             if known.is_none() {
-                let error = findings.error(&node.span, format!("keys cannot go on by `{word}`"));
+                let error = findings.error(&node.span, format!("there is no infinity `{word}`"));
                 match nearest(word, names.iter().copied()) {
                     Some(near) => error.did_you_mean(Some(near)),
-                    None => error.help(format!("they go on by {}", listed(&names))),
+                    None => error.help(format!("there are {}", listed(&names))),
                 };
             }
             known.map(|(_, infinity)| *infinity)
@@ -65,7 +65,7 @@ impl Keyed<'_> {
     }
 }
 
-/// Reads the keys of an attribute; those of a vector hold three numbers each.
+/// Reads the keys of an attribute. Keys of a vector have three numbers each.
 pub(super) fn read(
     label: &str,
     row: &'static Attribute,
@@ -95,7 +95,7 @@ pub(super) fn read(
     curve(label, keys.collect(), infinities, list, findings).map(Setting::Keyed)
 }
 
-/// Reads the keys of one part of a vector.
+/// Reads the keys of one component of a vector.
 pub(super) fn read_part(
     label: &str,
     row: &'static Attribute,
@@ -175,7 +175,7 @@ fn parts<'a>(
     }
 }
 
-/// Switches and words jump from key to key, numbers move.
+/// Switches and words are stepped by default, numbers linear.
 fn default_tangent(row: &Attribute) -> Tangent {
     match row.kind {
         Kind::Bool | Kind::Choice(_) => Tangent::Stepped,

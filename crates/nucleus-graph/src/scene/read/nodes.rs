@@ -18,7 +18,7 @@ use super::references::{self, Reference, References};
 use super::setting::{read, read_part};
 use super::value::{expected, single, text};
 
-/// Reads all nodes and connects them. Also returns the nodes on which something could not be read.
+/// Reads all nodes and connects them. Also returns the nodes with mistakes.
 pub(super) fn read_nodes(
     node: &Node,
     connections: &Connections,
@@ -38,13 +38,13 @@ pub(super) fn read_nodes(
         return (graph, broken);
     }
     let (mut declarations, names) = read_declarations(entries, findings);
-    // The order of nodes in a file must not matter to a run.
+    // A run must not depend on the order of nodes in the file.
     declarations.sort_by_key(|declaration| declaration.name);
     let mut references = References { names, all: Vec::new() };
     for declaration in &declarations {
         let id = match graph.add(declaration.name, declaration.node_type) {
             Ok(id) => id,
-            // The clock is there already.
+            // Every graph has the clock.
             Err(_) if declaration.name == CLOCK && declaration.node_type == &time::TIME => graph.clock(),
             Err(error) => {
                 findings.error(declaration.span, error.to_string()).help("give it another name");
@@ -75,7 +75,7 @@ pub(super) fn read_nodes(
     (graph, broken)
 }
 
-/// Reads a node that is alone. What would join it to others is refused.
+/// Reads the node of a preset. References to other nodes are refused.
 pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> Graph {
     let mut graph = Graph::new();
     let Ok(id) = graph.add(declaration.name, declaration.node_type) else { return graph };
@@ -92,7 +92,7 @@ pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> G
         set: Vec::new(),
     }
     .fields();
-    // That something has no effect yet is told where the preset is used.
+    // Warnings of settings without effect are given where the preset is used.
     let errors = reported.in_order().into_iter().filter(|reported| reported.severity == Severity::Error);
     findings.extend(errors.collect());
     for reference in &references.all {
@@ -104,7 +104,7 @@ pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> G
     graph
 }
 
-/// Reads the attributes of one node.
+/// Reads the fields of one node.
 struct NodeReader<'a, 'b> {
     graph: &'a mut Graph,
     id: NodeId,
@@ -112,7 +112,7 @@ struct NodeReader<'a, 'b> {
     source: &'a mut Source,
     findings: &'a mut Findings,
     references: &'a mut References,
-    /// What has been set so far: attribute, part of it, place.
+    /// The settings so far: attribute, component of a vector, place.
     set: Vec<(&'static str, Option<usize>, &'a Range<usize>)>,
 }
 
@@ -155,7 +155,7 @@ impl NodeReader<'_, '_> {
         }
     }
 
-    /// One part of a vector: `translateY: 3`.
+    /// One component of a vector: `translateY: 3`.
     fn part(&mut self, word: &Word, row: &'static Attribute, part: usize, node: &Node) {
         if !self.is_first_setting(word, row.name, Some(part)) {
             return;
@@ -172,7 +172,7 @@ impl NodeReader<'_, '_> {
         self.store(word, row, Setting::Parts(channels));
     }
 
-    /// Several attributes in one go: `subdivisions: (64, 64)`.
+    /// Several attributes by one name: `subdivisions: (64, 64)`.
     fn together(
         &mut self,
         word: &Word,
@@ -205,7 +205,7 @@ impl NodeReader<'_, '_> {
         }
     }
 
-    /// Takes a material.
+    /// Applies a preset.
     fn preset(&mut self, label: &str, node: &Node) {
         let Some(name) = text(label, node, self.findings) else { return };
         if name.is_empty() {
@@ -269,7 +269,7 @@ impl NodeReader<'_, '_> {
         }
     }
 
-    /// Keeps what has been read, and says so if it does nothing.
+    /// Stores a setting, and warns if it has no effect.
     fn store(&mut self, word: &Word, row: &'static Attribute, setting: Setting) {
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&word.span, error.to_string());
@@ -280,12 +280,12 @@ impl NodeReader<'_, '_> {
             }
             Effect::Solved(_) => return,
             Effect::NotYet => "has no effect yet",
-            Effect::Never => "has no effect: nothing uses it, in Maya neither",
+            Effect::Never => "has no effect: nothing uses it, not even in Maya",
         };
         self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.declaration.name));
     }
 
-    /// Notes that something is set; whether it is the first time.
+    /// Records that an attribute is set. Refuses the second time.
     fn is_first_setting(&mut self, word: &Word, name: &'static str, part: Option<usize>) -> bool {
         let again = |(set, set_part, _): &&(&str, Option<usize>, _)| {
             *set == name && (part.is_none() || set_part.is_none() || *set_part == part)

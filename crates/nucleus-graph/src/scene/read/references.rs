@@ -1,4 +1,5 @@
-//! Names that become connections: `inputMesh`, `nucleus`, `target`, `parent`, and the objects of components.
+//! References to nodes by name (`inputMesh`, `nucleus`, `target`, `parent`, objects of components), and the connections
+//! that follow from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -15,28 +16,28 @@ use crate::scene::document::Source;
 
 use super::connections::Connections;
 
-/// What has been named while nodes were read.
+/// The names collected while nodes are read.
 pub(super) struct References {
-    /// All names in the file; without a node where it could not be read.
+    /// All names of nodes in the file. `None` for nodes that could not be read.
     pub(super) names: BTreeMap<String, Option<NodeId>>,
-    /// Names given as values.
+    /// All references.
     pub(super) all: Vec<Reference>,
 }
 
-/// A name given as a value.
+/// The name of a node as the value of an attribute.
 pub(super) struct Reference {
-    /// The node it is given to.
+    /// The node that has the attribute.
     pub(super) node: NodeId,
-    /// The attribute it is given to.
+    /// The attribute.
     pub(super) row: &'static Attribute,
     /// The name.
     pub(super) name: String,
-    /// Where.
+    /// The place of the name.
     pub(super) span: Range<usize>,
 }
 
-/// Makes the connections that Maya's commands would make, in the order of names: objects first, then what is
-/// put on them.
+/// Makes the connections of Maya's creation commands, in the order of names: objects first, then constraints, then
+/// fields and emitters.
 pub(super) fn connect(
     graph: &mut Graph,
     references: &References,
@@ -67,7 +68,7 @@ pub(super) fn connect(
     of(&dyn_base::DYN_BASE).for_each(|&(id, _)| resolver.connect_effect(id));
 }
 
-/// Finds the nodes that are named, each of the type that is wanted there.
+/// Finds the referenced nodes, and refuses those of a wrong type.
 fn resolve(
     graph: &Graph,
     references: &References,
@@ -95,7 +96,7 @@ fn resolve(
                     format!("`{}` of `{owner}` takes {what}, but `{name}` is of type {found}", row.name);
                 findings.error(span, message);
             }
-            // It could not be read, and that has been said.
+            // Reading the node has reported a mistake.
             Some(None) => {}
             None => {
                 let fitting = graph.of_type(wanted).map(|(_, node)| node.name());
@@ -107,7 +108,7 @@ fn resolve(
     resolved
 }
 
-/// Hangs nodes from their parents.
+/// Sets the parents of nodes.
 fn set_parents(
     graph: &mut Graph,
     references: &References,
@@ -124,7 +125,7 @@ fn set_parents(
     }
 }
 
-/// Tells meshes what they are blended into.
+/// Sets the blend targets of meshes. Warns of blends without a target.
 fn set_blend_targets(
     graph: &mut Graph,
     references: &References,
@@ -151,22 +152,22 @@ fn set_blend_targets(
     }
 }
 
-/// Joins nodes to their nuclei.
+/// Connects nodes to their nuclei.
 struct Resolver<'a> {
     graph: &'a mut Graph,
     references: &'a References,
-    /// Attributes that connections made by hand leave from, and those they arrive at.
+    /// Attributes at the output ends of explicit connections, and those at the input ends.
     ends: [BTreeSet<(NodeId, &'static str)>; 2],
-    /// Attributes that name a node.
+    /// Attributes that have a reference.
     named: BTreeSet<(NodeId, &'static str)>,
     /// All nuclei.
     all: Vec<NodeId>,
     resolved: BTreeMap<(NodeId, &'static str), NodeId>,
     source: &'a mut Source,
     findings: &'a mut Findings,
-    /// The nucleus of each object so far.
+    /// The nucleus of each connected object.
     nuclei: BTreeMap<NodeId, NodeId>,
-    /// That there is no nucleus has been said.
+    /// Whether the lack of a nucleus has been reported.
     reported_no_nucleus: bool,
 }
 
@@ -180,7 +181,7 @@ impl Resolver<'_> {
         if is_particles && self.is_left_unconnected(id) {
             return;
         }
-        // Its mesh may be broken: whether there is a nucleus for it can be told all the same.
+        // A missing nucleus is reported even if the mesh has a mistake.
         let meant = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
         if !is_particles && !meant && self.has_explicit_connections(id) {
             return;
@@ -192,13 +193,12 @@ impl Resolver<'_> {
         }
     }
 
-    /// Whether connections by hand begin or end at a node.
+    /// Whether a node has explicit connections.
     fn has_explicit_connections(&self, id: NodeId) -> bool {
         self.ends.iter().any(|ends| ends.range((id, "")..).next().is_some_and(|(node, _)| *node == id))
     }
 
-    /// Particles have no mesh that would say that they are to be joined: they are, unless they are connected
-    /// by hand or belong to no nucleus, `nucleus: ""`.
+    /// Whether particles get no implicit connections: they have explicit ones, or no nucleus (`nucleus: ""`).
     fn is_left_unconnected(&self, id: NodeId) -> bool {
         let mut references = self.references.all.iter();
         self.has_explicit_connections(id)
@@ -243,8 +243,8 @@ impl Resolver<'_> {
         self.create(id, &Creation::Constraint { components, nucleus });
     }
 
-    /// Whether the points that a constraint names can be there; says so if not. They are listed one by one afterwards, so a
-    /// range is held against its object first.
+    /// Whether the points of a constraint exist and fit into memory; reports those that do not. This comes before
+    /// ranges are expanded to lists.
     fn check_points(&mut self, id: NodeId, components: &[Component]) -> bool {
         let before = self.findings.errors();
         for (k, component) in components.iter().enumerate() {
@@ -264,8 +264,9 @@ impl Resolver<'_> {
             }
             let count = u64::from(last - first) + 1;
             if let Err(refused) = self.source.budget_mut().claim(count.saturating_mul(memory::HELD_POINT)) {
-                let error = self.findings.error(&place, format!("to hold {count} points takes {refused}"));
-                error.help(refused.help("hold fewer points"));
+                let error =
+                    self.findings.error(&place, format!("to constrain {count} points takes {refused}"));
+                error.help(refused.help("constrain fewer points"));
             }
         }
         self.findings.errors() == before
@@ -290,12 +291,12 @@ impl Resolver<'_> {
         self.findings.warning(&self.source.place(name), message);
     }
 
-    /// The nucleus that is named for a node: nothing if none is, and nothing inside if it is not there.
+    /// The nucleus that a node names: `None` if it names none, `Some(None)` if the name is wrong.
     fn named_nucleus(&self, id: NodeId) -> Option<Option<NodeId>> {
         self.named.contains(&(id, "nucleus")).then(|| self.resolved.get(&(id, "nucleus")).copied())
     }
 
-    /// The nucleus that a node belongs to: the one that is named, or the only one.
+    /// The nucleus of a node: the one that it names, else the only one.
     fn nucleus_of(&mut self, id: NodeId) -> Option<NodeId> {
         if let Some(given) = self.named_nucleus(id) {
             return given;
@@ -321,18 +322,18 @@ impl Resolver<'_> {
         None
     }
 
-    /// Only what hangs on the same nucleus can be joined.
+    /// Refuses an object of another nucleus.
     fn refuse_foreign_object(&mut self, constraint: NodeId, nucleus: NodeId, foreign: NodeId) {
         let name = |id: NodeId| self.graph.node(id).name();
         let message = format!(
-            "`{}` under `{}` takes hold of `{}` under `{}`",
+            "`{}` on `{}` constrains `{}` on `{}`",
             name(constraint),
             name(nucleus),
             name(foreign),
             name(self.nuclei[&foreign])
         );
         let place = self.source.place(&format!("{}.components", name(constraint)));
-        self.findings.error(&place, message).help("only what belongs to the same nucleus acts on each other");
+        self.findings.error(&place, message).help("a constraint and its objects need the same nucleus");
     }
 
     /// Cloth and colliders need a mesh.
@@ -340,7 +341,7 @@ impl Resolver<'_> {
         let given = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
         let name = self.graph.node(id).name();
         let place = self.source.place(name);
-        // A value of the wrong type has been reported already.
+        // A value of the wrong form has been reported.
         let misread = self.source.place(&format!("{name}.{}", n_base::INPUT_MESH.row.name)) != place;
         if !given && !misread && !self.ends[1].contains(&(id, n_base::INPUT_MESH.row.name)) {
             let error = self.findings.error(&place, format!("`{name}` has no `inputMesh`"));
@@ -349,7 +350,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Says so if constraints of a type do nothing yet.
+/// Warns if constraints of this type have no effect yet.
 fn warn_of_unsolved_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
     let node = graph.node(constraint);
     if node.get(&dynamic_constraint::CONSTRAINT_TYPE) != Choice(0) {
@@ -360,7 +361,7 @@ fn warn_of_unsolved_type(graph: &Graph, constraint: NodeId, source: &Source, fin
     }
 }
 
-/// What a constraint takes hold of has to be there and be cloth.
+/// Refuses components of missing objects, and of objects other than cloth and particles.
 fn check_components(
     graph: &Graph,
     constraint: NodeId,
@@ -372,7 +373,7 @@ fn check_components(
     let name = node.name();
     let components = node.get(&dynamic_constraint::COMPONENTS);
     let place = source.place(name);
-    // One that could not be read has been reported already.
+    // A malformed component has been reported.
     if components.is_empty() && source.place(&format!("{name}.components")) == place {
         findings.warning(&place, format!("`{name}` does nothing: it has no `components`"));
     }
@@ -382,7 +383,7 @@ fn check_components(
         let place = source.place(&format!("{name}.components[{k}]"));
         match references.names.get(object) {
             Some(&Some(id)) if is_cloth(graph, id) || is_particles(graph, id) => {}
-            // It could not be read, and that has been said.
+            // Reading the node has reported a mistake.
             Some(None) => {}
             _ if !reported.insert(object) => {}
             Some(&Some(id)) => refuse_object(graph, id, component, &place, findings),
@@ -403,7 +404,7 @@ fn is_particles(graph: &Graph, node: NodeId) -> bool {
     graph.node(node).node_type().is_a(&n_particle::N_PARTICLE)
 }
 
-/// Says that something is not cloth; if it is the mesh of a cloth, that was probably meant.
+/// Reports an object of a wrong type. Suggests the cloth if the object is its mesh.
 fn refuse_object(
     graph: &Graph,
     id: NodeId,
@@ -413,7 +414,7 @@ fn refuse_object(
 ) {
     let (object, found) = (&component.object, graph.node(id).node_type().name);
     let message =
-        format!("only points of cloth and particles can be held, but `{object}` is of type {found}");
+        format!("only points of cloth and particles can be constrained, but `{object}` is of type {found}");
     let error = findings.error(place, message);
     let mut fed = graph.targets(id, &surface_shape::WORLD_MESH).map(|plug| plug.node);
     if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {

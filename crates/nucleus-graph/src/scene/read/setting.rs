@@ -12,7 +12,7 @@ use crate::scene::syntax::{Node, Value};
 use super::keys;
 use super::value::{expected, number, number_within, single, text, triple, whole_number};
 
-/// Reads what an attribute is set to. `label` names attribute and node in messages.
+/// Reads the setting of an attribute. `label` names attribute and node in messages.
 pub(super) fn read(
     label: &str,
     row: &'static Attribute,
@@ -58,8 +58,8 @@ pub(super) fn read(
     Some(Setting::Fixed(value))
 }
 
-/// What makes the values of points, if that is what stands there: `file("...")`, `expression("...")` or
-/// `texture("...")`. Inside is nothing if it is wrong.
+/// The source of a map: `file("...")`, `expression("...")` or `texture("...")`. `None` for other values, `Some(None)`
+/// after a mistake.
 fn painting(
     label: &str,
     row: &'static Attribute,
@@ -89,13 +89,13 @@ fn painting(
     Some(Some(make(text.to_owned())))
 }
 
-/// A place within a text in quotes; all of it where the text is not written as it stands.
+/// A range of a text in quotes as a place in the file. The whole text if it has escapes.
 fn within_text(text: &str, node: &Node, at: Range<usize>) -> Range<usize> {
     let is_plain = node.span.len() == text.len() + 2;
     if is_plain { node.span.start + 1 + at.start..node.span.start + 1 + at.end } else { node.span.clone() }
 }
 
-/// One part of a vector, keyed or not.
+/// One component of a vector, keyed or not.
 pub(super) fn read_part(
     label: &str,
     row: &'static Attribute,
@@ -122,17 +122,17 @@ fn list<T>(
     read.into_iter().collect()
 }
 
-/// How Maya goes from one point of a ramp to the next, by its index.
+/// Maya's interpolations of ramps, by index.
 pub(in crate::scene) const INTERPOLATIONS: [&str; 4] = ["none", "linear", "smooth", "spline"];
 
-/// `(0.5, 1)` or `(0.5, 1, smooth)`: a point of a ramp, straight on to the next unless a word says how.
+/// A point of a ramp: `(0.5, 1)` or `(0.5, 1, smooth)`. Without a word, the interpolation is linear.
 fn ramp_point(label: &str, node: &Node, findings: &mut Findings) -> Option<RampPoint> {
     let (position, value, interpolation) = point_parts(label, "points of (position, value)", node, findings)?;
     let [position, value] = [position, value].map(|item| number(label, item, findings));
     Some(RampPoint { position: position?, value: value?, interpolation })
 }
 
-/// `(0.5, (1, 0, 0))` or `(0.5, (1, 0, 0), smooth)`.
+/// A point of a colour ramp: `(0.5, (1, 0, 0))` or `(0.5, (1, 0, 0), smooth)`.
 fn color_point(
     label: &str,
     row: &'static Attribute,
@@ -145,7 +145,7 @@ fn color_point(
     Some(ColorPoint { position: position?, color: color?, interpolation })
 }
 
-/// Position, value, and the word for the way to the next point.
+/// Position, value, and the interpolation to the next point.
 fn point_parts<'a>(
     label: &str,
     what: &str,

@@ -1,4 +1,4 @@
-//! The value of an attribute, as its row wants it.
+//! Single values: numbers, vectors, words and texts, checked against the row of their attribute.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::scene::syntax::{Node, Value};
 /// Integers up to here are exact in a 64-bit float.
 const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// A number, a switch or a word.
+/// A number, a switch or the word of an enum.
 pub(super) fn single(
     label: &str,
     row: &'static Attribute,
@@ -80,7 +80,7 @@ pub(super) fn text<'a>(label: &str, node: &'a Node, findings: &mut Findings) -> 
     }
 }
 
-/// What a value is, for `found ...`.
+/// Describes a value for messages: `found ...`.
 pub(super) fn found(value: &Value) -> String {
     match value {
         Value::Word(word) => format!("the word `{word}`"),
@@ -91,7 +91,7 @@ pub(super) fn found(value: &Value) -> String {
     }
 }
 
-/// Says what should have been there.
+/// Reports that a value has the wrong form.
 pub(super) fn expected<T>(label: &str, what: &str, node: &Node, findings: &mut Findings) -> Option<T> {
     findings.error(&node.span, format!("{label} takes {what}, found {}", found(&node.value)));
     None
@@ -107,7 +107,7 @@ pub(super) fn number_within(
     within(label, row, number, &node.span, findings)
 }
 
-/// The number, if it is in the hard range.
+/// The number, if it is in the hard range of the attribute.
 fn within(
     label: &str,
     row: &'static Attribute,
@@ -128,12 +128,12 @@ fn within(
     None
 }
 
-/// A number as one would write it: `100000`, `1e300`.
+/// A number in its shorter notation: `100000`, `1e300`.
 fn written(x: f64) -> String {
     if x.abs() < 1e7 && (x == 0.0 || x.abs() >= 1e-5) { format!("{x}") } else { format!("{x:e}") }
 }
 
-/// A word of an enum: ours, Maya's own name of it, or Maya's index.
+/// A word of an enum: the name in scenes, Maya's label, or Maya's index.
 fn choice(label: &str, row: &'static Attribute, node: &Node, findings: &mut Findings) -> Option<Choice> {
     let Kind::Choice(maya_words) = row.kind else { return None };
     let words = row.words();

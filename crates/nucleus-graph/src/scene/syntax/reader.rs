@@ -1,11 +1,11 @@
-//! Reading a text from left to right, one function per form of value.
+//! A recursive-descent parser of RON: one function per form of value.
 
 use super::cursor::Cursor;
 use super::number::{self, NumberError};
 use super::text;
 use super::tree::{Node, SyntaxError, Value, Word};
 
-/// Brackets inside brackets that are followed. Scenes need six; `ron` follows 128.
+/// Limit on nesting of brackets. Scenes need 6; the limit of `ron` is 128.
 const DEEPEST: usize = 64;
 
 /// An opening bracket.
@@ -13,7 +13,7 @@ const DEEPEST: usize = 64;
 struct Bracket {
     /// Its byte offset.
     at: usize,
-    /// `(`, `[` or `{`.
+    /// The character: `(`, `[` or `{`.
     opening: char,
 }
 
@@ -27,11 +27,11 @@ impl Bracket {
     }
 }
 
-/// Reads a text that holds one value.
+/// Parses a text of one value.
 ///
 /// # Errors
-/// All mistakes after which it is safe to read on (bad numbers, bad escapes, missing commas ...) and the
-/// first after which it is not, in the order of the text; at least one.
+/// All mistakes that parsing can continue after (bad numbers, bad escapes, missing commas ...) and the first that it
+/// cannot, in the order of the text. At least one.
 pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
     let mut reader = Reader { cursor: Cursor::new(text), errors: Vec::new(), open: Vec::new() };
     match reader.document() {
@@ -43,11 +43,11 @@ pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
 struct Reader<'a> {
     cursor: Cursor<'a>,
     errors: Vec<SyntaxError>,
-    /// The brackets that are open here, outermost first.
+    /// The open brackets, outermost first.
     open: Vec<Bracket>,
 }
 
-/// Reading cannot go on; why is the last of the errors.
+/// Parsing cannot continue. The last error is the reason.
 struct Stop;
 
 type Read<T> = Result<T, Stop>;
@@ -110,7 +110,7 @@ impl Reader<'_> {
         self.value()
     }
 
-    /// A word, or what it is the name of.
+    /// A word, or the record or tuple that it names.
     fn word_or_named(&mut self) -> Read<Value> {
         let name = self.word();
         match name.text.as_str() {
@@ -135,7 +135,7 @@ impl Reader<'_> {
         Ok(Value::Word(name.text))
     }
 
-    /// `(a: 1)` or `(1, 2)`: what comes after the first word decides.
+    /// `(a: 1)` or `(1, 2)`: a colon after the first word decides.
     fn parenthesised(&mut self, name: Option<Word>) -> Read<Value> {
         if self.field_or_nothing_follows()? {
             Ok(Value::Record { name, fields: self.within_brackets(Self::field)? })
@@ -164,7 +164,7 @@ impl Reader<'_> {
         Word { text, span: self.cursor.since(start) }
     }
 
-    /// A number; a bad one is noted, and stands as zero in a tree that nobody gets to see.
+    /// A number. A malformed one is reported and becomes zero; the tree is then not returned.
     fn number(&mut self) -> f64 {
         let start = self.cursor.at();
         let text = self.cursor.take_while(|c| continues_word(c) || matches!(c, '+' | '-' | '.'));
@@ -174,7 +174,7 @@ impl Reader<'_> {
         })
     }
 
-    /// `'a'` is a single character in RON, which no scene needs: most likely text was meant.
+    /// `'a'` is a single character in RON. Scenes have none, so text was probably meant.
     fn single_quoted(&mut self) -> Read<Value> {
         let start = self.cursor.at();
         self.cursor.eat("'");
@@ -197,7 +197,7 @@ impl Reader<'_> {
         Stop
     }
 
-    /// Stops at what comes next, which is not what should.
+    /// Stops at an unexpected character or word.
     fn unexpected(&mut self, expected: &str) -> Stop {
         let start = self.cursor.at();
         let Some(found) = self.cursor.peek() else { return self.ends_early(expected) };
@@ -208,7 +208,7 @@ impl Reader<'_> {
         let message = if found.is_ascii_graphic() {
             format!("expected {expected}, found `{}`", self.cursor.text(span.clone()))
         } else {
-            // Such as the no-break space that comes along when text is copied from a web page.
+            // Such as the no-break space in text copied from a web page.
             format!("expected {expected}, found the character U+{:04X}", u32::from(found))
         };
         let mut error = SyntaxError::new(message, span);
@@ -221,7 +221,7 @@ impl Reader<'_> {
 }
 
 impl Reader<'_> {
-    /// Items with commas between them, from the opening bracket that comes next to its closing one.
+    /// Items separated by commas, from the next opening bracket to its closing one.
     fn within_brackets<T>(&mut self, item: fn(&mut Self) -> Read<T>) -> Read<Vec<T>> {
         let bracket = self.open_bracket()?;
         let mut items = Vec::new();
@@ -248,7 +248,7 @@ impl Reader<'_> {
         Ok(bracket)
     }
 
-    /// A comma, unless the bracket closes. If it was only forgotten, that is noted and reading goes on.
+    /// A comma, unless the bracket closes. A missing comma before another value is reported, and parsing continues.
     fn comma(&mut self, bracket: Bracket) -> Read<()> {
         let end = self.cursor.at();
         self.skip_blank()?;
@@ -268,7 +268,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The text is over: the place to look at is the innermost bracket that is still open.
+    /// The text ends too early: the error points at the innermost open bracket.
     fn ends_early(&mut self, expected: &str) -> Stop {
         let end = self.cursor.at();
         let error = match self.open.last() {
@@ -283,7 +283,7 @@ impl Reader<'_> {
     }
 }
 
-/// Names are Maya's: letters, digits and `_`.
+/// Names consist of ASCII letters, digits and `_`.
 fn begins_word(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
