@@ -119,10 +119,10 @@ pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
 /// The candidate with the smallest edit distance, if that is at most a third of the word's length (at least 1). Of
 /// equals, the first.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let most = (word.chars().count() / 3).max(1);
+    let limit = (word.chars().count() / 3).max(1);
     let near = candidates.into_iter().map(|candidate| (changes(word, candidate), candidate));
     let best = near.min_by_key(|&(changes, _)| changes)?;
-    (best.0 <= most).then_some(best.1)
+    (best.0 <= limit).then_some(best.1)
 }
 
 /// Edit distance: letters added, removed, replaced, or swapped with the next (optimal string alignment). Case is
@@ -136,11 +136,11 @@ fn changes(a: &str, b: &str) -> usize {
         let mut row = vec![i];
         for j in 1..=b.len() {
             let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut least = replaced.min(last[j] + 1).min(row[j - 1] + 1);
+            let mut cost = replaced.min(last[j] + 1).min(row[j - 1] + 1);
             if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                least = least.min(before[j - 2] + 1);
+                cost = cost.min(before[j - 2] + 1);
             }
-            row.push(least);
+            row.push(cost);
         }
         before = std::mem::replace(&mut last, row);
     }

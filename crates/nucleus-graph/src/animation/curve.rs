@@ -273,8 +273,8 @@ impl Curve {
         }
         // A cubic is monotone between its keys if its end slopes are at most three times the slope of the
         // segment (Fritsch and Carlson 1980).
-        let most = 3.0 * coming.abs().min(going.abs());
-        through.clamp(-most, most)
+        let limit = 3.0 * coming.abs().min(going.abs());
+        through.clamp(-limit, limit)
     }
 }
 

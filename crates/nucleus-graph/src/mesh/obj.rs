@@ -24,7 +24,7 @@ mod uvs;
 
 /// The most corners of a face; the cap of a cylinder has the same limit. A fan of triangles makes all points of a face
 /// neighbours of one point, and the neighbours of a point are compared in pairs.
-const MOST_CORNERS: usize = 4096;
+const MAX_CORNERS: usize = 4096;
 
 /// Reads a mesh. Its points are all vertices of the file in file order, used or not. Its faces are those of the
 /// file, degenerate ones too (see [`drop_degenerate_faces`](super::drop_degenerate_faces)). Lengths are as in the
@@ -77,7 +77,7 @@ impl Mesh {
             more => return Err(ObjFault::WrongNumberCount { found: 3 + more }),
         }
         if self.surface.positions.len() >= u32::MAX as usize {
-            return Err(ObjFault::TooLarge { most: u32::MAX });
+            return Err(ObjFault::TooLarge { max: u32::MAX });
         }
         self.surface.positions.push(position);
         Ok(())
@@ -95,11 +95,11 @@ impl Mesh {
         if self.corners.len() < 3 {
             return Err(ObjFault::TooFewCorners { found: self.corners.len() });
         }
-        if self.corners.len() > MOST_CORNERS {
-            return Err(ObjFault::TooManyCorners { found: self.corners.len(), most: MOST_CORNERS });
+        if self.corners.len() > MAX_CORNERS {
+            return Err(ObjFault::TooManyCorners { found: self.corners.len(), max: MAX_CORNERS });
         }
         if self.surface.faces.corners().len() + self.corners.len() > u32::MAX as usize {
-            return Err(ObjFault::TooLarge { most: u32::MAX });
+            return Err(ObjFault::TooLarge { max: u32::MAX });
         }
         self.surface.faces.push(&self.corners);
         Ok(())

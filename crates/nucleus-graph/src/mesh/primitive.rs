@@ -323,46 +323,42 @@ pub enum PrimitiveError {
         value: f64,
     },
     /// Too few subdivisions to close the shape.
-    #[error("{name} needs at least {least} subdivisions, not {value}")]
+    #[error("{name} needs at least {min} subdivisions, not {value}")]
     TooFewSubdivisions {
         /// Its name: `width`, `axis` ...
         name: &'static str,
         /// What was given.
         value: u32,
         /// The smallest valid number.
-        least: u32,
+        min: u32,
     },
     /// The mesh would exceed the limit on points.
-    #[error("the mesh would have {points} points, more than {most}")]
+    #[error("the mesh would have {points} points, more than {max}")]
     TooManyPoints {
         /// The number of points that it would have.
         points: u64,
         /// The limit.
-        most: u64,
+        max: u64,
     },
 }
 
 /// A hundred million points: 2.4 GB of positions.
-const MOST_POINTS: u64 = 100_000_000;
+const MAX_POINTS: u64 = 100_000_000;
 
 /// Refuses a length that is not positive and finite.
 fn check_length(name: &'static str, value: f64) -> Result<(), PrimitiveError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PrimitiveError::BadLength { name, value }) }
 }
 
-/// Refuses fewer subdivisions than `least`.
-fn check_subdivisions(name: &'static str, value: u32, least: u32) -> Result<(), PrimitiveError> {
-    if value >= least { Ok(()) } else { Err(PrimitiveError::TooFewSubdivisions { name, value, least }) }
+/// Refuses fewer subdivisions than `min`.
+fn check_subdivisions(name: &'static str, value: u32, min: u32) -> Result<(), PrimitiveError> {
+    if value >= min { Ok(()) } else { Err(PrimitiveError::TooFewSubdivisions { name, value, min }) }
 }
 
 /// Refuses a mesh of about `across` times `along` points if that exceeds the limit.
 fn check_size(across: u64, along: u64) -> Result<(), PrimitiveError> {
     let points = across.saturating_mul(along);
-    if points <= MOST_POINTS {
-        Ok(())
-    } else {
-        Err(PrimitiveError::TooManyPoints { points, most: MOST_POINTS })
-    }
+    if points <= MAX_POINTS { Ok(()) } else { Err(PrimitiveError::TooManyPoints { points, max: MAX_POINTS }) }
 }
 
 /// Step `k` of `steps` from -0.5 to 0.5, exactly antisymmetric.

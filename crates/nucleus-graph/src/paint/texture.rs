@@ -18,7 +18,7 @@ pub struct Texture {
 }
 
 /// Limit on pixels: a header of a few bytes can announce more than fit into memory.
-const MOST_PIXELS: u64 = 1 << 26;
+const MAX_PIXELS: u64 = 1 << 26;
 
 /// Reasons why a file is no texture.
 #[derive(Debug, thiserror::Error)]
@@ -41,7 +41,7 @@ pub enum TextureError {
         source: png::DecodingError,
     },
     /// It has too many pixels.
-    #[error("`{}` has {columns} x {rows} pixels, more than the limit of {MOST_PIXELS}", path.display())]
+    #[error("`{}` has {columns} x {rows} pixels, more than the limit of {MAX_PIXELS}", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -65,7 +65,7 @@ impl Texture {
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(broken)?;
         let (columns, rows) = reader.info().size();
-        if u64::from(columns) * u64::from(rows) > MOST_PIXELS {
+        if u64::from(columns) * u64::from(rows) > MAX_PIXELS {
             return Err(TextureError::TooLarge { path: path.to_owned(), columns, rows });
         }
         let bytes = reader.output_buffer_size().ok_or(png::DecodingError::LimitsExceeded);

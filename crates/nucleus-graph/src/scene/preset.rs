@@ -19,7 +19,7 @@ use super::write::setting_lines;
 use crate::diagnostic::{Diagnostic, Findings, nearest};
 
 /// Limit on the size of a preset file.
-const LONGEST: Memory = Memory(1_000_000);
+const MAX_SIZE: Memory = Memory(1_000_000);
 
 /// The built-in presets by name.
 static PRESETS: [(&str, &str); 13] = [
@@ -82,7 +82,7 @@ pub(super) fn preset(
         return Err((format!("there is no preset `{name}`"), help));
     }
     let path = file(name);
-    let text = read_text(&path, LONGEST).map_err(|error| {
+    let text = read_text(&path, MAX_SIZE).map_err(|error| {
         let message = match error {
             TextError::Unreadable { path, cause } => format!("cannot read the preset `{path}`: {cause}"),
             other => format!("cannot take the preset `{name}`: {other}"),

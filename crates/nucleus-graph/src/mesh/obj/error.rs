@@ -64,12 +64,12 @@ pub enum ObjFault {
         found: usize,
     },
     /// A face has more corners than can be processed in reasonable time.
-    #[error("a face may have {most} corners; this one has {found}: cut it into smaller faces")]
+    #[error("a face may have {max} corners; this one has {found}: cut it into smaller faces")]
     TooManyCorners {
         /// How many it has.
         found: usize,
         /// How many it may have.
-        most: usize,
+        max: usize,
     },
     /// A corner does not begin with a whole number.
     #[error("{span}: not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
@@ -100,9 +100,9 @@ pub enum ObjFault {
         vertices: usize,
     },
     /// The mesh has more vertices or corners than 32 bits can number.
-    #[error("the mesh has more than {most} vertices or corners")]
+    #[error("the mesh has more than {max} vertices or corners")]
     TooLarge {
         /// How many it may have.
-        most: u32,
+        max: u32,
     },
 }

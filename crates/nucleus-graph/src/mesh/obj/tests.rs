@@ -80,7 +80,7 @@ fn faults_are_named_with_their_line() {
 fn a_face_of_too_many_corners_is_named_with_its_line() {
     let face = |corners: usize| format!("v 0 0 0\nf{}", " 1".repeat(corners));
     assert!(read(face(4096).as_bytes()).is_ok());
-    assert_eq!(fault(&face(4097)), (2, ObjFault::TooManyCorners { found: 4097, most: 4096 }));
+    assert_eq!(fault(&face(4097)), (2, ObjFault::TooManyCorners { found: 4097, max: 4096 }));
 }
 
 #[test]

@@ -118,18 +118,18 @@ fn invalid_parameters_are_refused() {
         ));
         assert!(matches!(poly_sphere(bad, (8, 8)), Err(PrimitiveError::BadLength { name: "radius", .. })));
     }
-    let too_few = |name, value, least| Err(PrimitiveError::TooFewSubdivisions { name, value, least });
+    let too_few = |name, value, min| Err(PrimitiveError::TooFewSubdivisions { name, value, min });
     assert_eq!(poly_plane(1.0, 1.0, (0, 1)), too_few("width", 0, 1));
     assert_eq!(poly_cube(1.0, 1.0, 1.0, (1, 1, 0)), too_few("depth", 0, 1));
     assert_eq!(poly_sphere(1.0, (2, 8)), too_few("axis", 2, 3));
     assert_eq!(poly_cylinder(1.0, 1.0, (3, 0, 0)), too_few("height", 0, 1));
-    let most = u32::MAX;
+    let max = u32::MAX;
     for mesh in [
-        poly_plane(1.0, 1.0, (most, most)),
-        poly_cube(1.0, 1.0, 1.0, (1, most, most)),
-        poly_cube(1.0, 1.0, 1.0, (most, most, most)),
-        poly_sphere(1.0, (most, most)),
-        poly_cylinder(1.0, 1.0, (3, 1, most)),
+        poly_plane(1.0, 1.0, (max, max)),
+        poly_cube(1.0, 1.0, 1.0, (1, max, max)),
+        poly_cube(1.0, 1.0, 1.0, (max, max, max)),
+        poly_sphere(1.0, (max, max)),
+        poly_cylinder(1.0, 1.0, (3, 1, max)),
     ] {
         assert!(matches!(mesh, Err(PrimitiveError::TooManyPoints { .. })));
     }

@@ -122,8 +122,8 @@ fn step(edge: f64, x: f64) -> f64 {
 }
 
 /// Unlike `f64::clamp`, it accepts a lower limit above the upper one; the upper one then has precedence.
-fn clamp(x: f64, least: f64, most: f64) -> f64 {
-    x.max(least).min(most)
+fn clamp(x: f64, min: f64, max: f64) -> f64 {
+    x.max(min).min(max)
 }
 
 fn smoothstep(from: f64, to: f64, x: f64) -> f64 {

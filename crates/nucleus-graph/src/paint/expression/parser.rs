@@ -7,7 +7,7 @@ use super::ops::{FUNCTIONS, NAMES, Op};
 use crate::diagnostic::nearest;
 
 /// Limit on nesting: deeper brackets are a mistake, and recursion needs stack.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// A binary operator and its function.
 type Operator = (&'static str, fn(f64, f64) -> f64);
@@ -82,7 +82,7 @@ impl<'a> Parser<'a> {
     /// `a ? b : c`. Both branches are evaluated, and one is selected.
     fn choice(&mut self) -> Result<(), ExpressionError> {
         self.depth += 1;
-        if self.depth > DEEPEST {
+        if self.depth > MAX_DEPTH {
             return Err(ExpressionError::new("this is nested too deeply", self.span()));
         }
         self.binary(0)?;
@@ -128,7 +128,7 @@ impl<'a> Parser<'a> {
         self.value()?;
         if self.eat("^") {
             self.depth += 1;
-            if self.depth > DEEPEST {
+            if self.depth > MAX_DEPTH {
                 return Err(ExpressionError::new("this is nested too deeply", self.span()));
             }
             self.unary()?;

@@ -1,7 +1,7 @@
 //! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, or with infinities, `keys(at: [...], post: cycle)`.
 
 use crate::animation::{Curve, Infinity, Key, Tangent};
-use crate::attributes::{Attribute, Kind, Value as Held};
+use crate::attributes::{Attribute, Kind, Value as AttrValue};
 use crate::diagnostic::{Findings, listed, nearest};
 use crate::graph::{Channel, Setting};
 use crate::scene::syntax::{Node, Value, Word};
@@ -217,12 +217,12 @@ fn curve(
     curve.ok().map(|curve| curve.with_infinity(before, after))
 }
 
-fn as_number(value: &Held) -> f64 {
+fn as_number(value: &AttrValue) -> f64 {
     match value {
-        Held::Bool(on) => f64::from(u8::from(*on)),
-        Held::Int(number) => *number as f64,
-        Held::Float(number) => *number,
-        Held::Choice(choice) => f64::from(choice.0),
+        AttrValue::Bool(on) => f64::from(u8::from(*on)),
+        AttrValue::Int(number) => *number as f64,
+        AttrValue::Float(number) => *number,
+        AttrValue::Choice(choice) => f64::from(choice.0),
         _ => 0.0,
     }
 }

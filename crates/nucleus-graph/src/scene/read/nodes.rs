@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Effect, Kind, Value as Held, n_base, time};
+use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, time};
 use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
 use crate::memory::NODE;
@@ -164,7 +164,7 @@ impl NodeReader<'_, '_> {
         let Some(channel) = read_part(&label, row, node, self.findings) else { return };
         let mut channels = match (self.graph.node(self.id).settings().get(row.name), &row.default) {
             (Some(Setting::Parts(channels)), _) => channels.clone(),
-            (_, Some(Held::Vector(default))) => default.map(Channel::Fixed),
+            (_, Some(AttrValue::Vector(default))) => default.map(Channel::Fixed),
             _ => return,
         };
         channels[part] = channel;
@@ -229,7 +229,7 @@ impl NodeReader<'_, '_> {
         }
         let set = self.graph.apply_preset(self.id, &preset.settings);
         let set = set.and_then(|()| {
-            self.graph.set(self.id, &n_base::PRESET.row, Setting::Fixed(Held::Text(name.to_owned())))
+            self.graph.set(self.id, &n_base::PRESET.row, Setting::Fixed(AttrValue::Text(name.to_owned())))
         });
         if let Err(error) = set {
             self.findings.error(&node.span, error.to_string());
@@ -263,7 +263,7 @@ impl NodeReader<'_, '_> {
                 }
             }
         }
-        let setting = Setting::Fixed(Held::Components(components));
+        let setting = Setting::Fixed(AttrValue::Components(components));
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&node.span, error.to_string());
         }

@@ -254,10 +254,10 @@ impl Resolver<'_> {
             let place = self.source.place(&format!("{}.components[{k}]", self.graph.node(id).name()));
             let Some(node) = self.graph.find(object) else { continue };
             let mesh = self.resolved.get(&(node, n_base::INPUT_MESH.row.name)).copied();
-            let most = most_points(self.graph, self.source, node, mesh);
-            if most.is_some_and(|most| u64::from(*last) >= most) {
-                self.findings.error(&place, format!("`{object}` has no point {last}")).help(match most {
-                    Some(most @ 1..) => format!("its points are numbered 0 to {}", most - 1),
+            let count = most_points(self.graph, self.source, node, mesh);
+            if count.is_some_and(|count| u64::from(*last) >= count) {
+                self.findings.error(&place, format!("`{object}` has no point {last}")).help(match count {
+                    Some(count @ 1..) => format!("its points are numbered 0 to {}", count - 1),
                     _ => "it has no points".to_owned(),
                 });
                 continue;

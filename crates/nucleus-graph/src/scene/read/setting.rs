@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, Value as Held};
+use crate::attributes::{Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, Value as AttrValue};
 use crate::diagnostic::{Findings, listed};
 use crate::graph::{Channel, Setting};
 use crate::paint::Expression;
@@ -27,25 +27,25 @@ pub(super) fn read(
         return Some(Setting::Parts(parts.map(Channel::Fixed)));
     }
     if let Some(painting) = painting(label, row, node, findings) {
-        return painting.map(|painting| Setting::Fixed(Held::Painting(painting)));
+        return painting.map(|painting| Setting::Fixed(AttrValue::Painting(painting)));
     }
     let value = match row.kind {
-        Kind::Text => Held::Text(text(label, node, findings)?.to_owned()),
-        Kind::Ints => Held::Ints(list(label, row, node, findings, |node, findings| {
+        Kind::Text => AttrValue::Text(text(label, node, findings)?.to_owned()),
+        Kind::Ints => AttrValue::Ints(list(label, row, node, findings, |node, findings| {
             let number = whole_number(label, node, findings)?;
             Some(number.clamp(0.0, f64::from(u32::MAX)) as u32)
         })?),
-        Kind::Floats => {
-            Held::Floats(list(label, row, node, findings, |node, findings| number(label, node, findings))?)
-        }
-        Kind::Vectors => Held::Vectors(list(label, row, node, findings, |node, findings| {
+        Kind::Floats => AttrValue::Floats(list(label, row, node, findings, |node, findings| {
+            number(label, node, findings)
+        })?),
+        Kind::Vectors => AttrValue::Vectors(list(label, row, node, findings, |node, findings| {
             triple(label, row, node, findings)
         })?),
-        Kind::Ramp => Held::Ramp(Cow::Owned(list(label, row, node, findings, |node, findings| {
+        Kind::Ramp => AttrValue::Ramp(Cow::Owned(list(label, row, node, findings, |node, findings| {
             ramp_point(label, node, findings)
         })?)),
         Kind::ColorRamp => {
-            Held::ColorRamp(Cow::Owned(list(label, row, node, findings, |node, findings| {
+            AttrValue::ColorRamp(Cow::Owned(list(label, row, node, findings, |node, findings| {
                 color_point(label, row, node, findings)
             })?))
         }

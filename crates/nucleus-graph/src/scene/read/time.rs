@@ -8,10 +8,10 @@ use super::fields::Fields;
 use super::value::{found, number, whole_number};
 
 /// Limit on frame numbers.
-const MOST_FRAMES: f64 = 1e9;
+const MAX_FRAME: f64 = 1e9;
 
 /// Limit on frames per evaluation, and on evaluations per frame.
-const MOST_EVERY: f64 = 1000.0;
+const MAX_EVERY: f64 = 1000.0;
 
 /// Reads the frames of a run, and the evaluation interval in frames.
 pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(TimeSpan, f64)> {
@@ -43,8 +43,8 @@ pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(Time
 
 fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
     let frame = whole_number(&format!("`{name}`"), node, findings)?;
-    if frame.abs() > MOST_FRAMES {
-        findings.error(&node.span, format!("frame {frame} is beyond the limit of {MOST_FRAMES}"));
+    if frame.abs() > MAX_FRAME {
+        findings.error(&node.span, format!("frame {frame} is beyond the limit of {MAX_FRAME}"));
         return None;
     }
     Some(frame as i64)
@@ -64,7 +64,7 @@ fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
 /// The evaluation interval: a whole number of frames, or the reciprocal of one.
 fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
     let every = number("`every`", node, findings)?;
-    let whole = |x: f64| (1.0..=MOST_EVERY).contains(&x) && x.fract() == 0.0;
+    let whole = |x: f64| (1.0..=MAX_EVERY).contains(&x) && x.fract() == 0.0;
     // 1/3 has no exact decimal, so the nearest reciprocal is taken.
     let parts = (1.0 / every).round();
     if whole(every) {

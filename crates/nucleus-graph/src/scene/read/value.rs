@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Choice, Kind, Value as Held};
+use crate::attributes::{Attribute, Choice, Kind, Value as AttrValue};
 use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value};
 
 /// Integers up to here are exact in a 64-bit float.
-const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
+const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// A number, a switch or the word of an enum.
 pub(super) fn single(
@@ -15,18 +15,18 @@ pub(super) fn single(
     row: &'static Attribute,
     node: &Node,
     findings: &mut Findings,
-) -> Option<Held> {
+) -> Option<AttrValue> {
     match (row.kind, &node.value) {
-        (Kind::Bool, Value::Bool(on)) => Some(Held::Bool(*on)),
+        (Kind::Bool, Value::Bool(on)) => Some(AttrValue::Bool(*on)),
         (Kind::Int, _) => {
             let number = whole_number(label, node, findings)?;
-            within(label, row, number, &node.span, findings).map(|number| Held::Int(number as i64))
+            within(label, row, number, &node.span, findings).map(|number| AttrValue::Int(number as i64))
         }
         (Kind::Texture, value) if !matches!(value, Value::Number(_)) => {
             expected(label, row.kind.expects(), node, findings)
         }
-        (Kind::Float | Kind::Texture, _) => number_within(label, row, node, findings).map(Held::Float),
-        (Kind::Choice(_), _) => choice(label, row, node, findings).map(Held::Choice),
+        (Kind::Float | Kind::Texture, _) => number_within(label, row, node, findings).map(AttrValue::Float),
+        (Kind::Choice(_), _) => choice(label, row, node, findings).map(AttrValue::Choice),
         _ => expected(label, row.kind.expects(), node, findings),
     }
 }
@@ -63,7 +63,7 @@ pub(super) fn number(label: &str, node: &Node, findings: &mut Findings) -> Optio
 /// A number without a fraction.
 pub(super) fn whole_number(label: &str, node: &Node, findings: &mut Findings) -> Option<f64> {
     match node.value {
-        Value::Number(number) if number.fract() == 0.0 && number.abs() <= LARGEST_EXACT => Some(number),
+        Value::Number(number) if number.fract() == 0.0 && number.abs() <= MAX_EXACT_INTEGER => Some(number),
         Value::Number(number) => {
             findings.error(&node.span, format!("{label} takes a whole number, found {number}"));
             None

@@ -6,7 +6,7 @@ use super::text;
 use super::tree::{Node, SyntaxError, Value, Word};
 
 /// Limit on nesting of brackets. Scenes need 6; the limit of `ron` is 128.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// An opening bracket.
 #[derive(Clone, Copy)]
@@ -241,8 +241,8 @@ impl Reader<'_> {
         let at = self.cursor.at();
         let bracket = Bracket { at, opening: self.cursor.next().unwrap_or('(') };
         self.open.push(bracket);
-        if self.open.len() > DEEPEST {
-            let message = format!("more than {DEEPEST} brackets inside each other");
+        if self.open.len() > MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} brackets inside each other");
             return Err(self.stop(SyntaxError::new(message, at..at + 1)));
         }
         Ok(bracket)
