@@ -1,7 +1,7 @@
 //! What a run says at its end without being asked: contact that has not separated everything, which is trouble, and
 //! cloth that is stretched far, which is a warning.
 
-use nucleus_graph::checks::{MAX_STRETCH, MAX_TANGLED, MAX_TRAPPED, MAX_UNRESOLVED, Outcome};
+use nucleus_graph::checks::{MAX_DEPENETRATING, MAX_INTERSECTIONS, MAX_STRETCH, MAX_UNRESOLVED, Outcome};
 
 use crate::account::{Account, Count};
 use crate::figures;
@@ -34,7 +34,7 @@ static RULES: [Rule; 3] = [
         },
     },
     Rule {
-        check: MAX_TRAPPED,
+        check: MAX_DEPENETRATING,
         count: |account| &account.trapped,
         judged: |count| count.end,
         words: |count| {
@@ -43,7 +43,7 @@ static RULES: [Rule; 3] = [
         },
     },
     Rule {
-        check: MAX_TANGLED,
+        check: MAX_INTERSECTIONS,
         count: |account| &account.tangled,
         judged: |count| count.end,
         words: |count| {
@@ -150,7 +150,7 @@ mod tests {
             (vec![words.to_owned()], vec![])
         );
         assert!(!unseparated(&account, &checks("maxUnresolved", 4.0), false).is_empty());
-        assert!(!unseparated(&account, &checks("maxTrapped", 9.0), false).is_empty());
+        assert!(!unseparated(&account, &checks("maxDepenetrating", 9.0), false).is_empty());
     }
 
     #[test]
@@ -173,8 +173,8 @@ mod tests {
                 "NOT SEPARATED: 3 edges of cloth through cloth at the last frame, worst at frame 2 with 8"
             ]
         );
-        assert!(said[3].contains("`checks: [maxTrapped(9), maxTangled(8)]`"), "{said:?}");
-        let trapped = unseparated(&account, &checks("maxTrapped", 9.0), false);
+        assert!(said[3].contains("`checks: [maxDepenetrating(9), maxIntersections(8)]`"), "{said:?}");
+        let trapped = unseparated(&account, &checks("maxDepenetrating", 9.0), false);
         assert!(trapped[0].contains("edges") && trapped.len() == 3, "{trapped:?}");
     }
 

@@ -92,11 +92,15 @@ const NO_CROSSING: &str = "noCrossing";
 /// The check of unresolved pairs. A run without it fails at the first.
 pub const MAX_UNRESOLVED: &str = "maxUnresolved";
 /// The check of points inside colliders. A run without it fails if it ends with any.
-pub const MAX_TRAPPED: &str = "maxTrapped";
+pub const MAX_DEPENETRATING: &str = "maxDepenetrating";
 /// The check of cloth edges that intersect cloth faces. A run without it fails if it ends with any.
-pub const MAX_TANGLED: &str = "maxTangled";
+pub const MAX_INTERSECTIONS: &str = "maxIntersections";
 /// The check of strain. A run without it warns of large strain.
 pub const MAX_STRETCH: &str = "maxStretch";
+
+/// Former names of checks, each with the name of today. A scene may use either; a former name is a warning.
+pub const RENAMED: &[(&str, &str)] =
+    &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
 static FORMS: [Form; 11] = [
     Form {
@@ -118,7 +122,7 @@ static FORMS: [Form; 11] = [
         figure: |sample, _| Some(sample.report.pairs_unresolved as f64),
     },
     Form {
-        name: MAX_TRAPPED,
+        name: MAX_DEPENETRATING,
         doc: "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
         parameters: &["points"],
         values: Values::Counts,
@@ -127,7 +131,7 @@ static FORMS: [Form; 11] = [
         figure: |sample, _| Some(sample.report.depenetrating as f64),
     },
     Form {
-        name: MAX_TANGLED,
+        name: MAX_INTERSECTIONS,
         doc: "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
         parameters: &["edges"],
         values: Values::Counts,
@@ -181,7 +185,7 @@ static FORMS: [Form; 11] = [
         figure: |sample, _| Some(if sample.report.finite { 0.0 } else { 1.0 }),
     },
     Form {
-        name: "untangledBy",
+        name: "separatedBy",
         doc: "From this frame on no edge of cloth goes through a face of cloth.",
         parameters: &["frame"],
         values: Values::Numbers,

@@ -1,13 +1,13 @@
-//! Files that a scene names. Only regular files are read: a device may never end, and a pipe may never begin. Messages about
-//! them give places, never contents: a scene may name any file that its reader can open.
+//! Files that a scene names. Only regular files are read: a device may have no end, and a pipe may have no writer.
+//! Messages about a file give a line and column, never its content: a scene may name any file that the user can read.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// Opens a regular file; gives its length too.
+/// Opens a regular file. Also returns its length in bytes.
 pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
-    // Opening a pipe would wait for somebody to write to it.
+    // Opening a pipe would wait for a writer.
     let about = fs::metadata(path)?;
     if about.is_dir() {
         return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder, not a file"));
@@ -18,28 +18,28 @@ pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
     File::open(path).map(|file| (file, about.len()))
 }
 
-/// The length of a file in bytes; nothing where there is none, which is told when it is read.
+/// The length of a file in bytes, or 0 if it cannot be found: reading it then reports the error.
 pub(crate) fn length(path: &Path) -> u64 {
     fs::metadata(path).map_or(0, |about| about.len())
 }
 
-/// Where something stands in a file, and how long it is.
+/// A range of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Piece {
-    /// Its first character, counted from 1.
+pub struct LineSpan {
+    /// The column of the first character, from 1.
     pub column: usize,
     /// Its length in bytes.
     pub bytes: usize,
 }
 
-impl std::fmt::Display for Piece {
+impl std::fmt::Display for LineSpan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "column {}, {} {}", self.column, self.bytes, if self.bytes == 1 { "byte" } else { "bytes" })
     }
 }
 
-impl Piece {
-    /// A part of a line.
+impl LineSpan {
+    /// The range of `part`, which is a slice of `line`.
     pub(crate) fn of(part: &[u8], line: &[u8]) -> Self {
         let before = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize).min(line.len());
         let column = String::from_utf8_lossy(&line[..before]).chars().count() + 1;

@@ -8,25 +8,27 @@
 //! |--------------------------------------------------|----------------------------|
 //! | how a scene is written and read                  | [`scene::read_scene`]      |
 //! | which attributes a node type has                 | [`attributes::node_types`] |
-//! | what is connected to what, and why               | [`graph::Graph`]           |
-//! | what the solver is given                         | [`compile::compile`]       |
-//! | what happens when time changes                   | [`Simulation::advance`]    |
-//! | what a scene demands of its run                  | [`checks::Judge`]          |
+//! | which nodes and connections a scene has          | [`graph::Graph`]           |
+//! | how nodes become the input of the solver         | [`compile::compile`]       |
+//! | what happens in a frame                          | [`Simulation::advance`]    |
+//! | which conditions a run has to meet               | [`checks::Judge`]          |
 //! | whether anything passes through anything         | [`audit::Audit`]           |
-//! | how values change with time                      | [`animation::Curve`]       |
+//! | how values change over time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
 //! | values that differ from point to point           | [`paint`]                  |
+//! | how errors and warnings are reported             | [`scene::Diagnostic`]      |
 //! | which files are read                             | `files.rs`                 |
 //! | how much memory a scene may take                 | [`memory`]                 |
 //!
 //! **Invariant:** nodes carry data to the solver and never act themselves (§1.1). The same scene gives the
-//! same program, in whatever order its nodes stand.
+//! same program for any order of its nodes.
 
 pub mod animation;
 pub mod attributes;
 pub mod audit;
 pub mod checks;
 pub mod compile;
+mod diagnostic;
 mod files;
 pub mod graph;
 pub mod memory;
@@ -36,5 +38,5 @@ pub mod scene;
 mod simulation;
 
 pub use checks::FrameReport;
-pub use files::Piece;
+pub use files::LineSpan;
 pub use simulation::Simulation;

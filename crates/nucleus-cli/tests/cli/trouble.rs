@@ -93,7 +93,7 @@ fn machines_are_told_what_is_not_separated_too() {
 #[test]
 fn a_scene_that_allows_what_is_not_separated_ends_well() {
     let folder = folder();
-    shut(folder.path(), "maxUnresolved(100000), maxTrapped(25)");
+    shut(folder.path(), "maxUnresolved(100000), maxDepenetrating(25)");
     let output = run(folder.path(), "shut.ron", &[]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -109,7 +109,7 @@ fn a_scene_that_allows_what_is_not_separated_ends_well() {
 #[test]
 fn a_run_that_is_gone_on_with_still_knows_what_was_not_separated() {
     let folder = folder();
-    shut(folder.path(), "maxTrapped(25)");
+    shut(folder.path(), "maxDepenetrating(25)");
     let first = run(folder.path(), "shut.ron", &["--frames", "8"]);
     let found =
         summary(&run(folder.path(), "shut.ron", &["--frames", "8", "--json"]))["not_separated"][0].take();

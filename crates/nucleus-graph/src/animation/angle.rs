@@ -2,7 +2,7 @@
 
 /// Sine and cosine of `degrees`, exact at multiples of 90 and with the same bits on every platform.
 ///
-/// Within 1e-15 of the true values. NaN for what is not finite.
+/// The error is below 1e-15. Angles that are not finite give NaN.
 pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     // The remainder and the difference are exact, so no angle is too large.
     let rest = degrees % 360.0;
@@ -17,7 +17,7 @@ pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 }
 
 fn sin_cos_within_45(degrees: f64) -> (f64, f64) {
-    // Half way between quarters both must be the same number: which quarter is nearer depends on the sign.
+    // At odd multiples of 45° both values are equal, whichever multiple of 90° the rounding chose.
     if degrees.abs() == 45.0 {
         return (std::f64::consts::FRAC_1_SQRT_2.copysign(degrees), std::f64::consts::FRAC_1_SQRT_2);
     }
@@ -25,13 +25,13 @@ fn sin_cos_within_45(degrees: f64) -> (f64, f64) {
     (sin_series(radians), cos_series(radians))
 }
 
-/// Taylor's series up to x¹⁵: what is left out is below 5e-17 for |x| ≤ π/4.
+/// Taylor series up to x¹⁵: the remainder is below 5e-17 for |x| ≤ π/4.
 fn sin_series(x: f64) -> f64 {
     let inner = [15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0];
     x * inner.iter().fold(1.0, |sum, n| 1.0 - x * x / (n * (n - 1.0)) * sum)
 }
 
-/// Taylor's series up to x¹⁶: what is left out is below 3e-18 for |x| ≤ π/4.
+/// Taylor series up to x¹⁶: the remainder is below 3e-18 for |x| ≤ π/4.
 fn cos_series(x: f64) -> f64 {
     let inner = [16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 4.0, 2.0];
     inner.iter().fold(1.0, |sum, n| 1.0 - x * x / (n * (n - 1.0)) * sum)
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_has_no_sine() {
+    fn angles_that_are_not_finite_give_nan() {
         for degrees in [f64::NAN, f64::INFINITY] {
             let (sin, cos) = sin_cos_degrees(degrees);
             assert!(sin.is_nan() && cos.is_nan());
@@ -65,10 +65,10 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(4096))]
 
         #[test]
-        fn it_is_what_the_standard_library_says(degrees in -360.0..360.0_f64) {
+        fn sine_and_cosine_agree_with_the_standard_library(degrees in -360.0..360.0_f64) {
             let (sin, cos) = sin_cos_degrees(degrees);
             let (true_sin, true_cos) = degrees.to_radians().sin_cos();
-            // Radians beyond the first quarter turn are themselves rounded: 6.3 by up to 4.4e-16.
+            // The conversion to radians rounds too: 6.3 by up to 4.4e-16.
             prop_assert!((sin - true_sin).abs() < 1e-15 && (cos - true_cos).abs() < 1e-15);
         }
 

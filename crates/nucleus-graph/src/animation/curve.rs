@@ -1,38 +1,38 @@
-//! A value that changes from key to key.
+//! Keyed curves as in Maya: tangents, interpolation between keys, and infinities beyond them.
 
-/// How the curve leaves a key, and how it arrives.
+/// The tangent of a curve at a key, on both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangent {
-    /// The value stays until the next key.
+    /// Constant until the next key.
     Stepped,
-    /// Straight from key to key.
+    /// A straight line to the next key.
     Linear,
-    /// Smooth: at a key the curve is parallel to the line through its two neighbours, at the ends it is flat.
+    /// Smooth: parallel to the line through the two neighbouring keys, and flat at the first and last key.
     Spline,
-    /// Level at the key.
+    /// Slope zero.
     Flat,
-    /// Smooth like a spline, but never beyond its keys: level where the keys turn back, and at the ends.
+    /// A spline without overshoot: flat at local extremes and at the first and last key.
     Auto,
 }
 
-/// How a curve goes on before its first and after its last key.
+/// Extrapolation before the first key and after the last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Infinity {
-    /// It stays.
+    /// The value of the end key.
     #[default]
     Constant,
-    /// It goes straight on as it leaves its end.
+    /// A straight line with the slope of the end.
     Linear,
-    /// It begins anew.
+    /// The curve repeats.
     Cycle,
-    /// It begins anew from where it has come to.
+    /// The curve repeats, each time offset by the difference of its end values.
     CycleOffset,
-    /// It runs back and forth.
+    /// The curve repeats, alternately mirrored in time.
     Oscillate,
 }
 
 impl Tangent {
-    /// All of them, as scenes write them.
+    /// All tangents with their words in scene files.
     pub const WORDS: [(&'static str, Self); 5] = [
         ("stepped", Self::Stepped),
         ("linear", Self::Linear),
@@ -43,7 +43,7 @@ impl Tangent {
 }
 
 impl Infinity {
-    /// All of them, as scenes write them.
+    /// All infinities with their words in scene files.
     pub const WORDS: [(&'static str, Self); 5] = [
         ("constant", Self::Constant),
         ("linear", Self::Linear),
@@ -53,53 +53,53 @@ impl Infinity {
     ];
 }
 
-/// A value at a frame.
+/// A key: a value at a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
-    /// When; frames may be broken.
+    /// The frame; fractions are allowed.
     pub frame: f64,
-    /// The value then.
+    /// The value at that frame.
     pub value: f64,
-    /// How the curve runs through it. From a stepped key on nothing else counts; a linear key makes its end
-    /// of the way to a spline key straight.
+    /// The tangent. A stepped key makes the whole segment after it constant. A linear key gives its end of a
+    /// segment the slope of the line between the two keys.
     pub tangent: Tangent,
 }
 
-/// Why keys are not a curve.
+/// Reasons why keys form no curve.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CurveError {
-    /// There are none.
+    /// There is no key.
     #[error("a curve needs at least one key")]
     NoKeys,
-    /// A frame or value is NaN or infinite, or so large that the curve between keys would be.
+    /// A frame or value is NaN, infinite, or so large that interpolation could overflow.
     #[error("the key at frame {frame} is not finite: its value is {value}")]
     NotFinite {
-        /// Its frame.
+        /// The frame of the key.
         frame: f64,
-        /// Its value.
+        /// The value of the key.
         value: f64,
     },
-    /// A key comes earlier than the one before it in the list.
+    /// The frame of a key is before that of the previous key in the list.
     #[error("the keys are not in order: frame {frame} comes after frame {previous}")]
     OutOfOrder {
-        /// Its frame.
+        /// The frame of the key.
         frame: f64,
-        /// The frame before it in the list.
+        /// The frame of the previous key in the list.
         previous: f64,
     },
     /// Two keys are at the same frame.
     #[error("there are two keys at frame {frame}")]
     Repeated {
-        /// Their frame.
+        /// The frame of both.
         frame: f64,
     },
 }
 
-/// Values are kept within this, so that differences of two never overflow.
-const LARGEST: f64 = f64::MAX / 16.0;
+/// Bound on absolute values, so that the difference of two never overflows.
+const MAX_VALUE: f64 = f64::MAX / 16.0;
 
-/// Keys in order of time, and how it goes on on both sides of them.
+/// Keys in strict order of frames, and the infinities on both sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     keys: Vec<Key>,
@@ -108,17 +108,17 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve through `keys`.
+    /// A curve through `keys`, with constant infinities.
     ///
     /// # Errors
-    /// When there are none, when they are not in strict order of time, or when one is not finite.
+    /// When there is no key, frames are not strictly increasing, or a key is not finite.
     pub fn new(keys: Vec<Key>) -> Result<Self, CurveError> {
         if keys.is_empty() {
             return Err(CurveError::NoKeys);
         }
         for &Key { frame, value, .. } in &keys {
-            // Beyond this, differences of two could overflow.
-            if !(frame.abs() < f64::MAX / 4.0 && value.abs() < LARGEST) {
+            // Differences of larger numbers could overflow.
+            if !(frame.abs() < f64::MAX / 4.0 && value.abs() < MAX_VALUE) {
                 return Err(CurveError::NotFinite { frame, value });
             }
         }
@@ -134,25 +134,25 @@ impl Curve {
         Ok(Self { keys, before: Infinity::Constant, after: Infinity::Constant })
     }
 
-    /// The same curve, going on in these ways before its first and after its last key.
-    pub fn going_on(self, before: Infinity, after: Infinity) -> Self {
+    /// The same curve with these infinities before its first and after its last key.
+    pub fn with_infinity(self, before: Infinity, after: Infinity) -> Self {
         Self { before, after, ..self }
     }
 
-    /// How it goes on before its first and after its last key.
+    /// The infinities before the first and after the last key.
     pub fn infinities(&self) -> [Infinity; 2] {
         [self.before, self.after]
     }
 
-    /// A curve that always has the same value.
+    /// A constant curve.
     ///
     /// # Errors
-    /// When it is not finite.
+    /// When the value is not finite.
     pub fn constant(value: f64) -> Result<Self, CurveError> {
         Self::new(vec![Key { frame: 0.0, value, tangent: Tangent::Linear }])
     }
 
-    /// The keys, in order of time.
+    /// The keys in order of frames.
     pub fn keys(&self) -> &[Key] {
         &self.keys
     }
@@ -161,77 +161,76 @@ impl Curve {
     pub fn value_at(&self, frame: f64) -> f64 {
         let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
         if frame < first.frame {
-            self.outside(frame, first, self.before)
+            self.extrapolate(frame, first, self.before)
         } else if frame > last.frame {
-            self.outside(frame, last, self.after)
+            self.extrapolate(frame, last, self.after)
         } else {
-            self.inside(frame)
+            self.interpolate(frame)
         }
     }
 
-    /// The value between the first and the last key.
-    fn inside(&self, frame: f64) -> f64 {
+    /// The value at a frame between the first and the last key.
+    fn interpolate(&self, frame: f64) -> f64 {
         match self.keys.partition_point(|key| key.frame <= frame) {
             0 => self.keys[0].value,
             after if after == self.keys.len() => self.keys[after - 1].value,
-            after => self.stretch(after - 1).value_at(frame),
+            after => self.segment(after - 1).value_at(frame),
         }
     }
 
-    /// The value beyond the key at one end.
-    fn outside(&self, frame: f64, end: Key, infinity: Infinity) -> f64 {
+    /// The value at a frame beyond the key at one end.
+    fn extrapolate(&self, frame: f64, end: Key, infinity: Infinity) -> f64 {
         let (first, last) = (self.keys[0], self.keys[self.keys.len() - 1]);
         let span = last.frame - first.frame;
         if span == 0.0 {
             return end.value;
         }
         let rounds = ((frame - first.frame) / span).floor();
-        // The rest of a division is exact, the product of a count is not.
+        // The remainder of a division is exact, a product with a count is not.
         let rest = first.frame + (frame - first.frame).rem_euclid(span);
         let value = match infinity {
             Infinity::Constant => end.value,
             Infinity::Linear => end.value + (frame - end.frame) * self.end_slope(end.frame == first.frame),
-            Infinity::Cycle => self.inside(rest),
-            Infinity::CycleOffset => self.inside(rest) + rounds * (last.value - first.value),
-            Infinity::Oscillate if rounds % 2.0 == 0.0 => self.inside(rest),
-            Infinity::Oscillate => self.inside(last.frame - (rest - first.frame)),
+            Infinity::Cycle => self.interpolate(rest),
+            Infinity::CycleOffset => self.interpolate(rest) + rounds * (last.value - first.value),
+            Infinity::Oscillate if rounds % 2.0 == 0.0 => self.interpolate(rest),
+            Infinity::Oscillate => self.interpolate(last.frame - (rest - first.frame)),
         };
-        value.clamp(-LARGEST, LARGEST)
+        value.clamp(-MAX_VALUE, MAX_VALUE)
     }
 
-    /// The slope with which the curve leaves one of its ends, per frame.
+    /// The slope of the first or last segment at its outer end, per frame.
     fn end_slope(&self, at_first: bool) -> f64 {
-        let stretch = self.stretch(if at_first { 0 } else { self.keys.len() - 2 });
-        let frames = stretch.to.frame - stretch.from.frame;
-        match stretch.shape {
+        let segment = self.segment(if at_first { 0 } else { self.keys.len() - 2 });
+        let frames = segment.to.frame - segment.from.frame;
+        match segment.shape {
             Shape::Held => 0.0,
-            Shape::Straight => (stretch.to.value - stretch.from.value) / frames,
+            Shape::Straight => (segment.to.value - segment.from.value) / frames,
             Shape::Cubic { leaving, arriving } => (if at_first { leaving } else { arriving }) / frames,
         }
     }
 
-    /// Whether it never changes.
+    /// Whether all keys have the same value.
     pub fn is_constant(&self) -> bool {
         self.keys.iter().all(|key| key.value == self.keys[0].value)
     }
 
-    /// Values that the curve never goes below and never above. Between spline keys the true extremes may
-    /// lie a little further in.
+    /// A lower and an upper bound of all values. Between spline keys they may lie outside the true extremes.
     pub fn range(&self) -> (f64, f64) {
         let last = self.keys[self.keys.len() - 1].value;
-        let stretches = (0..self.keys.len() - 1).map(|start| self.stretch(start).range());
-        let inside = stretches.fold((last, last), |all, one| (all.0.min(one.0), all.1.max(one.1)));
-        if self.leaves_its_keys() { (-LARGEST, LARGEST) } else { inside }
+        let segments = (0..self.keys.len() - 1).map(|start| self.segment(start).range());
+        let inside = segments.fold((last, last), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+        if self.is_unbounded() { (-MAX_VALUE, MAX_VALUE) } else { inside }
     }
 
-    /// A number that the size of no value exceeds. Zero only if the curve is never anything else.
+    /// An upper bound of all absolute values. Zero only if the curve is zero everywhere.
     pub fn max_abs(&self) -> f64 {
         let (low, high) = self.range();
         high.max(-low)
     }
 
-    /// Whether it goes on and on beyond the values of its keys.
-    fn leaves_its_keys(&self) -> bool {
+    /// Whether an infinity leads to values without bound.
+    fn is_unbounded(&self) -> bool {
         let last = self.keys.len() - 1;
         let rises = |infinity, at_first| match infinity {
             Infinity::Linear => self.end_slope(at_first) != 0.0,
@@ -241,8 +240,8 @@ impl Curve {
         last > 0 && (rises(self.before, true) || rises(self.after, false))
     }
 
-    /// The way from one key to the next.
-    fn stretch(&self, start: usize) -> Stretch {
+    /// The segment from key `start` to the next.
+    fn segment(&self, start: usize) -> Segment {
         let (from, to) = (self.keys[start], self.keys[start + 1]);
         let rise = to.value - from.value;
         let along = |key: usize| match self.keys[key].tangent {
@@ -254,10 +253,10 @@ impl Curve {
             (Tangent::Linear, Tangent::Linear | Tangent::Stepped) => Shape::Straight,
             _ => Shape::Cubic { leaving: along(start), arriving: along(start + 1) },
         };
-        Stretch { from, to, shape }
+        Segment { from, to, shape }
     }
 
-    /// The slope at a key that has a smooth tangent, per frame.
+    /// The slope at a key with a smooth tangent, per frame.
     fn slope(&self, key: usize) -> f64 {
         if key == 0 || key + 1 == self.keys.len() || self.keys[key].tangent == Tangent::Flat {
             return 0.0;
@@ -272,15 +271,15 @@ impl Curve {
         if coming * going <= 0.0 {
             return 0.0;
         }
-        // Up to three times the slope of the way on either side, a cubic does not swing beyond its keys
-        // (Fritsch and Carlson 1980).
-        let most = 3.0 * coming.abs().min(going.abs());
-        through.clamp(-most, most)
+        // A cubic is monotone between its keys if its end slopes are at most three times the slope of the
+        // segment (Fritsch and Carlson 1980).
+        let limit = 3.0 * coming.abs().min(going.abs());
+        through.clamp(-limit, limit)
     }
 }
 
 /// The part of a curve between two keys.
-struct Stretch {
+struct Segment {
     from: Key,
     to: Key,
     shape: Shape,
@@ -289,14 +288,14 @@ struct Stretch {
 enum Shape {
     Held,
     Straight,
-    /// Hermite's cubic, with what the value would change by over the whole stretch at either end's slope.
+    /// A Hermite cubic. Slopes at its ends are per length of the segment.
     Cubic {
         leaving: f64,
         arriving: f64,
     },
 }
 
-impl Stretch {
+impl Segment {
     fn value_at(&self, frame: f64) -> f64 {
         let (a, b) = (self.from.value, self.to.value);
         let s = (frame - self.from.frame) / (self.to.frame - self.from.frame);
@@ -308,12 +307,12 @@ impl Stretch {
                 a + (b - a) * (s * s * (3.0 - 2.0 * s)) + s * rest * (leaving * rest - arriving * s)
             }
         };
-        // Rounding may carry it out by a bit.
+        // Rounding may exceed the range by one bit.
         let (low, high) = self.range();
         value.clamp(low, high)
     }
 
-    /// A cubic stays among its four Bézier points.
+    /// A cubic stays in the range of its four Bézier points.
     fn range(&self) -> (f64, f64) {
         let (a, b) = (self.from.value, self.to.value);
         match self.shape {

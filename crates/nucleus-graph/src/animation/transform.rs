@@ -1,28 +1,27 @@
-//! Translate, rotate and scale as Maya's transform nodes have them.
+//! Translate, rotate and scale as in Maya's transform nodes, and placements in the space of a parent.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::affine::Affine;
 use super::angle::sin_cos_degrees;
 
-/// Where a thing stands, how it is turned and how large it is, relative to its parent.
+/// Translation, rotation and scale, relative to the parent.
 ///
-/// Points are scaled, then turned about the three axes (x, then y, then z, unless another order is chosen), then moved. The pivots
-/// are at the origin.
+/// Points are scaled, then rotated about the three axes (x, then y, then z, unless `order` differs), then translated.
+/// The pivots are at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
-    /// How far it is moved, in scene units.
+    /// Translation in scene units.
     pub translate: Vector3<f64>,
-    /// How far it is turned about each axis, in degrees.
+    /// Rotation about each axis in degrees.
     pub rotate: Vector3<f64>,
-    /// The axes in the order in which it is turned about them.
+    /// The axes in the order of rotation.
     pub order: [usize; 3],
-    /// Factors along its own axes.
+    /// Scale factors along the local axes.
     pub scale: Vector3<f64>,
 }
 
 impl Transform {
-    /// Where points of the thing go in the space of its parent.
+    /// The placement in the space of the parent.
     pub fn affine(&self) -> Affine {
         let [x, y, z] = [self.rotate.x, self.rotate.y, self.rotate.z].map(sin_cos_degrees);
         let turns = [about_x(x), about_y(y), about_z(z)];
@@ -31,7 +30,7 @@ impl Transform {
         Affine { linear, offset: self.translate }
     }
 
-    /// Where a point goes; for many points take [`affine`](Self::affine) once.
+    /// The point in the space of the parent. For many points, call [`affine`](Self::affine) once.
     pub fn point(&self, point: Vector3<f64>) -> Vector3<f64> {
         self.affine().point(point)
     }
@@ -60,6 +59,42 @@ fn about_z((sin, cos): (f64, f64)) -> Matrix3<f64> {
     Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
 }
 
+/// A placement: a linear map and an offset, from one space to another. Lengths in the unit of the points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine {
+    /// Rotation, scale and shear.
+    pub linear: Matrix3<f64>,
+    /// The image of the origin.
+    pub offset: Vector3<f64>,
+}
+
+impl Affine {
+    /// The placement that moves no point.
+    pub fn identity() -> Self {
+        Self { linear: Matrix3::identity(), offset: Vector3::zeros() }
+    }
+
+    /// The image of a point. The identity changes no bit of it.
+    pub fn point(&self, point: Vector3<f64>) -> Vector3<f64> {
+        // Adding zeros would turn -0 into 0.
+        if *self == Self::identity() {
+            return point;
+        }
+        self.linear * point + self.offset
+    }
+
+    /// This placement, followed by that of the parent.
+    pub fn under(&self, parent: &Self) -> Self {
+        Self { linear: parent.linear * self.linear, offset: parent.point(self.offset) }
+    }
+}
+
+impl Default for Affine {
+    fn default() -> Self {
+        Self::identity()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,11 +121,11 @@ mod tests {
             scale: Vector3::new(1.0, 2.0, 1.0),
             ..Transform::default()
         };
-        // y, doubled, goes to z about x, and from there to x about y.
+        // y is doubled, then rotated to z about x, then to x about y.
         assert_eq!(transform.point(Vector3::y()), Vector3::new(12.0, 20.0, 30.0));
         let z_last = Transform { rotate: Vector3::new(90.0, 0.0, 90.0), ..Transform::default() };
         assert_eq!(z_last.point(Vector3::y()), Vector3::z());
-        // z first takes y to -x, and about x that stays.
+        // The rotation about z takes y to -x, which the rotation about x leaves.
         let z_first = Transform { order: [2, 0, 1], ..z_last };
         assert_eq!(z_first.point(Vector3::y()), -Vector3::x());
     }
@@ -103,14 +138,14 @@ mod tests {
         }
 
         #[test]
-        fn without_scale_distances_stay(transform in transforms(), a in vector(50.0), b in vector(50.0)) {
+        fn a_transform_without_scale_keeps_distances(transform in transforms(), a in vector(50.0), b in vector(50.0)) {
             let rigid = Transform { scale: Vector3::repeat(1.0), ..transform };
             let distance = (rigid.point(a) - rigid.point(b)).norm();
             prop_assert!((distance - (a - b).norm()).abs() < 1e-12);
         }
 
         #[test]
-        fn a_child_goes_where_its_parent_takes_it(child in transforms(), parent in transforms(), p in vector(50.0)) {
+        fn the_placement_of_a_child_is_its_own_followed_by_that_of_its_parent(child in transforms(), parent in transforms(), p in vector(50.0)) {
             let together = child.affine().under(&parent.affine()).point(p);
             prop_assert!((together - parent.point(child.point(p))).norm() < 1e-9);
         }

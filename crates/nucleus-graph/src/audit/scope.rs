@@ -5,7 +5,7 @@ use nucleus_core::{ClothFrame, ClothId, FrameInput, Pin};
 
 use crate::attributes::{n_base, nucleus};
 use crate::compile::{Object, ObjectKind, Program};
-use crate::graph::Moment;
+use crate::graph::EvalContext;
 
 /// The ground planes of all nuclei.
 #[derive(Debug, Default)]
@@ -102,7 +102,7 @@ pub(crate) fn collision_rules(program: &Program, frame: i64, pins: &[Pin], world
 }
 
 /// Whether two objects collide, or one with itself. Objects of different nuclei never do.
-fn collide(program: &Program, a: usize, b: usize, moment: &Moment) -> bool {
+fn collide(program: &Program, a: usize, b: usize, moment: &EvalContext) -> bool {
     let [kind_a, kind_b] = [a, b].map(|object| program.objects()[object].kind);
     let [(node_a, nucleus_a), (node_b, nucleus_b)] = [kind_a, kind_b].map(|kind| program.node_of(kind));
     if a == b {

@@ -41,7 +41,7 @@ fn a_limit_on_counts_applies_to_each_frame() {
         ..StepReport::default()
     };
     let frames = [count(3, 5, 7), count(3, 5, 7), count(0, 0, 0)];
-    for (check, most) in [("maxUnresolved", 3.0), ("maxTrapped", 5.0), ("maxTangled", 7.0)] {
+    for (check, most) in [("maxUnresolved", 3.0), ("maxDepenetrating", 5.0), ("maxIntersections", 7.0)] {
         let outcome = judge(check, &[most], &frames);
         assert_eq!((outcome.passed, outcome.worst), (true, Some((most, 2))), "{check}");
         assert!(!judge(check, &[most - 1.0], &frames).passed, "{check}");
@@ -67,8 +67,8 @@ fn rests_by_limits_the_root_mean_square_speed_from_its_frame_on() {
 #[test]
 fn untangled_by_fails_for_intersections_from_its_frame_on() {
     let tangled = |tangled| StepReport { intersections: tangled, ..StepReport::default() };
-    assert!(judge("untangledBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
-    let outcome = judge("untangledBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
+    assert!(judge("separatedBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
+    let outcome = judge("separatedBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
     assert_eq!((outcome.passed, outcome.worst), (false, Some((1.0, 3))));
 }
 

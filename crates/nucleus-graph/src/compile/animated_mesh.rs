@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::attributes::surface_shape;
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 
 /// Points in mesh space, in scene units.
 pub(super) type Points = Arc<[Vector3<f64>]>;
@@ -53,7 +53,7 @@ impl AnimatedMesh {
     }
 
     /// The points at a time. Between two frames they are interpolated linearly.
-    pub(super) fn at(&self, moment: &Moment) -> Points {
+    pub(super) fn at(&self, moment: &EvalContext) -> Points {
         let own = self.interpolated(moment.frame());
         let Some((node, target)) = &self.blend else { return own };
         let weight = moment.get(*node, &surface_shape::BLEND);

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nucleus_core::{ClothId, Pin, PointId};
 
 use crate::attributes::{Choice, Component, Selection, dynamic_constraint, n_component, nucleus};
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 
 use super::compiler::Compiler;
 use super::program::{EvaluationInterval, NucleusProgram};
@@ -132,7 +132,7 @@ impl Compiler<'_> {
         }
         let listed = node.get(&n_component::COMPONENT_INDICES);
         // `check_named_points` covers components that the constraint's short form makes.
-        let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.made_by().is_none());
+        let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.created_by().is_none());
         if let Some(point) = missing {
             let place = self.scene.source.place(&format!("{name}.componentIndices"));
             let error =
@@ -195,7 +195,7 @@ impl EvaluationInterval<'_> {
     fn positions_at(
         &self,
         source: &AttachmentSource,
-        moment: &Moment,
+        moment: &EvalContext,
         held: &[Vector3<f64>],
     ) -> Vec<Vector3<f64>> {
         if !source.moves {

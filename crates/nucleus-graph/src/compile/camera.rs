@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::attributes::camera;
-use crate::graph::{Graph, Moment, NodeId};
+use crate::graph::{EvalContext, Graph, NodeId};
 use crate::scene::TimeSpan;
 
 /// A camera.
@@ -69,7 +69,7 @@ fn camera(graph: &Graph, time: TimeSpan, node: NodeId) -> Camera {
     Camera { name: graph.node(node).name().to_owned(), fit, views }
 }
 
-fn view(moment: &Moment, node: NodeId) -> View {
+fn view(moment: &EvalContext, node: NodeId) -> View {
     let placement = moment.placement(node);
     let along = |axis: Vector3<f64>| (placement.linear * axis).try_normalize(0.0).unwrap_or(axis);
     View {

@@ -9,7 +9,7 @@ use nucleus_core::{BuildError, ClothId, Faces, ModelBuilder};
 
 use crate::attributes::{Attribute, Key, NodeType, Plugged, nucleus};
 use crate::files;
-use crate::graph::{Moment, NodeId};
+use crate::graph::{EvalContext, NodeId};
 use crate::memory::{Cost, Size};
 use crate::scene::{Findings, Scene};
 
@@ -24,7 +24,7 @@ pub(super) struct Compiler<'a> {
     pub(super) findings: &'a mut Findings,
     pub(super) geometry: &'a mut Geometry,
     /// The graph at the start frame.
-    pub(super) start: Moment<'a>,
+    pub(super) start: EvalContext<'a>,
     pub(super) program: NucleusProgram,
     pub(super) objects: Vec<Object>,
     /// Total mass of the cloths in kilograms.

@@ -7,7 +7,7 @@ use nucleus_core::{ClothId, ColliderId, Faces, ModelBuilder};
 
 use crate::attributes::{FromValue, Key};
 use crate::checks::Check;
-use crate::graph::{Graph, Moment, NodeId};
+use crate::graph::{EvalContext, Graph, NodeId};
 use crate::scene::{Diagnostic, Record, TimeSpan};
 
 use super::camera::{self, Camera};
@@ -80,8 +80,8 @@ pub enum ObjectKind {
 pub(crate) struct EvaluationInterval<'p> {
     pub(super) nucleus: &'p NucleusProgram,
     pub(super) graph: &'p Graph,
-    pub(super) from: Moment<'p>,
-    pub(super) to: Moment<'p>,
+    pub(super) from: EvalContext<'p>,
+    pub(super) to: EvalContext<'p>,
     /// Length in seconds of animation time.
     pub(super) seconds: f64,
     /// It begins at or before the start frame: objects are in their initial state.

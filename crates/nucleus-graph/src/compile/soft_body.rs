@@ -8,7 +8,7 @@ use nucleus_core::{
 
 use crate::animation::sin_cos_degrees;
 use crate::attributes::{Choice, Key, n_base, n_cloth, nucleus, particle};
-use crate::graph::{Graph, Moment, NodeId};
+use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::compiler::Compiler;
 use super::map_values::MapOfCloth;
@@ -180,7 +180,7 @@ impl EvaluationInterval<'_> {
     }
 
     /// The points of an input mesh in metres.
-    fn followed_points(&self, followed: &FollowedMesh, moment: &Moment) -> Vec<Vector3<f64>> {
+    fn followed_points(&self, followed: &FollowedMesh, moment: &EvalContext) -> Vec<Vector3<f64>> {
         let (placement, points) = (moment.placement(followed.mesh), followed.shape.at(moment));
         points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
     }

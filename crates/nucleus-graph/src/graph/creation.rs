@@ -1,5 +1,5 @@
-//! What Maya's commands connect when they make cloth, a collider or particles of a nucleus, a constraint of
-//! components, or a field or emitter of an object.
+//! The connections of Maya's creation commands: for cloth, colliders and particles of a nucleus, for constraints
+//! on components, and for fields and emitters of an object.
 
 use std::collections::BTreeSet;
 
@@ -9,21 +9,20 @@ use crate::attributes::{
 };
 
 use super::error::GraphError;
-use super::node::NodeId;
+use super::node::{NodeId, Plug};
 use super::nodes::Graph;
-use super::plug::Plug;
 use super::setting::Setting;
 
-/// Maya's indices of what a component consists of.
+/// Maya's indices of `componentType` (point, object) and of `elements` (listed, all).
 const POINT: Choice = Choice(2);
 const OBJECT: Choice = Choice(6);
 const LISTED: Choice = Choice(0);
 const ALL: Choice = Choice(2);
 
-/// What a creation command starts from.
+/// The arguments of a creation command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Creation {
-    /// An object of a nucleus; cloth and colliders are made from a mesh.
+    /// An object of a nucleus. Cloth and colliders need a mesh.
     Object {
         /// The mesh, for cloth and colliders.
         mesh: Option<NodeId>,
@@ -37,15 +36,15 @@ pub enum Creation {
         /// The nucleus.
         nucleus: NodeId,
     },
-    /// A field or an emitter, and the object that it acts on or emits into.
+    /// A field or an emitter of an object.
     Effect {
-        /// The object.
+        /// The object that the field acts on, or the particles that the emitter adds to.
         target: NodeId,
     },
 }
 
 impl Graph {
-    /// Makes the connections that Maya's command makes for a node.
+    /// Makes the connections of Maya's creation command for a node.
     ///
     /// # Errors
     /// When the node is connected already.
@@ -67,8 +66,8 @@ impl Graph {
         }
     }
 
-    /// What a node could have been created from, to be connected as it is; nothing if it is connected in some
-    /// other way.
+    /// The arguments of the creation command that gives a node its connections. `None` if they come from no
+    /// command.
     pub fn creation(&self, node: NodeId) -> Option<Creation> {
         let node_type = self.node(node).node_type();
         if node_type.is_a(&n_base::N_BASE) {
@@ -104,7 +103,7 @@ impl Graph {
             Plug::element(mesh, &surface_shape::WORLD_MESH, 0),
             Plug::new(cloth, &n_base::INPUT_MESH),
         )?;
-        let output = self.make("outputCloth", &mesh::MESH, cloth);
+        let output = self.add_created("outputCloth", &mesh::MESH, cloth);
         self.connect(Plug::new(cloth, &n_cloth::OUTPUT_MESH), Plug::new(output, &surface_shape::IN_MESH))?;
         self.connect_active(cloth, nucleus)
     }
@@ -141,7 +140,7 @@ impl Graph {
         self.connect_active(particles, nucleus)
     }
 
-    /// Lets an emitter emit into particles.
+    /// Makes an emitter emit into particles.
     ///
     /// # Errors
     /// When the emitter is connected already.
@@ -164,7 +163,7 @@ impl Graph {
         self.connect(seed, Plug::element(emitter, &point_emitter::SEED, 0))
     }
 
-    /// Lets a field act on an object.
+    /// Makes a field act on an object.
     ///
     /// # Errors
     /// When the field is connected already.
@@ -181,7 +180,7 @@ impl Graph {
         self.connect(force, Plug::element(object, &particle::INPUT_FORCE, r))
     }
 
-    /// The same free index on three plugs of the nucleus, and the start frame back.
+    /// Connects an object to the first free index on three plugs of the nucleus, and the start frame back.
     fn connect_active(&mut self, object: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
         let i = self.free_index(nucleus, [&nucleus::INPUT_ACTIVE, &nucleus::INPUT_ACTIVE_START]);
         let (state, start) =
@@ -193,8 +192,8 @@ impl Graph {
         self.connect(Plug::new(nucleus, &nucleus::START_FRAME), Plug::new(object, &particle::START_FRAME))
     }
 
-    /// Makes components members of a constraint, one node for each object they are parts of, and the
-    /// constraint part of a nucleus. Components of objects that do not exist are left out.
+    /// Connects a constraint to a nucleus, and its components to the constraint: one component node per object.
+    /// Components of objects that do not exist are left out.
     ///
     /// # Errors
     /// When the constraint is connected already.
@@ -229,13 +228,13 @@ impl Graph {
         self.connect(current, Plug::element(nucleus, &nucleus::INPUT_CURRENT, k))
     }
 
-    /// The component node of one object.
+    /// Adds the component node of one object.
     fn create_member(
         &mut self,
         constraint: NodeId,
         parts: impl Iterator<Item = Selection>,
     ) -> Result<NodeId, GraphError> {
-        let member = self.make("nComponent", &n_component::N_COMPONENT, constraint);
+        let member = self.add_created("nComponent", &n_component::N_COMPONENT, constraint);
         let (mut component_type, mut elements, mut listed) = (POINT, LISTED, Vec::new());
         for part in parts {
             match part {
@@ -250,12 +249,12 @@ impl Graph {
             (&n_component::COMPONENT_INDICES.row, Value::Ints(listed)),
         ];
         for (row, value) in set {
-            self.put(member, row, Setting::Fixed(value))?;
+            self.set_created(member, row, Setting::Fixed(value))?;
         }
         Ok(member)
     }
 
-    /// Connects the clock to a node and, the first time, to its nucleus.
+    /// Connects the clock to a node, and to its nucleus if that has none.
     fn drive_by_time(
         &mut self,
         node: NodeId,
@@ -271,7 +270,7 @@ impl Graph {
         self.connect(out_time, Plug::new(node, input))
     }
 
-    /// The first index at which nothing is connected to any of some inputs.
+    /// The first index that is free on all of these multi inputs.
     fn free_index<const N: usize>(&self, node: NodeId, inputs: [&Key<Plugged>; N]) -> u32 {
         let taken = self
             .arriving(node)

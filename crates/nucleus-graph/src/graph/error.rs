@@ -1,16 +1,16 @@
-//! Why a change to a graph is refused.
+//! Reasons to refuse a change to a graph.
 
-/// A change that would break a graph.
+/// A change that would break an invariant of the graph.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphError {
-    /// Two nodes cannot have one name.
+    /// Names are unique.
     #[error("there is already a node `{name}`")]
     NameTaken {
         /// The name.
         name: String,
     },
-    /// The value is of another kind than the attribute, or keyed where that cannot be, or out of range.
+    /// The value has another kind than the attribute, is out of range, or is keyed on an attribute without keys.
     #[error("`{node}.{attribute}` cannot hold this value")]
     NotAdmitted {
         /// The node.
@@ -28,13 +28,13 @@ pub enum GraphError {
         /// The attribute.
         attribute: &'static str,
     },
-    /// A name holds a character that names do not have, or none at all.
+    /// The name is empty, or has a character other than letters, digits, `_`, `-` and `:`.
     #[error("`{name}` is not a name")]
     NoName {
         /// The text.
         name: String,
     },
-    /// The clock keeps its name.
+    /// The clock cannot be renamed.
     #[error("`time1` is the clock of every scene and keeps its name")]
     Clock,
     /// An input takes one connection.
@@ -42,73 +42,73 @@ pub enum GraphError {
     InputTaken {
         /// The input.
         input: String,
-        /// Where its connection comes from.
+        /// The output that it is connected from.
         source_plug: String,
     },
-    /// Nothing can be connected from there.
-    #[error("`{plug}` is an input: nothing comes out of it")]
+    /// Only outputs can be the source of a connection.
+    #[error("`{plug}` is an input: nothing can be connected from it")]
     OnlyInput {
         /// The plug.
         plug: String,
     },
-    /// Nothing can be connected to there.
+    /// Only inputs can be the target of a connection.
     #[error("`{plug}` is an output: nothing can be connected to it")]
     OnlyOutput {
         /// The plug.
         plug: String,
     },
-    /// What comes out of one plug is not what the other takes.
+    /// The two plugs carry different data.
     #[error("`{from}` gives {carries}, but `{to}` takes {takes}")]
     OtherData {
         /// The output.
         from: String,
-        /// What flows out of it.
+        /// The data that it carries.
         carries: &'static str,
         /// The input.
         to: String,
-        /// What it takes.
+        /// The data that it takes.
         takes: &'static str,
     },
-    /// It can be set, but not connected.
+    /// The attribute can be set, but not connected.
     #[error("`{plug}` cannot be connected")]
     NotPluggable {
         /// The plug.
         plug: String,
     },
-    /// A plug that holds many is connected element by element.
+    /// A multi attribute is connected element by element.
     #[error("`{plug}` holds many: it needs an index, like `{plug}[0]`")]
     NeedsIndex {
         /// The plug.
         plug: String,
     },
-    /// A plug that holds one thing has no elements.
+    /// An attribute that is not multi has no elements.
     #[error("`{plug}` does not hold many: it takes no index")]
     HoldsOne {
         /// The plug.
         plug: String,
     },
-    /// An output would depend on itself.
-    #[error("`{from}` depends on `{to}`: connecting them would make a circle")]
-    Circle {
+    /// The output would depend on itself.
+    #[error("`{from}` depends on `{to}`: connecting them would make a cycle")]
+    Cycle {
         /// The output.
         from: String,
         /// The input.
         to: String,
     },
-    /// A mesh would be blended into itself by way of others.
+    /// The chain of blend targets would lead back to the mesh.
     #[error("`{mesh}` cannot be blended into `{target}`, which is blended into it")]
-    BlendCircle {
+    BlendCycle {
         /// The mesh.
         mesh: String,
-        /// What it was to be blended into.
+        /// The refused blend target.
         target: String,
     },
-    /// A node would be its own parent, or its parent's parent ...
-    #[error("`{node}` cannot hang from `{parent}`, which hangs from it")]
-    ParentCircle {
+    /// The node would be its own ancestor.
+    #[error("`{parent}` cannot be the parent of `{node}`: that would make a cycle")]
+    ParentCycle {
         /// The node.
         node: String,
-        /// The parent it was to get.
+        /// The refused parent.
         parent: String,
     },
 }

@@ -1,41 +1,36 @@
-//! Nodes, what is set on them, and what is connected to what.
+//! The dependency graph: nodes, their settings and the connections between their plugs.
 //!
 //! | You want to know...                                | Read                       |
 //! |----------------------------------------------------|----------------------------|
-//! | what can be done with a graph                      | [`Graph`]                  |
-//! | what a node holds, and how a value is read         | [`Node`], [`Setting`]      |
+//! | which operations a graph has                       | [`Graph`]                  |
+//! | what a node stores, and how a value is read        | [`Node`], [`Setting`]      |
 //! | which connections Maya's creation commands make    | `creation.rs`              |
-//! | what may be connected to what                      | [`Graph::connect`]         |
-//! | what depends on what                               | `flow.rs`                  |
-//! | how it is drawn                                    | [`Graph::dot`]             |
+//! | which plugs can be connected, and the cycle test   | [`Graph::connect`]         |
+//! | the value of a plug at a frame                     | [`EvalContext::get`]       |
+//! | the transform of a node from its space to world    | [`EvalContext::placement`] |
 //! | how a plug is written                              | [`Graph::plug`]            |
-//! | what a node holds at a frame                       | [`Moment`]                 |
-//! | where a node stands in the world                   | `placement.rs`             |
+//! | how a graph is drawn                               | [`Graph::dot`]             |
 //!
-//! **Invariant:** what is set fits its row, names are unique, parents and connections form no circle, an input
-//! has at most one connection, and what flows into it is what it takes. Whatever would break that is refused.
+//! **Invariant:** a setting fits its attribute. Names are unique. Parents and connections form no cycle. An
+//! input has at most one connection, and both ends of a connection carry the same data. A change that breaks
+//! one of these is refused, and the graph stays as it was.
 
+mod connections;
 mod creation;
-mod diagram;
 mod error;
-mod flow;
-mod moment;
+mod eval_context;
 mod node;
 mod nodes;
-mod placement;
-mod plug;
-mod plug_text;
 mod setting;
-mod wiring;
+mod text;
 
 pub use creation::Creation;
 pub use error::GraphError;
-pub use moment::Moment;
-pub use node::{Node, NodeId};
+pub use eval_context::EvalContext;
+pub use node::{Connection, Node, NodeId, Plug};
 pub use nodes::{CLOCK, Graph, is_a_name};
-pub use plug::{Connection, Plug};
-pub use plug_text::PlugError;
 pub use setting::{Channel, Setting};
+pub use text::PlugError;
 
 #[cfg(test)]
 mod tests;

@@ -1,66 +1,66 @@
-//! A node: its type, what is set on it, and how a value is read.
+//! Nodes, their plugs, and the connections between plugs, as data.
 
 use std::collections::BTreeMap;
 
-use crate::attributes::{Attribute, FromValue, Key, NodeType, Value};
+use crate::attributes::{Attribute, Data, FromValue, Key, Kind, NodeType, Value};
 
 use super::setting::Setting;
 
-/// A node of a graph, counted in the order in which nodes were added.
+/// Identifies a node of one graph: its number in the order of addition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub(super) u32);
 
 impl NodeId {
-    pub(super) fn place(self) -> usize {
+    pub(super) fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A node.
+/// A node: its type, its settings and its parent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     pub(super) name: String,
     pub(super) node_type: &'static NodeType,
     pub(super) settings: BTreeMap<&'static str, Setting>,
-    /// What a preset sets, where nothing is set here.
+    /// Settings from a preset. `settings` has precedence.
     pub(super) preset: BTreeMap<&'static str, Setting>,
     pub(super) parent: Option<NodeId>,
-    pub(super) made_by: Option<NodeId>,
+    pub(super) created_by: Option<NodeId>,
     pub(super) blend_target: Option<NodeId>,
 }
 
 impl Node {
-    /// Its name.
+    /// The name, unique in its graph.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its type.
+    /// The type.
     pub fn node_type(&self) -> &'static NodeType {
         self.node_type
     }
 
-    /// The transform it moves along with.
+    /// The transform that this node inherits its placement from.
     pub fn parent(&self) -> Option<NodeId> {
         self.parent
     }
 
-    /// The node it was made for, if a creation command made it. Such nodes are not written to scenes.
-    pub fn made_by(&self) -> Option<NodeId> {
-        self.made_by
+    /// The node whose creation command added this one. Scene files leave such nodes out.
+    pub fn created_by(&self) -> Option<NodeId> {
+        self.created_by
     }
 
-    /// What is set on it, by long name; defaults are not listed.
+    /// The settings by long name, without those of the preset. Defaults are not listed.
     pub fn settings(&self) -> &BTreeMap<&'static str, Setting> {
         &self.settings
     }
 
-    /// What is set on one attribute, here or by a preset.
+    /// The setting of one attribute, from the node or else from its preset.
     pub fn setting<T>(&self, key: &Key<T>) -> Option<&Setting> {
         self.set_or_preset(key.row.name)
     }
 
-    /// What its preset sets, by long name.
+    /// The settings of the preset by long name.
     pub fn preset(&self) -> &BTreeMap<&'static str, Setting> {
         &self.preset
     }
@@ -69,12 +69,13 @@ impl Node {
         self.settings.get(name).or_else(|| self.preset.get(name))
     }
 
-    /// The value of an attribute that cannot change from frame to frame.
+    /// The value of an attribute that cannot be keyed.
     pub fn get<T: FromValue>(&self, key: &Key<T>) -> T {
         self.at(key, 0.0)
     }
 
-    /// The value of an attribute at a frame: what is set, else the default of the nearest row.
+    /// The value of an attribute at a frame: its setting, else the default of the nearest row. Connections do
+    /// not count; see [`EvalContext::get`](super::EvalContext::get).
     ///
     /// # Panics
     /// When the node's type has no such attribute.
@@ -84,10 +85,10 @@ impl Node {
             Some(setting) => T::from_value(&setting.at(frame, row)),
             None => row.default.as_ref().and_then(T::from_value),
         };
-        value.unwrap_or_else(|| unreachable!("`{}` is read as what it holds", row.name))
+        value.unwrap_or_else(|| unreachable!("`{}` holds values of its own kind", row.name))
     }
 
-    /// What one of its attributes holds at a frame; nothing for what is only connected.
+    /// The value of an attribute at a frame. `None` for attributes that have no value and are only connected.
     pub(super) fn value_at(&self, row: &'static Attribute, frame: f64) -> Option<Value> {
         match self.set_or_preset(row.name) {
             Some(setting) => Some(setting.at(frame, row)),
@@ -95,12 +96,12 @@ impl Node {
         }
     }
 
-    /// Whether an attribute changes from frame to frame.
+    /// Whether the setting of an attribute changes from frame to frame.
     pub fn changes<T>(&self, key: &Key<T>) -> bool {
         self.setting(key).is_some_and(Setting::changes)
     }
 
-    /// Whether a number is other than zero at any time.
+    /// Whether a number is nonzero at any frame.
     pub fn is_ever_nonzero<T>(&self, key: &Key<T>) -> bool {
         match self.setting(key) {
             Some(setting) => setting.is_ever_nonzero(),
@@ -110,9 +111,61 @@ impl Node {
         }
     }
 
-    /// The row that holds for this node's type.
+    /// The row of the attribute in the table of this node's type.
     fn row<T>(&self, key: &Key<T>) -> &'static Attribute {
         let row = self.node_type.attribute(key.row.name);
         row.unwrap_or_else(|| unreachable!("a {} has no `{}`", self.node_type.name, key.row.name))
+    }
+}
+
+/// An attribute of a node, one element of a multi attribute, or one component of a vector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plug {
+    /// The node.
+    pub node: NodeId,
+    /// The attribute.
+    pub attribute: &'static Attribute,
+    /// The element of a multi attribute: `inputActive[2]`.
+    pub index: Option<u32>,
+    /// The component of a vector, 0 to 2: `translateY`.
+    pub part: Option<usize>,
+}
+
+/// Data flow from an output to an input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Connection {
+    /// The output.
+    pub from: Plug,
+    /// The input.
+    pub to: Plug,
+}
+
+impl Plug {
+    /// The plug of a whole attribute.
+    pub fn new<T>(node: NodeId, key: &'static Key<T>) -> Self {
+        Self { node, attribute: &key.row, index: None, part: None }
+    }
+
+    /// One element of a multi attribute.
+    pub fn element<T>(node: NodeId, key: &'static Key<T>, index: u32) -> Self {
+        Self { index: Some(index), ..Self::new(node, key) }
+    }
+
+    /// The data that flows through the plug. `None` if it cannot be connected.
+    pub fn carries(&self) -> Option<Data> {
+        match (self.part, self.attribute.kind) {
+            (Some(_), Kind::Vector(_)) => Some(Data::Number),
+            (_, kind) => kind.carries(),
+        }
+    }
+
+    /// Whether the plugs are equal, or one is a component or an element of the other.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let agree = |a: Option<usize>, b: Option<usize>| a.is_none() || b.is_none() || a == b;
+        let index = |plug: &Self| plug.index.map(|index| index as usize);
+        self.node == other.node
+            && self.attribute.name == other.attribute.name
+            && agree(index(self), index(other))
+            && agree(self.part, other.part)
     }
 }

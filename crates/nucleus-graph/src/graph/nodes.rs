@@ -1,34 +1,32 @@
-//! The graph itself: its nodes, and what is set on them.
+//! The graph: its nodes, their settings and parents, and the stored connections.
 
 use std::collections::BTreeMap;
 
 use crate::attributes::{Attribute, NodeType, dynamic_constraint, n_base, time};
 
 use super::error::GraphError;
-use super::node::{Node, NodeId};
-use super::plug::Connection;
+use super::node::{Connection, Node, NodeId};
 use super::setting::Setting;
 
-/// The name of the clock.
+/// The name of the clock node.
 pub const CLOCK: &str = "time1";
 
-/// Nodes and connections. Every graph has a clock, as in Maya: `time1`.
+/// Nodes and connections. Every graph has a clock node, as in Maya: `time1`.
 ///
-/// Two graphs are equal when they hold the same nodes, with the same settings, and the same connections; the
-/// order in which they came does not matter.
+/// Graphs are equal when they have the same nodes, settings and connections, in any order.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    /// A node that was deleted leaves its place empty.
+    /// Indexed by [`NodeId`]; `None` for deleted nodes.
     nodes: Vec<Option<Node>>,
     names: BTreeMap<String, NodeId>,
-    /// Connections by the node they leave from, in the order in which they were made.
+    /// Connections by the node of their output, in the order of connecting.
     leaving: BTreeMap<NodeId, Vec<Connection>>,
-    /// The same connections by the node they arrive at.
+    /// The same connections by the node of their input.
     arriving: BTreeMap<NodeId, Vec<Connection>>,
 }
 
 impl Graph {
-    /// A graph of nothing but the clock.
+    /// A graph that has only the clock.
     pub fn new() -> Self {
         let mut graph = Self {
             nodes: Vec::new(),
@@ -40,24 +38,24 @@ impl Graph {
         graph
     }
 
-    /// The clock.
+    /// The clock node.
     pub fn clock(&self) -> NodeId {
         NodeId(0)
     }
 
-    /// Adds a node on which nothing is set.
+    /// Adds a node without settings.
     ///
     /// # Errors
-    /// When the name is taken, or is none.
+    /// When the name is taken or not a valid name.
     pub fn add(&mut self, name: &str, node_type: &'static NodeType) -> Result<NodeId, GraphError> {
         self.check_name(name)?;
         Ok(self.push(name.to_owned(), node_type, None))
     }
 
-    /// Gives a node another name. What a creation command has made is then a node like any other.
+    /// Renames a node. A node that a creation command made becomes independent of it.
     ///
     /// # Errors
-    /// When the name is taken by another node, or is none; or when the node is the clock.
+    /// When the name is taken by another node or not a valid name, or when the node is the clock.
     pub fn rename(&mut self, node: NodeId, name: &str) -> Result<(), GraphError> {
         if self.find(name) == Some(node) {
             return Ok(());
@@ -69,27 +67,27 @@ impl Graph {
         let old = std::mem::replace(&mut self.node_mut(node).name, name.to_owned());
         self.names.remove(&old);
         self.names.insert(name.to_owned(), node);
-        self.keep(node);
+        self.make_independent(node);
         Ok(())
     }
 
-    /// Sets an attribute, whatever was set before.
+    /// Sets an attribute. A node that a creation command made becomes independent of it.
     ///
     /// # Errors
-    /// When the node's type does not have it or it cannot hold this.
+    /// When the node's type has no such attribute, or the setting does not fit it.
     pub fn set(
         &mut self,
         node: NodeId,
         attribute: &'static Attribute,
         setting: Setting,
     ) -> Result<(), GraphError> {
-        self.put(node, attribute, setting)?;
-        self.keep_if_made(node);
+        self.set_created(node, attribute, setting)?;
+        self.make_independent_if_created(node);
         Ok(())
     }
 
-    /// The same, where a creation command sets what it has made.
-    pub(super) fn put(
+    /// Sets an attribute of a node that stays part of its creation command.
+    pub(super) fn set_created(
         &mut self,
         node: NodeId,
         attribute: &'static Attribute,
@@ -100,7 +98,7 @@ impl Graph {
         Ok(())
     }
 
-    /// Refuses an attribute that the node's type does not have, or that cannot hold a setting.
+    /// Refuses an attribute that the node's type does not have, and a setting that does not fit.
     fn check_setting(
         &self,
         node: NodeId,
@@ -118,80 +116,80 @@ impl Graph {
         Ok(())
     }
 
-    /// Lets a node take from a preset what is not set on it.
+    /// Replaces the preset of a node. The node's own settings keep precedence.
     ///
     /// # Errors
-    /// When the node's type does not have an attribute, or it cannot hold what the preset sets.
+    /// When the node's type lacks an attribute of the preset, or a setting does not fit.
     pub fn apply_preset(
         &mut self,
         node: NodeId,
         preset: &[(&'static Attribute, Setting)],
     ) -> Result<(), GraphError> {
         preset.iter().try_for_each(|(row, setting)| self.check_setting(node, row, setting))?;
-        self.keep_if_made(node);
+        self.make_independent_if_created(node);
         let taken = &mut self.node_mut(node).preset;
         taken.clear();
         taken.extend(preset.iter().map(|(row, setting)| (row.name, setting.clone())));
         Ok(())
     }
 
-    /// Sets an attribute back to its default. Whether anything was set.
+    /// Removes the setting of an attribute; returns whether there was one.
     pub fn unset(&mut self, node: NodeId, attribute: &Attribute) -> bool {
-        self.keep_if_made(node);
+        self.make_independent_if_created(node);
         self.node_mut(node).settings.remove(attribute.name).is_some()
     }
 
-    /// Hangs a node from a transform.
+    /// Makes a transform the parent of a node.
     ///
     /// # Errors
-    /// When the transform hangs from the node.
+    /// When the node is an ancestor of the transform, or the transform itself.
     pub fn set_parent(&mut self, node: NodeId, parent: NodeId) -> Result<(), GraphError> {
-        if self.and_ancestors(parent).any(|ancestor| ancestor == node) {
+        if self.self_and_ancestors(parent).any(|ancestor| ancestor == node) {
             let [node, parent] = [node, parent].map(|id| self.node(id).name.clone());
-            return Err(GraphError::ParentCircle { node, parent });
+            return Err(GraphError::ParentCycle { node, parent });
         }
-        self.keep_if_made(node);
+        self.make_independent_if_created(node);
         self.node_mut(node).parent = Some(parent);
         Ok(())
     }
 
-    /// Lets a node stand on its own again.
+    /// Removes the parent of a node.
     pub fn unparent(&mut self, node: NodeId) {
-        self.keep_if_made(node);
+        self.make_independent_if_created(node);
         self.node_mut(node).parent = None;
     }
 
-    /// Lets a mesh be blended into another.
+    /// Sets the blend target of a mesh.
     ///
     /// # Errors
-    /// When the other is blended into it, or into what is ...
+    /// When the chain of blend targets leads from the target back to the mesh.
     pub fn blend_into(&mut self, mesh: NodeId, target: NodeId) -> Result<(), GraphError> {
         let mut all = std::iter::successors(Some(target), |&mesh| self.node(mesh).blend_target);
         if all.any(|other| other == mesh) {
             let [mesh, target] = [mesh, target].map(|id| self.node(id).name.clone());
-            return Err(GraphError::BlendCircle { mesh, target });
+            return Err(GraphError::BlendCycle { mesh, target });
         }
-        self.keep_if_made(mesh);
+        self.make_independent_if_created(mesh);
         self.node_mut(mesh).blend_target = Some(target);
         Ok(())
     }
 
-    /// What a mesh is blended into.
+    /// The blend target of a mesh.
     pub fn blend_target(&self, mesh: NodeId) -> Option<NodeId> {
         self.node(mesh).blend_target
     }
 
-    /// Deletes a node with its connections and all that hangs on it: what hangs from it as a transform, and
-    /// what was made for it. The clock cannot be deleted.
+    /// Deletes a node with its connections, its children, and the nodes that its creation command made. Does
+    /// nothing for the clock.
     pub fn remove(&mut self, node: NodeId) {
         let mut gone = if node == self.clock() { Vec::new() } else { vec![node] };
         while let Some(node) = gone.pop() {
-            if self.nodes[node.place()].is_none() {
+            if self.nodes[node.index()].is_none() {
                 continue;
             }
-            let hangs =
-                |(_, other): &(NodeId, &Node)| other.parent == Some(node) || other.made_by == Some(node);
-            gone.extend(self.iter().filter(hangs).map(|(id, _)| id));
+            let depends =
+                |(_, other): &(NodeId, &Node)| other.parent == Some(node) || other.created_by == Some(node);
+            gone.extend(self.iter().filter(depends).map(|(id, _)| id));
             let wires: Vec<Connection> = self.arriving(node).chain(self.leaving(node)).copied().collect();
             for Connection { from, to } in wires {
                 self.disconnect(from, to);
@@ -199,7 +197,7 @@ impl Graph {
             for other in self.nodes.iter_mut().flatten().filter(|other| other.blend_target == Some(node)) {
                 other.blend_target = None;
             }
-            if let Some(old) = self.nodes[node.place()].take() {
+            if let Some(old) = self.nodes[node.index()].take() {
                 self.names.remove(&old.name);
             }
         }
@@ -213,9 +211,9 @@ impl Graph {
         self.get(id).unwrap_or_else(|| unreachable!("the node has been deleted"))
     }
 
-    /// A node, if it has not been deleted.
+    /// A node; `None` if it has been deleted.
     pub fn get(&self, id: NodeId) -> Option<&Node> {
-        self.nodes.get(id.place())?.as_ref()
+        self.nodes.get(id.index())?.as_ref()
     }
 
     /// The node of this name.
@@ -223,71 +221,76 @@ impl Graph {
         self.names.get(name).copied()
     }
 
-    /// All nodes, in the order in which they were added.
+    /// All nodes in the order of addition.
     pub fn iter(&self) -> impl Iterator<Item = (NodeId, &Node)> {
         (0..).map(NodeId).zip(&self.nodes).filter_map(|(id, node)| Some((id, node.as_ref()?)))
     }
 
-    /// All nodes of a type, or of types that inherit from it, in the order in which they were added.
+    /// All nodes of a type, or of types that inherit from it, in the order of addition.
     pub fn of_type(&self, node_type: &'static NodeType) -> impl Iterator<Item = (NodeId, &Node)> {
         self.iter().filter(move |(_, node)| node.node_type.is_a(node_type))
     }
 
-    /// A node, the one it hangs from, and so on up.
-    pub(super) fn and_ancestors(&self, node: NodeId) -> impl Iterator<Item = NodeId> {
+    /// A node, its parent, the parent of that, and so on.
+    pub(super) fn self_and_ancestors(&self, node: NodeId) -> impl Iterator<Item = NodeId> {
         std::iter::successors(Some(node), |&node| self.node(node).parent)
     }
 
-    /// Connections that leave from a node.
+    /// Connections from outputs of a node.
     pub fn leaving(&self, node: NodeId) -> impl Iterator<Item = &Connection> {
         self.leaving.get(&node).into_iter().flatten()
     }
 
-    /// Connections that arrive at a node.
+    /// Connections to inputs of a node.
     pub fn arriving(&self, node: NodeId) -> impl Iterator<Item = &Connection> {
         self.arriving.get(&node).into_iter().flatten()
     }
 
-    /// All connections: by the node they arrive at, and there in the order in which they were made.
+    /// All connections, by the node of their input, then in the order of connecting.
     pub fn connections(&self) -> impl Iterator<Item = &Connection> {
         self.arriving.values().flatten()
     }
 
-    /// Adds a node that a creation command makes; `stem` and the first free number are its name.
-    pub(super) fn make(&mut self, stem: &str, node_type: &'static NodeType, made_by: NodeId) -> NodeId {
+    /// Adds a node for a creation command. Its name is `stem` and the first free number.
+    pub(super) fn add_created(
+        &mut self,
+        stem: &str,
+        node_type: &'static NodeType,
+        created_by: NodeId,
+    ) -> NodeId {
         let free = (1..).map(|n| format!("{stem}{n}")).find(|name| self.find(name).is_none());
-        self.push(free.unwrap_or_default(), node_type, Some(made_by))
+        self.push(free.unwrap_or_default(), node_type, Some(created_by))
     }
 
-    /// Makes all that creation commands have made for a node, or for the same node as this one, nodes like
-    /// any others. What the node was created from is then only in its connections.
-    pub(super) fn keep(&mut self, node: NodeId) {
-        let owner = self.node(node).made_by.unwrap_or(node);
-        for other in self.nodes.iter_mut().flatten().filter(|other| other.made_by == Some(owner)) {
-            other.made_by = None;
+    /// Makes the nodes of a creation command independent: those that it made for this node, or for the owner of
+    /// this node. The components of a constraint are then only in its connections.
+    pub(super) fn make_independent(&mut self, node: NodeId) {
+        let owner = self.node(node).created_by.unwrap_or(node);
+        for other in self.nodes.iter_mut().flatten().filter(|other| other.created_by == Some(owner)) {
+            other.created_by = None;
         }
         self.node_mut(owner).settings.remove(dynamic_constraint::COMPONENTS.row.name);
     }
 
-    fn keep_if_made(&mut self, node: NodeId) {
-        if self.node(node).made_by.is_some() {
-            self.keep(node);
+    fn make_independent_if_created(&mut self, node: NodeId) {
+        if self.node(node).created_by.is_some() {
+            self.make_independent(node);
         }
     }
 
-    /// Whether a node is an object or a constraint.
+    /// Whether a node is an object or a constraint of a nucleus.
     pub fn is_member(&self, node: NodeId) -> bool {
         let node_type = self.node(node).node_type;
         node_type.is_a(&n_base::N_BASE) || node_type.is_a(&dynamic_constraint::DYNAMIC_CONSTRAINT)
     }
 
-    pub(super) fn insert(&mut self, connection: Connection) {
+    pub(super) fn insert_connection(&mut self, connection: Connection) {
         self.leaving.entry(connection.from.node).or_default().push(connection);
         self.arriving.entry(connection.to.node).or_default().push(connection);
     }
 
-    /// Whether it was there.
-    pub(super) fn take(&mut self, connection: Connection) -> bool {
+    /// Returns whether the connection existed.
+    pub(super) fn remove_connection(&mut self, connection: Connection) -> bool {
         let there = self.arriving(connection.to.node).any(|other| *other == connection);
         if let Some(leaving) = self.leaving.get_mut(&connection.from.node) {
             leaving.retain(|other| *other != connection);
@@ -299,7 +302,7 @@ impl Graph {
     }
 
     pub(super) fn node_mut(&mut self, id: NodeId) -> &mut Node {
-        self.nodes[id.place()].as_mut().unwrap_or_else(|| unreachable!("the node has been deleted"))
+        self.nodes[id.index()].as_mut().unwrap_or_else(|| unreachable!("the node has been deleted"))
     }
 
     fn check_name(&self, name: &str) -> Result<(), GraphError> {
@@ -313,7 +316,7 @@ impl Graph {
         Ok(())
     }
 
-    fn push(&mut self, name: String, node_type: &'static NodeType, made_by: Option<NodeId>) -> NodeId {
+    fn push(&mut self, name: String, node_type: &'static NodeType, created_by: Option<NodeId>) -> NodeId {
         let id = NodeId(self.nodes.len() as u32);
         self.names.insert(name.clone(), id);
         self.nodes.push(Some(Node {
@@ -322,14 +325,14 @@ impl Graph {
             settings: Default::default(),
             preset: Default::default(),
             parent: None,
-            made_by,
+            created_by,
             blend_target: None,
         }));
         id
     }
 }
 
-/// Whether a node can have this name: letters, digits, `_`, `-` and `:`.
+/// Whether a text is a valid name of a node: letters, digits, `_`, `-` and `:`, at least one.
 pub fn is_a_name(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | ':'))
 }
@@ -347,9 +350,9 @@ impl PartialEq for Graph {
             let nodes: BTreeMap<String, _> = graph
                 .iter()
                 .map(|(_, node)| {
-                    let Node { name: own, node_type, settings, preset, parent, made_by, blend_target } =
+                    let Node { name: own, node_type, settings, preset, parent, created_by, blend_target } =
                         node.clone();
-                    (own, (node_type, settings, preset, [parent, made_by, blend_target].map(name)))
+                    (own, (node_type, settings, preset, [parent, created_by, blend_target].map(name)))
                 })
                 .collect();
             let plugs = |wire: &Connection| [graph.describe(wire.from), graph.describe(wire.to)];

@@ -1,31 +1,31 @@
-//! What is set on an attribute: one value for all frames, or curves.
+//! The setting of an attribute: one value for all frames, or curves.
 
 use crate::animation::Curve;
 use crate::attributes::{Attribute, Choice, Kind, Range, Value};
 
-/// What an attribute is set to.
+/// A value or curves that an attribute is set to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Setting {
-    /// The same in all frames. Vectors are always [`Parts`](Self::Parts).
+    /// One value for all frames. Vectors are always [`Parts`](Self::Parts).
     Fixed(Value),
-    /// A number, switch or word that changes with the frame.
+    /// A curve of numbers, switches or words.
     Keyed(Curve),
-    /// The three parts of a vector, each for itself.
+    /// The three components of a vector.
     Parts([Channel; 3]),
 }
 
-/// One part of a vector.
+/// One component of a vector.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Channel {
-    /// The same in all frames.
+    /// One value for all frames.
     Fixed(f64),
-    /// Changes with the frame.
+    /// A curve.
     Keyed(Curve),
 }
 
 impl Setting {
-    /// Whether it can be set on an attribute: the right kind, within the hard range, keyed only where that
-    /// is possible.
+    /// Whether an attribute takes it: the kind matches, values are in the hard range, and only keyable
+    /// attributes have curves.
     pub fn fits(&self, attribute: &Attribute) -> bool {
         let whole = |x: f64| match attribute.kind {
             Kind::Bool => x == 0.0 || x == 1.0,
@@ -51,7 +51,7 @@ impl Setting {
         }
     }
 
-    /// The value at a frame. Curves that swing out of the hard range between keys are cut off there.
+    /// The value at a frame, clamped to the hard range: a curve can overshoot it between keys.
     pub fn at(&self, frame: f64, attribute: &Attribute) -> Value {
         match self {
             Self::Fixed(value) => value.clone(),
@@ -62,7 +62,7 @@ impl Setting {
         }
     }
 
-    /// Whether it changes from frame to frame.
+    /// Whether it has a curve that is not constant.
     pub fn changes(&self) -> bool {
         let curves = match self {
             Self::Fixed(_) => return false,
@@ -75,7 +75,7 @@ impl Setting {
         curves.into_iter().flatten().any(|curve| !curve.is_constant())
     }
 
-    /// Whether a number is other than zero at any time.
+    /// Whether a number is nonzero at any frame.
     pub fn is_ever_nonzero(&self) -> bool {
         match self {
             Self::Fixed(Value::Float(x)) => *x != 0.0,
@@ -109,7 +109,7 @@ impl From<Value> for Setting {
     }
 }
 
-/// A curve's number as what the attribute holds.
+/// Converts a number to the kind of an attribute, as Maya does: rounded, clamped, or the nearest word.
 pub(super) fn as_kind(x: f64, attribute: &Attribute) -> Value {
     match attribute.kind {
         Kind::Bool => Value::Bool(x >= 0.5),

@@ -10,7 +10,7 @@ fn keys(keys: &[(f64, f64)]) -> Curve {
     Curve::new(keys.iter().map(key).collect()).expect("keys in order")
 }
 
-/// A nucleus, a plane and a cloth that is not wired yet.
+/// A nucleus, a plane and a cloth without connections.
 fn sheet() -> (Graph, NodeId, NodeId, NodeId) {
     let mut graph = Graph::new();
     let cloth = graph.add("cloth1", &n_cloth::N_CLOTH).expect("free");
@@ -93,7 +93,7 @@ fn a_constraint_gets_one_component_node_per_member() {
     let member = graph.node(graph.find("nComponent1").expect("it was made"));
     assert_eq!(member.get(&n_component::COMPONENT_INDICES), [4, 0, 1, 2]);
     assert_eq!(member.get(&n_component::COMPONENT_TYPE), Choice(2));
-    assert_eq!(member.made_by(), Some(pin));
+    assert_eq!(member.created_by(), Some(pin));
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn the_next_object_takes_the_next_index_on_all_three_plugs() {
 }
 
 #[test]
-fn made_nodes_step_aside_for_names_that_are_taken() {
+fn created_nodes_take_the_next_free_name() {
     let (mut graph, cloth, nucleus, plane) = sheet();
     graph.add("outputCloth1", &mesh::MESH).expect("free");
     graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
@@ -135,7 +135,7 @@ fn an_input_takes_one_connection() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn a_setting_that_does_not_fit_its_attribute_is_refused() {
     let (mut graph, cloth, ..) = sheet();
     let row = &n_cloth::BEND_RESISTANCE.row;
     for value in [Value::Bool(true), Value::Float(-1.0), Value::Float(f64::NAN), Value::Int(2)] {
@@ -147,9 +147,9 @@ fn what_does_not_fit_is_refused() {
     assert!(matches!(graph.add("cloth1", &n_cloth::N_CLOTH), Err(GraphError::NameTaken { .. })));
 }
 
-// EVIDENCE: N3.1-9  an inherited attribute that cloth does not show can be set and read all the same
+// EVIDENCE: N3.1-9  an inherited attribute that is hidden on cloth can be set and read
 #[test]
-fn what_a_type_does_not_show_can_still_be_set_and_read() {
+fn hidden_attributes_can_be_set_and_read() {
     let (mut graph, cloth, ..) = sheet();
     let row = &particle::LIFESPAN_MODE.row;
     assert!(graph.node(cloth).node_type().keeps_from_view(row));
@@ -158,17 +158,17 @@ fn what_a_type_does_not_show_can_still_be_set_and_read() {
 }
 
 #[test]
-fn parents_form_no_circle() {
+fn a_cycle_of_parents_is_refused() {
     let mut graph = Graph::new();
     let [a, b, c] = ["a", "b", "c"].map(|name| graph.add(name, &transform::TRANSFORM).expect("free"));
-    graph.set_parent(b, a).expect("no circle");
-    graph.set_parent(c, b).expect("no circle");
-    assert!(matches!(graph.set_parent(a, c), Err(GraphError::ParentCircle { .. })));
-    assert!(matches!(graph.set_parent(a, a), Err(GraphError::ParentCircle { .. })));
+    graph.set_parent(b, a).expect("no cycle");
+    graph.set_parent(c, b).expect("no cycle");
+    assert!(matches!(graph.set_parent(a, c), Err(GraphError::ParentCycle { .. })));
+    assert!(matches!(graph.set_parent(a, a), Err(GraphError::ParentCycle { .. })));
 }
 
 #[test]
-fn keyed_values_are_read_as_what_the_attribute_holds() {
+fn keyed_values_are_converted_to_the_kind_of_the_attribute() {
     let (mut graph, cloth, nucleus, _) = sheet();
     let ramp = Setting::Keyed(keys(&[(1.0, 1.0), (5.0, 3.0)]));
     graph.set(nucleus, &nucleus::SUB_STEPS.row, ramp).expect("fits");
@@ -182,7 +182,7 @@ fn keyed_values_are_read_as_what_the_attribute_holds() {
 }
 
 #[test]
-fn a_spline_that_swings_out_of_the_hard_range_is_cut_off_there() {
+fn a_spline_that_overshoots_the_hard_range_is_clamped() {
     let (mut graph, cloth, ..) = sheet();
     let spline = |frame, value| Key { frame, value, tangent: Tangent::Spline };
     let curve =
@@ -195,11 +195,11 @@ fn a_spline_that_swings_out_of_the_hard_range_is_cut_off_there() {
 }
 
 #[test]
-fn a_child_stands_where_its_parent_takes_it() {
+fn a_child_is_placed_in_the_space_of_its_parent() {
     let mut graph = Graph::new();
     let arm = graph.add("arm", &transform::TRANSFORM).expect("free");
     let hand = graph.add("hand", &transform::TRANSFORM).expect("free");
-    graph.set_parent(hand, arm).expect("no circle");
+    graph.set_parent(hand, arm).expect("no cycle");
     graph.set(hand, &transform::TRANSLATE.row, Value::Vector([2.0, 0.0, 0.0]).into()).expect("fits");
     let turn = [Channel::Fixed(0.0), Channel::Fixed(0.0), Channel::Keyed(keys(&[(0.0, 0.0), (10.0, 90.0)]))];
     graph.set(arm, &transform::ROTATE.row, Setting::Parts(turn)).expect("fits");

@@ -1,12 +1,12 @@
-//! Faces that are no faces.
+//! Degenerate faces: too few corners, repeated points, or no area.
 
 use nalgebra::Vector3;
 use nucleus_core::{Faces, Surface};
 
-/// Removes the faces that no solver can work with, and returns how many that were; points stay as they are.
+/// Removes degenerate faces and returns their number. Points stay unchanged.
 ///
-/// A corner that repeats the one before it is left out, which may make a quad a triangle. Then every face
-/// goes that has fewer than three corners, names a point twice, or has exactly no area.
+/// A corner that repeats the one before it is removed first, which may turn a quad into a triangle. Then a face is
+/// degenerate if it has fewer than three corners, has a point twice, or has an area of exactly zero.
 ///
 /// Corners must index the surface's positions.
 pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
@@ -20,7 +20,7 @@ pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
         while corners.len() > 1 && corners.first() == corners.last() {
             corners.pop();
         }
-        if corners.len() >= 3 && !names_a_point_twice(&corners, &mut sorted) && has_area(surface, &corners) {
+        if corners.len() >= 3 && !has_a_point_twice(&corners, &mut sorted) && has_area(surface, &corners) {
             kept.push(&corners);
         }
     }
@@ -28,15 +28,15 @@ pub fn drop_degenerate_faces(surface: &mut Surface) -> usize {
     before - surface.faces.len()
 }
 
-/// A face may have as many corners as its mesh has points, so they are not compared pair by pair. `sorted` is memory.
-fn names_a_point_twice(corners: &[u32], sorted: &mut Vec<u32>) -> bool {
+/// Sorts instead of comparing all pairs, because a face may have thousands of corners. `sorted` is a reused buffer.
+fn has_a_point_twice(corners: &[u32], sorted: &mut Vec<u32>) -> bool {
     sorted.clear();
     sorted.extend_from_slice(corners);
     sorted.sort_unstable();
     sorted.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// Whether any triangle of the fan has.
+/// Whether any triangle of the fan from the first corner has an area.
 fn has_area(surface: &Surface, corners: &[u32]) -> bool {
     let point = |k: usize| surface.positions[corners[k] as usize];
     (2..corners.len()).any(|k| (point(k - 1) - point(0)).cross(&(point(k) - point(0))) != Vector3::zeros())
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_without_area_go_and_points_stay() {
+    fn degenerate_faces_are_removed_and_points_stay() {
         let mut mesh = surface(&[&[0, 1, 2], &[0, 0, 1], &[0, 4, 1], &[0, 1, 0, 2], &[1, 1], &[0, 1, 2, 3]]);
         assert_eq!(drop_degenerate_faces(&mut mesh), 4);
         assert_eq!(mesh, surface(&[&[0, 1, 2], &[0, 1, 2, 3]]));

@@ -1,12 +1,12 @@
-//! Values that differ from point to point, and the ways to give them.
+//! Values that differ from point to point: expressions, files of numbers, and textures.
 //!
 //! | You want to know...                                  | Read                   |
 //! |------------------------------------------------------|------------------------|
-//! | what an expression can say                           | [`Expression`]         |
+//! | the syntax of expressions                            | [`Expression`]         |
 //! | how a file of numbers is read                        | `numbers.rs`           |
 //! | how a texture is read and sampled                    | `texture.rs`           |
 //!
-//! **Invariant:** what is wrong is told with its place: the character of an expression, the line of a file.
+//! **Invariant:** an error names its place: the character of an expression, or the line and column of a file.
 
 mod expression;
 mod numbers;

@@ -1,12 +1,12 @@
-//! Files of numbers: one for each point, or three. Between numbers are spaces, commas or line ends; what follows a
-//! `#` on a line is a remark.
+//! Text files of numbers: one per point, or three. Numbers are separated by spaces, commas or line ends. A `#` begins
+//! a comment that ends with its line.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use crate::files::{self, Piece};
+use crate::files::{self, LineSpan};
 
-/// Why a file is not a list of numbers.
+/// Reasons why a file is no list of numbers.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NumbersError {
@@ -15,25 +15,25 @@ pub enum NumbersError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// Something in it is no number that can be reckoned with.
-    #[error("`{}`, line {line}, {piece}: not a finite number", path.display())]
+    /// A word is not a finite number.
+    #[error("`{}`, line {line}, {span}: not a finite number", path.display())]
     NotANumber {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// Where in the line.
-        piece: Piece,
+        /// The range in the line.
+        span: LineSpan,
     },
-    /// Not all vectors have three numbers.
-    #[error("`{}` has {count} numbers, which are no vectors of three", path.display())]
+    /// The count of numbers is no multiple of three.
+    #[error("`{}` has {count} numbers, which is no multiple of three", path.display())]
     NotVectors {
         /// The file.
         path: PathBuf,
-        /// How many numbers it has.
+        /// The count of numbers.
         count: usize,
     },
 }
@@ -41,7 +41,7 @@ pub enum NumbersError {
 /// All numbers of a file.
 ///
 /// # Errors
-/// When it cannot be read, or holds anything else; see [`NumbersError`].
+/// When it cannot be read, or has a word that is no finite number; see [`NumbersError`].
 pub fn read_numbers(path: &Path) -> Result<Vec<f64>, NumbersError> {
     let mut bytes = Vec::new();
     let read = files::open(path).and_then(|(mut file, _)| file.read_to_end(&mut bytes));
@@ -55,8 +55,8 @@ pub fn read_numbers(path: &Path) -> Result<Vec<f64>, NumbersError> {
             match word.parse::<f64>() {
                 Ok(number) if number.is_finite() => numbers.push(number),
                 _ => {
-                    let piece = Piece::of(word.as_bytes(), whole.as_bytes());
-                    return Err(NumbersError::NotANumber { path: path.to_owned(), line: line + 1, piece });
+                    let span = LineSpan::of(word.as_bytes(), whole.as_bytes());
+                    return Err(NumbersError::NotANumber { path: path.to_owned(), line: line + 1, span });
                 }
             }
         }
@@ -67,7 +67,7 @@ pub fn read_numbers(path: &Path) -> Result<Vec<f64>, NumbersError> {
 /// All vectors of a file.
 ///
 /// # Errors
-/// When it cannot be read, or does not hold three numbers for each; see [`NumbersError`].
+/// As [`read_numbers`], and when the count of numbers is no multiple of three.
 pub fn read_vectors(path: &Path) -> Result<Vec<[f64; 3]>, NumbersError> {
     let numbers = read_numbers(path)?;
     let (vectors, rest) = numbers.as_chunks::<3>();

@@ -1,26 +1,26 @@
-//! PNG pictures as factors: 0 where they are black, 1 where they are white.
+//! PNG textures as factors: 0 for black, 1 for white.
 //!
-//! Colours count by their brightness (0.3 red, 0.59 green, 0.11 blue, as in Maya), as they are stored: no gamma is
-//! undone. Transparency does not count. Between the middles of pixels values go straight (bilinear). As in Maya
-//! (0, 0) is the lower left corner, and the picture repeats beyond 0 to 1.
+//! The factor is the luminance of the stored colour (0.3 red, 0.59 green, 0.11 blue, as in Maya), without gamma
+//! correction. Alpha is ignored. Sampling is bilinear between pixel centres. As in Maya, (0, 0) is the lower left
+//! corner, and the texture repeats outside 0 to 1.
 
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::files;
 
-/// A picture in grey.
+/// A grey texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     size: [usize; 2],
-    /// Row by row from the top, 0 to 1.
+    /// Row by row from the top, each 0 to 1.
     pixels: Vec<f32>,
 }
 
-/// A head of a few bytes can promise more pixels than any memory holds.
-const MOST_PIXELS: u64 = 1 << 26;
+/// Limit on pixels: a header of a few bytes can announce more than fit into memory.
+const MAX_PIXELS: u64 = 1 << 26;
 
-/// Why a file is not a texture.
+/// Reasons why a file is no texture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextureError {
@@ -29,19 +29,19 @@ pub enum TextureError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// It is no PNG, or a broken one.
-    #[error("`{}` is not a sound PNG: {source}", path.display())]
+    /// It is no PNG, or a damaged one.
+    #[error("`{}` is not a valid PNG: {source}", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error of the decoder.
         source: png::DecodingError,
     },
     /// It has too many pixels.
-    #[error("`{}` has {columns} x {rows} pixels; {MOST_PIXELS} are the most", path.display())]
+    #[error("`{}` has {columns} x {rows} pixels, more than the limit of {MAX_PIXELS}", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -56,7 +56,7 @@ impl Texture {
     /// Reads a PNG.
     ///
     /// # Errors
-    /// When the file cannot be read, or is not a sound PNG.
+    /// When the file cannot be read, is no valid PNG, or is too large.
     pub fn read(path: &Path) -> Result<Self, TextureError> {
         let (file, _) =
             files::open(path).map_err(|source| TextureError::Unreadable { path: path.to_owned(), source })?;
@@ -65,13 +65,13 @@ impl Texture {
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(broken)?;
         let (columns, rows) = reader.info().size();
-        if u64::from(columns) * u64::from(rows) > MOST_PIXELS {
+        if u64::from(columns) * u64::from(rows) > MAX_PIXELS {
             return Err(TextureError::TooLarge { path: path.to_owned(), columns, rows });
         }
         let bytes = reader.output_buffer_size().ok_or(png::DecodingError::LimitsExceeded);
         let mut data = vec![0; bytes.map_err(broken)?];
         let info = reader.next_frame(&mut data).map_err(broken)?;
-        // What comes after the picture tells whether the file is whole.
+        // The chunks after the image show whether the file is complete.
         reader.finish().map_err(broken)?;
         let samples = info.color_type.samples();
         let pixels = match info.bit_depth {
@@ -88,13 +88,13 @@ impl Texture {
         Ok(Self { size: [info.width as usize, info.height as usize], pixels })
     }
 
-    /// A picture of so many columns, its pixels row by row from the top.
+    /// A texture of so many columns, with pixels row by row from the top.
     #[cfg(test)]
     pub(crate) fn of(columns: usize, pixels: Vec<f32>) -> Self {
         Self { size: [columns, pixels.len() / columns], pixels }
     }
 
-    /// The value at a place.
+    /// The value at texture coordinates.
     pub fn at(&self, [u, v]: [f64; 2]) -> f64 {
         let [columns, rows] = self.size;
         let place = |along: f64, count: usize| {
@@ -111,7 +111,7 @@ impl Texture {
     }
 }
 
-/// Of grey, grey and alpha, red green blue, or those and alpha.
+/// Luminance of a pixel: grey, grey and alpha, RGB, or RGBA.
 fn brightness(pixel: &[f32]) -> f32 {
     match pixel {
         [red, green, blue, ..] => 0.3 * red + 0.59 * green + 0.11 * blue,
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_middle_of_a_pixel_has_its_value_and_between_them_it_goes_straight() {
+    fn the_centre_of_a_pixel_has_its_value_and_sampling_between_is_linear() {
         let texture = Texture::of(2, vec![0.0, 1.0, 0.25, 0.5]);
         // The upper row is at v = 3/4.
         assert_eq!(texture.at([0.25, 0.75]), 0.0);
@@ -141,12 +141,12 @@ mod tests {
         for whole in [-3.0, 1.0, 7.0] {
             assert_eq!(texture.at([0.25 + whole, 0.75 - whole]), texture.at([0.25, 0.75]));
         }
-        // At the edge it goes on with the other side.
+        // At the edge, sampling wraps to the other side.
         assert_eq!(texture.at([0.0, 0.75]), 0.5);
     }
 
     #[test]
-    fn no_place_is_outside() {
+    fn coordinates_of_any_size_are_sampled() {
         let texture = Texture::of(1, vec![0.5]);
         for place in [1e300, -1e300, 0.0, 1.0, -1e-300] {
             assert_eq!(texture.at([place, place]), 0.5);

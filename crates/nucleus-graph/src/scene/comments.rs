@@ -1,70 +1,70 @@
-//! Comments of a scene file, and what each of them belongs to, so that they survive when it is written anew.
+//! Comments of a scene file, each with the node or attribute that it belongs to, so that formatting keeps them.
 
 use std::collections::BTreeMap;
 
-use super::source::Source;
+use super::document::Source;
 
 /// Comments of a file.
 #[derive(Debug, Default)]
 pub(super) struct Comments {
-    /// Before everything.
+    /// Before `Scene`.
     pub(super) head: Vec<String>,
-    /// On lines of their own, before a node (`cloth1`) or an attribute (`cloth1.friction`).
-    before: BTreeMap<String, Vec<String>>,
-    /// At the end of the line of a node or an attribute.
-    behind: BTreeMap<String, String>,
-    /// After everything else.
+    /// On their own lines before a node (`cloth1`) or an attribute (`cloth1.friction`).
+    leading: BTreeMap<String, Vec<String>>,
+    /// On the line of a node or an attribute.
+    trailing: BTreeMap<String, String>,
+    /// After the last node or attribute.
     pub(super) tail: Vec<String>,
 }
 
 impl Comments {
-    /// The comments of a text from which a scene was read.
+    /// The comments of a text. `source` has the places of its scene.
     pub(super) fn of(text: &str, source: &Source) -> Self {
         let mut comments = Self::default();
         let places: BTreeMap<usize, &str> = source.places().map(|(name, span)| (span.start, name)).collect();
         let body = text.find("Scene").unwrap_or(text.len());
-        for (start, comment) in found(text) {
+        for (start, comment) in find_comments(text) {
             let line = text[..start].rfind('\n').map_or(0, |at| at + 1);
-            let alone = text[line..start].trim().is_empty();
+            let is_own_line = text[line..start].trim().is_empty();
             let end = text[start..].find('\n').map_or(text.len(), |at| start + at);
             let on_line = places.range(line..start).map(|(_, name)| *name).find(|name| !name.contains('['));
             let next = places.range(end..).map(|(_, name)| *name).find(|name| !name.contains('['));
             match (on_line, next) {
-                _ if alone && start < body => comments.head.push(comment),
-                (Some(name), _) if !alone => {
-                    let old = comments.behind.remove(name).map(|old| old + " ").unwrap_or_default();
-                    comments.behind.insert(name.to_owned(), old + &comment);
+                _ if is_own_line && start < body => comments.head.push(comment),
+                (Some(name), _) if !is_own_line => {
+                    let old = comments.trailing.remove(name).map(|old| old + " ").unwrap_or_default();
+                    comments.trailing.insert(name.to_owned(), old + &comment);
                 }
-                (_, Some(name)) => comments.before.entry(name.to_owned()).or_default().push(comment),
+                (_, Some(name)) => comments.leading.entry(name.to_owned()).or_default().push(comment),
                 _ => comments.tail.push(comment),
             }
         }
         comments
     }
 
-    /// Whether there is any comment at a node's attributes.
+    /// Whether any attribute of a node has a comment.
     pub(super) fn is_inside(&self, node: &str) -> bool {
         let prefix = format!("{node}.");
         let begins = |name: &&String| name.starts_with(&prefix);
-        self.before.keys().chain(self.behind.keys()).any(|name| begins(&name))
+        self.leading.keys().chain(self.trailing.keys()).any(|name| begins(&name))
     }
 
     /// A line with its comments.
     pub(super) fn line(&self, name: &str, indent: &str, line: &str) -> String {
         let mut text = String::new();
-        for comment in self.before.get(name).into_iter().flatten() {
+        for comment in self.leading.get(name).into_iter().flatten() {
             text += &format!("{indent}{comment}\n");
         }
-        match self.behind.get(name) {
+        match self.trailing.get(name) {
             Some(comment) => text + &format!("{indent}{line} {comment}\n"),
             None => text + &format!("{indent}{line}\n"),
         }
     }
 }
 
-/// Line comments and block comments with where they begin; not what stands in quotes. Block comments become
-/// line comments.
-fn found(text: &str) -> Vec<(usize, String)> {
+/// All comments with their byte offsets. Text in quotes is skipped. Each line of a block comment becomes a line
+/// comment.
+fn find_comments(text: &str) -> Vec<(usize, String)> {
     let bytes = text.as_bytes();
     let (mut at, mut all) = (0, Vec::new());
     while at < bytes.len() {

@@ -1,24 +1,27 @@
-//! A scene as a whole.
+//! A scene, and the file that it comes from.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use crate::checks::Check;
 use crate::graph::Graph;
+use crate::memory::{Budget, Memory};
 
-use super::source::Source;
-
-/// Everything a run needs: time, nodes, and what must hold.
+/// A scene: frames, recording, nodes and checks.
 ///
-/// Two scenes are equal when they say the same, wherever it stands in their files.
+/// Scenes are equal when all of these are, whatever the layout of their files.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The frames of the run.
     pub time: TimeSpan,
-    /// Frames from one evaluation to the next: whole, or a part of one.
+    /// Evaluation interval in frames: a whole number, or the reciprocal of one.
     pub every: f64,
-    /// What is recorded.
+    /// Which states are recorded.
     pub record: Record,
     /// The nodes and their connections.
     pub graph: Graph,
-    /// What must hold during the run.
+    /// The checks that the run has to pass.
     pub checks: Vec<Check>,
     /// The file it comes from.
     pub source: Source,
@@ -35,7 +38,7 @@ pub struct TimeSpan {
     pub fps: f64,
 }
 
-/// What of a run is recorded.
+/// The states of a run that are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Record {
     /// The end of every frame.
@@ -43,9 +46,9 @@ pub enum Record {
     Frames,
     /// The end of every substep.
     Substeps,
-    /// The end of every so manieth frame, and of the last; above zero.
+    /// The end of every n-th frame, and of the last frame. `n` is at least 1.
     Every(u32),
-    /// Nothing.
+    /// No state.
     None,
 }
 
@@ -54,5 +57,60 @@ impl PartialEq for Scene {
         (self.time, self.every, self.record) == (other.time, other.every, other.record)
             && self.graph == other.graph
             && self.checks == other.checks
+    }
+}
+
+/// The file of a scene: its path, the places of nodes and settings, and the memory that reading has taken.
+#[derive(Debug, Clone, Default)]
+pub struct Source {
+    file: PathBuf,
+    places: BTreeMap<String, Range<usize>>,
+    budget: Budget,
+}
+
+impl Source {
+    /// A file without known places.
+    pub fn new(file: impl Into<PathBuf>) -> Self {
+        Self { file: file.into(), ..Self::default() }
+    }
+
+    /// A file without known places, with a limit on the memory of its scene.
+    pub(super) fn within(file: &Path, memory: Memory) -> Self {
+        Self { budget: Budget::new(memory), ..Self::new(file) }
+    }
+
+    /// The memory limit of the scene, and the memory that reading has claimed.
+    pub(crate) fn budget(&self) -> Budget {
+        self.budget
+    }
+
+    pub(crate) fn budget_mut(&mut self) -> &mut Budget {
+        &mut self.budget
+    }
+
+    /// The path as given.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// A path in the scene, resolved against the folder of the scene's file.
+    pub fn path(&self, relative: &str) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).join(relative)
+    }
+
+    /// The place of a node or setting: `cloth1`, `cloth1.friction`, `pin.components[2]`. An unknown setting has the
+    /// place of its node, and an unknown node `0..0`.
+    pub fn place(&self, name: &str) -> Range<usize> {
+        let node = name.split('.').next().unwrap_or_default();
+        self.places.get(name).or_else(|| self.places.get(node)).cloned().unwrap_or_default()
+    }
+
+    /// All known places.
+    pub(super) fn places(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
+        self.places.iter().map(|(name, span)| (name.as_str(), span))
+    }
+
+    pub(super) fn note(&mut self, name: String, span: &Range<usize>) {
+        self.places.entry(name).or_insert_with(|| span.clone());
     }
 }

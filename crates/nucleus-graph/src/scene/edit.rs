@@ -1,48 +1,48 @@
-//! Changing attributes in the text of a scene, and nothing else: comments and layout stay as they are.
+//! Changes of attributes in the text of a scene. Comments and layout stay unchanged.
 
 use std::ops::Range;
 
 use super::syntax::{self, Node, Value};
 use crate::attributes::node_type;
 
-/// An attribute that is to have another value.
+/// A change of one attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Edit {
-    /// The node, by its name.
+    /// The name of the node.
     pub node: String,
-    /// The attribute, by its long name.
+    /// The long name of the attribute.
     pub attribute: &'static str,
-    /// What it is to be.
+    /// The new value.
     pub to: NewValue,
 }
 
-/// What an attribute is to be.
+/// The new value of an attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NewValue {
-    /// This text, in place of whatever is there.
+    /// This text replaces the value.
     Text(String),
-    /// All numbers times a factor, none below `least`: one number, or the values of keys.
+    /// The number, or each value of the keys, times a factor and at least `least`.
     Scaled {
         /// The factor.
         factor: f64,
-        /// What they stay above.
+        /// The lower bound of the results.
         least: f64,
-        /// The number that is scaled if the attribute is not set.
+        /// The number to scale if the attribute is not set.
         default: f64,
     },
 }
 
-/// Why a text cannot be edited.
+/// Reasons why a text cannot be edited.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
-    /// It is not RON.
+    /// The text is not RON.
     #[error("the text is not a scene: {message}")]
     NotAScene {
-        /// What is wrong with it.
+        /// The first mistake.
         message: String,
     },
-    /// There is no such node in it.
+    /// The scene has no such node.
     #[error("the scene has no node `{node}`")]
     NoNode {
         /// Its name.
@@ -50,7 +50,7 @@ pub enum EditError {
     },
 }
 
-/// The text with these attributes changed. What is not set is added behind what is.
+/// The text with these changes. An attribute that is not set is added after those that are.
 ///
 /// ```
 /// use nucleus_graph::scene::edit::{Edit, NewValue, edit};
@@ -71,7 +71,7 @@ pub fn edit(text: &str, edits: &[Edit]) -> Result<String, EditError> {
         let body = node(&root, &edit.node).ok_or_else(|| EditError::NoNode { node: edit.node.clone() })?;
         change(text, body, edit, &mut changes);
     }
-    // From the back, so that places in front stay where they are; what is added at one place keeps its order.
+    // From the back, so that earlier offsets stay valid. The stable sort keeps the order of additions at one place.
     changes.sort_by_key(|(place, _)| place.start);
     let mut text = text.to_owned();
     for (place, new) in changes.into_iter().rev() {
@@ -85,16 +85,16 @@ fn node<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
     let Value::Record { fields, .. } = &root.value else { return None };
     let (_, nodes) = fields.iter().find(|(word, _)| word.text == "nodes")?;
     let Value::Map(entries) = &nodes.value else { return None };
-    let is_it = |key: &Node| matches!(&key.value, Value::Text(text) if text == name);
-    entries.iter().find(|(key, _)| is_it(key)).map(|(_, body)| body)
+    let is_named = |key: &Node| matches!(&key.value, Value::Text(text) if text == name);
+    entries.iter().find(|(key, _)| is_named(key)).map(|(_, body)| body)
 }
 
 fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>, String)>) {
     let Value::Record { name, fields } = &body.value else { return };
     let row =
         name.as_ref().and_then(|name| node_type(&name.text)).and_then(|of| of.attribute(edit.attribute));
-    let is_it = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
-    match fields.iter().find(|(word, _)| is_it(&word.text)) {
+    let is_named = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
+    match fields.iter().find(|(word, _)| is_named(&word.text)) {
         Some((_, value)) => match &edit.to {
             NewValue::Text(new) => changes.push((value.span.clone(), new.clone())),
             NewValue::Scaled { factor, least, .. } => {
@@ -112,7 +112,7 @@ fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>,
     }
 }
 
-/// Where a new field goes, and how it is written there: on a line of its own if the last one is on one.
+/// The place and text of a new field. It gets its own line if the last field has one.
 fn added(
     text: &str,
     body: &Node,
@@ -131,7 +131,7 @@ fn added(
     (value.span.end..value.span.end, format!("{separator}{attribute}: {new}"))
 }
 
-/// The numbers that are the value: itself, or the values of its keys.
+/// The numbers of a value with their places: the number itself, or the values of keys.
 fn numbers(value: &Node) -> Vec<(&Range<usize>, f64)> {
     match &value.value {
         Value::Number(x) => vec![(&value.span, *x)],
@@ -153,7 +153,7 @@ fn key_value(key: &Node) -> Option<(&Range<usize>, f64)> {
     if let Value::Number(x) = value.value { Some((&value.span, x)) } else { None }
 }
 
-/// A number as scenes write it: rounded to six digits that matter, so that a factor leaves no dust.
+/// A number rounded to six significant digits, so that scaling leaves no rounding error in the text.
 fn written(x: f64) -> String {
     let digits = if x == 0.0 { 0 } else { (5.0 - x.abs().log10().floor()).clamp(0.0, 15.0) as usize };
     let text = format!("{x:.digits$}");
@@ -188,20 +188,20 @@ Scene(
     }
 
     #[test]
-    fn only_the_value_changes_and_comments_stay() {
+    fn a_change_replaces_only_the_value() {
         let edited = edit(TEXT, &[of("nucleus1", "subSteps", text("8"))]).unwrap();
         assert_eq!(edited, TEXT.replace("subSteps: 3,", "subSteps: 8,"));
     }
 
     #[test]
-    fn keys_are_scaled_one_by_one_where_they_stand() {
+    fn values_of_keys_are_scaled_one_by_one() {
         let half = NewValue::Scaled { factor: 0.01, least: 1.0, default: 96.0 };
         let edited = edit(TEXT, &[of("nucleus1", "evaluations", half)]).unwrap();
         assert!(edited.contains("keys([(1, 1, stepped), (13, 7.68), /* slow */ (30, 3.84)])"), "{edited}");
     }
 
     #[test]
-    fn what_is_not_set_is_added_where_it_reads_well() {
+    fn attributes_that_are_not_set_are_added_in_the_layout_of_their_node() {
         let edits = [
             of("nucleus1", "maxCollisionIterations", text("5")),
             of("cloth1", "damp", text("0.1")),
@@ -215,21 +215,21 @@ Scene(
     }
 
     #[test]
-    fn short_names_are_the_same_attribute() {
+    fn short_names_are_found_by_the_long_name() {
         let double = NewValue::Scaled { factor: 2.0, least: 0.0, default: 20.0 };
         let edited = edit(TEXT, &[of("cloth1", "stretchResistance", double)]).unwrap();
         assert!(edited.contains("stch: 40)"), "{edited}");
     }
 
     #[test]
-    fn a_node_that_is_not_there_is_named_and_nonsense_refused() {
+    fn missing_nodes_and_malformed_texts_are_errors() {
         let missing = edit(TEXT, &[of("n", "subSteps", text("8"))]).unwrap_err();
         assert_eq!(missing, EditError::NoNode { node: "n".to_owned() });
         assert!(matches!(edit("Scene(", &[]), Err(EditError::NotAScene { .. })));
     }
 
     #[test]
-    fn numbers_are_written_without_dust() {
+    fn numbers_are_rounded_to_six_significant_digits() {
         assert_eq!([0.1 + 0.2, 192.0, 1e-7 / 3.0, 0.0].map(written), ["0.3", "192", "0.0000000333333", "0"]);
     }
 }

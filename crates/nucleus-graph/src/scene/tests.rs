@@ -65,7 +65,7 @@ fn the_short_form_makes_the_connections() {
 }
 
 #[test]
-fn vectors_can_be_keyed_as_one_or_part_by_part() {
+fn vectors_can_be_keyed_as_a_whole_or_by_component() {
     let keyed = with_nodes(
         r#""a": transform(translate: keys([(1, (0, 1, 2)), (3, (2, 1, 0), stepped)])),
            "b": transform(ty: 1, tx: keys([(1, 0), (3, 2, stepped)]), translateZ: keys([(1, 2), (3, 0, stepped)]))"#,
@@ -82,7 +82,7 @@ fn vectors_can_be_keyed_as_one_or_part_by_part() {
 }
 
 #[test]
-fn words_of_an_enum_are_ours_or_mayas_or_an_index() {
+fn enums_are_set_by_word_or_mayas_label_or_index() {
     for written in ["objectSpace", "\"Object Space\"", "\"objectSpace\"", "1"] {
         let text = with_nodes(&format!(
             "\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", scalingRelation: {written})"
@@ -94,7 +94,7 @@ fn words_of_an_enum_are_ours_or_mayas_or_an_index() {
 }
 
 #[test]
-fn switches_and_words_jump_between_keys_and_numbers_move() {
+fn switches_and_words_are_stepped_by_default_and_numbers_linear() {
     let text = with_nodes(
         r#""p": polyPlane(), "c": nCloth(inputMesh: "p", drag: keys([(1, 0), (3, 1)]),
            collide: keys([(1, false), (3, true)]))"#,
@@ -113,9 +113,9 @@ fn soft_ranges_may_be_exceeded() {
     assert_eq!(warnings, []);
 }
 
-// EVIDENCE: N3.1-10  what is inherited, or set, and not supported is said
+// EVIDENCE: N3.1-10  a setting that is not supported gives a warning, also if it is inherited
 #[test]
-fn what_has_no_effect_yet_is_a_warning_at_its_place() {
+fn a_setting_without_effect_yet_is_a_warning_at_its_place() {
     let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", rigidity: 1)"#);
     let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
     let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
@@ -128,7 +128,7 @@ fn what_has_no_effect_yet_is_a_warning_at_its_place() {
 }
 
 #[test]
-fn a_byte_order_mark_is_passed_over() {
+fn a_byte_order_mark_is_ignored() {
     let plain = scene(SHEET);
     assert_eq!(scene(&format!("\u{feff}{}", SHEET)), plain);
 }

@@ -1,4 +1,4 @@
-//! A scene as text: always the same text for the same scene.
+//! A scene as text. Equal scenes give equal texts.
 
 use std::fmt::Write;
 
@@ -13,13 +13,13 @@ use super::short_form::ShortForm;
 
 /// Writes a scene as RON that reads back to the same scene, to the bit.
 ///
-/// Nodes are in the order of their names, attributes in that of their tables. What creation commands make
-/// is left out, because reading makes it again; what differs from that is written connection by connection.
+/// Nodes are in the order of their names, attributes in that of their tables. Connections of creation commands are
+/// left out, because reading makes them again; all others are written one by one.
 pub fn write_scene(scene: &Scene) -> String {
     write(scene, &Comments::default())
 }
 
-/// The same, with the comments of the text that the scene was read from, each where it belongs.
+/// As [`write_scene`], with the comments of the text that the scene was read from.
 pub fn format_scene(scene: &Scene, text: &str) -> String {
     write(scene, &Comments::of(text, &scene.source))
 }
@@ -46,7 +46,7 @@ fn write(scene: &Scene, comments: &Comments) -> String {
         write_node(&scene.graph, id, node, (&short, comments), &mut text);
     }
     text.push_str("    },\n");
-    write_connections(&short.by_hand, &mut text);
+    write_connections(&short.explicit, &mut text);
     if !scene.checks.is_empty() {
         let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "    checks: [{}],", checks.join(", "));
@@ -57,7 +57,7 @@ fn write(scene: &Scene, comments: &Comments) -> String {
     text + ")\n"
 }
 
-/// What no short form says.
+/// Connections that no short form implies.
 fn write_connections(pairs: &[[String; 2]], text: &mut String) {
     if pairs.is_empty() {
         return;
@@ -87,7 +87,7 @@ fn write_node(graph: &Graph, id: NodeId, node: &Node, forms: (&ShortForm, &Comme
             *text += &comments.line(node.name(), indent, &head);
             let mut last = "";
             for (row, field) in fields {
-                // The parts of a vector have one place together.
+                // The components of a vector have one place together.
                 let place =
                     if row.name == last { String::new() } else { format!("{}.{}", node.name(), row.name) };
                 *text += &comments.line(&place, "            ", &format!("{field},"));
@@ -98,13 +98,13 @@ fn write_node(graph: &Graph, id: NodeId, node: &Node, forms: (&ShortForm, &Comme
     }
 }
 
-/// `name: value` for one attribute, or for each part of it; nothing if it is not set.
+/// `name: value` for an attribute, or for each component of a vector. Empty if it is not set.
 fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortForm) -> Vec<String> {
     let node = graph.node(id);
     let target = match row.name {
         "parent" => node.parent(),
         "blendTarget" => graph.blend_target(id),
-        name => short.names(id, name),
+        name => short.named(id, name),
     };
     if let Some(target) = target {
         return vec![format!("{}: {}", row.name, quoted(graph.node(target).name()))];
@@ -112,24 +112,24 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     let is_particles = node.node_type().is_a(&n_particle::N_PARTICLE);
     if row.name == "nucleus"
         && is_particles
-        && short.names(id, "joined").is_none()
-        && !short.is_wired(node.name())
+        && !short.is_object(id)
+        && !short.has_explicit_connections(node.name())
     {
         return vec!["nucleus: \"\"".to_owned()];
     }
     node.settings().get(row.name).map_or_else(Vec::new, |setting| setting_lines(row, setting))
 }
 
-/// What is set on an attribute: `name: value`, or a line for each part of it.
+/// `name: value` for a setting, or a line per component of a vector.
 pub(super) fn setting_lines(row: &Attribute, setting: &Setting) -> Vec<String> {
     match setting {
-        Setting::Fixed(value) => vec![format!("{}: {}", row.name, held(value, row))],
+        Setting::Fixed(value) => vec![format!("{}: {}", row.name, value_text(value, row))],
         Setting::Keyed(curve) => vec![format!("{}: {}", row.name, keyed(curve, row))],
         Setting::Parts(channels) => parts(channels, row),
     }
 }
 
-fn held(value: &Value, row: &Attribute) -> String {
+fn value_text(value: &Value, row: &Attribute) -> String {
     match value {
         Value::Bool(on) => on.to_string(),
         Value::Int(number) => number.to_string(),
@@ -150,12 +150,12 @@ fn held(value: &Value, row: &Attribute) -> String {
     }
 }
 
-/// A vector: as one if its parts are alike, else part by part.
+/// A vector: as one field if its components are all fixed or have equal keys, else one field per component.
 fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
     use Channel::{Fixed, Keyed};
     match channels {
         [Fixed(x), Fixed(y), Fixed(z)] => vec![format!("{}: {}", row.name, triple([*x, *y, *z]))],
-        [Keyed(x), Keyed(y), Keyed(z)] if alike(x, y) && alike(x, z) => {
+        [Keyed(x), Keyed(y), Keyed(z)] if have_equal_keys(x, y) && have_equal_keys(x, z) => {
             let key = |k: usize| {
                 let value = triple([x, y, z].map(|curve| curve.keys()[k].value));
                 key(x.keys()[k].frame, value, x.keys()[k].tangent, row)
@@ -173,8 +173,8 @@ fn parts(channels: &[Channel; 3], row: &Attribute) -> Vec<String> {
     }
 }
 
-/// Whether two curves have keys at the same frames, with the same tangents, and go on in the same way.
-fn alike(a: &Curve, b: &Curve) -> bool {
+/// Whether two curves have the same key frames, tangents and infinities.
+fn have_equal_keys(a: &Curve, b: &Curve) -> bool {
     a.infinities() == b.infinities()
         && a.keys().len() == b.keys().len()
         && a.keys()
@@ -193,7 +193,7 @@ fn keyed(curve: &Curve, row: &Attribute) -> String {
     keys(list, curve.infinities())
 }
 
-/// Keys, and how they go on unless they stay.
+/// Keys, with infinities that are not constant.
 fn keys(list: String, infinities: [Infinity; 2]) -> String {
     let word =
         |infinity| Infinity::WORDS.iter().find(|(_, known)| *known == infinity).map_or("", |(word, _)| word);
@@ -206,24 +206,24 @@ fn keys(list: String, infinities: [Infinity; 2]) -> String {
 }
 
 fn key(frame: f64, value: String, tangent: Tangent, row: &Attribute) -> String {
-    let usual =
+    let default =
         if matches!(row.kind, Kind::Bool | Kind::Choice(_)) { Tangent::Stepped } else { Tangent::Linear };
     let word = Tangent::WORDS.iter().find(|(_, known)| *known == tangent).map_or("", |(word, _)| word);
-    if tangent == usual { format!("({frame}, {value})") } else { format!("({frame}, {value}, {word})") }
+    if tangent == default { format!("({frame}, {value})") } else { format!("({frame}, {value}, {word})") }
 }
 
 fn ramp_point(point: &RampPoint) -> String {
-    let way = way_on(point.interpolation);
-    format!("({}, {}{way})", point.position, point.value)
+    let suffix = interpolation_suffix(point.interpolation);
+    format!("({}, {}{suffix})", point.position, point.value)
 }
 
 fn color_point(point: &ColorPoint) -> String {
-    let way = way_on(point.interpolation);
-    format!("({}, {}{way})", point.position, triple(point.color))
+    let suffix = interpolation_suffix(point.interpolation);
+    format!("({}, {}{suffix})", point.position, triple(point.color))
 }
 
-/// How a ramp goes on to its next point, unless that is the usual way.
-fn way_on(interpolation: Choice) -> String {
+/// The interpolation to the next point of a ramp, unless it is linear.
+fn interpolation_suffix(interpolation: Choice) -> String {
     match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
         Some(&"linear") | None => String::new(),
         Some(word) => format!(", {word}"),
@@ -243,7 +243,7 @@ fn word(choice: Choice, row: &Attribute) -> String {
     found.map_or_else(|| choice.0.to_string(), |(_, word)| word)
 }
 
-/// Text in quotes, with escapes for what cannot stand there.
+/// Text in quotes, with escapes for quotes, backslashes and control characters.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {

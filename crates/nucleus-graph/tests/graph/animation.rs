@@ -1,4 +1,4 @@
-//! What moves, and when.
+//! Frame rates, evaluation intervals, and moving meshes.
 
 use std::fs;
 
@@ -48,7 +48,7 @@ fn a_second_is_a_second_at_any_frame_rate() {
 // EVIDENCE: N2.4-9  evaluating more often refines the base step
 #[test]
 fn evaluations_may_be_finer_or_coarser_than_frames() {
-    // The symplectic fall of n equal steps is g t² (n + 1) / 2n: so many steps there were.
+    // Symplectic Euler with n equal steps falls by g t² (n + 1) / 2n, which gives the number of steps.
     let steps = |every: f64, sub_steps: u32| {
         let program = falling(
             &format!("start: 1, end: 25, fps: 24, every: {every}"),
@@ -62,7 +62,7 @@ fn evaluations_may_be_finer_or_coarser_than_frames() {
     }
 }
 
-/// Substeps that are shown.
+/// Records the substeps that the observer sees.
 #[derive(Default)]
 struct Shown(Vec<(u32, u32)>);
 
@@ -73,7 +73,7 @@ impl StepObserver for Shown {
 }
 
 #[test]
-fn a_frame_of_several_evaluations_is_shown_as_one() {
+fn the_evaluations_of_a_frame_are_observed_as_one_frame() {
     let program = falling("start: 1, end: 3, fps: 24, every: 0.5", "subSteps: 2");
     let mut shown = Shown::default();
     Simulation::<f32>::new(&program, 1).advance(&mut shown);
@@ -81,7 +81,7 @@ fn a_frame_of_several_evaluations_is_shown_as_one() {
 }
 
 #[test]
-fn evaluations_that_leap_over_frames_end_at_the_last_frame() {
+fn evaluations_that_skip_frames_end_at_the_last_frame() {
     let program = falling("start: 1, end: 6, fps: 24, every: 2", "");
     let mut run = Simulation::<f32>::new(&program, 1);
     let mut frames = Vec::new();
@@ -92,7 +92,7 @@ fn evaluations_that_leap_over_frames_end_at_the_last_frame() {
     assert_eq!(frames, [3, 5, 6]);
 }
 
-// EVIDENCE: N3.1-6  the nucleus solves when its time goes on, and only then
+// EVIDENCE: N3.1-6  the nucleus solves only when its time advances
 #[test]
 fn a_nucleus_that_is_off_or_has_no_time_keeps_its_state() {
     let off = falling("start: 1, end: 9, fps: 24", "enable: keys([(1, true), (5, false)])");
@@ -104,7 +104,7 @@ fn a_nucleus_that_is_off_or_has_no_time_keeps_its_state() {
     assert!(scene.graph.disconnect(from, to));
     let still = compile(&scene).expect("it runs");
     assert!(
-        still.warnings().iter().any(|said| said.message.contains("nothing is solved")),
+        still.warnings().iter().any(|warning| warning.message.contains("nothing is solved")),
         "{:?}",
         still.warnings()
     );
@@ -112,7 +112,7 @@ fn a_nucleus_that_is_off_or_has_no_time_keeps_its_state() {
 }
 
 #[test]
-fn time_that_leaps_too_far_is_not_solved() {
+fn a_jump_of_time_beyond_the_limit_is_not_solved() {
     let jump = |limit: u32| {
         program(&of_nodes(
             &format!(
@@ -125,9 +125,9 @@ fn time_that_leaps_too_far_is_not_solved() {
     };
     let (strict, loose) = (heights(&jump(1)), heights(&jump(5)));
     assert_eq!(strict[2], loose[2]);
-    assert_eq!(strict[3], strict[2], "the leap to frame 9 is left out");
+    assert_eq!(strict[3], strict[2], "the jump to frame 9 is not solved");
     assert!(loose[3] < loose[2]);
-    assert!(strict[4] < strict[3], "and from there it goes on");
+    assert!(strict[4] < strict[3], "later frames are solved");
 }
 
 /// Points of a collider after some frames, in scene units.
@@ -147,7 +147,7 @@ fn collider(program: &Program, frames: usize) -> Vec<[f32; 3]> {
 
 // EVIDENCE: N2.4-8  a collider that changes its shape has a velocity at each of its points
 #[test]
-fn a_mesh_is_blended_into_another_and_carries_cloth_along() {
+fn the_points_of_a_collider_follow_its_blend() {
     let text = of_nodes(
         r#""n": nucleus(gravity: 0, airDensity: 0),
            "low": polyPlane(width: 4, height: 4, blendTarget: "high", blend: keys([(1, 0), (11, 1)])),

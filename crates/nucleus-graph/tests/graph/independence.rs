@@ -1,4 +1,4 @@
-//! What has no influence on what.
+//! Independence of nuclei, nodes, names and orders.
 
 use nucleus_graph::attributes::{Kind, NodeType, Value, n_cloth, n_rigid, nucleus, poly_plane};
 use nucleus_graph::compile::compile;
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::scenes::{after, gallery, of_nodes, program, scene};
 
-/// A sheet over a ball, all names ending in `end`.
+/// A sheet over a ball. All names end in `end`.
 fn sheet(end: &str, nucleus: &str, cloth: &str) -> String {
     format!(
         r#""n{end}": nucleus({nucleus}),
@@ -20,7 +20,7 @@ fn sheet(end: &str, nucleus: &str, cloth: &str) -> String {
     )
 }
 
-// EVIDENCE: N3.1-2  what hangs on another nucleus has no influence: every bit is as if it were not there
+// EVIDENCE: N3.1-2  objects of another nucleus have no influence: every bit is the same without them
 #[test]
 fn objects_on_different_nuclei_never_affect_each_other() {
     let one = sheet("1", "windSpeed: 3", "");
@@ -46,7 +46,7 @@ fn each_nucleus_has_its_own_gravity_and_its_own_time() {
     assert!(height("c2", 3) < height("c2", 0));
 }
 
-// EVIDENCE: N3.1-3  an object can ignore the solver's gravity, and a field hangs on the object it is given to alone
+// EVIDENCE: N3.1-3  an object can ignore the solver's gravity, and a field is connected to its target alone
 #[test]
 fn an_object_can_ignore_gravity_and_a_field_acts_on_one_object() {
     let nodes = r#""n": nucleus(airDensity: 0),
@@ -55,7 +55,7 @@ fn an_object_can_ignore_gravity_and_a_field_acts_on_one_object() {
     let program = program(&of_nodes(nodes, ""));
     let (start, end) = (after(&program, 0, "c1"), after(&program, 2, "c1"));
     let moved = start.iter().flatten().zip(end.iter().flatten());
-    // Rounding moves what is at rest by less than a nanometre.
+    // Rounding moves points at rest by less than a nanometre.
     assert!(moved.into_iter().all(|(a, b)| (f32::from_bits(*a) - f32::from_bits(*b)).abs() < 1e-9));
     assert_ne!(after(&program, 2, "c2"), after(&program, 0, "c2"));
     let graph = program.graph();
@@ -79,7 +79,7 @@ fn a_collider_is_moved_by_its_mesh_alone() {
 
 // EVIDENCE: N3.1-2  only what is connected to the nucleus is solved
 #[test]
-fn what_is_not_connected_is_not_solved_and_changes_nothing() {
+fn nodes_that_are_not_connected_are_not_solved_and_change_nothing() {
     let nodes = sheet("1", "", "");
     let plain = program(&of_nodes(&nodes, ""));
     let more = nodes
@@ -90,7 +90,7 @@ fn what_is_not_connected_is_not_solved_and_changes_nothing() {
 }
 
 #[test]
-fn disconnecting_is_as_if_never_connected() {
+fn a_disconnected_graph_equals_one_that_was_never_connected() {
     let mut wired = scene(&of_nodes(&sheet("1", "", ""), r#"("b1.translateY", "c1.friction")"#));
     let plain = scene(&of_nodes(&sheet("1", "", ""), ""));
     assert_ne!(wired, plain);
@@ -98,7 +98,7 @@ fn disconnecting_is_as_if_never_connected() {
         ["b1.translateY", "c1.friction"].map(|plug| wired.graph.plug(plug).expect("it is there"));
     assert!(wired.graph.disconnect(from, to));
     assert_eq!(wired, plain);
-    // A collider that is taken off its nucleus is as if it had never been there.
+    // A collider that is disconnected from its nucleus has no influence.
     for [from, to] in
         [["r1.currentState", "n1.inputPassive[0]"], ["r1.startState", "n1.inputPassiveStart[0]"]]
     {
@@ -110,14 +110,14 @@ fn disconnecting_is_as_if_never_connected() {
     assert_eq!(after(&without, 4, "c1"), after(&never, 4, "c1"));
 }
 
-/// A scene in which a node of a type has an attribute set to its own default.
+/// A scene in which an attribute of a node type is set to its default.
 fn at_default(node_type: &'static NodeType, name: &str, value: &Value) -> Option<String> {
     let mut scene = scene(&of_nodes(&sheet("1", "", ""), ""));
     let (id, row) = {
         let (id, node) = scene.graph.iter().find(|(_, node)| node.node_type() == node_type)?;
         (id, node.node_type().attribute(name)?)
     };
-    // Left out, these are worked out, from the mesh or the scene's time.
+    // Without a setting, these are computed from the mesh or the scene's time.
     if ["thickness", "startFrame", "selfCollisionFlag", "selfCollideWidthScale"].contains(&name)
         || scene.graph.node(id).settings().contains_key(name)
     {
@@ -217,7 +217,7 @@ proptest! {
 }
 
 #[test]
-fn the_gallery_is_written_in_short_and_reads_back_to_the_same() {
+fn the_scenes_of_the_gallery_are_written_in_short_form_and_read_back_equal() {
     for (path, text) in gallery() {
         let (scene, _) = read_scene_text(&text, &path).unwrap_or_else(|mistakes| panic!("{mistakes:#?}"));
         let written = nucleus_graph::scene::format_scene(&scene, &text);

@@ -1,4 +1,4 @@
-//! What holds for every graph and every scene, whatever is done to them.
+//! Properties of all graphs and scenes.
 
 mod animation;
 mod independence;

@@ -1,4 +1,4 @@
-//! Maps: attributes that differ from point to point.
+//! Vertex maps: attributes that differ from point to point.
 
 use std::fs;
 use std::path::Path;
@@ -22,8 +22,8 @@ fn hanging(cloth: &str) -> String {
     )
 }
 
-/// Everything that is said about a text, in the order of the file; with the mistakes of compiling.
-fn said(text: &str, file: &Path) -> Vec<Diagnostic> {
+/// All diagnostics of a text, those of compiling included.
+fn diagnostics(text: &str, file: &Path) -> Vec<Diagnostic> {
     match read_scene_text(text, file) {
         Err(mistakes) => mistakes,
         Ok((scene, mut warnings)) => match compile(&scene) {
@@ -36,9 +36,12 @@ fn said(text: &str, file: &Path) -> Vec<Diagnostic> {
     }
 }
 
-/// Message, and the text it is about.
-fn told<'t>(text: &'t str, file: &Path) -> Vec<(String, &'t str)> {
-    said(text, file).into_iter().map(|said| (said.message, &text[said.span])).collect()
+/// The message and the text at the place of each diagnostic.
+fn messages<'t>(text: &'t str, file: &Path) -> Vec<(String, &'t str)> {
+    diagnostics(text, file)
+        .into_iter()
+        .map(|diagnostic| (diagnostic.message, &text[diagnostic.span]))
+        .collect()
 }
 
 fn model(text: &str) -> String {
@@ -60,7 +63,7 @@ const MAPS: [(&str, &str, f64); 10] = [
     ("friction", "friction", 0.1),
 ];
 
-/// A cloth whose attribute is `value`. The map of stretch holds for compression too, so there is none.
+/// A cloth whose attribute is `value`. Without compression, because the stretch map holds for compression too.
 fn plain(attribute: &str, value: f64) -> String {
     let others = [("damp", 0.1), ("compressionResistance", 0.0)];
     let others = others.iter().filter(|(other, _)| *other != attribute);
@@ -80,7 +83,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_map_that_is_the_same_everywhere_is_another_value_of_its_attribute(
+    fn a_constant_map_scales_its_attribute(
         which in 0..MAPS.len(), factor in prop_oneof![0.01..100.0f64, Just(0.0), Just(1.0)]
     ) {
         let (attribute, map, default) = MAPS[which];
@@ -91,7 +94,7 @@ proptest! {
     }
 
     #[test]
-    fn the_ways_to_give_a_map_come_to_the_same(values in prop::collection::vec(0.1..3.0f64, 25)) {
+    fn a_list_a_file_and_an_expression_give_the_same_map(values in prop::collection::vec(0.1..3.0f64, 25)) {
         let folder = tempfile::tempdir().expect("a folder");
         let lines: Vec<String> = values.iter().enumerate().map(|(k, x)| format!("{x}, # point {k}")).collect();
         fs::write(folder.path().join("w.txt"), lines.join("\n")).expect("written");
@@ -100,7 +103,7 @@ proptest! {
         let at = |values: &str| {
             let text = mapped("bend", "bendResistance", 0.1, values);
             let (scene, _) = read_scene_text(&text, &folder.path().join("scene.ron")).expect("it reads");
-            format!("{:?}", compile(&scene).unwrap_or_else(|said| panic!("{said:?}")).model())
+            format!("{:?}", compile(&scene).unwrap_or_else(|diagnostic| panic!("{diagnostic:?}")).model())
         };
         let list = at(&format!("{values:?}"));
         prop_assert_eq!(&at(r#"file("w.txt")"#), &list);
@@ -109,8 +112,8 @@ proptest! {
 }
 
 #[test]
-fn a_map_is_felt() {
-    // Friction needs something to rub against; the core's tests slide cloth down slopes.
+fn every_map_changes_the_motion() {
+    // Friction needs a contact; the core tests it with cloth that slides down slopes.
     for (attribute, map, default) in MAPS.into_iter().filter(|(_, map, _)| *map != "friction") {
         let default = if map == "damp" { 3.0 } else { default };
         let varied = program(&mapped(map, attribute, default, r#"expression("0.25 + u")"#));
@@ -119,8 +122,7 @@ fn a_map_is_felt() {
     }
 }
 
-/// A sheet between two held rows, three times as heavy on one half, sags more there, and the other half less than its
-/// mirror image.
+/// A sheet between two held edges, three times as heavy on one half, sags more there than at the mirrored place.
 #[test]
 fn a_sheet_that_is_heavy_on_one_half_sags_there() {
     let text = of_nodes(
@@ -146,7 +148,7 @@ fn a_sheet_that_is_heavy_on_one_half_sags_there() {
 }
 
 #[test]
-fn a_map_counts_by_its_type() {
+fn the_map_type_decides_whether_a_map_is_used() {
     let plain = model(&hanging("bendResistance: 1"));
     let values = format!("{:?}", (0..25).collect::<Vec<_>>());
     for (fields, counts) in [
@@ -164,7 +166,7 @@ fn a_map_counts_by_its_type() {
 }
 
 #[test]
-fn a_map_that_is_given_gives_its_type() {
+fn a_map_without_a_type_implies_its_type() {
     let of = |fields: &str| program(&hanging(fields)).model().cloths()[0].factors.clone();
     let maps =
         ["mass", "damp", "stretch", "compression", "bend", "restLengthScale", "drag", "tangentialDrag"];
@@ -177,7 +179,7 @@ fn a_map_that_is_given_gives_its_type() {
 }
 
 #[test]
-fn what_is_set_of_a_map_and_does_not_count_is_a_warning() {
+fn unused_settings_of_a_map_give_a_warning() {
     let file = Path::new("test.ron");
     for (fields, message, place) in [
         (
@@ -204,7 +206,7 @@ fn what_is_set_of_a_map_and_does_not_count_is_a_warning() {
         ("rigidityMapType: perVertex", "`rigidityMapType` of `c` has no effect yet", "rigidityMapType"),
     ] {
         let text = hanging(fields);
-        let warnings = told(&text, file);
+        let warnings = messages(&text, file);
         assert_eq!(warnings, [(message.to_owned(), place)], "{fields}");
     }
 }
@@ -224,7 +226,7 @@ fn the_stretch_map_holds_for_compression_unless_it_has_its_own() {
 }
 
 #[test]
-fn expressions_know_where_a_point_is() {
+fn expressions_have_the_position_and_coordinates_of_a_point() {
     let masses = |expression: &str| {
         let fields =
             format!("translateMe, massMapType: perVertex, massPerVertex: expression({expression:?})");
@@ -232,7 +234,7 @@ fn expressions_know_where_a_point_is() {
             .replace("polyPlane(", "polyPlane(translate: (10, 20, 30), ");
         program(&text).model().cloths()[0].factors.mass.clone()
     };
-    // From -1 to 1 along x and from 1 to -1 along z, wherever the mesh is put.
+    // From -1 to 1 along x and from 1 to -1 along z, in the space of the mesh.
     assert_eq!(masses("x + 2")[..6], [1.0, 1.5, 2.0, 2.5, 3.0, 1.0]);
     assert_eq!(masses("z + y + 2")[..6], [3.0, 3.0, 3.0, 3.0, 3.0, 2.5]);
     assert_eq!(masses("1 + u + 10 * v")[..6], [1.0, 1.25, 1.5, 1.75, 2.0, 3.5]);
@@ -254,7 +256,7 @@ fn a_texture_is_sampled_at_the_texture_coordinates_of_each_point() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
     fs::write(folder.path().join("half.png"), png(2, &[51, 255, 51, 255])).expect("written");
-    // A square whose corners are at the middles of the pixels, its texture turned a quarter; and a point at a seam.
+    // A square with its corners at pixel centres and its texture rotated by 90°, and points at a seam.
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25 0.25\nvt 0.75 0.25\nvt 0.75 0.75\nvt 0.25 0.75\n\
                f 1/2 2/3 3/4 4/1\nf 2/1 1/1 3/1\n";
     fs::write(folder.path().join("square.obj"), obj).expect("written");
@@ -272,7 +274,7 @@ fn a_texture_is_sampled_at_the_texture_coordinates_of_each_point() {
 }
 
 #[test]
-fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
+fn a_mistake_in_a_map_is_reported_with_node_attribute_place_and_counts() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).expect("written");
@@ -353,12 +355,12 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
         ),
         (
             texture("text.png"),
-            format!("`{}` is not a sound PNG: Invalid PNG signature.", at("text.png")),
+            format!("`{}` is not a valid PNG: Invalid PNG signature.", at("text.png")),
             "texture(\"text.png\")",
         ),
     ] {
         let text = hanging(&fields);
-        let found = told(&text, &file);
+        let found = messages(&text, &file);
         assert!(found.contains(&(message.clone(), place)), "{fields}: {found:?}");
     }
     let mut promise = Vec::new();
@@ -367,12 +369,13 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
     drop(writer);
     put("huge.png", &promise);
     let text = hanging(&texture("huge.png"));
-    let found = told(&text, &file);
-    let message = format!("`{}` has 1000000 x 2000000 pixels; 67108864 are the most", at("huge.png"));
+    let found = messages(&text, &file);
+    let message =
+        format!("`{}` has 1000000 x 2000000 pixels, more than the limit of 67108864", at("huge.png"));
     assert_eq!(found, [(message, "texture(\"huge.png\")")]);
     let text = hanging(&texture("half.png"));
-    let found = told(&text, &file);
-    assert!(found[0].0.starts_with(&format!("`{}` is not a sound PNG: ", at("half.png"))), "{found:?}");
+    let found = messages(&text, &file);
+    assert!(found[0].0.starts_with(&format!("`{}` is not a valid PNG: ", at("half.png"))), "{found:?}");
     for (mesh, message) in [
         (
             r#"mesh(file: "bare.obj")"#,
@@ -390,7 +393,7 @@ fn a_mistake_in_a_map_is_told_with_node_attribute_place_and_counts() {
     ] {
         let nodes = r#""n": nucleus(), "p": MESH, "c": nCloth(inputMesh: "p", massMap: texture("good.png"))"#;
         let text = of_nodes(&nodes.replace("MESH", mesh), "");
-        assert_eq!(told(&text, &file), [(message, "texture(\"good.png\")")], "{mesh}");
+        assert_eq!(messages(&text, &file), [(message, "texture(\"good.png\")")], "{mesh}");
     }
 }
 

@@ -14,7 +14,7 @@ fn cloth(fields: &str) -> String {
 }
 
 #[test]
-fn what_the_scene_sets_counts_more_than_the_preset_and_that_more_than_the_default() {
+fn settings_have_precedence_over_the_preset_and_that_over_defaults() {
     let scene = scene(&cloth(r#"preset: "silk", friction: 0.7"#));
     let node = scene.graph.node(scene.graph.find("c").expect("it is there"));
     assert_eq!(node.get(&n_base::FRICTION), 0.7);
@@ -24,7 +24,7 @@ fn what_the_scene_sets_counts_more_than_the_preset_and_that_more_than_the_defaul
     assert!(written.contains("preset: \"silk\"") && !written.contains("stretchResistance"), "{written}");
 }
 
-/// Maya's own eight, as its manual lists them.
+/// The eight materials of Maya, with the values of its manual.
 #[test]
 fn the_eight_materials_of_maya_are_as_in_its_manual() {
     let columns = "friction stretchResistance compressionResistance bendResistance bendAngleDropoff pointMass tangentialDrag damp";
@@ -50,7 +50,7 @@ fn the_eight_materials_of_maya_are_as_in_its_manual() {
 }
 
 #[test]
-fn every_preset_reads_and_says_what_it_is() {
+fn every_preset_can_be_read_and_has_a_description() {
     let all = presets();
     assert_eq!(all.len(), 13);
     for preset in &all {
@@ -60,16 +60,16 @@ fn every_preset_reads_and_says_what_it_is() {
 }
 
 #[test]
-fn what_a_preset_sets_without_effect_is_one_warning_at_its_name() {
+fn the_settings_of_a_preset_without_effect_give_at_most_one_warning() {
     let text = cloth(r#"preset: "silk""#);
     let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("it reads");
-    let said: Vec<&str> = warnings.iter().map(|warning| warning.message.as_str()).collect();
-    assert!(said.len() <= 1, "{said:?}");
-    assert!(said.iter().all(|said| said.starts_with("the preset `silk` sets ")), "{said:?}");
+    let messages: Vec<&str> = warnings.iter().map(|warning| warning.message.as_str()).collect();
+    assert!(messages.len() <= 1, "{messages:?}");
+    assert!(messages.iter().all(|message| message.starts_with("the preset `silk` sets ")), "{messages:?}");
 }
 
 #[test]
-fn a_preset_can_be_a_file_and_mistakes_in_it_are_told() {
+fn a_preset_can_be_a_file_and_its_mistakes_are_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
     fs::write(folder.path().join("mine.ron"), "// Mine.\nnCloth(friction: 0.9)").expect("written");

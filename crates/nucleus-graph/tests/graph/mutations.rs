@@ -1,4 +1,4 @@
-//! Scenes that somebody has got wrong: each says what is wrong, at its place, or runs.
+//! Mutated scenes: each runs, or is refused with errors at valid places.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use nucleus_graph::scene::{Diagnostic, Severity, read_scene_text};
 
 use super::scenes::gallery;
 
-/// Small numbers that look random and are the same everywhere (splitmix64).
+/// Pseudo-random small numbers, the same on every platform (splitmix64).
 struct Dice(u64);
 
 impl Dice {
@@ -88,11 +88,11 @@ fn damage(tokens: &mut Vec<String>, dice: &mut Dice) {
     }
 }
 
-/// Everything that is said about a text, after looking at its places.
+/// All diagnostics of a text, after a check of their places.
 fn judge(text: &str, file: &Path) -> Vec<Diagnostic> {
-    let said = match read_scene_text(text, file) {
+    let diagnostics = match read_scene_text(text, file) {
         Ok((mut scene, warnings)) => {
-            // A run of a billion frames is nobody's mistake here.
+            // A run of a billion frames is valid, and too long for a test.
             scene.time.end = scene.time.end.min(scene.time.start.saturating_add(3));
             match compile(&scene) {
                 Ok(_) => return warnings,
@@ -101,23 +101,26 @@ fn judge(text: &str, file: &Path) -> Vec<Diagnostic> {
         }
         Err(mistakes) => mistakes,
     };
-    assert!(said.iter().any(|said| said.severity == Severity::Error), "refused without a reason");
-    for diagnostic in &said {
+    assert!(
+        diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error),
+        "refused without a reason"
+    );
+    for diagnostic in &diagnostics {
         let notes = diagnostic.notes.iter().filter_map(|note| note.span.clone());
         for place in notes.chain([diagnostic.span.clone()]) {
             assert!(text.get(place.clone()).is_some(), "{place:?} of {diagnostic:?}");
         }
         assert!(!diagnostic.message.is_empty() && !diagnostic.message.ends_with('.'), "{diagnostic:?}");
     }
-    said
+    diagnostics
 }
 
-/// Fails with the text that did it.
-fn survive(text: &str, file: &Path) -> Vec<Diagnostic> {
+/// As `judge`; a panic keeps the text in a file.
+fn judge_or_keep(text: &str, file: &Path) -> Vec<Diagnostic> {
     catch_unwind(AssertUnwindSafe(|| judge(text, file))).unwrap_or_else(|_| {
         let kept = env::temp_dir().join("nucleus-broken-scene.ron");
         let _ = fs::write(&kept, text);
-        panic!("the scene in {} is not survived:\n{text}", kept.display())
+        panic!("the scene in {} panics:\n{text}", kept.display())
     })
 }
 
@@ -130,7 +133,7 @@ fn a_scene_with_mistakes_is_refused_at_a_place_or_runs() {
         for _ in 0..each {
             let mut tokens = tokens(&text);
             (0..=dice.roll(3)).for_each(|_| damage(&mut tokens, &mut dice));
-            survive(&tokens.concat(), &path);
+            judge_or_keep(&tokens.concat(), &path);
         }
     }
 }
@@ -140,19 +143,19 @@ fn corpus() -> PathBuf {
 }
 
 #[test]
-fn everything_in_the_corpus_is_survived() {
+fn no_text_of_the_corpus_panics() {
     let mut seen = 0;
     for entry in fs::read_dir(corpus()).expect("the corpus is there") {
         let path = entry.expect("an entry").path();
         let text = String::from_utf8_lossy(&fs::read(&path).expect("it can be read")).into_owned();
-        survive(&text, &path);
+        judge_or_keep(&text, &path);
         seen += 1;
     }
     assert!(seen > 0);
 }
 
-/// What is said, without names and numbers: two texts that are refused for the same reasons look alike.
-fn reasons(said: &[Diagnostic]) -> String {
+/// The messages without names and numbers: equal for texts that are refused for the same reasons.
+fn reasons(diagnostics: &[Diagnostic]) -> String {
     let plain = |message: &str| {
         let mut quoted = false;
         let mut text = String::new();
@@ -164,16 +167,16 @@ fn reasons(said: &[Diagnostic]) -> String {
         }
         text
     };
-    let mut reasons: Vec<String> = said.iter().map(|said| plain(&said.message)).collect();
+    let mut reasons: Vec<String> = diagnostics.iter().map(|diagnostic| plain(&diagnostic.message)).collect();
     reasons.sort();
     reasons.dedup();
     reasons.truncate(2);
     reasons.join("; ")
 }
 
-/// Goes on from whatever is refused for a new reason, and keeps it. `NUCLEUS_FUZZ_SECONDS` says how long.
+/// Mutates texts, and keeps those that are refused for a new reason. `NUCLEUS_FUZZ_SECONDS` is the duration.
 #[test]
-#[ignore = "runs as long as it is told to: NUCLEUS_FUZZ_SECONDS=600"]
+#[ignore = "runs for NUCLEUS_FUZZ_SECONDS, like 600"]
 fn the_reader_is_fuzzed() {
     let seconds = env::var("NUCLEUS_FUZZ_SECONDS").ok().and_then(|count| count.parse().ok()).unwrap_or(10);
     let begin = std::time::Instant::now();
@@ -183,7 +186,7 @@ fn the_reader_is_fuzzed() {
     for entry in fs::read_dir(corpus()).expect("the corpus is there") {
         let text =
             String::from_utf8_lossy(&fs::read(entry.expect("an entry").path()).expect("read")).into_owned();
-        known.insert(reasons(&survive(&text, Path::new("fuzz.ron"))));
+        known.insert(reasons(&judge_or_keep(&text, Path::new("fuzz.ron"))));
         pool.push(text);
     }
     let (mut tried, mut kept) = (0_u64, 0);
@@ -192,8 +195,8 @@ fn the_reader_is_fuzzed() {
         (0..=dice.roll(4)).for_each(|_| damage(&mut tokens, &mut dice));
         let text = tokens.concat();
         tried += 1;
-        if known.insert(reasons(&survive(&text, Path::new("fuzz.ron")))) && text.len() < 4096 {
-            // Named by what is in it: no run replaces what another has found.
+        if known.insert(reasons(&judge_or_keep(&text, Path::new("fuzz.ron")))) && text.len() < 4096 {
+            // Named by a hash of the text, so that no run replaces the finds of another.
             let name = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
                 (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
             });

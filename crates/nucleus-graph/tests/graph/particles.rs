@@ -1,4 +1,4 @@
-//! Particles: from a node to what is solved.
+//! Particles: from node to solver.
 
 use std::fs;
 use std::path::Path;
@@ -14,11 +14,11 @@ fn places(program: &Program, frames: usize) -> Vec<[f32; 3]> {
     after(program, frames, "q").into_iter().map(|place| place.map(f32::from_bits)).collect()
 }
 
-/// Everything that is said of a scene that runs.
+/// All warnings of a scene.
 fn warnings(text: &str) -> Vec<String> {
-    let (scene, mut said) = read_scene_text(text, Path::new("test.ron")).expect("it can be read");
-    said.extend(compile(&scene).expect("it runs").warnings().iter().cloned());
-    said.into_iter().map(|said| said.message).collect()
+    let (scene, mut diagnostics) = read_scene_text(text, Path::new("test.ron")).expect("it can be read");
+    diagnostics.extend(compile(&scene).expect("it runs").warnings().iter().cloned());
+    diagnostics.into_iter().map(|diagnostic| diagnostic.message).collect()
 }
 
 // EVIDENCE: N1.1-4  a particle is an object of the solver like cloth, without a face and without a link
@@ -36,7 +36,7 @@ fn particles_start_where_their_node_says_and_fall() {
 }
 
 #[test]
-fn an_initial_position_goes_before_a_position() {
+fn an_initial_position_has_precedence_over_a_position() {
     let nodes =
         r#""n": nucleus(), "q": nParticle(position: [(1, 2, 3)], pos0: [(7, 8, 9)], vel0: [(0, 0, 0)])"#;
     assert_eq!(places(&program(&of_nodes(nodes, "")), 0), [[7.0, 8.0, 9.0]]);
@@ -69,7 +69,7 @@ fn a_particle_is_as_thick_as_its_radius_and_its_scales_say() {
 }
 
 #[test]
-fn in_both_readings_of_resistances_a_particle_weighs_the_same() {
+fn a_particle_has_the_same_mass_in_both_resistance_models() {
     for model in ["classic", "physical"] {
         let nodes = format!(
             r#""n": nucleus(resistanceModel: {model}), "q": nParticle(position: [(0, 0, 0), (1, 0, 0)], pointMass: 3)"#
@@ -79,24 +79,27 @@ fn in_both_readings_of_resistances_a_particle_weighs_the_same() {
 }
 
 #[test]
-fn what_has_no_effect_on_particles_is_said() {
+fn settings_without_effect_on_particles_give_a_warning() {
     let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
     for name in
         ["damp: 1", "enableSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickinessRandomize: 1"]
     {
-        let said = of(&format!("position: [(0, 0, 0)], {name}"));
-        assert!(said.len() == 1 && said[0].ends_with("has no effect yet"), "{name}: {said:?}");
+        let messages = of(&format!("position: [(0, 0, 0)], {name}"));
+        assert!(messages.len() == 1 && messages[0].ends_with("has no effect yet"), "{name}: {messages:?}");
     }
     for name in ["thickness: 1", "startPositions: [(0, 0, 0)]", "restLengthScale: 2"] {
-        let said = of(&format!("position: [(0, 0, 0)], {name}"));
-        assert!(said.len() == 1 && said[0].ends_with("has no effect on such a node"), "{name}: {said:?}");
+        let messages = of(&format!("position: [(0, 0, 0)], {name}"));
+        assert!(
+            messages.len() == 1 && messages[0].ends_with("has no effect on such a node"),
+            "{name}: {messages:?}"
+        );
     }
 }
 
 #[test]
-fn the_names_of_nodes_do_not_matter_to_particles_and_cloth() {
+fn the_names_of_nodes_do_not_change_the_motion_of_particles_and_cloth() {
     let run = |[sheet, q, r]: [&str; 3]| {
         let nodes = format!(
             r#""n": nucleus(evaluations: 24), "p": polyPlane(width: 2, height: 2, subdivisions: (6, 6)),
@@ -111,7 +114,7 @@ fn the_names_of_nodes_do_not_matter_to_particles_and_cloth() {
 
 // EVIDENCE: N3.1-3  particles can ignore the solver's gravity
 #[test]
-fn particles_that_ignore_gravity_stay_and_those_that_can_be_pinned_are_carried() {
+fn particles_that_ignore_gravity_stay_and_pinned_particles_are_held() {
     let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)], ignoreSolverGravity: true)"#;
     assert_eq!(places(&program(&of_nodes(nodes, "")), 5), [[0.0; 3]]);
     let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0), (3, 0, 0)]),

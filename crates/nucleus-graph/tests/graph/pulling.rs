@@ -1,11 +1,11 @@
-//! Values along connections.
+//! Values pulled along connections.
 
 use nucleus_graph::attributes::{n_base, n_cloth, nucleus, transform};
 
 use super::scenes::{of_nodes, program, scene};
 
 #[test]
-fn an_input_holds_what_its_source_holds_as_what_it_is_itself() {
+fn an_input_has_the_value_of_its_source_converted_to_its_own_kind() {
     let scene = scene(&of_nodes(
         r#""a": transform(tx: keys([(1, 0), (11, 5)]), ty: 0.6, tz: -3),
            "n": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p", friction: 9)"#,
@@ -26,7 +26,7 @@ fn an_input_holds_what_its_source_holds_as_what_it_is_itself() {
 }
 
 #[test]
-fn values_are_handed_on_from_node_to_node() {
+fn values_pass_along_chains_of_nodes() {
     let long: String = (0..500).map(|k| format!("\"t{k}\": transform(), ")).collect();
     let wires: String = (1..500).map(|k| format!("(\"t{}.tx\", \"t{k}.tx\"), ", k - 1)).collect();
     let scene = scene(&of_nodes(
@@ -37,9 +37,9 @@ fn values_are_handed_on_from_node_to_node() {
     assert_eq!(scene.graph.at(7.25).get(last, &transform::TRANSLATE)[0], 7.25);
 }
 
-// EVIDENCE: N2.4-6  what animates is evaluated once per frame, and only if something needs it
+// EVIDENCE: N2.4-6  animation is evaluated once per frame, and only where a value is needed
 #[test]
-fn a_frame_pulls_what_it_needs_and_nothing_else() {
+fn a_frame_evaluates_only_the_nodes_that_it_needs() {
     let nodes = r#""n": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p"),
         "b": polySphere(ty: keys([(1, -3), (9, -2)])), "r": nRigid(inputMesh: "b"),
         "pin": dynamicConstraint(components: ["c.vtx[0]"], tx: keys([(1, 0), (9, 1)])),

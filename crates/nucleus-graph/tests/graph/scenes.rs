@@ -25,7 +25,7 @@ pub fn program(text: &str) -> Program {
     compile(&scene(text)).unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics:#?}"))
 }
 
-/// Where the points of an object are after some frames, in bits.
+/// The positions of the points of an object after some frames, as bits.
 pub fn after(program: &Program, frames: usize, object: &str) -> Vec<[u32; 3]> {
     let mut run = Simulation::<f32>::new(program, 1);
     for _ in 0..frames {

@@ -1,4 +1,4 @@
-//! Any sequence of changes leaves a graph whole.
+//! The invariants of a graph hold after any sequence of changes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest, prop_state_machine};
 
-/// Something that is done to a graph. What it is done to is chosen among what there is.
+/// A change of a graph. Its nodes and attributes are chosen among the existing ones.
 #[derive(Debug, Clone)]
 enum Change {
     Add { name: String, node_type: Index },
@@ -36,12 +36,12 @@ struct PlugChoice {
     part: Option<usize>,
 }
 
-/// Which names there are and of which type: all that can be told without a graph.
+/// The names of nodes and their types: the reference model.
 #[derive(Debug, Clone)]
 struct Names(BTreeMap<String, &'static str>);
 
 fn names() -> impl Strategy<Value = String> {
-    // Few enough to clash.
+    // Few enough to collide often.
     "[a-d][1-3]?"
 }
 
@@ -87,7 +87,7 @@ impl ReferenceStateMachine for Names {
     }
 }
 
-/// A graph with a nucleus, a mesh and a cloth to begin with.
+/// The graph under test.
 struct Whole(Graph);
 
 fn pick(graph: &Graph, index: &Index) -> NodeId {
@@ -200,7 +200,7 @@ impl StateMachineTest for Whole {
             }
         };
         if refused {
-            assert_eq!(graph, before, "what is refused changes nothing");
+            assert_eq!(graph, before, "a refused change changes nothing");
         }
         Self(graph)
     }
@@ -209,18 +209,18 @@ impl StateMachineTest for Whole {
         names_are_found(graph);
         inputs_have_one_source(graph);
         connections_fit(graph);
-        nothing_flows_in_a_circle(graph);
+        no_plug_depends_on_itself(graph);
         reads_back(graph);
     }
 }
 
-/// Attributes that mean something only together with what a creation command makes, or name a file.
+/// All attributes but those that need a creation command or name a file.
 fn is_settable(row: &Attribute) -> bool {
     !matches!(row.kind, Kind::Components | Kind::Together(_))
         && !["preset", "file", "startFrame"].contains(&row.name)
 }
 
-/// Creates what fits the node.
+/// Runs the creation command that fits the node.
 fn create(graph: &mut Graph, node: NodeId, other: NodeId, nucleus: NodeId) {
     let is = |id: NodeId, name: &str| {
         graph.node(id).node_type().lineage().any(|base: &NodeType| base.name == name)
@@ -245,7 +245,7 @@ fn create(graph: &mut Graph, node: NodeId, other: NodeId, nucleus: NodeId) {
         let held = nucleus_graph::attributes::Value::Components(components.clone());
         graph.set(node, row, Setting::Fixed(held)).expect("it fits");
     }
-    // Half done it leaves connections like any others.
+    // A creation that fails halfway leaves ordinary connections.
     let _ = graph.create(node, &creation);
 }
 
@@ -256,11 +256,11 @@ fn pairs(graph: &Graph) -> BTreeSet<[String; 2]> {
 fn names_are_found(graph: &Graph) {
     let mut seen = BTreeSet::new();
     for (id, node) in graph.iter() {
-        assert!(seen.insert(node.name().to_owned()), "{} stands twice", node.name());
+        assert!(seen.insert(node.name().to_owned()), "{} exists twice", node.name());
         assert_eq!(graph.find(node.name()), Some(id));
         let ancestors: Vec<_> =
             std::iter::successors(Some(id), |&id| graph.node(id).parent()).take(200).collect();
-        assert!(ancestors.len() < 200, "parents form a circle");
+        assert!(ancestors.len() < 200, "parents form a cycle");
         assert!(node.settings().iter().all(|(name, setting)| {
             node.node_type().attribute(name).is_some_and(|row| setting.fits(row))
         }));
@@ -288,14 +288,14 @@ fn connections_fit(graph: &Graph) {
     }
 }
 
-/// What leaves a plug must not come back to it along connections alone. (Followed here from every plug, step
-/// by step, without what the graph itself uses.)
-fn nothing_flows_in_a_circle(graph: &Graph) {
+/// No plug reaches itself along connections. This follows all connections from every plug, without the search of
+/// the graph itself.
+fn no_plug_depends_on_itself(graph: &Graph) {
     let wires: Vec<&Connection> = graph.connections().collect();
     for start in &wires {
         let (mut open, mut seen) = (vec![start.to], BTreeSet::new());
         while let Some(plug) = open.pop() {
-            assert!(!plug.overlaps(&start.from), "{} comes back", graph.describe(start.from));
+            assert!(!plug.overlaps(&start.from), "{} depends on itself", graph.describe(start.from));
             for next in wires.iter().filter(|wire| wire.from.overlaps(&plug)) {
                 if seen.insert(graph.describe(next.to)) {
                     open.push(next.to);
@@ -305,8 +305,7 @@ fn nothing_flows_in_a_circle(graph: &Graph) {
     }
 }
 
-/// A scene that holds the graph, written and read again, holds the same graph. Cloth without a mesh cannot be
-/// read, and is named.
+/// A scene of the graph, written and read again, has the same graph. Cloth without a mesh is refused by name.
 fn reads_back(graph: &Graph) {
     let scene = Scene {
         time: TimeSpan { start: 1, end: 3, fps: 24.0 },
@@ -328,7 +327,7 @@ fn reads_back(graph: &Graph) {
             assert!(mistakes.iter().any(|mistake| expected(&mistake.message)), "{text}\n{mistakes:#?}");
         }
     }
-    // Whatever it is, it compiles or is refused with a reason.
+    // The scene compiles or is refused with a message.
     if let Err(mistakes) = compile(&scene) {
         assert!(mistakes.iter().all(|mistake| !mistake.message.is_empty()));
     }
@@ -355,7 +354,7 @@ fn particles_of_a_nucleus() -> (Graph, NodeId) {
 }
 
 #[test]
-fn a_nucleus_whose_clock_was_taken_away_is_written_without_one() {
+fn a_nucleus_without_a_clock_is_written_without_one() {
     let (mut graph, nucleus) = particles_of_a_nucleus();
     let clock = graph.connections().find(|wire| wire.to.node == nucleus && wire.from.node == graph.clock());
     let Connection { from, to } = *clock.expect("creating an object gives its nucleus the clock");
@@ -364,7 +363,7 @@ fn a_nucleus_whose_clock_was_taken_away_is_written_without_one() {
 }
 
 #[test]
-fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
+fn particles_with_explicit_connections_stay_on_their_nucleus() {
     let (mut graph, _) = particles_of_a_nucleus();
     let [from, to] = ["b.meshTriangleSize", "a.evaluations"].map(|plug| graph.plug(plug).expect("a plug"));
     graph.connect(from, to).expect("two numbers");
@@ -372,13 +371,14 @@ fn particles_that_are_wired_by_hand_stay_with_their_nucleus() {
 }
 
 #[test]
-fn a_setting_that_is_refused_leaves_what_a_constraint_was_created_from() {
+fn a_refused_setting_keeps_the_components_of_a_constraint() {
     let (mut graph, nucleus) = particles_of_a_nucleus();
     let constraint = graph.add("c", type_named("dynamicConstraint")).expect("a free name");
     let components = vec![Component { object: "b".to_owned(), selection: Selection::AllPoints }];
     graph.create(constraint, &Creation::Constraint { components, nucleus }).expect("it has a member");
     let before = graph.clone();
-    let (member, node) = graph.iter().find(|(_, node)| node.made_by() == Some(constraint)).expect("a member");
+    let (member, node) =
+        graph.iter().find(|(_, node)| node.created_by() == Some(constraint)).expect("a member");
     let row = node.node_type().attribute("componentIndices").expect("it lists points");
     let curve = Curve::new(vec![Key { frame: 1.0, value: 0.0, tangent: Tangent::Auto }]);
     let keyed = Setting::Keyed(curve.expect("one key"));

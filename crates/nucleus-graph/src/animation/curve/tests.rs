@@ -1,4 +1,4 @@
-//! How curves run.
+//! Interpolation, tangents and infinities of curves.
 
 use proptest::prelude::*;
 
@@ -37,7 +37,7 @@ fn linear_keys_are_joined_by_straight_lines() {
 fn a_spline_through_evenly_spaced_points_of_a_parabola_is_that_parabola() {
     let keys: Vec<_> = (0..6).map(|k| f64::from(k) * 4.0).map(|x| (x, x * x - 3.0 * x)).collect();
     let curve = curve(Tangent::Spline, &keys);
-    // Not in the first and last stretch, where the ends are flat.
+    // Not in the first and last segment, where the ends are flat.
     for x in [4.0, 5.0, 7.5, 10.0, 15.9] {
         assert!((curve.value_at(x) - (x * x - 3.0 * x)).abs() < 1e-12, "{x}");
     }
@@ -51,7 +51,7 @@ fn a_spline_is_flat_at_its_ends() {
 }
 
 #[test]
-fn keys_that_are_no_curve_are_refused() {
+fn keys_that_are_empty_unordered_repeated_or_not_finite_are_refused() {
     let new = |keys: &[(f64, f64)]| {
         Curve::new(
             keys.iter().map(|&(frame, value)| Key { frame, value, tangent: Tangent::Linear }).collect(),
@@ -67,7 +67,7 @@ fn keys_that_are_no_curve_are_refused() {
 }
 
 #[test]
-fn a_curve_that_is_never_anything_but_zero_is_known() {
+fn the_bound_of_absolute_values_is_zero_only_for_a_curve_of_zeros() {
     assert_eq!(curve(Tangent::Spline, &[(0.0, 0.0), (5.0, 0.0), (9.0, 0.0)]).max_abs(), 0.0);
     assert_eq!(Curve::constant(-3.0).unwrap().max_abs(), 3.0);
     assert!(curve(Tangent::Stepped, &[(0.0, 0.0), (5.0, 1e-9)]).max_abs() > 0.0);
@@ -75,7 +75,7 @@ fn a_curve_that_is_never_anything_but_zero_is_known() {
 
 proptest! {
     #[test]
-    fn every_curve_goes_through_its_keys_and_stays_put_outside(curve in curves()) {
+    fn a_curve_passes_through_its_keys_and_is_constant_beyond_them(curve in curves()) {
         for key in curve.keys() {
             prop_assert_eq!(curve.value_at(key.frame), key.value);
         }
@@ -95,7 +95,7 @@ proptest! {
     }
 
     #[test]
-    fn no_value_lies_outside_the_range(curve in curves(), frame in -30.0..300.0_f64) {
+    fn all_values_lie_in_the_range(curve in curves(), frame in -30.0..300.0_f64) {
         let (low, high) = curve.range();
         let value = curve.value_at(frame);
         prop_assert!(low <= value && value <= high && value.abs() <= curve.max_abs());
@@ -121,7 +121,9 @@ proptest! {
 
 fn line(after: Infinity) -> Curve {
     let key = |frame, value| Key { frame, value, tangent: Tangent::Linear };
-    Curve::new(vec![key(0.0, 1.0), key(10.0, 3.0)]).expect("in order").going_on(Infinity::Constant, after)
+    Curve::new(vec![key(0.0, 1.0), key(10.0, 3.0)])
+        .expect("in order")
+        .with_infinity(Infinity::Constant, after)
 }
 
 #[track_caller]
@@ -131,7 +133,7 @@ fn near<const N: usize>(found: [f64; N], expected: [f64; N]) {
 }
 
 #[test]
-fn beyond_its_keys_a_curve_goes_on_as_it_is_told() {
+fn after_its_last_key_a_curve_follows_its_infinity() {
     let at = |infinity| [12.0, 25.0, 37.0].map(|frame| line(infinity).value_at(frame));
     near(at(Infinity::Constant), [3.0, 3.0, 3.0]);
     near(at(Infinity::Linear), [3.4, 6.0, 8.4]);
@@ -141,8 +143,8 @@ fn beyond_its_keys_a_curve_goes_on_as_it_is_told() {
 }
 
 #[test]
-fn before_its_keys_a_curve_goes_on_as_it_is_told() {
-    let before = |infinity| line(Infinity::Constant).going_on(infinity, Infinity::Constant);
+fn before_its_first_key_a_curve_follows_its_infinity() {
+    let before = |infinity| line(Infinity::Constant).with_infinity(infinity, Infinity::Constant);
     let at = |infinity| [-2.0, -15.0].map(|frame| before(infinity).value_at(frame));
     near(at(Infinity::Constant), [1.0, 1.0]);
     near(at(Infinity::Linear), [0.6, -2.0]);
@@ -152,7 +154,7 @@ fn before_its_keys_a_curve_goes_on_as_it_is_told() {
 }
 
 #[test]
-fn a_flat_key_is_level_and_an_auto_key_is_level_where_keys_turn_back() {
+fn a_flat_key_has_slope_zero_and_an_auto_key_has_it_at_local_extremes() {
     for tangent in [Tangent::Flat, Tangent::Auto] {
         let key = |frame, value| Key { frame, value, tangent };
         let curve = Curve::new(vec![key(0.0, 0.0), key(10.0, 1.0), key(20.0, 0.0)]).expect("in order");
@@ -162,7 +164,7 @@ fn a_flat_key_is_level_and_an_auto_key_is_level_where_keys_turn_back() {
     let key = |frame, value| Key { frame, value, tangent: Tangent::Auto };
     let rising = Curve::new(vec![key(0.0, 0.0), key(10.0, 1.0), key(20.0, 2.0)]).expect("in order");
     let slope = (rising.value_at(10.001) - rising.value_at(9.999)) / 0.002;
-    assert!((slope - 0.1).abs() < 1e-3, "it goes through: {slope}");
+    assert!((slope - 0.1).abs() < 1e-3, "the slope of the neighbours: {slope}");
 }
 
 fn infinities() -> impl Strategy<Value = Infinity> {
@@ -171,7 +173,7 @@ fn infinities() -> impl Strategy<Value = Infinity> {
 
 proptest! {
     #[test]
-    fn an_auto_curve_never_swings_beyond_its_keys(values in prop::collection::vec(-5.0..5.0, 2..6), at in 0.0..1.0) {
+    fn an_auto_curve_never_overshoots_its_keys(values in prop::collection::vec(-5.0..5.0, 2..6), at in 0.0..1.0) {
         let key = |(k, &value): (usize, &f64)| Key { frame: (k * k) as f64, value, tangent: Tangent::Auto };
         let curve = Curve::new(values.iter().enumerate().map(key).collect()).expect("in order");
         let frame = at * ((values.len() - 1) * (values.len() - 1)) as f64;
@@ -189,7 +191,7 @@ proptest! {
         let tangents = Tangent::WORDS;
         let key = |(k, &value): (usize, &f64)| Key { frame: k as f64, value, tangent: tangents[k % 5].1 };
         let curve = Curve::new(values.iter().enumerate().map(key).collect()).expect("in order");
-        let curve = curve.going_on(before, after);
+        let curve = curve.with_infinity(before, after);
         let value = curve.value_at(frame);
         let (low, high) = curve.range();
         prop_assert!(value.is_finite() && value >= low && value <= high, "{value} is not in {low} to {high}");

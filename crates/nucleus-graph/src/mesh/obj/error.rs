@@ -1,33 +1,33 @@
-//! Why an OBJ file is not a mesh.
+//! Errors of reading an OBJ file.
 
 use std::io;
 use std::path::PathBuf;
 
-use crate::files::Piece;
+use crate::files::LineSpan;
 
-/// What is wrong with a file.
+/// Reasons why a file is no mesh.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObjError {
-    /// It cannot be read at all: missing, a folder, no permission ...
+    /// It cannot be read: missing, a folder, no permission.
     #[error("cannot read `{}`: {source}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// A line of it cannot be understood.
+    /// A line is malformed.
     #[error("`{}`, line {line}: {fault}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: u64,
-        /// What is wrong there.
+        /// The fault in that line.
         fault: ObjFault,
     },
-    /// It has no vertices: most likely it is no OBJ file.
+    /// It has no vertices, so it is probably no OBJ file.
     #[error("`{}` has no vertices; is it an OBJ file?", path.display())]
     NoVertices {
         /// The file.
@@ -35,23 +35,23 @@ pub enum ObjError {
     },
 }
 
-/// What is wrong with a line.
+/// Faults of a line.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObjFault {
-    /// A coordinate is not written as a number.
-    #[error("{piece}: not a number")]
+    /// A coordinate is not a number.
+    #[error("{span}: not a number")]
     NotANumber {
         /// Where it is written.
-        piece: Piece,
+        span: LineSpan,
     },
-    /// A coordinate is NaN, infinite, or too large to hold.
-    #[error("{piece}: not a finite number")]
+    /// A coordinate is NaN, infinite, or too large for 64 bits.
+    #[error("{span}: not a finite number")]
     NotFinite {
         /// Where it is written.
-        piece: Piece,
+        span: LineSpan,
     },
-    /// A vertex has neither three numbers nor three and a weight, a colour or both.
+    /// A vertex has another count of numbers than three, four, six or seven.
     #[error("a vertex takes three numbers, then may take a weight and a colour; this one has {found}")]
     WrongNumberCount {
         /// How many it has.
@@ -63,24 +63,24 @@ pub enum ObjFault {
         /// How many it has.
         found: usize,
     },
-    /// A face has more corners than can be worked with in reasonable time.
-    #[error("a face may have {most} corners; this one has {found}: cut it into smaller faces")]
+    /// A face has more corners than can be processed in reasonable time.
+    #[error("a face may have {max} corners; this one has {found}: cut it into smaller faces")]
     TooManyCorners {
         /// How many it has.
         found: usize,
         /// How many it may have.
-        most: usize,
+        max: usize,
     },
     /// A corner does not begin with a whole number.
-    #[error("{piece}: not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
+    #[error("{span}: not a corner; it takes a vertex's number, as in `7` or `7/2/5`")]
     NotACorner {
         /// Where it is written.
-        piece: Piece,
+        span: LineSpan,
     },
-    /// Texture coordinates are given without a number.
-    #[error("texture coordinates take one to three numbers; here are none")]
+    /// A statement of texture coordinates has no number.
+    #[error("texture coordinates take one to three numbers; this line has none")]
     NoTextureNumbers,
-    /// A corner names texture coordinates that are not there.
+    /// A corner refers to texture coordinates that do not exist.
     #[error("there are no texture coordinates {texture}; there are {textures}")]
     NoSuchTexture {
         /// The number as written.
@@ -91,7 +91,7 @@ pub enum ObjFault {
     /// Vertices are counted from 1, or backwards from -1.
     #[error("there is no vertex 0; the first is 1, the latest is -1")]
     VertexZero,
-    /// A corner names a vertex that is not there.
+    /// A corner refers to a vertex that does not exist.
     #[error("there is no vertex {vertex}; there are {vertices}")]
     NoSuchVertex {
         /// The number as written.
@@ -99,10 +99,10 @@ pub enum ObjFault {
         /// How many vertices there are; for a negative number, before this line.
         vertices: usize,
     },
-    /// More vertices or corners than can be numbered.
-    #[error("the mesh has more than {most} vertices or corners")]
+    /// The mesh has more vertices or corners than 32 bits can number.
+    #[error("the mesh has more than {max} vertices or corners")]
     TooLarge {
         /// How many it may have.
-        most: u32,
+        max: u32,
     },
 }

@@ -1,38 +1,38 @@
-//! Texture coordinates of an OBJ file, point by point. A mesh is read without them, for few scenes ask.
+//! Texture coordinates of an OBJ file, per vertex. They are read apart from the mesh, because few scenes use them.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::lines::Lines;
-use super::{ObjError, ObjFault, Trouble, Word, number, words};
+use super::error::{ObjError, ObjFault};
+use super::statement::{Fault, Statements, Word, number, words};
 use crate::files;
 
-/// The texture coordinates of each vertex; nothing for those that no face gives any. Where faces disagree, along
-/// a seam, the first of them counts.
+/// The texture coordinates of each vertex, `None` where no face has any. Along a seam, where faces differ, those of the
+/// first face are taken.
 ///
 /// # Errors
-/// When the file cannot be read, or a line that matters here is not as it should be; see [`ObjError`].
+/// When the file cannot be read, or a line of vertices, faces or texture coordinates is malformed; see [`ObjError`].
 pub fn read_obj_uvs(path: impl AsRef<Path>) -> Result<Vec<Option<[f64; 2]>>, ObjError> {
     let path = path.as_ref();
     let uvs = files::open(path)
-        .map_err(Trouble::from)
+        .map_err(Fault::from)
         .and_then(|(file, _)| read(BufReader::with_capacity(1 << 18, file)));
-    uvs.map_err(|trouble| trouble.in_file(path))
+    uvs.map_err(|fault| fault.in_file(path))
 }
 
-/// What has been read so far.
+/// Counts and coordinates read so far.
 #[derive(Default)]
 struct Uvs {
     vertices: usize,
     uvs: Vec<[f64; 2]>,
-    /// Which of them each vertex has, and the line that says so.
+    /// For each vertex, the index of its coordinates and the line of the face.
     of_vertex: Vec<Option<(usize, u64)>>,
 }
 
-fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Trouble> {
+fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Fault> {
     let mut found = Uvs::default();
-    let mut lines = Lines::new(input);
-    while let Some((line, statement)) = lines.next()? {
+    let mut statements = Statements::new(input);
+    while let Some((line, statement)) = statements.next()? {
         let mut words = words(statement);
         let result = match words.next().map(|word| word.bytes) {
             Some(b"v") => {
@@ -43,13 +43,13 @@ fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Trouble> {
             Some(b"f") => found.face(words, line),
             _ => Ok(()),
         };
-        result.map_err(|fault| Trouble::Line(line, fault))?;
+        result.map_err(|fault| Fault::Line(line, fault))?;
     }
     found.finish()
 }
 
 impl Uvs {
-    /// One number or two, and a third for textures that fill space.
+    /// One or two numbers; a third one, for volume textures, is ignored.
     fn uv<'a>(&mut self, mut words: impl Iterator<Item = Word<'a>>) -> Result<(), ObjFault> {
         let mut uv = [0.0; 2];
         for (found, part) in uv.iter_mut().enumerate() {
@@ -71,7 +71,7 @@ impl Uvs {
                 continue;
             }
             let both = counted(vertex, self.vertices).zip(counted(uv, self.uvs.len()));
-            let (vertex, uv) = both.ok_or_else(|| ObjFault::NotACorner { piece: word.piece() })?;
+            let (vertex, uv) = both.ok_or_else(|| ObjFault::NotACorner { span: word.span() })?;
             if self.of_vertex.len() <= vertex {
                 self.of_vertex.resize(vertex + 1, None);
             }
@@ -80,18 +80,18 @@ impl Uvs {
         Ok(())
     }
 
-    fn finish(mut self) -> Result<Vec<Option<[f64; 2]>>, Trouble> {
+    fn finish(mut self) -> Result<Vec<Option<[f64; 2]>>, Fault> {
         self.of_vertex.resize(self.vertices, None);
         let uv = |known: Option<(usize, u64)>| {
             let Some((uv, line)) = known else { return Ok(None) };
             let fault = ObjFault::NoSuchTexture { texture: uv + 1, textures: self.uvs.len() };
-            self.uvs.get(uv).map(|uv| Some(*uv)).ok_or(Trouble::Line(line, fault))
+            self.uvs.get(uv).map(|uv| Some(*uv)).ok_or(Fault::Line(line, fault))
         };
         self.of_vertex.iter().map(|known| uv(*known)).collect()
     }
 }
 
-/// A number of OBJ, from 1 or backwards from -1, counted from 0; nothing where it is none that could be meant.
+/// The index from 0 of an OBJ number, which counts from 1 or backwards from -1. `None` if it is malformed or 0.
 fn counted(word: &[u8], count: usize) -> Option<usize> {
     let number = std::str::from_utf8(word).ok()?.parse::<i64>().ok().filter(|number| *number != 0)?;
     let from_0 = if number > 0 { number - 1 } else { number.checked_add(count as i64)? };

@@ -1,10 +1,26 @@
-//! An expression as words, numbers and signs.
+//! The tokens of an expression: names, numbers and operators.
 
 use std::ops::Range;
 
-use super::ExpressionError;
+/// A mistake in an expression, with its place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ExpressionError {
+    /// What is wrong: lower case, no full stop, names in backticks.
+    pub message: String,
+    /// The place: byte offsets into the expression.
+    pub span: Range<usize>,
+    /// How to fix it.
+    pub help: Option<String>,
+}
 
-/// A piece of an expression.
+impl ExpressionError {
+    pub(super) fn new(message: impl Into<String>, span: Range<usize>) -> Self {
+        Self { message: message.into(), span, help: None }
+    }
+}
+
+/// A token.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Token<'a> {
     Number(f64),
@@ -14,11 +30,11 @@ pub(super) enum Token<'a> {
     End,
 }
 
-/// Longer ones first.
+/// Longer ones first, so that `<=` is not read as `<`.
 const SIGNS: [&str; 19] =
     ["<=", ">=", "==", "!=", "&&", "||", "<", ">", "!", "+", "-", "*", "/", "%", "^", "(", ")", ",", "?"];
 
-/// Cuts a text into pieces, each with its place; the last is the end.
+/// Splits a text into tokens, each with its byte range. The last token is the end.
 pub(super) fn tokens(text: &str) -> Result<Vec<(Token<'_>, Range<usize>)>, ExpressionError> {
     let mut tokens = Vec::new();
     let mut at = 0;

@@ -1,19 +1,18 @@
-//! From words and signs to steps on a stack, by what binds more strongly.
+//! A recursive-descent parser: from tokens to stack operations, by precedence.
 
 use std::ops::Range;
 
-use super::functions::{FUNCTIONS, NAMES};
-use super::lexer::{Token, tokens};
-use super::{ExpressionError, Op};
-use crate::scene::nearest;
+use super::lexer::{ExpressionError, Token, tokens};
+use super::ops::{FUNCTIONS, NAMES, Op};
+use crate::diagnostic::nearest;
 
-/// Brackets within brackets, at most: deeper ones are a mistake, and would need a deep stack to be read.
-const DEEPEST: usize = 64;
+/// Limit on nesting: deeper brackets are a mistake, and recursion needs stack.
+const MAX_DEPTH: usize = 64;
 
-/// A sign between two values, and what it does.
+/// A binary operator and its function.
 type Operator = (&'static str, fn(f64, f64) -> f64);
 
-/// What stands between two values: by what binds least. All but the last group to the left.
+/// Binary operators by precedence, lowest first, all left-associative.
 const BINARY: [&[Operator]; 5] = [
     &[("||", |a, b| truth(a != 0.0 || b != 0.0))],
     &[("&&", |a, b| truth(a != 0.0 && b != 0.0))],
@@ -33,7 +32,7 @@ fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-/// Understands a text.
+/// Parses an expression into stack operations.
 pub(super) fn parse(text: &str) -> Result<Vec<Op>, ExpressionError> {
     let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0, ops: Vec::new() };
     parser.choice()?;
@@ -59,7 +58,7 @@ impl<'a> Parser<'a> {
         self.tokens[self.at].1.clone()
     }
 
-    /// Goes on, if this sign is next.
+    /// Consumes this sign if it is next.
     fn eat(&mut self, sign: &str) -> bool {
         let is_next = matches!(self.token(), Token::Sign(next) if next == sign);
         self.at += usize::from(is_next);
@@ -80,10 +79,10 @@ impl<'a> Parser<'a> {
         ExpressionError::new(format!("expected {wanted}, but {found}"), self.span())
     }
 
-    /// `a ? b : c`; both ways are worked out, and one is taken.
+    /// `a ? b : c`. Both branches are evaluated, and one is selected.
     fn choice(&mut self) -> Result<(), ExpressionError> {
         self.depth += 1;
-        if self.depth > DEEPEST {
+        if self.depth > MAX_DEPTH {
             return Err(ExpressionError::new("this is nested too deeply", self.span()));
         }
         self.binary(0)?;
@@ -107,7 +106,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// A run of signs in front of a value, from the inside out.
+    /// Prefix operators, applied from the innermost.
     fn unary(&mut self) -> Result<(), ExpressionError> {
         let mut signs: Vec<fn(f64) -> f64> = Vec::new();
         loop {
@@ -124,12 +123,12 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// `a ^ b`: binds more strongly than a sign in front of `a`, less than one in front of `b`.
+    /// `a ^ b` binds more strongly than a prefix of `a`, and less than a prefix of `b`.
     fn power(&mut self) -> Result<(), ExpressionError> {
         self.value()?;
         if self.eat("^") {
             self.depth += 1;
-            if self.depth > DEEPEST {
+            if self.depth > MAX_DEPTH {
                 return Err(ExpressionError::new("this is nested too deeply", self.span()));
             }
             self.unary()?;
@@ -175,7 +174,7 @@ impl<'a> Parser<'a> {
         Err(error)
     }
 
-    /// A function; its opening bracket is behind.
+    /// A function call, after its opening bracket.
     fn call(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
             let mut error = ExpressionError::new(format!("there is no function `{name}`"), span);

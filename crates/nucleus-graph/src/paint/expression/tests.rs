@@ -8,7 +8,7 @@ fn value(text: &str) -> f64 {
 }
 
 #[test]
-fn an_expression_is_worked_out_as_in_mathematics() {
+fn operators_have_their_usual_precedence_and_functions_their_values() {
     for (text, expected) in [
         ("1 + 2 * 3", 7.0),
         ("(1 + 2) * 3", 9.0),
@@ -44,7 +44,7 @@ fn an_expression_is_worked_out_as_in_mathematics() {
 }
 
 #[test]
-fn a_mistake_is_told_with_its_place() {
+fn a_mistake_is_reported_with_its_place() {
     for (text, at, message) in [
         ("", "", "expected a value, but the expression ends"),
         ("1 +", "", "expected a value, but the expression ends"),
@@ -79,7 +79,7 @@ fn deep_brackets_are_refused_and_long_sums_are_not() {
 
 proptest! {
     #[test]
-    fn any_text_is_an_expression_or_a_mistake_within_it(text in "[-+*/%^<>=!&|?:(),. 0-9a-zµ]{0,40}") {
+    fn any_text_parses_or_gives_an_error_within_the_text(text in "[-+*/%^<>=!&|?:(),. 0-9a-zµ]{0,40}") {
         match Expression::parse(&text) {
             Ok(expression) => drop(expression.at(&Point::default())),
             Err(error) => prop_assert!(text.get(error.span.clone()).is_some(), "{error:?}"),
@@ -87,7 +87,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_of_numbers_is_their_value(a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e3..1e3f64) {
+    fn expressions_of_numbers_have_the_value_of_the_same_rust_expression(a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e3..1e3f64) {
         prop_assert_eq!(value(&format!("{a} * ({b}) - ({c})")), a * b - c);
         prop_assert_eq!(value(&format!("{a} < {b} ? {c} : {a}")), if a < b { c } else { a });
     }

@@ -1,14 +1,13 @@
 //! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
 
-use crate::checks::{Check, Form, Values};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
+use crate::checks::{Check, Form, RENAMED, Values};
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::fields::{Fields, listed};
+use super::fields::{Fields, current_name};
 use super::value::{found, number, whole_number};
 
-/// Reads what must hold.
+/// Reads the checks of a scene.
 pub(super) fn read(node: &Node, findings: &mut Findings) -> Vec<Check> {
     let Value::List(items) = &node.value else {
         let message = format!("`checks` takes a list, found {}", found(&node.value));
@@ -28,6 +27,7 @@ fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
             return None;
         }
     };
+    let name = current_name(name, RENAMED, span, findings);
     let Some(form) = Form::all().iter().find(|form| form.name == name) else {
         let error = findings.error(span, format!("there is no check `{name}`"));
         match nearest(name, Form::all().iter().map(|form| form.name)) {

@@ -1,11 +1,11 @@
-//! Parts of objects as Maya writes them: `cloth1.vtx[3]`, `cloth1.vtx[0:8]`, `cloth1.vtx[*]`, `cloth1`.
+//! Components as Maya writes them: `cloth1.vtx[3]`, `cloth1.vtx[0:8]`, `cloth1.vtx[*]`, `cloth1`.
 
 use crate::attributes::{Component, Selection};
 
 /// Reads a component.
 ///
 /// # Errors
-/// What is wrong, as a message.
+/// The message of a diagnostic.
 pub(super) fn read(text: &str) -> Result<Component, String> {
     let Some((object, elements)) = text.split_once('.') else {
         let object = text.to_owned();
@@ -14,7 +14,7 @@ pub(super) fn read(text: &str) -> Result<Component, String> {
     let bracketed = elements.strip_suffix(']').and_then(|elements| elements.split_once('['));
     let (kind, index) = bracketed.ok_or_else(|| format!("`{text}` is not a component"))?;
     if kind != "vtx" {
-        return Err(format!("only points can be named so far, not `{kind}`"));
+        return Err(format!("only points (`vtx`) are supported, not `{kind}`"));
     }
     Ok(Component { object: object.to_owned(), selection: read_points(index)? })
 }
@@ -25,7 +25,7 @@ fn read_points(index: &str) -> Result<Selection, String> {
     }
     let (first, last) = index.split_once(':').unwrap_or((index, index));
     let point = |digits: &str| {
-        // `parse` would also take a plus sign.
+        // `parse` alone would accept a plus sign.
         let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
         let number = if plain { digits.parse::<u32>().ok() } else { None };
         number.ok_or_else(|| format!("`{digits}` is not the number of a point"))
@@ -50,18 +50,18 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back(object in "[a-z][a-z0-9_]{0,8}", selection in selections()) {
+        fn a_written_component_is_read_back(object in "[a-z][a-z0-9_]{0,8}", selection in selections()) {
             let component = Component { object, selection };
             prop_assert_eq!(read(&component.to_string()), Ok(component));
         }
     }
 
     #[test]
-    fn what_is_no_component_is_refused() {
+    fn malformed_components_are_refused() {
         for (text, message) in [
             ("a.vtx", "`a.vtx` is not a component"),
             ("a.vtx[", "`a.vtx[` is not a component"),
-            ("a.f[3]", "only points can be named so far, not `f`"),
+            ("a.f[3]", "only points (`vtx`) are supported, not `f`"),
             ("a.vtx[-1]", "`-1` is not the number of a point"),
             ("a.vtx[]", "`` is not the number of a point"),
             ("a.vtx[+1]", "`+1` is not the number of a point"),

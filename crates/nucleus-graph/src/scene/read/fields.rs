@@ -1,9 +1,8 @@
-//! The fields of a record, taken one by one; what is left over is refused.
+//! The fields of a record. A reader takes the fields that it knows, and refuses the rest.
 
 use std::ops::Range;
 
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::value::found;
@@ -11,17 +10,17 @@ use super::value::found;
 /// Fields that have not been taken yet.
 pub(super) struct Fields<'a> {
     left: Vec<(&'a Word, &'a Node)>,
-    /// Where an error about the whole record points.
+    /// The place of errors about the record as a whole.
     place: Range<usize>,
 }
 
 impl<'a> Fields<'a> {
-    /// The fields of a record; a field that stands twice is an error.
+    /// The fields of a record. A repeated field is an error.
     pub(super) fn new(fields: &'a [(Word, Node)], place: Range<usize>, findings: &mut Findings) -> Self {
         let mut left: Vec<(&Word, &Node)> = Vec::new();
         for (word, node) in fields {
             if let Some((first, _)) = left.iter().find(|(first, _)| first.text == word.text) {
-                let error = findings.error(&word.span, format!("`{}` stands here twice", word.text));
+                let error = findings.error(&word.span, format!("`{}` is given twice", word.text));
                 error.note_at(&first.span, "here for the first time");
             } else {
                 left.push((word, node));
@@ -62,7 +61,7 @@ impl<'a> Fields<'a> {
         Some(self.left.remove(at).1)
     }
 
-    /// Takes a field that must be there.
+    /// Takes a required field.
     pub(super) fn take_required(
         &mut self,
         name: &str,
@@ -70,7 +69,7 @@ impl<'a> Fields<'a> {
         findings: &mut Findings,
     ) -> Option<&'a Node> {
         let node = self.take(name);
-        // A misspelt field is reported as such.
+        // `refuse_rest` reports a misspelt field.
         let misspelt = self.left.iter().any(|(word, _)| nearest(&word.text, [name]).is_some());
         if node.is_none() && !misspelt {
             findings.error(&self.place, format!("`{name}` is missing")).help(format!("add {example}"));
@@ -78,7 +77,7 @@ impl<'a> Fields<'a> {
         node
     }
 
-    /// Refuses what has not been taken.
+    /// Refuses the fields that have not been taken.
     pub(super) fn refuse_rest(&self, owner: &str, names: &[&str], findings: &mut Findings) {
         for (word, _) in &self.left {
             let error = findings.error(&word.span, format!("{owner} has no `{}`", word.text));
@@ -90,11 +89,15 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Words for a sentence: `a`, `b` and `c`.
-pub(super) fn listed<S: AsRef<str>>(words: &[S]) -> String {
-    let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
-    match quoted.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        _ => quoted.concat(),
-    }
+/// The current name of a word. `renamed` has pairs of a former and the current name; a former name is a warning.
+pub(super) fn current_name<'a>(
+    word: &'a str,
+    renamed: &[(&str, &'static str)],
+    span: &Range<usize>,
+    findings: &mut Findings,
+) -> &'a str {
+    let Some((_, current)) = renamed.iter().find(|(former, _)| *former == word) else { return word };
+    let warning = findings.warning(span, format!("`{word}` is now called `{current}`"));
+    warning.help(format!("write `{current}` in its place"));
+    current
 }

@@ -1,39 +1,37 @@
-//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, and `keys(at: [...], post: cycle)` for those that go on.
+//! Keyed values: `keys([(1, 0), (24, 12.5, spline), (48, 0)])`, or with infinities, `keys(at: [...], post: cycle)`.
 
 use crate::animation::{Curve, Infinity, Key, Tangent};
-use crate::attributes::{Attribute, Kind, Value as Held};
+use crate::attributes::{Attribute, Kind, Value as AttrValue};
+use crate::diagnostic::{Findings, listed, nearest};
 use crate::graph::{Channel, Setting};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::fields::listed;
 use super::value::{expected, found, number, single, triple};
 
-/// What stands inside `keys(...)`.
+/// The parts of `keys(...)`, not read yet.
 pub(super) struct Keyed<'a> {
     /// The keys.
     list: &'a Node,
-    /// How it goes on before and after them, where that is said.
+    /// The values of `pre` and `post`.
     infinities: [Option<&'a Node>; 2],
-    /// Fields that `keys(...)` does not have.
-    strange: Vec<&'a Word>,
+    /// Fields other than `at`, `pre` and `post`.
+    unknown: Vec<&'a Word>,
 }
 
-/// What stands inside `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`, if that is what a value is.
+/// The parts of `keys([...])` or `keys(at: [...], pre: cycle, post: linear)`. `None` for other values.
 pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
     match &node.value {
         Value::Tuple { name: Some(name), items } if name.text == "keys" && items.len() == 1 => {
-            Some(Keyed { list: items.first()?, infinities: [None, None], strange: Vec::new() })
+            Some(Keyed { list: items.first()?, infinities: [None, None], unknown: Vec::new() })
         }
         Value::Record { name: Some(name), fields } if name.text == "keys" => {
             let field = |name: &str| fields.iter().find(|(word, _)| word.text == name).map(|(_, node)| node);
-            let strange = fields.iter().map(|(word, _)| word);
-            let strange = strange.filter(|word| !["at", "pre", "post"].contains(&word.text.as_str()));
+            let unknown = fields.iter().map(|(word, _)| word);
+            let unknown = unknown.filter(|word| !["at", "pre", "post"].contains(&word.text.as_str()));
             Some(Keyed {
                 list: field("at").unwrap_or(node),
                 infinities: [field("pre"), field("post")],
-                strange: strange.collect(),
+                unknown: unknown.collect(),
             })
         }
         _ => None,
@@ -41,33 +39,33 @@ pub(super) fn keyed(node: &Node) -> Option<Keyed<'_>> {
 }
 
 impl Keyed<'_> {
-    /// How the curve goes on.
+    /// Reads the infinities. Refuses unknown fields.
     fn infinities(&self, label: &str, findings: &mut Findings) -> Option<[Infinity; 2]> {
         let names: Vec<&str> = Infinity::WORDS.iter().map(|(name, _)| *name).collect();
-        for word in &self.strange {
+        for word in &self.unknown {
             let error = findings.error(&word.span, format!("the keys of {label} have no `{}`", word.text));
             error.help("keys take `at`, `pre` and `post`");
         }
         let [pre, post] = self.infinities.map(|node| {
             let Some(node) = node else { return Some(Infinity::Constant) };
             let Value::Word(word) = &node.value else {
-                return expected(label, "a word for how its keys go on", node, findings);
+                return expected(label, "the word of an infinity, like `cycle`", node, findings);
             };
             let known = Infinity::WORDS.iter().find(|(name, _)| name == word);
             if known.is_none() {
-                let error = findings.error(&node.span, format!("keys cannot go on by `{word}`"));
+                let error = findings.error(&node.span, format!("there is no infinity `{word}`"));
                 match nearest(word, names.iter().copied()) {
                     Some(near) => error.did_you_mean(Some(near)),
-                    None => error.help(format!("they go on by {}", listed(&names))),
+                    None => error.help(format!("there are {}", listed(&names))),
                 };
             }
             known.map(|(_, infinity)| *infinity)
         });
-        if self.strange.is_empty() { Some([pre?, post?]) } else { None }
+        if self.unknown.is_empty() { Some([pre?, post?]) } else { None }
     }
 }
 
-/// Reads the keys of an attribute; those of a vector hold three numbers each.
+/// Reads the keys of an attribute. Keys of a vector have three numbers each.
 pub(super) fn read(
     label: &str,
     row: &'static Attribute,
@@ -97,7 +95,7 @@ pub(super) fn read(
     curve(label, keys.collect(), infinities, list, findings).map(Setting::Keyed)
 }
 
-/// Reads the keys of one part of a vector.
+/// Reads the keys of one component of a vector.
 pub(super) fn read_part(
     label: &str,
     row: &'static Attribute,
@@ -142,7 +140,7 @@ fn read_keys<T>(
     for item in items {
         let Some((frame, value, tangent)) = parts(label, item, findings) else { continue };
         let (frame, value) = (number("the frame of a key", frame, findings), read_value(value, findings));
-        let tangent = tangent.map_or(Some(usual_tangent(row)), |word| read_tangent(word, findings));
+        let tangent = tangent.map_or(Some(default_tangent(row)), |word| read_tangent(word, findings));
         let (Some(frame), Some(value), Some(tangent)) = (frame, value, tangent) else { continue };
         match keys.last() {
             Some(&(previous, ..)) if frame <= previous => {
@@ -177,8 +175,8 @@ fn parts<'a>(
     }
 }
 
-/// Switches and words jump from key to key, numbers move.
-fn usual_tangent(row: &Attribute) -> Tangent {
+/// Switches and words are stepped by default, numbers linear.
+fn default_tangent(row: &Attribute) -> Tangent {
     match row.kind {
         Kind::Bool | Kind::Choice(_) => Tangent::Stepped,
         _ => Tangent::Linear,
@@ -216,15 +214,15 @@ fn curve(
     if let Err(error) = &curve {
         findings.error(&list.span, format!("the keys of {label} make no curve: {error}"));
     }
-    curve.ok().map(|curve| curve.going_on(before, after))
+    curve.ok().map(|curve| curve.with_infinity(before, after))
 }
 
-fn as_number(value: &Held) -> f64 {
+fn as_number(value: &AttrValue) -> f64 {
     match value {
-        Held::Bool(on) => f64::from(u8::from(*on)),
-        Held::Int(number) => *number as f64,
-        Held::Float(number) => *number,
-        Held::Choice(choice) => f64::from(choice.0),
+        AttrValue::Bool(on) => f64::from(u8::from(*on)),
+        AttrValue::Int(number) => *number as f64,
+        AttrValue::Float(number) => *number,
+        AttrValue::Choice(choice) => f64::from(choice.0),
         _ => 0.0,
     }
 }

@@ -1,25 +1,28 @@
-//! From text to a scene, with everything there is to say about it.
+//! Reading a scene from text, with all its diagnostics.
 //!
 //! | You want to know...                                  | Read            |
 //! |------------------------------------------------------|-----------------|
 //! | in which order a file is read                        | this file       |
-//! | how the fields of a record are taken                 | `fields.rs`     |
-//! | which nodes there are, and how one is read           | `drafts.rs`, `nodes.rs` |
-//! | how an attribute's value is read, keyed or not       | `value.rs`, `keys.rs` |
-//! | what `"cloth1.vtx[0:8]"` means                       | `component.rs`  |
-//! | how names become connections                         | `links.rs`      |
-//! | how connections are made by hand                     | `wires.rs`      |
+//! | how `time` and `record` are read                     | `time.rs`       |
+//! | how `checks` are read, and their former names        | `checks.rs`     |
+//! | how the fields of a record are read                  | `fields.rs`     |
+//! | how `nodes` are read                                 | `declaration.rs`, `nodes.rs` |
+//! | how a setting is read: values, keys, maps            | `setting.rs`, `value.rs`, `keys.rs` |
+//! | how components (`"cloth1.vtx[0:8]"`) are read        | `component.rs`  |
+//! | how names of nodes become connections                | `references.rs` |
+//! | how `connections` are read                           | `connections.rs` |
 
 mod checks;
 mod component;
-mod drafts;
+mod connections;
+mod declaration;
 mod fields;
 mod keys;
-mod links;
 mod nodes;
+mod references;
+mod setting;
 mod time;
 mod value;
-mod wires;
 
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -31,16 +34,15 @@ use crate::files;
 use crate::graph::{NodeId, Setting};
 use crate::memory::{self, Budget, Memory};
 
-use super::diagnostic::Diagnostic;
-use super::document::{Record, Scene, TimeSpan};
-use super::findings::Findings;
-use super::source::Source;
+use super::document::{Scene, Source, TimeSpan};
 use super::syntax::{self, Node};
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Findings;
 
 use fields::Fields;
-pub(super) use value::INTERPOLATIONS;
+pub(super) use setting::INTERPOLATIONS;
 
-/// Reads a scene file. With the scene come warnings: what is set and has no effect.
+/// Reads a scene file. Also returns warnings, such as settings without effect.
 ///
 /// # Errors
 /// All mistakes that can be found, with warnings among them, in the order of the file.
@@ -75,37 +77,37 @@ pub fn read_text(path: &Path, memory: Memory) -> Result<String, TextError> {
     String::from_utf8(all).map_err(|error| not_text(error.utf8_error().valid_up_to()))
 }
 
-/// Why a file has no text of a scene.
+/// Reasons why the text of a scene file cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("cannot read `{path}`: {cause}")]
     Unreadable {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The error of the system.
         cause: std::io::Error,
     },
-    /// It is larger than the memory that it may take.
+    /// The file is larger than the memory limit.
     #[error("`{path}` takes {why}")]
     TooLarge {
         /// The file.
         path: String,
-        /// How much it takes, and the limit.
+        /// The size and the limit.
         why: String,
     },
-    /// It is not UTF-8.
+    /// The file is not UTF-8.
     #[error("`{path}` is not text: scenes are UTF-8")]
     NotText {
         /// The file.
         path: String,
-        /// How many bytes of it are.
+        /// The number of valid bytes before the first invalid one.
         at: usize,
     },
 }
 
-/// Reads a scene from text. `file` is what diagnostics name, and where relative paths begin.
+/// Reads a scene from text. Diagnostics name `file`, and relative paths start from its folder.
 ///
 /// # Errors
 /// All mistakes that can be found, with warnings among them, in the order of the text.
@@ -113,10 +115,10 @@ pub fn read_scene_text(text: &str, file: &Path) -> Result<(Scene, Vec<Diagnostic
     read_scene_within(text, file, Memory::of_machine())
 }
 
-/// The same with a limit on the memory that the scene may take, from its text to its run.
+/// As [`read_scene_text`], with a limit on the memory of the scene, from its text to its run.
 ///
 /// # Errors
-/// As [`read_scene_text`]; what goes past the limit is a mistake at its place.
+/// As [`read_scene_text`]; a part that exceeds the limit is a mistake at its place.
 pub fn read_scene_within(
     text: &str,
     file: &Path,
@@ -124,7 +126,7 @@ pub fn read_scene_within(
 ) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut findings = Findings::new(file.to_owned());
     if let Err(refused) = Budget::new(memory).check(values(text).saturating_mul(memory::VALUE)) {
-        let error = findings.error(&(0..0), format!("the scene is so long that to read it takes {refused}"));
+        let error = findings.error(&(0..0), format!("the scene is so long that reading it takes {refused}"));
         error.help(refused.help("take parts of it out"));
         return Err(findings.in_order());
     }
@@ -144,66 +146,35 @@ pub fn read_scene_within(
     {
         return Ok((scene, findings.in_order()));
     }
-    // Mistakes that only show when meshes are there are worth telling in the same go.
+    // Mistakes that need the meshes are reported together with the others.
     if let Some((scene, broken)) = read {
         findings.extend(compile::survey(&scene, &broken));
     }
     Err(findings.in_order())
 }
 
-/// How many values a text holds at most: each but the first stands behind one of these.
+/// An upper bound of the number of values in a text: each but the first follows one of these characters.
 fn values(text: &str) -> u64 {
     text.bytes().filter(|byte| b",:([{".contains(byte)).count() as u64
 }
 
-/// The scene as far as it can be read, and the nodes on which something could not.
+/// The scene as far as it can be read, and the nodes with mistakes.
 fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option<(Scene, BTreeSet<NodeId>)> {
     let mut fields = Fields::of_scene(root, findings)?;
     let time =
         time::read(fields.take_required("time", "`time: (start: 1, end: 120, fps: 24)`", findings), findings);
-    let record = fields.take("record").and_then(|node| read_record(node, findings));
+    let record = fields.take("record").and_then(|node| time::read_record(node, findings));
     let checks = fields.take("checks").map(|node| checks::read(node, findings));
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
-    let wires = wires::read(fields.take("connections"), findings);
+    let connections = connections::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
-    let (graph, broken) = nodes::read_nodes(nodes?, &wires, &mut source, findings);
+    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, findings);
     let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();
     Some((Scene { time, every, record, graph, checks: checks.unwrap_or_default(), source }, broken))
 }
 
-fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
-    match &node.value {
-        syntax::Value::Word(word) if word == "frames" => Some(Record::Frames),
-        syntax::Value::Word(word) if word == "substeps" => Some(Record::Substeps),
-        syntax::Value::Word(word) if word == "none" => Some(Record::None),
-        syntax::Value::Tuple { name: Some(name), items } if name.text == "every" => {
-            every(items).or_else(|| {
-                let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
-                error.help("`every(10)` records each tenth frame and the last");
-                None
-            })
-        }
-        other => {
-            let error =
-                findings.error(&node.span, format!("`record` takes a word, found {}", value::found(other)));
-            error.help("write `frames`, `substeps`, `every(10)` or `none`");
-            None
-        }
-    }
-}
-
-/// `every(10)`.
-fn every(items: &[Node]) -> Option<Record> {
-    match items {
-        [Node { value: syntax::Value::Number(n), .. }] if n.fract() == 0.0 && (1.0..=1e9).contains(n) => {
-            Some(Record::Every(*n as u32))
-        }
-        _ => None,
-    }
-}
-
-/// Reads a text that is one node without a name: what it sets.
+/// Reads a text of one node without a name: its type and settings.
 pub(super) fn read_lone_node(
     text: &str,
     findings: &mut Findings,
@@ -217,10 +188,10 @@ pub(super) fn read_lone_node(
             return None;
         }
     };
-    let draft = drafts::lone(&root, findings)?;
-    let node_type = draft.node_type;
-    let graph = nodes::read_lone(&draft, findings);
-    let (_, node) = graph.iter().find(|(_, node)| node.name() == draft.name)?;
+    let declaration = declaration::unnamed(&root, findings)?;
+    let node_type = declaration.node_type;
+    let graph = nodes::read_lone(&declaration, findings);
+    let (_, node) = graph.iter().find(|(_, node)| node.name() == declaration.name)?;
     let row = |name: &&'static str| node_type.attribute(name);
     let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
     Some((node_type, set.collect()))

@@ -3,27 +3,25 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Effect, Kind, Value as Held, n_base, time};
+use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, time};
+use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
 use crate::memory::NODE;
-use crate::scene::diagnostic::Severity;
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
+use crate::scene::document::Source;
 use crate::scene::preset::preset;
-use crate::scene::source::Source;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::component;
-use super::drafts::{Draft, drafts};
-use super::fields::listed;
-use super::links::{self, Links, Reference};
-use super::value::{expected, read, read_part, single, text};
-use super::wires::Wires;
+use super::connections::Connections;
+use super::declaration::{Declaration, read_declarations};
+use super::references::{self, Reference, References};
+use super::setting::{read, read_part};
+use super::value::{expected, single, text};
 
-/// Reads all nodes and connects them. Also returns the nodes on which something could not be read.
+/// Reads all nodes and connects them. Also returns the nodes with mistakes.
 pub(super) fn read_nodes(
     node: &Node,
-    wires: &Wires,
+    connections: &Connections,
     source: &mut Source,
     findings: &mut Findings,
 ) -> (Graph, BTreeSet<NodeId>) {
@@ -39,57 +37,65 @@ pub(super) fn read_nodes(
         error.help(refused.help("take some out"));
         return (graph, broken);
     }
-    let (mut drafts, names) = drafts(entries, findings);
-    // The order of nodes in a file must not matter to a run.
-    drafts.sort_by_key(|draft| draft.name);
-    let mut links = Links { names, references: Vec::new() };
-    for draft in &drafts {
-        let id = match graph.add(draft.name, draft.node_type) {
+    let (mut declarations, names) = read_declarations(entries, findings);
+    // A run must not depend on the order of nodes in the file.
+    declarations.sort_by_key(|declaration| declaration.name);
+    let mut references = References { names, all: Vec::new() };
+    for declaration in &declarations {
+        let id = match graph.add(declaration.name, declaration.node_type) {
             Ok(id) => id,
-            // The clock is there already.
-            Err(_) if draft.name == CLOCK && draft.node_type == &time::TIME => graph.clock(),
+            // Every graph has the clock.
+            Err(_) if declaration.name == CLOCK && declaration.node_type == &time::TIME => graph.clock(),
             Err(error) => {
-                findings.error(draft.span, error.to_string()).help("give it another name");
+                findings.error(declaration.span, error.to_string()).help("give it another name");
                 continue;
             }
         };
-        source.note(draft.name.to_owned(), draft.span);
-        links.names.insert(draft.name.to_owned(), Some(id));
+        source.note(declaration.name.to_owned(), declaration.span);
+        references.names.insert(declaration.name.to_owned(), Some(id));
         let before = findings.errors();
-        NodeReader { graph: &mut graph, id, draft, source, findings, links: &mut links, set: Vec::new() }
-            .fields();
+        NodeReader {
+            graph: &mut graph,
+            id,
+            declaration,
+            source,
+            findings,
+            references: &mut references,
+            set: Vec::new(),
+        }
+        .fields();
         if findings.errors() > before {
             broken.insert(id);
         }
     }
-    links.names.entry(CLOCK.to_owned()).or_insert(Some(graph.clock()));
-    links::connect(&mut graph, &links, wires, source, findings);
-    let is_broken = |name: &str| links.names.get(name).is_some_and(Option::is_none);
-    wires.connect(&mut graph, &is_broken, findings);
+    references.names.entry(CLOCK.to_owned()).or_insert(Some(graph.clock()));
+    references::connect(&mut graph, &references, connections, source, findings);
+    let is_broken = |name: &str| references.names.get(name).is_some_and(Option::is_none);
+    connections.connect(&mut graph, &is_broken, findings);
     (graph, broken)
 }
 
-/// Reads a node that is alone. What would join it to others is refused.
-pub(super) fn read_lone(draft: &Draft, findings: &mut Findings) -> Graph {
+/// Reads the node of a preset. References to other nodes are refused.
+pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> Graph {
     let mut graph = Graph::new();
-    let Ok(id) = graph.add(draft.name, draft.node_type) else { return graph };
-    let mut links = Links { names: Default::default(), references: Vec::new() };
+    let Ok(id) = graph.add(declaration.name, declaration.node_type) else { return graph };
+    let mut references = References { names: Default::default(), all: Vec::new() };
     let mut source = Source::default();
-    let mut said = Findings::default();
+    let mut reported = Findings::default();
     NodeReader {
         graph: &mut graph,
         id,
-        draft,
+        declaration,
         source: &mut source,
-        findings: &mut said,
-        links: &mut links,
+        findings: &mut reported,
+        references: &mut references,
         set: Vec::new(),
     }
     .fields();
-    // That something has no effect yet is told where the preset is used.
-    let errors = said.in_order().into_iter().filter(|said| said.severity == Severity::Error);
+    // Warnings of settings without effect are given where the preset is used.
+    let errors = reported.in_order().into_iter().filter(|reported| reported.severity == Severity::Error);
     findings.extend(errors.collect());
-    for reference in &links.references {
+    for reference in &references.all {
         findings.error(
             &reference.span,
             format!("a preset cannot set `{}`, which names a node", reference.row.name),
@@ -98,22 +104,22 @@ pub(super) fn read_lone(draft: &Draft, findings: &mut Findings) -> Graph {
     graph
 }
 
-/// Reads the attributes of one node.
+/// Reads the fields of one node.
 struct NodeReader<'a, 'b> {
     graph: &'a mut Graph,
     id: NodeId,
-    draft: &'a Draft<'b>,
+    declaration: &'a Declaration<'b>,
     source: &'a mut Source,
     findings: &'a mut Findings,
-    links: &'a mut Links,
-    /// What has been set so far: attribute, part of it, place.
+    references: &'a mut References,
+    /// The settings so far: attribute, component of a vector, place.
     set: Vec<(&'static str, Option<usize>, &'a Range<usize>)>,
 }
 
 impl NodeReader<'_, '_> {
     fn fields(&mut self) {
-        for (word, node) in self.draft.fields {
-            let node_type = self.draft.node_type;
+        for (word, node) in self.declaration.fields {
+            let node_type = self.declaration.node_type;
             if let Some(row) = node_type.attribute(&word.text) {
                 self.attribute(word, row, node);
             } else if let Some((row, part)) = node_type.part(&word.text) {
@@ -128,16 +134,16 @@ impl NodeReader<'_, '_> {
         if let Kind::Together(parts) = row.kind {
             return self.together(word, row, parts, node);
         }
-        if !self.first_time(word, row.name, None) {
+        if !self.is_first_setting(word, row.name, None) {
             return;
         }
-        let label = format!("`{}` of `{}`", row.name, self.draft.name);
-        self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
+        let label = format!("`{}` of `{}`", row.name, self.declaration.name);
+        self.source.note(format!("{}.{}", self.declaration.name, row.name), &node.span);
         match row.kind {
             Kind::Node(_) => {
                 let Some(name) = text(&label, node, self.findings) else { return };
                 let (node_id, name, span) = (self.id, name.to_owned(), node.span.clone());
-                self.links.references.push(Reference { node: node_id, row, name, span });
+                self.references.all.push(Reference { node: node_id, row, name, span });
             }
             Kind::Components => self.components(&label, row, node),
             Kind::Text if row == &n_base::PRESET.row => self.preset(&label, node),
@@ -149,24 +155,24 @@ impl NodeReader<'_, '_> {
         }
     }
 
-    /// One part of a vector: `translateY: 3`.
+    /// One component of a vector: `translateY: 3`.
     fn part(&mut self, word: &Word, row: &'static Attribute, part: usize, node: &Node) {
-        if !self.first_time(word, row.name, Some(part)) {
+        if !self.is_first_setting(word, row.name, Some(part)) {
             return;
         }
-        let label = format!("`{}` of `{}`", word.text, self.draft.name);
+        let label = format!("`{}` of `{}`", word.text, self.declaration.name);
         let Some(channel) = read_part(&label, row, node, self.findings) else { return };
         let mut channels = match (self.graph.node(self.id).settings().get(row.name), &row.default) {
             (Some(Setting::Parts(channels)), _) => channels.clone(),
-            (_, Some(Held::Vector(default))) => default.map(Channel::Fixed),
+            (_, Some(AttrValue::Vector(default))) => default.map(Channel::Fixed),
             _ => return,
         };
         channels[part] = channel;
-        self.source.note(format!("{}.{}", self.draft.name, row.name), &node.span);
+        self.source.note(format!("{}.{}", self.declaration.name, row.name), &node.span);
         self.store(word, row, Setting::Parts(channels));
     }
 
-    /// Several attributes in one go: `subdivisions: (64, 64)`.
+    /// Several attributes by one name: `subdivisions: (64, 64)`.
     fn together(
         &mut self,
         word: &Word,
@@ -174,7 +180,7 @@ impl NodeReader<'_, '_> {
         parts: &'static [&'static str],
         node: &Node,
     ) {
-        let label = format!("`{}` of `{}`", row.name, self.draft.name);
+        let label = format!("`{}` of `{}`", row.name, self.declaration.name);
         let items: &[Node] = match &node.value {
             Value::Tuple { name: None, items } | Value::List(items) => items,
             _ => {
@@ -188,18 +194,18 @@ impl NodeReader<'_, '_> {
             return;
         }
         for (name, item) in parts.iter().zip(items) {
-            let Some(row) = self.draft.node_type.attribute(name) else { continue };
-            if !self.first_time(word, row.name, None) {
+            let Some(row) = self.declaration.node_type.attribute(name) else { continue };
+            if !self.is_first_setting(word, row.name, None) {
                 continue;
             }
-            self.source.note(format!("{}.{}", self.draft.name, row.name), &item.span);
+            self.source.note(format!("{}.{}", self.declaration.name, row.name), &item.span);
             if let Some(value) = single(&label, row, item, self.findings) {
                 self.store(word, row, Setting::Fixed(value));
             }
         }
     }
 
-    /// Takes a material.
+    /// Applies a preset.
     fn preset(&mut self, label: &str, node: &Node) {
         let Some(name) = text(label, node, self.findings) else { return };
         if name.is_empty() {
@@ -212,18 +218,18 @@ impl NodeReader<'_, '_> {
                 return;
             }
         };
-        let node_type = self.draft.node_type;
+        let node_type = self.declaration.node_type;
         if !node_type.is_a(preset.node_type) {
             let message = format!(
                 "the preset `{name}` is for {}, but `{}` is of type {}",
-                preset.node_type.name, self.draft.name, node_type.name
+                preset.node_type.name, self.declaration.name, node_type.name
             );
             self.findings.error(&node.span, message);
             return;
         }
         let set = self.graph.apply_preset(self.id, &preset.settings);
         let set = set.and_then(|()| {
-            self.graph.set(self.id, &n_base::PRESET.row, Setting::Fixed(Held::Text(name.to_owned())))
+            self.graph.set(self.id, &n_base::PRESET.row, Setting::Fixed(AttrValue::Text(name.to_owned())))
         });
         if let Err(error) = set {
             self.findings.error(&node.span, error.to_string());
@@ -247,7 +253,7 @@ impl NodeReader<'_, '_> {
             let Some(text) = text(label, item, self.findings) else { continue };
             match component::read(text) {
                 Ok(component) => {
-                    let place = format!("{}.{}[{}]", self.draft.name, row.name, components.len());
+                    let place = format!("{}.{}[{}]", self.declaration.name, row.name, components.len());
                     self.source.note(place, &item.span);
                     components.push(component);
                 }
@@ -257,37 +263,39 @@ impl NodeReader<'_, '_> {
                 }
             }
         }
-        let setting = Setting::Fixed(Held::Components(components));
+        let setting = Setting::Fixed(AttrValue::Components(components));
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&node.span, error.to_string());
         }
     }
 
-    /// Keeps what has been read, and says so if it does nothing.
+    /// Stores a setting, and warns if it has no effect.
     fn store(&mut self, word: &Word, row: &'static Attribute, setting: Setting) {
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&word.span, error.to_string());
         }
         let lacks = match row.effect {
-            Effect::Solved(_) if self.draft.node_type.has_no_use_for(row) => "has no effect on such a node",
+            Effect::Solved(_) if self.declaration.node_type.has_no_use_for(row) => {
+                "has no effect on such a node"
+            }
             Effect::Solved(_) => return,
             Effect::NotYet => "has no effect yet",
-            Effect::Never => "has no effect: nothing uses it, in Maya neither",
+            Effect::Never => "has no effect: nothing uses it, not even in Maya",
         };
-        self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.draft.name));
+        self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.declaration.name));
     }
 
-    /// Notes that something is set; whether it is the first time.
-    fn first_time(&mut self, word: &Word, name: &'static str, part: Option<usize>) -> bool {
+    /// Records that an attribute is set. Refuses the second time.
+    fn is_first_setting(&mut self, word: &Word, name: &'static str, part: Option<usize>) -> bool {
         let again = |(set, set_part, _): &&(&str, Option<usize>, _)| {
             *set == name && (part.is_none() || set_part.is_none() || *set_part == part)
         };
         if let Some((.., first)) = self.set.iter().find(again) {
-            let message = format!("`{}` of `{}` is set twice", name, self.draft.name);
+            let message = format!("`{}` of `{}` is set twice", name, self.declaration.name);
             self.findings.error(&word.span, message).note_at(first, "here for the first time");
             return false;
         }
-        let place = self.draft.fields.iter().find(|(field, _)| field.span == word.span);
+        let place = self.declaration.fields.iter().find(|(field, _)| field.span == word.span);
         if let Some((field, _)) = place {
             self.set.push((name, part, &field.span));
         }
@@ -295,7 +303,7 @@ impl NodeReader<'_, '_> {
     }
 
     fn unknown(&mut self, word: &Word) {
-        let Draft { name, node_type, .. } = self.draft;
+        let Declaration { name, node_type, .. } = self.declaration;
         let rows = node_type.attributes();
         let parts: Vec<String> =
             rows.iter().filter_map(|row| row.parts()).flatten().map(|(long, _)| long).collect();

@@ -1,19 +1,19 @@
-//! `time: (start: 1, end: 120, fps: 24)`.
+//! `time: (start: 1, end: 120, fps: 24)` and `record: every(10)`.
 
-use crate::scene::document::TimeSpan;
-use crate::scene::findings::Findings;
+use crate::diagnostic::Findings;
+use crate::scene::document::{Record, TimeSpan};
 use crate::scene::syntax::{Node, Value};
 
 use super::fields::Fields;
 use super::value::{found, number, whole_number};
 
-/// The most frames a number can name exactly.
-const MOST_FRAMES: f64 = 1e9;
+/// Limit on frame numbers.
+const MAX_FRAME: f64 = 1e9;
 
-/// Most frames from one evaluation to the next, and most evaluations in a frame.
-const MOST_EVERY: f64 = 1000.0;
+/// Limit on frames per evaluation, and on evaluations per frame.
+const MAX_EVERY: f64 = 1000.0;
 
-/// Reads the frames of a run, and how many of them lie between two evaluations.
+/// Reads the frames of a run, and the evaluation interval in frames.
 pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(TimeSpan, f64)> {
     let node = node?;
     let Value::Record { name: None, fields } = &node.value else {
@@ -43,8 +43,8 @@ pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(Time
 
 fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
     let frame = whole_number(&format!("`{name}`"), node, findings)?;
-    if frame.abs() > MOST_FRAMES {
-        findings.error(&node.span, format!("frame {frame} is too far away"));
+    if frame.abs() > MAX_FRAME {
+        findings.error(&node.span, format!("frame {frame} is beyond the limit of {MAX_FRAME}"));
         return None;
     }
     Some(frame as i64)
@@ -61,11 +61,11 @@ fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
     Some(fps)
 }
 
-/// Every so many frames, or so many times in a frame.
+/// The evaluation interval: a whole number of frames, or the reciprocal of one.
 fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
     let every = number("`every`", node, findings)?;
-    let whole = |x: f64| (1.0..=MOST_EVERY).contains(&x) && x.fract() == 0.0;
-    // 1/3 cannot be written exactly.
+    let whole = |x: f64| (1.0..=MAX_EVERY).contains(&x) && x.fract() == 0.0;
+    // 1/3 has no exact decimal, so the nearest reciprocal is taken.
     let parts = (1.0 / every).round();
     if whole(every) {
         return Some(every);
@@ -73,7 +73,36 @@ fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
     if whole(parts) && (every * parts - 1.0).abs() < 1e-6 {
         return Some(1.0 / parts);
     }
-    let message = format!("`every` must be a whole number of frames or a part of one, found {every}");
+    let message = format!("`every` must be a whole number of frames, or 1 divided by one, found {every}");
     findings.error(&node.span, message).help("2 evaluates every other frame, 0.25 four times in each");
     None
+}
+
+/// Reads `record`.
+pub(super) fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
+    match &node.value {
+        Value::Word(word) if word == "frames" => Some(Record::Frames),
+        Value::Word(word) if word == "substeps" => Some(Record::Substeps),
+        Value::Word(word) if word == "none" => Some(Record::None),
+        Value::Tuple { name: Some(name), items } if name.text == "every" => every(items).or_else(|| {
+            let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
+            error.help("`every(10)` records each tenth frame and the last");
+            None
+        }),
+        other => {
+            let error = findings.error(&node.span, format!("`record` takes a word, found {}", found(other)));
+            error.help("write `frames`, `substeps`, `every(10)` or `none`");
+            None
+        }
+    }
+}
+
+/// `every(10)`.
+fn every(items: &[Node]) -> Option<Record> {
+    match items {
+        [Node { value: Value::Number(n), .. }] if n.fract() == 0.0 && (1.0..=1e9).contains(n) => {
+            Some(Record::Every(*n as u32))
+        }
+        _ => None,
+    }
 }

@@ -1,33 +1,33 @@
-//! A place in a text that moves forward over characters, blanks and comments.
+//! A position in a text that advances over characters, blanks and comments.
 
 use std::ops::Range;
 
-use super::error::SyntaxError;
+use super::tree::SyntaxError;
 
-/// A text and how far it has been read.
+/// A text and the position in it.
 pub(super) struct Cursor<'a> {
     text: &'a str,
     at: usize,
 }
 
 impl<'a> Cursor<'a> {
-    /// At the beginning of a text, after the byte order mark that some editors write.
+    /// At the start of a text, after a byte order mark.
     pub(super) fn new(text: &'a str) -> Self {
         let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         Self { text, at }
     }
 
-    /// The byte offset that has been reached.
+    /// The position: a byte offset.
     pub(super) fn at(&self) -> usize {
         self.at
     }
 
-    /// Goes back (or on) to an offset that [`at`](Self::at) gave.
+    /// Moves to an offset from [`at`](Self::at).
     pub(super) fn set(&mut self, at: usize) {
         self.at = at;
     }
 
-    /// What has not been read yet.
+    /// The text after the position.
     pub(super) fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -51,10 +51,10 @@ impl<'a> Cursor<'a> {
         comes
     }
 
-    /// Takes all characters up to the first that does not belong.
-    pub(super) fn take_while(&mut self, belongs: impl Fn(char) -> bool) -> &'a str {
+    /// Takes all characters up to the first that does not satisfy a condition.
+    pub(super) fn take_while(&mut self, condition: impl Fn(char) -> bool) -> &'a str {
         let rest = self.rest();
-        let taken = &rest[..rest.find(|c| !belongs(c)).unwrap_or(rest.len())];
+        let taken = &rest[..rest.find(|c| !condition(c)).unwrap_or(rest.len())];
         self.at += taken.len();
         taken
     }
@@ -64,12 +64,12 @@ impl<'a> Cursor<'a> {
         &self.text[span]
     }
 
-    /// From an earlier offset to here.
+    /// The span from an earlier offset to the position.
     pub(super) fn since(&self, start: usize) -> Range<usize> {
         start..self.at
     }
 
-    /// Skips blanks and comments. A block comment may hold others.
+    /// Skips blanks and comments. Block comments can be nested.
     pub(super) fn skip_blank(&mut self) -> Result<(), SyntaxError> {
         loop {
             self.take_while(is_blank);
@@ -101,7 +101,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// An offset in words: `line 3, column 5`, both counted from 1, columns in characters.
+    /// An offset as `line 3, column 5`, both from 1, columns in characters.
     pub(super) fn place(&self, offset: usize) -> String {
         let before = self.text[..offset].trim_start_matches('\u{feff}');
         let line = before.matches('\n').count() + 1;
@@ -110,7 +110,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// What RON takes as white space.
+/// RON's white space.
 fn is_blank(c: char) -> bool {
     matches!(
         c,

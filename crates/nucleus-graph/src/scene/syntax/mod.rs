@@ -1,24 +1,21 @@
-//! RON text as a tree that knows where everything stands, and knows no node and no attribute.
+//! RON text as a tree of values with their places. This module knows no node and no attribute.
 //!
 //! | You want to know...                    | Read          |
 //! |----------------------------------------|---------------|
-//! | what a text can say                    | [`Value`]     |
-//! | how it is read, and where it stops     | `reader.rs`   |
-//! | how brackets and commas are held apart | `brackets.rs` |
-//! | what counts as a number                | `number.rs`   |
-//! | what may stand between quotes          | `text.rs`     |
-//! | what is skipped                        | `cursor.rs`   |
+//! | which forms of values there are        | [`Value`]     |
+//! | how they are parsed, and where parsing stops | `reader.rs` |
+//! | how numbers are written                | `number.rs`   |
+//! | how text in quotes is written          | `text.rs`     |
+//! | which characters are skipped           | `cursor.rs`   |
 //!
-//! The `ron` crate stops at the first error and gives values no place, so a scene is read here.
-//! `ron` stays the authority on what RON is.
+//! The `ron` crate stops at the first error and gives values no place, so scenes have their own parser. `ron` stays
+//! the reference: tests compare both.
 //!
-//! **Invariant:** a text that is read here is one that `ron` reads too, to the same numbers. Left out on
-//! purpose: numbers that are not finite, `Some` and `None`, single characters, byte strings, ranges, type
-//! suffixes, raw and non-ASCII identifiers, extensions, and plain text that runs over the end of a line.
+//! **Invariant:** a text that is accepted here is accepted by `ron`, with the same values. Left out on purpose:
+//! numbers that are not finite, `Some` and `None`, single characters, byte strings, ranges, type suffixes, raw and
+//! non-ASCII identifiers, extensions, and text in quotes over several lines.
 
-mod brackets;
 mod cursor;
-mod error;
 mod number;
 mod reader;
 #[cfg(test)]
@@ -26,6 +23,5 @@ mod tests;
 mod text;
 mod tree;
 
-pub use error::SyntaxError;
 pub use reader::parse;
-pub use tree::{Node, Value, Word};
+pub use tree::{Node, SyntaxError, Value, Word};

@@ -1,17 +1,17 @@
-//! Numbers as RON writes them: `12`, `-1_000`, `.5`, `1e-3`, `0xff`, `0o17`, `0b11`.
+//! Numbers of RON: `12`, `-1_000`, `.5`, `1e-3`, `0xff`, `0o17`, `0b11`.
 
-/// Why some characters are not a number.
+/// Reasons why characters are not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NumberError {
-    /// It is not written as a number.
+    /// They do not have the form of a number.
     Unreadable,
-    /// It is one that a 64-bit float cannot hold.
+    /// The number is too large for a 64-bit float.
     TooLarge,
-    /// It is infinite, or no number at all.
+    /// The word stands for infinity or NaN.
     NotFinite,
 }
 
-/// Reads one number; all of `text` must belong to it.
+/// Reads one number, which must be all of `text`.
 pub(super) fn read(text: &str) -> Result<f64, NumberError> {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     if is_not_finite(digits) {
@@ -26,12 +26,12 @@ pub(super) fn read(text: &str) -> Result<f64, NumberError> {
     }
 }
 
-/// Whether a word is one of RON's names for infinity or for no number.
+/// Whether a word is one of RON's names for infinity or NaN.
 pub(super) fn is_not_finite(word: &str) -> bool {
     matches!(word, "inf" | "inff32" | "inff64" | "NaN" | "NaNf32" | "NaNf64")
 }
 
-/// Integers in base 2, 8 or 16, as far as 64 bits go.
+/// Integers of 64 bits in base 2, 8 or 16.
 fn read_based(digits: &str, base: u32, negative: bool) -> Result<f64, NumberError> {
     if digits.is_empty() || digits.starts_with('_') {
         return Err(NumberError::Unreadable);
@@ -49,7 +49,7 @@ fn read_based(digits: &str, base: u32, negative: bool) -> Result<f64, NumberErro
     }
 }
 
-/// Everything else. `_` may stand after a digit or an exponent's `e`, not at the beginning or after the point.
+/// Decimal numbers. `_` is allowed after a digit or the `e` of an exponent, not at the start or after the point.
 fn read_decimal(text: &str) -> Result<f64, NumberError> {
     let mut plain = String::with_capacity(text.len());
     let mut underscore_allowed = false;
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_refused() {
+    fn malformed_numbers_are_refused() {
         for text in
             ["", "-", ".", "1.2.3", "12ab", "0x", "0x_1", "0b2", "_1", "1._5", "1cm", "--1", "1e", "1..2"]
         {
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_refused() {
+    fn infinity_nan_and_overflow_are_refused() {
         for text in ["inf", "-inf", "NaN", "+NaN", "-inff32"] {
             assert_eq!(read(text), Err(NumberError::NotFinite), "{text}");
         }

@@ -1,17 +1,37 @@
-//! Reading a text from left to right, one function per form of value.
+//! A recursive-descent parser of RON: one function per form of value.
 
-use super::brackets::Bracket;
 use super::cursor::Cursor;
-use super::error::SyntaxError;
 use super::number::{self, NumberError};
 use super::text;
-use super::tree::{Node, Value, Word};
+use super::tree::{Node, SyntaxError, Value, Word};
 
-/// Reads a text that holds one value.
+/// Limit on nesting of brackets. Scenes need 6; the limit of `ron` is 128.
+const MAX_DEPTH: usize = 64;
+
+/// An opening bracket.
+#[derive(Clone, Copy)]
+struct Bracket {
+    /// Its byte offset.
+    at: usize,
+    /// The character: `(`, `[` or `{`.
+    opening: char,
+}
+
+impl Bracket {
+    fn closing(self) -> char {
+        match self.opening {
+            '[' => ']',
+            '{' => '}',
+            _ => ')',
+        }
+    }
+}
+
+/// Parses a text of one value.
 ///
 /// # Errors
-/// All mistakes after which it is safe to read on (bad numbers, bad escapes, missing commas ...) and the
-/// first after which it is not, in the order of the text; at least one.
+/// All mistakes that parsing can continue after (bad numbers, bad escapes, missing commas ...) and the first that it
+/// cannot, in the order of the text. At least one.
 pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
     let mut reader = Reader { cursor: Cursor::new(text), errors: Vec::new(), open: Vec::new() };
     match reader.document() {
@@ -20,17 +40,17 @@ pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
     }
 }
 
-pub(super) struct Reader<'a> {
-    pub(super) cursor: Cursor<'a>,
-    pub(super) errors: Vec<SyntaxError>,
-    /// The brackets that are open here, outermost first.
-    pub(super) open: Vec<Bracket>,
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    errors: Vec<SyntaxError>,
+    /// The open brackets, outermost first.
+    open: Vec<Bracket>,
 }
 
-/// Reading cannot go on; why is the last of the errors.
-pub(super) struct Stop;
+/// Parsing cannot continue. The last error is the reason.
+struct Stop;
 
-pub(super) type Read<T> = Result<T, Stop>;
+type Read<T> = Result<T, Stop>;
 
 impl Reader<'_> {
     fn document(&mut self) -> Read<Node> {
@@ -90,7 +110,7 @@ impl Reader<'_> {
         self.value()
     }
 
-    /// A word, or what it is the name of.
+    /// A word, or the record or tuple that it names.
     fn word_or_named(&mut self) -> Read<Value> {
         let name = self.word();
         match name.text.as_str() {
@@ -115,7 +135,7 @@ impl Reader<'_> {
         Ok(Value::Word(name.text))
     }
 
-    /// `(a: 1)` or `(1, 2)`: what comes after the first word decides.
+    /// `(a: 1)` or `(1, 2)`: a colon after the first word decides.
     fn parenthesised(&mut self, name: Option<Word>) -> Read<Value> {
         if self.field_or_nothing_follows()? {
             Ok(Value::Record { name, fields: self.within_brackets(Self::field)? })
@@ -144,7 +164,7 @@ impl Reader<'_> {
         Word { text, span: self.cursor.since(start) }
     }
 
-    /// A number; a bad one is noted, and stands as zero in a tree that nobody gets to see.
+    /// A number. A malformed one is reported and becomes zero; the tree is then not returned.
     fn number(&mut self) -> f64 {
         let start = self.cursor.at();
         let text = self.cursor.take_while(|c| continues_word(c) || matches!(c, '+' | '-' | '.'));
@@ -154,7 +174,7 @@ impl Reader<'_> {
         })
     }
 
-    /// `'a'` is a single character in RON, which no scene needs: most likely text was meant.
+    /// `'a'` is a single character in RON. Scenes have none, so text was probably meant.
     fn single_quoted(&mut self) -> Read<Value> {
         let start = self.cursor.at();
         self.cursor.eat("'");
@@ -168,17 +188,17 @@ impl Reader<'_> {
         Ok(Value::Text(String::new()))
     }
 
-    pub(super) fn skip_blank(&mut self) -> Read<()> {
+    fn skip_blank(&mut self) -> Read<()> {
         self.cursor.skip_blank().map_err(|error| self.stop(error))
     }
 
-    pub(super) fn stop(&mut self, error: SyntaxError) -> Stop {
+    fn stop(&mut self, error: SyntaxError) -> Stop {
         self.errors.push(error);
         Stop
     }
 
-    /// Stops at what comes next, which is not what should.
-    pub(super) fn unexpected(&mut self, expected: &str) -> Stop {
+    /// Stops at an unexpected character or word.
+    fn unexpected(&mut self, expected: &str) -> Stop {
         let start = self.cursor.at();
         let Some(found) = self.cursor.peek() else { return self.ends_early(expected) };
         if self.cursor.take_while(continues_word).is_empty() {
@@ -188,7 +208,7 @@ impl Reader<'_> {
         let message = if found.is_ascii_graphic() {
             format!("expected {expected}, found `{}`", self.cursor.text(span.clone()))
         } else {
-            // Such as the no-break space that comes along when text is copied from a web page.
+            // Such as the no-break space in text copied from a web page.
             format!("expected {expected}, found the character U+{:04X}", u32::from(found))
         };
         let mut error = SyntaxError::new(message, span);
@@ -200,8 +220,71 @@ impl Reader<'_> {
     }
 }
 
-/// Names are Maya's: letters, digits and `_`.
-pub(super) fn begins_word(c: char) -> bool {
+impl Reader<'_> {
+    /// Items separated by commas, from the next opening bracket to its closing one.
+    fn within_brackets<T>(&mut self, item: fn(&mut Self) -> Read<T>) -> Read<Vec<T>> {
+        let bracket = self.open_bracket()?;
+        let mut items = Vec::new();
+        loop {
+            self.skip_blank()?;
+            if self.cursor.peek() == Some(bracket.closing()) {
+                self.cursor.next();
+                self.open.pop();
+                return Ok(items);
+            }
+            items.push(item(self)?);
+            self.comma(bracket)?;
+        }
+    }
+
+    fn open_bracket(&mut self) -> Read<Bracket> {
+        let at = self.cursor.at();
+        let bracket = Bracket { at, opening: self.cursor.next().unwrap_or('(') };
+        self.open.push(bracket);
+        if self.open.len() > MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} brackets inside each other");
+            return Err(self.stop(SyntaxError::new(message, at..at + 1)));
+        }
+        Ok(bracket)
+    }
+
+    /// A comma, unless the bracket closes. A missing comma before another value is reported, and parsing continues.
+    fn comma(&mut self, bracket: Bracket) -> Read<()> {
+        let end = self.cursor.at();
+        self.skip_blank()?;
+        if self.cursor.eat(",") || self.cursor.peek() == Some(bracket.closing()) {
+            return Ok(());
+        }
+        let touches = self.cursor.at() == end;
+        if touches
+            || !self.cursor.peek().is_some_and(|c| begins_word(c) || matches!(c, '"' | '0'..='9' | '-'))
+        {
+            return Err(self.unexpected(&format!("`,` or `{}`", bracket.closing())));
+        }
+        self.errors.push(
+            SyntaxError::new("a comma is missing", end..end)
+                .help("write `,` between two values, `:` between a name and its value"),
+        );
+        Ok(())
+    }
+
+    /// The text ends too early: the error points at the innermost open bracket.
+    fn ends_early(&mut self, expected: &str) -> Stop {
+        let end = self.cursor.at();
+        let error = match self.open.last() {
+            Some(bracket) => {
+                let message = format!("this `{}` is never closed", bracket.opening);
+                SyntaxError::new(message, bracket.at..bracket.at + 1)
+                    .help(format!("the file ends where {expected} or `{}` should come", bracket.closing()))
+            }
+            None => SyntaxError::new(format!("expected {expected}, found the end of the file"), end..end),
+        };
+        self.stop(error)
+    }
+}
+
+/// Names consist of ASCII letters, digits and `_`.
+fn begins_word(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 

@@ -1,4 +1,4 @@
-//! What is read, what is refused, and that `ron` agrees.
+//! Accepted forms, errors, and agreement with `ron`.
 
 use super::{Node, SyntaxError, Value, parse};
 
@@ -57,7 +57,7 @@ fn a_scene_is_read_as_written() {
 }
 
 #[test]
-fn every_value_knows_where_it_stands() {
+fn every_value_has_its_place() {
     let root = read(SCENE);
     let parts = fields(&root);
     assert_eq!(&SCENE[root.span.clone()], SCENE[12..].trim_end());
@@ -84,14 +84,14 @@ fn a_word_ends_before_the_blank_that_follows() {
 }
 
 #[test]
-fn escapes_stand_for_what_rust_means_by_them() {
+fn escapes_mean_the_same_as_in_rust() {
     let text = r#""a\n\t\r\0\\\"\'\x41\u{e9}\u{1F600}\
           b""#;
     assert_eq!(read(text).value, Value::Text("a\n\t\r\0\\\"'Aé😀b".into()));
 }
 
 #[test]
-fn equal_keys_and_fields_are_all_kept() {
+fn equal_keys_and_fields_are_kept() {
     assert_eq!(fields(&read("(a: 1, a: 2)")).len(), 2);
     assert!(matches!(read("{1: 1, 1: 2}").value, Value::Map(entries) if entries.len() == 2));
 }

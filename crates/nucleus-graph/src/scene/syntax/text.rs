@@ -1,10 +1,9 @@
-//! Text in quotes: `"..."` with escapes on one line, `r"..."` and `r#"..."#` as they stand.
+//! Text in quotes: `"..."` with escapes on one line, `r"..."` and `r#"..."#` without escapes.
 
 use super::cursor::Cursor;
-use super::error::SyntaxError;
+use super::tree::SyntaxError;
 
-/// Reads text in double quotes; the cursor is at the first quote. Escapes that mean nothing are added to
-/// `errors`, and reading goes on after them.
+/// Reads text in double quotes, from the first quote. Invalid escapes are added to `errors`, and reading continues.
 pub(super) fn read_quoted(cursor: &mut Cursor, errors: &mut Vec<SyntaxError>) -> Result<String, SyntaxError> {
     let start = cursor.at();
     cursor.eat("\"");
@@ -18,14 +17,14 @@ pub(super) fn read_quoted(cursor: &mut Cursor, errors: &mut Vec<SyntaxError>) ->
                 Ok(c) => text.extend(c),
                 Err(reason) => errors.push(bad_escape(cursor, at, reason)),
             },
-            // RON lets text run over the end of a line. A missing quote would then swallow half the file
-            // and be noticed far away, so here text over several lines is written in one of the other ways.
+            // RON allows line ends here. A missing quote would then be noticed only far behind it, so scenes write
+            // text of several lines in one of the other forms.
             _ => return Err(unterminated(start, at)),
         }
     }
 }
 
-/// Reads raw text; the cursor is at the `r`.
+/// Reads raw text, from the `r`.
 pub(super) fn read_raw(cursor: &mut Cursor) -> Result<String, SyntaxError> {
     let start = cursor.at();
     cursor.eat("r");
@@ -41,12 +40,12 @@ pub(super) fn read_raw(cursor: &mut Cursor) -> Result<String, SyntaxError> {
     Ok(text)
 }
 
-/// Whether raw text begins here, not a word that starts with `r`.
+/// Whether raw text begins here, and not a word that starts with `r`.
 pub(super) fn raw_begins(rest: &str) -> bool {
     rest.strip_prefix('r').is_some_and(|rest| rest.trim_start_matches('#').starts_with('"'))
 }
 
-/// What stands for the characters after a backslash; nothing for a backslash at the end of a line.
+/// The character of an escape, after its backslash. `None` for a backslash at the end of a line.
 fn read_escape(cursor: &mut Cursor) -> Result<Option<char>, &'static str> {
     let escaped = match cursor.peek() {
         Some(c @ ('\'' | '"' | '\\')) => c,
@@ -86,7 +85,7 @@ fn read_unicode_escape(cursor: &mut Cursor) -> Result<char, &'static str> {
     Ok(escaped)
 }
 
-/// `from_str_radix` alone would take a sign as well.
+/// `from_str_radix` alone would accept a sign.
 fn is_hexadecimal(digits: &str) -> bool {
     digits.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
@@ -94,7 +93,7 @@ fn is_hexadecimal(digits: &str) -> bool {
 fn bad_escape(cursor: &Cursor, start: usize, reason: &str) -> SyntaxError {
     let next = cursor.peek().filter(|c| !c.is_control());
     let end = start + 1 + next.map_or(0, char::len_utf8);
-    SyntaxError::new("this escape means nothing", start..end).help(reason)
+    SyntaxError::new("this is no valid escape", start..end).help(reason)
 }
 
 fn unterminated(start: usize, end: usize) -> SyntaxError {

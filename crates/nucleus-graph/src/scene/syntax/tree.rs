@@ -1,17 +1,17 @@
-//! What a text says, and where each part of it stands.
+//! Values with their places, and syntax errors.
 
 use std::ops::Range;
 
 /// A value and its place in the text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// What is written.
+    /// The value.
     pub value: Value,
-    /// Where: byte offsets into the text, name and brackets included.
+    /// Its place: byte offsets into the text, name and brackets included.
     pub span: Range<usize>,
 }
 
-/// Anything that can stand where a value is expected.
+/// A value in one of RON's forms.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A finite number; integers beyond 2⁵³ are rounded.
@@ -22,9 +22,9 @@ pub enum Value {
     Bool(bool),
     /// `[a, b]`
     List(Vec<Node>),
-    /// `{key: value}`, in the order of the text. Equal keys are all kept.
+    /// `{key: value}`, in the order of the text. Equal keys are kept.
     Map(Vec<(Node, Node)>),
-    /// `Name(field: 1)` or `(field: 1)`, in the order of the text. Equal fields are all kept.
+    /// `Name(field: 1)` or `(field: 1)`, in the order of the text. Equal fields are kept.
     /// `Name()` and `()` are records without fields.
     Record {
         /// The word before the bracket.
@@ -48,12 +48,12 @@ pub enum Value {
 pub struct Word {
     /// The name.
     pub text: String,
-    /// Where it stands: byte offsets into the text.
+    /// Its place: byte offsets into the text.
     pub span: Range<usize>,
 }
 
 impl Value {
-    /// What kind of value this is, for messages: `a number`, `a list` ...
+    /// The form of the value, for messages: `a number`, `a list` ...
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",
@@ -65,5 +65,29 @@ impl Value {
             Self::Tuple { .. } => "a tuple",
             Self::Word(_) => "a word",
         }
+    }
+}
+
+/// A syntax error with its place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct SyntaxError {
+    /// What is wrong: lower case, no full stop.
+    pub message: String,
+    /// The place: byte offsets into the text. Empty where a character is missing.
+    pub span: Range<usize>,
+    /// How to fix it.
+    pub help: Option<String>,
+}
+
+impl SyntaxError {
+    /// An error at a place.
+    pub(super) fn new(message: impl Into<String>, span: Range<usize>) -> Self {
+        Self { message: message.into(), span, help: None }
+    }
+
+    /// The same error with a line of help.
+    pub(super) fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
     }
 }

@@ -1,23 +1,23 @@
-//! What is refused: where it points, what it says, and what it advises.
+//! Mistakes: place, message and help.
 
 use std::fs;
 
 use super::*;
 
-/// Severity, what is pointed at, message and help of everything there is to say.
-fn said(text: &str) -> Vec<(String, String, Option<String>)> {
-    said_of(text, Path::new("test.ron"))
+/// The text at the place, message and help of all errors.
+fn reported(text: &str) -> Vec<(String, String, Option<String>)> {
+    reported_in(text, Path::new("test.ron"))
 }
 
-fn said_of(text: &str, file: &Path) -> Vec<(String, String, Option<String>)> {
+fn reported_in(text: &str, file: &Path) -> Vec<(String, String, Option<String>)> {
     let diagnostics = read_scene_text(text, file).map(|_| ()).expect_err(text);
-    let errors = diagnostics.into_iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
-    errors.map(|error| (text[error.span].to_owned(), error.message, error.help)).collect()
+    let all = diagnostics.into_iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
+    all.map(|error| (text[error.span].to_owned(), error.message, error.help)).collect()
 }
 
 #[track_caller]
 fn expect(text: &str, expected: &[(&str, &str, &str)]) {
-    let found = said(text);
+    let found = reported(text);
     let found: Vec<_> = found
         .iter()
         .map(|(at, message, help)| (at.as_str(), message.as_str(), help.as_deref().unwrap_or("")))
@@ -38,7 +38,7 @@ fn the_nearest_attribute_is_suggested() {
 }
 
 #[test]
-fn all_mistakes_are_told_in_one_go_and_in_order() {
+fn all_mistakes_are_reported_together_and_in_order() {
     let text = r#"Scene(
         time: (start: 10, end: 1, fps: 24),
         nodes: {
@@ -48,7 +48,7 @@ fn all_mistakes_are_told_in_one_go_and_in_order() {
         },
         checks: [noPenetrations],
     )"#;
-    let found = said(text);
+    let found = reported(text);
     let found: Vec<(&str, &str)> =
         found.iter().map(|(at, message, _)| (at.as_str(), message.as_str())).collect();
     let expected = [
@@ -66,10 +66,11 @@ fn all_mistakes_are_told_in_one_go_and_in_order() {
 
 #[test]
 fn the_nearest_type_and_the_nearest_word_are_suggested() {
-    let found = said(&with_nodes(r#""a": ncloth(inputMesh: "p"), "p": polyPlane()"#));
+    let found = reported(&with_nodes(r#""a": ncloth(inputMesh: "p"), "p": polyPlane()"#));
     assert_eq!(found[0].2.as_deref(), Some("did you mean `nCloth`?"));
-    let found =
-        said(&with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", scalingRelation: worldspace)"#));
+    let found = reported(&with_nodes(
+        r#""p": polyPlane(), "c": nCloth(inputMesh: "p", scalingRelation: worldspace)"#,
+    ));
     assert_eq!(found[0].2.as_deref(), Some("did you mean `worldSpace`?"));
 }
 
@@ -84,7 +85,7 @@ fn two_nodes_of_one_name_are_both_shown() {
 }
 
 #[test]
-fn what_is_missing_is_named_with_an_example() {
+fn missing_fields_are_named_with_an_example() {
     expect(
         "Scene(nodes: {})",
         &[("Scene", "`time` is missing", "add `time: (start: 1, end: 120, fps: 24)`")],
@@ -103,10 +104,10 @@ fn what_is_missing_is_named_with_an_example() {
 }
 
 #[test]
-fn an_empty_file_and_broken_ron_point_at_their_place() {
-    assert_eq!(said("")[0].1, "there is nothing in this file");
-    assert_eq!(said("Scene(time: 1.2.3)")[0].0, "1.2.3");
-    assert_eq!(said("[1, 2]")[0].1, "expected `Scene(...)`, found a list");
+fn errors_of_syntax_have_their_place() {
+    assert_eq!(reported("")[0].1, "there is nothing in this file");
+    assert_eq!(reported("Scene(time: 1.2.3)")[0].0, "1.2.3");
+    assert_eq!(reported("[1, 2]")[0].1, "expected `Scene(...)`, found a list");
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn of_two_nuclei_one_has_to_be_named() {
 }
 
 #[test]
-fn a_constraint_joins_only_what_belongs_to_its_nucleus() {
+fn a_constraint_and_its_objects_need_the_same_nucleus() {
     let text = with_nodes(
         r#""other": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p", nucleus: "other"),
            "pin": dynamicConstraint(nucleus: "nucleus1", components: ["c.vtx[0]"])"#,
@@ -151,14 +152,14 @@ fn a_constraint_joins_only_what_belongs_to_its_nucleus() {
         &text,
         &[(
             "[\"c.vtx[0]\"]",
-            "`pin` under `nucleus1` takes hold of `c` under `other`",
-            "only what belongs to the same nucleus acts on each other",
+            "`pin` on `nucleus1` constrains `c` on `other`",
+            "a constraint and its objects need the same nucleus",
         )],
     );
 }
 
 #[test]
-fn connections_made_by_hand_are_checked_at_their_place() {
+fn errors_of_explicit_connections_have_their_place() {
     let wired = |pair: &str| {
         with_nodes(r#""b": transform(), "p": polyPlane(), "c": nCloth(inputMesh: "p")"#)
             .replace("})", &format!("}}, connections: [{pair}])"))
@@ -199,20 +200,20 @@ fn connections_made_by_hand_are_checked_at_their_place() {
         (
             r#"("c.nextState", "nucleus1.inputActive[3]")"#,
             "",
-            "`c.nextState` is an input: nothing comes out of it",
+            "`c.nextState` is an input: nothing can be connected from it",
             "",
         ),
         (r#"("b.tx[0]", "c.friction")"#, "", "`b.translateX[0]` does not hold many: it takes no index", ""),
         (
             r#"("b.tx", "b.ty"), ("b.ty", "b.tx")"#,
             "(\"b.ty\", \"b.tx\")",
-            "`b.translateY` depends on `b.translateX`: connecting them would make a circle",
+            "`b.translateY` depends on `b.translateX`: connecting them would make a cycle",
             "",
         ),
         (
             r#"("b.tx", "b.tx")"#,
             "",
-            "`b.translateX` depends on `b.translateX`: connecting them would make a circle",
+            "`b.translateX` depends on `b.translateX`: connecting them would make a cycle",
             "",
         ),
         (
@@ -236,12 +237,12 @@ fn a_blend_needs_a_mesh_of_as_many_points() {
     let errors = crate::compile::compile(&scene).map(|_| ()).expect_err("they differ");
     assert!(errors[0].message.starts_with("`a` cannot be blended into `b`: one has "), "{errors:?}");
     assert_eq!(&text[errors[0].span.clone()], "\"b\"");
-    let circle = with_nodes(r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(blendTarget: "a")"#);
-    assert_eq!(said(&circle)[0].1, "`b` cannot be blended into `a`, which is blended into it");
+    let cycle = with_nodes(r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(blendTarget: "a")"#);
+    assert_eq!(reported(&cycle)[0].1, "`b` cannot be blended into `a`, which is blended into it");
 }
 
 #[test]
-fn evaluations_divide_a_frame_or_leap_over_some() {
+fn the_evaluation_interval_is_a_number_of_frames_or_a_fraction_of_one() {
     let every = |every: &str| {
         format!("Scene(time: (start: 1, end: 9, fps: 24, every: {every}), nodes: {{\"n\": nucleus()}})")
     };
@@ -250,10 +251,10 @@ fn evaluations_divide_a_frame_or_leap_over_some() {
     }
     for written in ["0", "-1", "1.5", "0.4", "1e9"] {
         let message = format!(
-            "`every` must be a whole number of frames or a part of one, found {}",
+            "`every` must be a whole number of frames, or 1 divided by one, found {}",
             written.parse::<f64>().expect("a number")
         );
-        assert_eq!(said(&every(written))[0].1, message);
+        assert_eq!(reported(&every(written))[0].1, message);
     }
 }
 
@@ -261,20 +262,20 @@ fn evaluations_divide_a_frame_or_leap_over_some() {
 fn an_attribute_is_set_once() {
     for fields in ["drag: 1, drag: 2", "drag: 1, drg: 2"] {
         let found =
-            said(&with_nodes(&format!("\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", {fields})")));
+            reported(&with_nodes(&format!("\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", {fields})")));
         assert_eq!(found.len(), 1);
         assert_eq!(found[0].1, "`drag` of `c` is set twice");
     }
     for fields in ["translate: (0, 0, 0), ty: 1", "ty: 1, translate: (0, 0, 0)", "ty: 1, translateY: 1"] {
-        let found = said(&with_nodes(&format!("\"t\": transform({fields})")));
+        let found = reported(&with_nodes(&format!("\"t\": transform({fields})")));
         assert_eq!(found[0].1, "`translate` of `t` is set twice", "{fields}");
     }
-    let found = said(&with_nodes("\"p\": polyPlane(subdivisions: (2, 2), sw: 3)"));
+    let found = reported(&with_nodes("\"p\": polyPlane(subdivisions: (2, 2), sw: 3)"));
     assert_eq!(found[0].1, "`subdivisionsWidth` of `p` is set twice");
 }
 
 #[test]
-fn keys_have_an_order_a_shape_and_a_tangent() {
+fn keys_have_an_order_a_form_and_a_tangent() {
     let keyed = |keys: &str| with_nodes(&format!("\"t\": transform(tx: keys({keys}))"));
     expect(
         &keyed("[(5, 0), (1, 2)]"),
@@ -318,13 +319,13 @@ fn values_have_a_type_and_a_range() {
         ("airDensity: keys([(1, -1)])", "`airDensity` of `n` must be at least 0, found -1"),
     ] {
         let text = format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus({field})}})");
-        assert_eq!(said(&text)[0].1, message);
+        assert_eq!(reported(&text)[0].1, message);
     }
 }
 
 #[test]
-fn names_can_be_told_from_components() {
-    let found = said(&with_nodes("\"a.b\": transform(), \"\": transform()"));
+fn names_cannot_be_empty_or_contain_a_dot() {
+    let found = reported(&with_nodes("\"a.b\": transform(), \"\": transform()"));
     assert_eq!(found[0].1, "`a.b` is not a name");
     assert_eq!(found[1].1, "`` is not a name");
 }
@@ -342,27 +343,27 @@ fn pins_hold_points_of_cloth_that_are_there() {
         &pinned("p.vtx[0]"),
         &[(
             "\"p.vtx[0]\"",
-            "only points of cloth and particles can be held, but `p` is of type polyPlane",
+            "only points of cloth and particles can be constrained, but `p` is of type polyPlane",
             "did you mean `c1.vtx[0]`?",
         )],
     );
-    assert_eq!(said(&pinned("c1.e[0]"))[0].1, "only points can be named so far, not `e`");
-    // A range is held against its object before it becomes a list.
+    assert_eq!(reported(&pinned("c1.e[0]"))[0].1, "only points (`vtx`) are supported, not `e`");
+    // A range is checked against its object before it is expanded.
     for last in [9, u32::MAX] {
         let (range, message) = (format!("c1.vtx[0:{last}]"), format!("`c1` has no point {last}"));
         let place = format!("\"{range}\"");
         expect(&pinned(&range), &[(place.as_str(), message.as_str(), "its points are numbered 0 to 8")]);
     }
-    // Or together with a mistake elsewhere.
+    // It is reported together with other mistakes.
     let both = pinned("c1.vtx[9]").replace("end: 24", "end: 0");
-    assert_eq!(said(&both).len(), 2);
+    assert_eq!(reported(&both).len(), 2);
 }
 
 #[test]
-fn parents_in_a_circle_are_refused() {
-    let found = said(&with_nodes(r#""a": transform(parent: "b"), "b": transform(parent: "a")"#));
+fn parents_in_a_cycle_are_refused() {
+    let found = reported(&with_nodes(r#""a": transform(parent: "b"), "b": transform(parent: "a")"#));
     assert_eq!(found.len(), 1);
-    assert_eq!(found[0].1, "`b` cannot hang from `a`, which hangs from it");
+    assert_eq!(found[0].1, "`a` cannot be the parent of `b`: that would make a cycle");
 }
 
 #[test]
@@ -376,7 +377,7 @@ fn missing_and_broken_files_are_named_with_their_line() {
            "c1": nCloth(inputMesh: "a"), "c2": nCloth(inputMesh: "b"), "c3": nCloth(inputMesh: "f"),
            "c4": nCloth(inputMesh: "m", damp: oops)"#,
     );
-    let found = said_of(&text, &file);
+    let found = reported_in(&text, &file);
     assert!(found[0].1.contains("missing.obj") && found[0].0 == "\"missing.obj\"", "{found:?}");
     assert!(found[1].1.contains("broken.obj") && found[1].1.contains("line 4"), "{found:?}");
     assert_eq!(found[2].1, "`f` has no face with an area");
@@ -389,7 +390,7 @@ fn missing_and_broken_files_are_named_with_their_line() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_not_text_is_named() {
+fn a_missing_file_and_a_file_that_is_not_utf8_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = read_scene(folder.path().join("none.ron")).map(|_| ()).expect_err("it is missing");
     assert!(missing[0].message.starts_with("cannot read `"), "{missing:?}");
@@ -403,19 +404,19 @@ fn a_file_that_is_not_there_or_not_text_is_named() {
 }
 
 #[test]
-fn checks_take_what_they_take() {
+fn the_arguments_of_checks_are_checked() {
     let with_checks = |checks: &str| {
         format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: {checks})")
     };
-    assert_eq!(said(&with_checks("[maxStretch]"))[0].1, "`maxStretch` takes `strain`");
-    assert_eq!(said(&with_checks("[noPenetration(1)]"))[0].1, "`noPenetration` takes nothing");
-    assert_eq!(said(&with_checks("[restsBy(frame: 3, sped: 1)]"))[0].1, "`restsBy` has no `sped`");
+    assert_eq!(reported(&with_checks("[maxStretch]"))[0].1, "`maxStretch` takes `strain`");
+    assert_eq!(reported(&with_checks("[noPenetration(1)]"))[0].1, "`noPenetration` takes nothing");
+    assert_eq!(reported(&with_checks("[restsBy(frame: 3, sped: 1)]"))[0].1, "`restsBy` has no `sped`");
     assert_eq!(
-        said(&with_checks("noPenetration"))[0].1,
+        reported(&with_checks("noPenetration"))[0].1,
         "`checks` takes a list, found the word `noPenetration`"
     );
     assert_eq!(
-        said(&with_checks("[maxStretch(true)]"))[0].1,
+        reported(&with_checks("[maxStretch(true)]"))[0].1,
         "`strain` of `maxStretch` takes a number, found true or false"
     );
 }
@@ -426,9 +427,10 @@ fn checks_that_count_take_whole_numbers_from_zero() {
         let text = format!(
             "Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])"
         );
-        said(&text)[0].1.clone()
+        reported(&text)[0].1.clone()
     };
-    for (check, parameter) in [("maxUnresolved", "pairs"), ("maxTrapped", "points"), ("maxTangled", "edges")]
+    for (check, parameter) in
+        [("maxUnresolved", "pairs"), ("maxDepenetrating", "points"), ("maxIntersections", "edges")]
     {
         let of = format!("`{parameter}` of `{check}` takes a whole number");
         assert_eq!(found(&format!("{check}(-1)")), format!("{of} from 0, found -1"));
@@ -437,8 +439,30 @@ fn checks_that_count_take_whole_numbers_from_zero() {
     }
 }
 
-/// What is said where a scene may take so many bytes.
-fn said_within(text: &str, bytes: u64) -> Vec<(String, Option<String>)> {
+#[test]
+fn a_former_name_of_a_check_is_read_with_a_warning_that_gives_the_new_one() {
+    let with_check = |check: &str| {
+        format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
+    };
+    for (former, current) in [
+        ("maxTrapped", "maxDepenetrating"),
+        ("maxTangled", "maxIntersections"),
+        ("untangledBy", "separatedBy"),
+    ] {
+        let text = with_check(&format!("{former}(3)"));
+        let (read, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a former name is read");
+        assert_eq!(read.checks, scene(&with_check(&format!("{current}(3)"))).checks);
+        let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
+        assert_eq!(warning.severity, Severity::Warning);
+        assert_eq!(warning.message, format!("`{former}` is now called `{current}`"));
+        assert_eq!(&text[warning.span.clone()], former);
+        assert_eq!(warning.help, Some(format!("write `{current}` in its place")));
+        assert!(write_scene(&read).contains(&format!("checks: [{current}(3)]")));
+    }
+}
+
+/// Message and help of all diagnostics, with a memory limit in bytes.
+fn diagnostics_within(text: &str, bytes: u64) -> Vec<(String, Option<String>)> {
     let memory = crate::memory::Memory(bytes);
     let read = read_scene_within(text, Path::new("test.ron"), memory);
     let found = match read {
@@ -449,7 +473,7 @@ fn said_within(text: &str, bytes: u64) -> Vec<(String, Option<String>)> {
 }
 
 #[test]
-fn what_takes_too_much_memory_is_refused_with_its_place_and_figures() {
+fn nodes_that_take_too_much_memory_are_refused_with_both_figures() {
     let scene = |nodes: &str| with_nodes(nodes);
     let cloth = |mesh: &str| scene(&format!(r#""p": {mesh}, "c1": nCloth(inputMesh: "p")"#));
     let all = 4096;
@@ -459,7 +483,7 @@ fn what_takes_too_much_memory_is_refused_with_its_place_and_figures() {
         format!("polyCylinder(subdivisionsAxis: {all}, subdivisionsHeight: {all}, subdivisionsCaps: {all})"),
         format!("polySphere(subdivisionsAxis: {all}, subdivisionsHeight: {all})"),
     ] {
-        let found = said_within(&cloth(&mesh), 1_000_000_000);
+        let found = diagnostics_within(&cloth(&mesh), 1_000_000_000);
         assert_eq!(found.len(), 1, "{mesh}: {found:?}");
         assert!(
             found[0].0.starts_with("`c1`, of ") && found[0].0.ends_with("the limit is 1.0 GB"),
@@ -468,18 +492,22 @@ fn what_takes_too_much_memory_is_refused_with_its_place_and_figures() {
         let help = found[0].1.as_deref().unwrap_or_default();
         assert!(help.starts_with("make `p` coarser, or allow more: `--memory "), "{help}");
     }
-    // Each would fit.
+    // Each alone would fit.
     let two = r#""p": polyPlane(subdivisions: (100, 100)), "q": polyPlane(subdivisions: (100, 100)),
         "c1": nCloth(inputMesh: "p"), "c2": nCloth(inputMesh: "q")"#;
-    let found = said_within(&scene(two), 40_000_000);
+    let found = diagnostics_within(&scene(two), 40_000_000);
     assert!(found.len() == 1 && found[0].0.contains(" with all before it; the limit is 40 MB"), "{found:?}");
-    // Nodes, and the text itself.
+    // Nodes and the text itself count too.
     let nodes: String = (0..100).map(|k| format!("\"t{k}\": transform(), ")).collect();
-    assert!(said_within(&scene(&nodes), 200_000)[0].0.contains(" nodes take about "));
-    assert!(said_within(&scene(&nodes), 1_000)[0].0.contains("to read it takes about "));
+    assert!(diagnostics_within(&scene(&nodes), 200_000)[0].0.contains(" nodes take about "));
+    assert!(diagnostics_within(&scene(&nodes), 1_000)[0].0.contains("reading it takes about "));
     let pinned = r#""p": polyPlane(subdivisions: (100, 100)), "c1": nCloth(inputMesh: "p"),
         "pin": dynamicConstraint(components: ["c1.vtx[0:9999]"])"#;
-    assert!(said_within(&scene(pinned), 500_000)[0].0.starts_with("to hold 10000 points takes about 1.0 MB"));
+    assert!(
+        diagnostics_within(&scene(pinned), 500_000)[0]
+            .0
+            .starts_with("to constrain 10000 points takes about 1.0 MB")
+    );
 }
 
 #[cfg(unix)]
@@ -505,9 +533,9 @@ fn only_regular_files_are_read() {
     assert!(found[0].message.contains("it is a device or a pipe"), "{found:?}");
 }
 
-/// A scene may name any file; what it holds is not to be had from a message.
+/// A scene may name any file, so a message must not reveal its content.
 #[test]
-fn no_message_holds_what_a_file_holds() {
+fn no_message_quotes_the_content_of_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
     for (text, name) in [("users:secret:1\n", "a.txt"), ("1 secret\n", "b.txt"), ("v 1 secret 2\n", "c.obj")]
@@ -539,7 +567,7 @@ fn no_message_holds_what_a_file_holds() {
 }
 
 #[test]
-fn widths_that_no_scene_can_mean_are_told_with_node_attribute_and_place() {
+fn widths_beyond_the_extent_of_the_scene_are_reported_with_node_attribute_and_place() {
     let found = |fields: &str| {
         let text = with_nodes(&format!(
             r#""p": polyPlane(width: 3, height: 4), "c1": nCloth(inputMesh: "p", {fields})"#

@@ -1,4 +1,4 @@
-//! Written and read back, shuffled and damaged.
+//! Scenes written and read back, and damaged scenes.
 
 use std::borrow::Cow;
 
@@ -84,7 +84,7 @@ fn curves(row: &'static Attribute) -> BoxedStrategy<Curve> {
             };
             Curve::new(keys.into_iter().map(key).collect())
                 .expect("in order and finite")
-                .going_on(before, after)
+                .with_infinity(before, after)
         })
         .boxed()
 }
@@ -106,10 +106,10 @@ fn settings(row: &'static Attribute) -> BoxedStrategy<Setting> {
     prop_oneof![fixed, curves(row).prop_map(Setting::Keyed)].boxed()
 }
 
-/// The scene of the other tests with anything set on any of its nodes.
+/// The scene of the other tests with random settings on its nodes.
 fn scenes() -> impl Strategy<Value = Scene> {
     let plain = scene(SHEET);
-    let nodes: Vec<_> = plain.graph.iter().filter(|(_, node)| node.made_by().is_none()).collect();
+    let nodes: Vec<_> = plain.graph.iter().filter(|(_, node)| node.created_by().is_none()).collect();
     let rows =
         nodes.iter().flat_map(|(id, node)| node.node_type().attributes().into_iter().map(|row| (*id, row)));
     let settable = |row: &&Attribute| {
@@ -128,14 +128,14 @@ fn scenes() -> impl Strategy<Value = Scene> {
     })
 }
 
-/// What is set on all nodes, in every bit.
+/// The settings of all nodes, in every bit.
 fn all_settings(graph: &Graph) -> String {
     let mut nodes: Vec<_> = graph.iter().map(|(_, node)| (node.name(), node.settings())).collect();
     nodes.sort_by_key(|(name, _)| *name);
     format!("{nodes:?}")
 }
 
-/// What a run starts from and gets in its first frame, in every bit.
+/// The model and the input of the first frame, in every bit.
 fn start(scene: &Scene) -> Option<String> {
     let program = compile(scene).ok()?;
     Some(format!("{:?} {:?}", program.model(), program.first_input()))
@@ -143,7 +143,7 @@ fn start(scene: &Scene) -> Option<String> {
 
 proptest! {
     #[test]
-    fn what_is_written_reads_back_to_the_same_graph_and_the_same_run(scene in scenes()) {
+    fn a_written_scene_reads_back_to_the_same_graph_and_model(scene in scenes()) {
         let text = write_scene(&scene);
         let read = read_scene_text(&text, Path::new("test.ron"));
         prop_assert!(read.is_ok(), "{text}\n{read:#?}");
@@ -225,7 +225,7 @@ fn check_places(diagnostics: &[Diagnostic], text: &str) -> Result<(), TestCaseEr
 }
 
 #[test]
-fn comments_stay_with_what_they_belong_to() {
+fn comments_stay_with_their_node_or_attribute() {
     let text = r#"// EVIDENCE: N1.2-2  a flag
 // In metres.
 Scene(
@@ -286,7 +286,7 @@ fn a_scene_is_written_as_a_person_would() {
     let read = scene(text);
     let mut written: Vec<String> = write_scene(&read).lines().map(str::to_owned).collect();
     let mut expected: Vec<String> = text.lines().map(str::to_owned).collect();
-    // Attributes come in the order of the tables, which is not what this is about.
+    // The order of attributes follows the tables and is not tested here.
     written.sort();
     expected.sort();
     assert_eq!(written, expected);
@@ -294,7 +294,7 @@ fn a_scene_is_written_as_a_person_would() {
 }
 
 #[test]
-fn what_is_recorded_is_read_as_it_was_written() {
+fn the_forms_of_record_are_read_and_written() {
     for (text, expected) in [
         ("frames", Record::Frames),
         ("substeps", Record::Substeps),

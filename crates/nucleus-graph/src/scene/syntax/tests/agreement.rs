@@ -1,10 +1,11 @@
-//! `ron` is the authority: what is read here, `ron` reads to the same; what `ron` refuses is refused.
+//! Agreement with `ron`: a text that is accepted here gives the same values there, and a text that `ron` refuses is
+//! refused here.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// A tree as `ron::Value` can hold it: no names, and words as units.
+/// A tree with the content of `ron::Value`: no names, and words as units.
 #[derive(Debug, Clone, PartialEq)]
 enum Plain {
     Number(f64),
@@ -41,7 +42,7 @@ fn theirs(value: &ron::Value) -> Plain {
     }
 }
 
-/// `ron` gives an empty tuple as a unit or as an empty sequence, by how it is spaced.
+/// `ron` reads an empty tuple as a unit or as an empty sequence, depending on its blanks.
 fn many(items: impl Iterator<Item = Plain>) -> Plain {
     let items: Vec<_> = items.collect();
     if items.is_empty() { Plain::Nothing } else { Plain::Many(items) }
@@ -53,7 +54,7 @@ fn map(entries: impl Iterator<Item = (Plain, Plain)>) -> Plain {
     Plain::Map(entries)
 }
 
-/// `ron::Value` keeps only the last of equal keys, and what it holds as equal differs (1 and 1.0 are not).
+/// `ron::Value` keeps only the last of equal keys, by another equality (1 and 1.0 differ).
 fn has_equal_keys(plain: &Plain) -> bool {
     match plain {
         Plain::Many(items) => items.iter().any(has_equal_keys),
@@ -119,14 +120,14 @@ fn blank() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Names, except those that mean something else.
+/// Names, except reserved words.
 fn word() -> impl Strategy<Value = String> {
     "[a-zA-Z_][a-zA-Z0-9_]{0,5}".prop_filter("a name", |word| {
         !matches!(word.as_str(), "true" | "false" | "Some" | "None" | "inf" | "NaN" | "inff32" | "inff64")
     })
 }
 
-/// Whether `text` is accepted; if so, `ron` must accept it and see the same.
+/// Whether `text` is accepted. If so, `ron` must accept it with the same values.
 fn agree(text: &str) -> Result<bool, TestCaseError> {
     let Ok(node) = parse(text) else { return Ok(false) };
     match ron::from_str::<ron::Value>(text) {
@@ -139,12 +140,12 @@ fn agree(text: &str) -> Result<bool, TestCaseError> {
 
 proptest! {
     #[test]
-    fn whatever_scenes_may_say_is_read_as_ron_reads_it(text in written()) {
+    fn valid_texts_are_read_as_by_ron(text in written()) {
         prop_assert!(agree(&text)?, "refused: {}: {:?}", text, parse(&text));
     }
 
     #[test]
-    fn whatever_ron_refuses_is_refused(
+    fn texts_that_ron_refuses_are_refused(
         text in written(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0..3_u8, "[]()\\[{}:,\"'\\\\/*.#rxeb0-9_+\n -]"), 1..4),
     ) {
@@ -161,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn no_text_makes_it_panic_and_every_error_has_a_place(text in "(?s).{0,40}") {
+    fn no_text_panics_and_every_error_has_a_place(text in "(?s).{0,40}") {
         for error in parse(&text).err().unwrap_or_default() {
             prop_assert!(text.get(error.span.clone()).is_some(), "{:?} in {:?}", error, text);
         }
@@ -169,7 +170,7 @@ proptest! {
     }
 }
 
-// Cheap, and most of what they make is refused by both: only many cases find what one alone accepts.
+// These cases are cheap, and both parsers refuse most of them: only many find a text that one alone accepts.
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(8192))]
 
@@ -195,7 +196,7 @@ proptest! {
 }
 
 #[test]
-fn as_deep_as_is_read_here_ron_reads_too() {
+fn texts_at_the_nesting_limit_are_accepted_by_ron_too() {
     for (open, close) in [("[", "]"), ("(", ")"), ("{1:", "}"), ("a(b:", ")"), ("a(", ")")] {
         let text = format!("{}1{}", open.repeat(64), close.repeat(64));
         assert!(parse(&text).is_ok() && ron::from_str::<ron::Value>(&text).is_ok(), "{open}");

@@ -1,4 +1,4 @@
-//! What is refused: where it points, and what it says.
+//! Errors: place and message.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn errors(text: &str) -> Vec<SyntaxError> {
     parse(text).expect_err(text)
 }
 
-/// The only error of a text: what it points at, and its message.
+/// The only error of a text: the text of its place, and its message.
 fn error(text: &str) -> (&str, String) {
     let errors = errors(text);
     assert_eq!(errors.len(), 1, "{text}: {errors:?}");
@@ -21,7 +21,7 @@ fn an_empty_file_is_refused() {
 }
 
 #[test]
-fn all_bad_numbers_are_reported_in_one_go() {
+fn all_bad_numbers_are_reported_together() {
     let text = "(a: 1.2.3, b: NaN, c: [-inf, 1e999], d: 5cm, e: 2)";
     let all: Vec<_> = errors(text).iter().map(|e| (at(text, e), e.message.clone())).collect();
     let expected = [
@@ -35,7 +35,7 @@ fn all_bad_numbers_are_reported_in_one_go() {
 }
 
 #[test]
-fn an_unclosed_bracket_is_pointed_at() {
+fn the_error_of_an_unclosed_bracket_points_at_the_bracket() {
     let all = errors("(a: [1, 2");
     assert_eq!((all[0].span.clone(), all[0].message.as_str()), (4..5, "this `[` is never closed"));
     assert_eq!(errors("(a: [1, 2]")[0].span, 0..1);
@@ -51,7 +51,7 @@ fn a_wrong_bracket_names_the_one_that_was_opened() {
 }
 
 #[test]
-fn a_forgotten_comma_does_not_hide_what_comes_after() {
+fn a_missing_comma_does_not_hide_later_errors() {
     let text = "(\n  a: 1\n  b: 1.2.3,\n)";
     let all = errors(text);
     assert_eq!((all[0].span.clone(), all[0].message.as_str()), (8..8, "a comma is missing"));
@@ -67,7 +67,7 @@ fn unterminated_text_is_noticed_on_its_own_line() {
 }
 
 #[test]
-fn escapes_without_meaning_are_all_reported() {
+fn all_invalid_escapes_are_reported() {
     let text = r#"["C:\maya", "\u{110000}", "\xe9"]"#;
     let places: Vec<_> = errors(text).iter().map(|e| at(text, e).to_owned()).collect();
     assert_eq!(places, [r"\m", r"\u", r"\x"]);
@@ -78,7 +78,7 @@ fn escapes_without_meaning_are_all_reported() {
 }
 
 #[test]
-fn deep_nesting_is_an_error_and_no_overflow() {
+fn deep_nesting_is_an_error_and_no_stack_overflow() {
     for opening in ["(", "[", "{", "a(b:", "[("] {
         let all = errors(&opening.repeat(100_000));
         assert!(all[0].message.starts_with("more than 64 brackets"), "{opening}: {all:?}");
@@ -87,13 +87,13 @@ fn deep_nesting_is_an_error_and_no_overflow() {
 }
 
 #[test]
-fn what_comes_after_the_value_is_refused() {
+fn text_after_the_value_is_refused() {
     assert_eq!(error("(a: 1) b"), ("b", "expected the end of the file, found `b`".into()));
     assert_eq!(error("(a: 1))"), (")", "expected the end of the file, found `)`".into()));
 }
 
 #[test]
-fn forms_that_scenes_do_not_use_say_what_to_write() {
+fn forms_that_scenes_do_not_use_are_refused_with_the_form_to_use() {
     assert_eq!(error("(a: 'silk')"), ("'silk'", "text is written in double quotes".into()));
     assert_eq!(error("(a: Some(1))"), ("Some", "`Some` is not used here".into()));
     assert_eq!(error("(a: 1\u{a0})").1, "expected `,` or `)`, found the character U+00A0");

@@ -1,8 +1,53 @@
-//! What an expression can call, and the names it knows.
+//! Operations of an expression: variables, constants and functions.
 
-use super::{Op, Variable};
+/// A variable of an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// `x`, `y` or `z`: a coordinate of the position.
+    Position(usize),
+    /// `u` or `v`: a texture coordinate.
+    Uv(usize),
+    /// `i`: the number of the point.
+    Index,
+    /// `n`: the number of points.
+    Count,
+}
 
-/// What a function does with its arguments.
+/// The values of the variables at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Point {
+    /// Position in the space of the mesh, in scene units.
+    pub position: [f64; 3],
+    /// Texture coordinates.
+    pub uv: [f64; 2],
+    /// Number of the point, from 0.
+    pub index: usize,
+    /// Number of points.
+    pub count: usize,
+}
+
+impl Point {
+    pub(super) fn value(&self, variable: Variable) -> f64 {
+        match variable {
+            Variable::Position(axis) => self.position[axis],
+            Variable::Uv(part) => self.uv[part],
+            Variable::Index => self.index as f64,
+            Variable::Count => self.count as f64,
+        }
+    }
+}
+
+/// One operation on the stack of the evaluation.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Op {
+    Number(f64),
+    Variable(Variable),
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
+    Three(fn(f64, f64, f64) -> f64),
+}
+
+/// A function by its number of arguments.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Call {
     One(fn(f64) -> f64),
@@ -11,7 +56,7 @@ pub(super) enum Call {
 }
 
 impl Call {
-    /// How many arguments it takes.
+    /// The number of arguments.
     pub(super) fn arguments(self) -> usize {
         match self {
             Self::One(_) => 1,
@@ -29,8 +74,8 @@ impl Call {
     }
 }
 
-/// Angles are in radians. `step(edge, x)` is 1 from the edge on; `smoothstep(from, to, x)` rises smoothly from 0 to
-/// 1; `mix(a, b, t)` goes straight from a to b.
+/// All functions. Angles are in radians. `step(edge, x)` is 1 for `x >= edge`, else 0. `smoothstep(from, to, x)` rises
+/// smoothly from 0 to 1. `mix(a, b, t)` interpolates linearly from a to b.
 pub(super) const FUNCTIONS: [(&str, Call); 22] = [
     ("abs", Call::One(f64::abs)),
     ("sqrt", Call::One(f64::sqrt)),
@@ -56,7 +101,7 @@ pub(super) const FUNCTIONS: [(&str, Call); 22] = [
     ("mix", Call::Three(mix)),
 ];
 
-/// Names that stand for a number.
+/// Variables and constants by name.
 pub(super) const NAMES: [(&str, Op); 8] = [
     ("x", Op::Variable(Variable::Position(0))),
     ("y", Op::Variable(Variable::Position(1))),
@@ -76,9 +121,9 @@ fn step(edge: f64, x: f64) -> f64 {
     f64::from(u8::from(x >= edge))
 }
 
-/// Unlike `f64::clamp` it takes limits that cross: the upper one counts.
-fn clamp(x: f64, least: f64, most: f64) -> f64 {
-    x.max(least).min(most)
+/// Unlike `f64::clamp`, it accepts a lower limit above the upper one; the upper one then has precedence.
+fn clamp(x: f64, min: f64, max: f64) -> f64 {
+    x.max(min).min(max)
 }
 
 fn smoothstep(from: f64, to: f64, x: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Meshes made from numbers: closed where they should be, facing outward, counted as Maya counts.
+//! Primitives are closed, face outward, and have Maya's order of points.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -18,7 +18,7 @@ fn euler_characteristic(mesh: &Surface) -> i64 {
     mesh.positions.len() as i64 - edges.len() as i64 + mesh.faces.len() as i64
 }
 
-/// Every edge is walked once in each direction: no hole, and all faces are turned alike.
+/// Every edge occurs once in each direction: there is no hole, and all faces have the same orientation.
 fn is_closed(mesh: &Surface) -> bool {
     let around = |face: &[u32]| {
         face.iter().copied().zip(face.iter().copied().cycle().skip(1)).take(face.len()).collect::<Vec<_>>()
@@ -34,7 +34,7 @@ fn volume(mesh: &Surface) -> f64 {
     mesh.faces.triangles().map(|[a, b, c]| point(a).dot(&point(b).cross(&point(c))) / 6.0).sum()
 }
 
-/// Equal as far as single precision goes, in which Maya keeps its points.
+/// Equal up to single precision, in which Maya stores points.
 fn close(a: Vector3<f64>, b: [f64; 3]) -> bool {
     (a - Vector3::from(b)).norm() < 1e-6
 }
@@ -110,7 +110,7 @@ fn finer_meshes_come_closer_to_the_exact_volume() {
 }
 
 #[test]
-fn numbers_that_make_no_mesh_are_refused() {
+fn invalid_parameters_are_refused() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             poly_plane(1.0, bad, (1, 1)),
@@ -118,18 +118,18 @@ fn numbers_that_make_no_mesh_are_refused() {
         ));
         assert!(matches!(poly_sphere(bad, (8, 8)), Err(PrimitiveError::BadLength { name: "radius", .. })));
     }
-    let too_few = |name, value, least| Err(PrimitiveError::TooFewSubdivisions { name, value, least });
+    let too_few = |name, value, min| Err(PrimitiveError::TooFewSubdivisions { name, value, min });
     assert_eq!(poly_plane(1.0, 1.0, (0, 1)), too_few("width", 0, 1));
     assert_eq!(poly_cube(1.0, 1.0, 1.0, (1, 1, 0)), too_few("depth", 0, 1));
     assert_eq!(poly_sphere(1.0, (2, 8)), too_few("axis", 2, 3));
     assert_eq!(poly_cylinder(1.0, 1.0, (3, 0, 0)), too_few("height", 0, 1));
-    let most = u32::MAX;
+    let max = u32::MAX;
     for mesh in [
-        poly_plane(1.0, 1.0, (most, most)),
-        poly_cube(1.0, 1.0, 1.0, (1, most, most)),
-        poly_cube(1.0, 1.0, 1.0, (most, most, most)),
-        poly_sphere(1.0, (most, most)),
-        poly_cylinder(1.0, 1.0, (3, 1, most)),
+        poly_plane(1.0, 1.0, (max, max)),
+        poly_cube(1.0, 1.0, 1.0, (1, max, max)),
+        poly_cube(1.0, 1.0, 1.0, (max, max, max)),
+        poly_sphere(1.0, (max, max)),
+        poly_cylinder(1.0, 1.0, (3, 1, max)),
     ] {
         assert!(matches!(mesh, Err(PrimitiveError::TooManyPoints { .. })));
     }

@@ -1,31 +1,30 @@
-//! Nodes as they are written: a name, a type, fields.
+//! Declarations of nodes: a name, a type, and fields that are not read yet.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::attributes::{NodeType, node_type, node_types};
+use crate::diagnostic::{Findings, nearest};
 use crate::graph::{NodeId, is_a_name};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::value::{found, text};
 
-/// A node as it is written.
-pub(super) struct Draft<'a> {
+/// A node as declared in the file.
+pub(super) struct Declaration<'a> {
     pub(super) name: &'a str,
     pub(super) span: &'a Range<usize>,
     pub(super) node_type: &'static NodeType,
     pub(super) fields: &'a [(Word, Node)],
 }
 
-/// The nodes that have a name and a type, and the names of all.
-pub(super) fn drafts<'a>(
+/// The declarations that have a valid name and type. Also the names of all declared nodes, without ids.
+pub(super) fn read_declarations<'a>(
     entries: &'a [(Node, Node)],
     findings: &mut Findings,
-) -> (Vec<Draft<'a>>, BTreeMap<String, Option<NodeId>>) {
+) -> (Vec<Declaration<'a>>, BTreeMap<String, Option<NodeId>>) {
     let mut seen: BTreeMap<&str, &Range<usize>> = BTreeMap::new();
-    let mut drafts = Vec::new();
+    let mut declarations = Vec::new();
     let mut names = BTreeMap::new();
     for (key, body) in entries {
         let Some(name) = text("the name of a node", key, findings) else { continue };
@@ -41,15 +40,15 @@ pub(super) fn drafts<'a>(
             continue;
         }
         let Some((node_type, fields)) = typed(name, body, findings) else { continue };
-        drafts.push(Draft { name, span: &key.span, node_type, fields });
+        declarations.push(Declaration { name, span: &key.span, node_type, fields });
     }
-    (drafts, names)
+    (declarations, names)
 }
 
-/// A node that is alone in its file and has no name.
-pub(super) fn lone<'a>(root: &'a Node, findings: &mut Findings) -> Option<Draft<'a>> {
+/// The only declaration of a preset file, which has no name.
+pub(super) fn unnamed<'a>(root: &'a Node, findings: &mut Findings) -> Option<Declaration<'a>> {
     let (node_type, fields) = typed("preset", root, findings)?;
-    Some(Draft { name: "preset", span: &root.span, node_type, fields })
+    Some(Declaration { name: "preset", span: &root.span, node_type, fields })
 }
 
 fn typed<'a>(

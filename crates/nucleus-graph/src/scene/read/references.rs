@@ -1,4 +1,5 @@
-//! Names that become connections: `inputMesh`, `nucleus`, `target`, `parent`, and the objects of components.
+//! References to nodes by name (`inputMesh`, `nucleus`, `target`, `parent`, objects of components), and the connections
+//! that follow from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -8,74 +9,73 @@ use crate::attributes::{
     n_particle, nucleus, particle, surface_shape, transform,
 };
 use crate::compile::max_points;
+use crate::diagnostic::{Findings, nearest};
 use crate::graph::{Creation, Graph, NodeId};
 use crate::memory;
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
-use crate::scene::source::Source;
+use crate::scene::document::Source;
 
-use super::wires::Wires;
+use super::connections::Connections;
 
-/// What has been named while nodes were read.
-pub(super) struct Links {
-    /// All names in the file; without a node where it could not be read.
+/// The names collected while nodes are read.
+pub(super) struct References {
+    /// All names of nodes in the file. `None` for nodes that could not be read.
     pub(super) names: BTreeMap<String, Option<NodeId>>,
-    /// Names given as values.
-    pub(super) references: Vec<Reference>,
+    /// All references.
+    pub(super) all: Vec<Reference>,
 }
 
-/// A name given as a value.
+/// The name of a node as the value of an attribute.
 pub(super) struct Reference {
-    /// The node it is given to.
+    /// The node that has the attribute.
     pub(super) node: NodeId,
-    /// The attribute it is given to.
+    /// The attribute.
     pub(super) row: &'static Attribute,
     /// The name.
     pub(super) name: String,
-    /// Where.
+    /// The place of the name.
     pub(super) span: Range<usize>,
 }
 
-/// Makes the connections that Maya's commands would make, in the order of names: objects first, then what is
-/// put on them.
+/// Makes the connections of Maya's creation commands, in the order of names: objects first, then constraints, then
+/// fields and emitters.
 pub(super) fn connect(
     graph: &mut Graph,
-    links: &Links,
-    wires: &Wires,
+    references: &References,
+    connections: &Connections,
     source: &mut Source,
     findings: &mut Findings,
 ) {
-    let resolved = resolve(graph, links, findings);
-    hang(graph, links, &resolved, findings);
-    blend(graph, links, &resolved, source, findings);
-    let mut joiner = Joiner {
-        ends: wires.ends(graph),
+    let resolved = resolve(graph, references, findings);
+    set_parents(graph, references, &resolved, findings);
+    set_blend_targets(graph, references, &resolved, source, findings);
+    let mut resolver = Resolver {
+        ends: connections.ends(graph),
         all: graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect(),
-        named: links.references.iter().map(|r| (r.node, r.row.name)).collect(),
+        named: references.all.iter().map(|r| (r.node, r.row.name)).collect(),
         graph,
-        links,
+        references,
         resolved,
         source,
         findings,
         nuclei: BTreeMap::new(),
-        alone: false,
+        reported_no_nucleus: false,
     };
     let nodes: Vec<(NodeId, &'static NodeType)> =
-        joiner.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
+        resolver.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
     let of = |base: &'static NodeType| nodes.iter().filter(move |(_, node_type)| node_type.is_a(base));
-    of(&n_base::N_BASE).for_each(|&(id, node_type)| joiner.object(id, node_type));
-    of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| joiner.constraint(id));
-    of(&dyn_base::DYN_BASE).for_each(|&(id, _)| joiner.effect(id));
+    of(&n_base::N_BASE).for_each(|&(id, node_type)| resolver.connect_object(id, node_type));
+    of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| resolver.connect_constraint(id));
+    of(&dyn_base::DYN_BASE).for_each(|&(id, _)| resolver.connect_effect(id));
 }
 
-/// Finds the nodes that are named, each of the type that is wanted there.
+/// Finds the referenced nodes, and refuses those of a wrong type.
 fn resolve(
     graph: &Graph,
-    links: &Links,
+    references: &References,
     findings: &mut Findings,
 ) -> BTreeMap<(NodeId, &'static str), NodeId> {
     let mut resolved = BTreeMap::new();
-    for Reference { node, row, name, span } in &links.references {
+    for Reference { node, row, name, span } in &references.all {
         let is_particles = graph.node(*node).node_type().is_a(&n_particle::N_PARTICLE);
         if name.is_empty() && row.name == "nucleus" && is_particles {
             continue;
@@ -86,7 +86,7 @@ fn resolve(
             "target" => (&particle::PARTICLE, "an object"),
             _ => (&surface_shape::SURFACE_SHAPE, "a mesh"),
         };
-        match links.names.get(name) {
+        match references.names.get(name) {
             Some(&Some(target)) if graph.node(target).node_type().is_a(wanted) => {
                 resolved.insert((*node, row.name), target);
             }
@@ -96,7 +96,7 @@ fn resolve(
                     format!("`{}` of `{owner}` takes {what}, but `{name}` is of type {found}", row.name);
                 findings.error(span, message);
             }
-            // It could not be read, and that has been said.
+            // Reading the node has reported a mistake.
             Some(None) => {}
             None => {
                 let fitting = graph.of_type(wanted).map(|(_, node)| node.name());
@@ -108,14 +108,14 @@ fn resolve(
     resolved
 }
 
-/// Hangs nodes from their parents.
-fn hang(
+/// Sets the parents of nodes.
+fn set_parents(
     graph: &mut Graph,
-    links: &Links,
+    references: &References,
     resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     findings: &mut Findings,
 ) {
-    for reference in &links.references {
+    for reference in &references.all {
         if reference.row == &transform::PARENT.row
             && let Some(&parent) = resolved.get(&(reference.node, reference.row.name))
             && let Err(error) = graph.set_parent(reference.node, parent)
@@ -125,23 +125,22 @@ fn hang(
     }
 }
 
-/// Tells meshes what they are blended into.
-fn blend(
+/// Sets the blend targets of meshes. Warns of blends without a target.
+fn set_blend_targets(
     graph: &mut Graph,
-    links: &Links,
+    references: &References,
     resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
     source: &Source,
     findings: &mut Findings,
 ) {
-    for reference in links.references.iter().filter(|r| r.row == &surface_shape::BLEND_TARGET.row) {
+    for reference in references.all.iter().filter(|r| r.row == &surface_shape::BLEND_TARGET.row) {
         let Some(&target) = resolved.get(&(reference.node, reference.row.name)) else { continue };
         if let Err(error) = graph.blend_into(reference.node, target) {
             findings.error(&reference.span, error.to_string());
         }
     }
     for (id, node) in graph.of_type(&surface_shape::SURFACE_SHAPE) {
-        let given =
-            links.references.iter().any(|r| r.node == id && r.row == &surface_shape::BLEND_TARGET.row);
+        let given = references.all.iter().any(|r| r.node == id && r.row == &surface_shape::BLEND_TARGET.row);
         if node.setting(&surface_shape::BLEND).is_some() && !given && graph.blend_target(id).is_none() {
             let place = source.place(&format!("{}.blend", node.name()));
             let warning = findings.warning(
@@ -153,38 +152,38 @@ fn blend(
     }
 }
 
-/// Joins nodes to their nuclei.
-struct Joiner<'a> {
+/// Connects nodes to their nuclei.
+struct Resolver<'a> {
     graph: &'a mut Graph,
-    links: &'a Links,
-    /// Attributes that connections made by hand leave from, and those they arrive at.
+    references: &'a References,
+    /// Attributes at the output ends of explicit connections, and those at the input ends.
     ends: [BTreeSet<(NodeId, &'static str)>; 2],
-    /// Attributes that name a node.
+    /// Attributes that have a reference.
     named: BTreeSet<(NodeId, &'static str)>,
     /// All nuclei.
     all: Vec<NodeId>,
     resolved: BTreeMap<(NodeId, &'static str), NodeId>,
     source: &'a mut Source,
     findings: &'a mut Findings,
-    /// The nucleus of each object so far.
+    /// The nucleus of each connected object.
     nuclei: BTreeMap<NodeId, NodeId>,
-    /// That there is no nucleus has been said.
-    alone: bool,
+    /// Whether the lack of a nucleus has been reported.
+    reported_no_nucleus: bool,
 }
 
-impl Joiner<'_> {
-    fn object(&mut self, id: NodeId, node_type: &'static NodeType) {
+impl Resolver<'_> {
+    fn connect_object(&mut self, id: NodeId, node_type: &'static NodeType) {
         let is_particles = node_type.is_a(&n_particle::N_PARTICLE);
         let mesh = self.resolved.get(&(id, n_base::INPUT_MESH.row.name)).copied();
         if mesh.is_none() && !is_particles {
             self.check_mesh(id);
         }
-        if is_particles && self.is_left_alone(id) {
+        if is_particles && self.is_left_unconnected(id) {
             return;
         }
-        // Its mesh may be broken: whether there is a nucleus for it can be told all the same.
+        // A missing nucleus is reported even if the mesh has a mistake.
         let meant = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
-        if !is_particles && !meant && self.is_wired(id) {
+        if !is_particles && !meant && self.has_explicit_connections(id) {
             return;
         }
         let Some(nucleus) = self.nucleus_of(id) else { return };
@@ -194,25 +193,25 @@ impl Joiner<'_> {
         }
     }
 
-    /// Whether connections by hand begin or end at a node.
-    fn is_wired(&self, id: NodeId) -> bool {
+    /// Whether a node has explicit connections.
+    fn has_explicit_connections(&self, id: NodeId) -> bool {
         self.ends.iter().any(|ends| ends.range((id, "")..).next().is_some_and(|(node, _)| *node == id))
     }
 
-    /// Particles have no mesh that would say that they are to be joined: they are, unless they are connected
-    /// by hand or belong to no nucleus, `nucleus: ""`.
-    fn is_left_alone(&self, id: NodeId) -> bool {
-        let mut references = self.links.references.iter();
-        self.is_wired(id) || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
+    /// Whether particles get no implicit connections: they have explicit ones, or no nucleus (`nucleus: ""`).
+    fn is_left_unconnected(&self, id: NodeId) -> bool {
+        let mut references = self.references.all.iter();
+        self.has_explicit_connections(id)
+            || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
     }
 
-    fn constraint(&mut self, id: NodeId) {
-        check_type(self.graph, id, self.source, self.findings);
+    fn connect_constraint(&mut self, id: NodeId) {
+        warn_of_unsolved_type(self.graph, id, self.source, self.findings);
         let listed = self.graph.node(id).setting(&dynamic_constraint::COMPONENTS).is_some();
-        if !listed && self.is_wired(id) {
+        if !listed && self.has_explicit_connections(id) {
             return;
         }
-        check_components(self.graph, id, self.links, self.source, self.findings);
+        check_components(self.graph, id, self.references, self.source, self.findings);
         if !listed {
             return;
         }
@@ -222,10 +221,10 @@ impl Joiner<'_> {
             .filter_map(|component| self.graph.find(&component.object))
             .filter(|object| self.nuclei.contains_key(object))
             .collect();
-        let theirs: BTreeSet<NodeId> = objects.iter().map(|object| self.nuclei[object]).collect();
-        let theirs: Vec<NodeId> = theirs.into_iter().collect();
-        let given = self.given(id);
-        let nucleus = match (given, theirs.as_slice()) {
+        let object_nuclei: BTreeSet<NodeId> = objects.iter().map(|object| self.nuclei[object]).collect();
+        let object_nuclei: Vec<NodeId> = object_nuclei.into_iter().collect();
+        let given = self.named_nucleus(id);
+        let nucleus = match (given, object_nuclei.as_slice()) {
             (Some(None), _) => return,
             (Some(Some(nucleus)), _) => nucleus,
             (None, &[only]) => only,
@@ -237,15 +236,15 @@ impl Joiner<'_> {
         if !self.check_points(id, &components) {
             return;
         }
-        if let Some(stranger) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
-            self.refuse_stranger(id, nucleus, *stranger);
+        if let Some(foreign) = objects.iter().find(|object| self.nuclei[*object] != nucleus) {
+            self.refuse_foreign_object(id, nucleus, *foreign);
             return;
         }
         self.create(id, &Creation::Constraint { components, nucleus });
     }
 
-    /// Whether the points that a constraint names can be there; says so if not. They are listed one by one afterwards, so a
-    /// range is held against its object first.
+    /// Whether the points of a constraint exist and fit into memory; reports those that do not. This comes before
+    /// ranges are expanded to lists.
     fn check_points(&mut self, id: NodeId, components: &[Component]) -> bool {
         let before = self.findings.errors();
         for (k, component) in components.iter().enumerate() {
@@ -255,25 +254,26 @@ impl Joiner<'_> {
             let place = self.source.place(&format!("{}.components[{k}]", self.graph.node(id).name()));
             let Some(node) = self.graph.find(object) else { continue };
             let mesh = self.resolved.get(&(node, n_base::INPUT_MESH.row.name)).copied();
-            let most = max_points(self.graph, self.source, node, mesh);
-            if most.is_some_and(|most| u64::from(*last) >= most) {
-                self.findings.error(&place, format!("`{object}` has no point {last}")).help(match most {
-                    Some(most @ 1..) => format!("its points are numbered 0 to {}", most - 1),
+            let count = max_points(self.graph, self.source, node, mesh);
+            if count.is_some_and(|count| u64::from(*last) >= count) {
+                self.findings.error(&place, format!("`{object}` has no point {last}")).help(match count {
+                    Some(count @ 1..) => format!("its points are numbered 0 to {}", count - 1),
                     _ => "it has no points".to_owned(),
                 });
                 continue;
             }
             let count = u64::from(last - first) + 1;
             if let Err(refused) = self.source.budget_mut().claim(count.saturating_mul(memory::HELD_POINT)) {
-                let error = self.findings.error(&place, format!("to hold {count} points takes {refused}"));
-                error.help(refused.help("hold fewer points"));
+                let error =
+                    self.findings.error(&place, format!("to constrain {count} points takes {refused}"));
+                error.help(refused.help("constrain fewer points"));
             }
         }
         self.findings.errors() == before
     }
 
-    fn effect(&mut self, id: NodeId) {
-        self.not_solved(id, "fields and emitters are");
+    fn connect_effect(&mut self, id: NodeId) {
+        self.warn_not_solved(id, "fields and emitters are");
         if let Some(&target) = self.resolved.get(&(id, dyn_base::TARGET.row.name)) {
             self.create(id, &Creation::Effect { target });
         }
@@ -285,28 +285,28 @@ impl Joiner<'_> {
         }
     }
 
-    fn not_solved(&mut self, id: NodeId, what: &str) {
+    fn warn_not_solved(&mut self, id: NodeId, what: &str) {
         let name = self.graph.node(id).name();
         let message = format!("{what} not solved yet: `{name}` does nothing");
         self.findings.warning(&self.source.place(name), message);
     }
 
-    /// The nucleus that is named for a node: nothing if none is, and nothing inside if it is not there.
-    fn given(&self, id: NodeId) -> Option<Option<NodeId>> {
+    /// The nucleus that a node names: `None` if it names none, `Some(None)` if the name is wrong.
+    fn named_nucleus(&self, id: NodeId) -> Option<Option<NodeId>> {
         self.named.contains(&(id, "nucleus")).then(|| self.resolved.get(&(id, "nucleus")).copied())
     }
 
-    /// The nucleus that a node belongs to: the one that is named, or the only one.
+    /// The nucleus of a node: the one that it names, else the only one.
     fn nucleus_of(&mut self, id: NodeId) -> Option<NodeId> {
-        if let Some(given) = self.given(id) {
+        if let Some(given) = self.named_nucleus(id) {
             return given;
         }
         let name = self.graph.node(id).name();
         let place = self.source.place(name);
         match self.all.as_slice() {
             &[only] => return Some(only),
-            [] if self.links.names.values().all(Option::is_some) && !self.alone => {
-                self.alone = true;
+            [] if self.references.names.values().all(Option::is_some) && !self.reported_no_nucleus => {
+                self.reported_no_nucleus = true;
                 let message = format!("there is no nucleus that `{name}` could belong to");
                 self.findings.error(&place, message).help("add `\"nucleus1\": nucleus()`");
             }
@@ -322,18 +322,18 @@ impl Joiner<'_> {
         None
     }
 
-    /// Only what hangs on the same nucleus can be joined.
-    fn refuse_stranger(&mut self, constraint: NodeId, nucleus: NodeId, stranger: NodeId) {
+    /// Refuses an object of another nucleus.
+    fn refuse_foreign_object(&mut self, constraint: NodeId, nucleus: NodeId, foreign: NodeId) {
         let name = |id: NodeId| self.graph.node(id).name();
         let message = format!(
-            "`{}` under `{}` takes hold of `{}` under `{}`",
+            "`{}` on `{}` constrains `{}` on `{}`",
             name(constraint),
             name(nucleus),
-            name(stranger),
-            name(self.nuclei[&stranger])
+            name(foreign),
+            name(self.nuclei[&foreign])
         );
         let place = self.source.place(&format!("{}.components", name(constraint)));
-        self.findings.error(&place, message).help("only what belongs to the same nucleus acts on each other");
+        self.findings.error(&place, message).help("a constraint and its objects need the same nucleus");
     }
 
     /// Cloth and colliders need a mesh.
@@ -341,7 +341,7 @@ impl Joiner<'_> {
         let given = self.named.contains(&(id, n_base::INPUT_MESH.row.name));
         let name = self.graph.node(id).name();
         let place = self.source.place(name);
-        // A value of the wrong type has been reported already.
+        // A value of the wrong form has been reported.
         let misread = self.source.place(&format!("{name}.{}", n_base::INPUT_MESH.row.name)) != place;
         if !given && !misread && !self.ends[1].contains(&(id, n_base::INPUT_MESH.row.name)) {
             let error = self.findings.error(&place, format!("`{name}` has no `inputMesh`"));
@@ -350,8 +350,8 @@ impl Joiner<'_> {
     }
 }
 
-/// Says so if constraints of a type do nothing yet.
-fn check_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
+/// Warns if constraints of this type have no effect yet.
+fn warn_of_unsolved_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
     let node = graph.node(constraint);
     if node.get(&dynamic_constraint::CONSTRAINT_TYPE) != Choice(0) {
         let name = node.name();
@@ -361,11 +361,11 @@ fn check_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut
     }
 }
 
-/// What a constraint takes hold of has to be there and be cloth.
+/// Refuses components of missing objects, and of objects other than cloth and particles.
 fn check_components(
     graph: &Graph,
     constraint: NodeId,
-    links: &Links,
+    references: &References,
     source: &Source,
     findings: &mut Findings,
 ) {
@@ -373,7 +373,7 @@ fn check_components(
     let name = node.name();
     let components = node.get(&dynamic_constraint::COMPONENTS);
     let place = source.place(name);
-    // One that could not be read has been reported already.
+    // A malformed component has been reported.
     if components.is_empty() && source.place(&format!("{name}.components")) == place {
         findings.warning(&place, format!("`{name}` does nothing: it has no `components`"));
     }
@@ -381,9 +381,9 @@ fn check_components(
     for (k, component) in components.iter().enumerate() {
         let object = component.object.as_str();
         let place = source.place(&format!("{name}.components[{k}]"));
-        match links.names.get(object) {
+        match references.names.get(object) {
             Some(&Some(id)) if is_cloth(graph, id) || is_particles(graph, id) => {}
-            // It could not be read, and that has been said.
+            // Reading the node has reported a mistake.
             Some(None) => {}
             _ if !reported.insert(object) => {}
             Some(&Some(id)) => refuse_object(graph, id, component, &place, findings),
@@ -404,7 +404,7 @@ fn is_particles(graph: &Graph, node: NodeId) -> bool {
     graph.node(node).node_type().is_a(&n_particle::N_PARTICLE)
 }
 
-/// Says that something is not cloth; if it is the mesh of a cloth, that was probably meant.
+/// Reports an object of a wrong type. Suggests the cloth if the object is its mesh.
 fn refuse_object(
     graph: &Graph,
     id: NodeId,
@@ -414,7 +414,7 @@ fn refuse_object(
 ) {
     let (object, found) = (&component.object, graph.node(id).node_type().name);
     let message =
-        format!("only points of cloth and particles can be held, but `{object}` is of type {found}");
+        format!("only points of cloth and particles can be constrained, but `{object}` is of type {found}");
     let error = findings.error(place, message);
     let mut fed = graph.targets(id, &surface_shape::WORLD_MESH).map(|plug| plug.node);
     if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {

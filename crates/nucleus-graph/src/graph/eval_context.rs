@@ -1,21 +1,25 @@
-//! Values at a frame, pulled along connections: nothing is worked out that nobody asks for.
+//! Values and placements at a frame, pulled along connections: only plugs that are asked for are evaluated.
 //!
-//! An input holds what its source holds, read as what the input is: numbers, switches and words are one to
-//! the other what they are in Maya. What has no source holds what is set on it.
+//! A connected input has the value of its source, converted to the kind of the input as in Maya (numbers, switches
+//! and words). An input without a source has the value of its setting.
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use crate::animation::Affine;
-use crate::attributes::{Attribute, FromValue, Key, Kind, Value, nucleus, time};
+use nalgebra::Vector3;
 
-use super::node::{Node, NodeId};
+use crate::animation::{Affine, Transform};
+use crate::attributes::{Attribute, FromValue, Key, Kind, Value, nucleus, time, transform};
+
+use super::node::{Connection, Node, NodeId, Plug};
 use super::nodes::Graph;
-use super::plug::{Connection, Plug};
 use super::setting::{Setting, as_kind};
 
-/// A graph at one frame.
-pub struct Moment<'g> {
+/// Axes by Maya's index of `rotateOrder`: xyz, yzx, zxy, xzy, yxz, zyx.
+const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
+
+/// Evaluates a graph at one frame. Placements are cached, and evaluated nodes recorded.
+pub struct EvalContext<'g> {
     graph: &'g Graph,
     frame: f64,
     placements: RefCell<HashMap<NodeId, Affine>>,
@@ -23,21 +27,21 @@ pub struct Moment<'g> {
 }
 
 impl Graph {
-    /// The graph at a frame, which may be broken.
-    pub fn at(&self, frame: f64) -> Moment<'_> {
-        Moment { graph: self, frame, placements: RefCell::default(), pulled: RefCell::default() }
+    /// The graph at a frame; a fraction is a time between frames.
+    pub fn at(&self, frame: f64) -> EvalContext<'_> {
+        EvalContext { graph: self, frame, placements: RefCell::default(), pulled: RefCell::default() }
     }
 
-    /// Whether an attribute ever changes, by keys of its own or of what feeds it.
+    /// Whether an attribute changes over time, by its own keys or those of a source.
     pub fn changes<T>(&self, node: NodeId, key: &Key<T>) -> bool {
         let changes = |node: NodeId, row: &Attribute| {
             self.node(node).set_or_preset(row.name).is_some_and(Setting::changes)
         };
         let row = self.node(node).node_type().attribute(key.row.name);
-        row.is_some_and(|row| self.anywhere_above(node, row, &changes))
+        row.is_some_and(|row| self.any_upstream(node, row, &changes))
     }
 
-    /// Whether anything is set on an attribute, here or by a preset, or connected to it.
+    /// Whether an attribute has a setting, from the node or its preset, or a connection.
     pub fn is_given<T>(&self, node: NodeId, key: &Key<T>) -> bool {
         self.is_given_by_name(node, key.row.name)
     }
@@ -47,14 +51,14 @@ impl Graph {
         self.node(node).set_or_preset(name).is_some() || self.sources(node, name).next().is_some()
     }
 
-    /// Whether a number can ever be other than zero.
+    /// Whether a number can be nonzero at any frame.
     pub fn is_ever_nonzero<T>(&self, node: NodeId, key: &Key<T>) -> bool {
         let fed = self.sources(node, key.row.name).next().is_some();
         fed || self.node(node).is_ever_nonzero(key)
     }
 
-    /// Whether something holds for an attribute or for any that feeds it. The clock always changes.
-    fn anywhere_above(
+    /// Whether a predicate holds for an attribute or any of its sources. The clock counts as a match.
+    fn any_upstream(
         &self,
         node: NodeId,
         row: &'static Attribute,
@@ -70,34 +74,50 @@ impl Graph {
         false
     }
 
-    /// Connections that arrive at an attribute, or at parts of it.
+    /// Connections to an attribute, its elements or its components.
     pub(super) fn sources(&self, node: NodeId, name: &str) -> impl Iterator<Item = &Connection> {
         self.arriving(node).filter(move |wire| wire.to.attribute.name == name)
     }
+
+    /// The transform from a node's space to world space at a frame. Lengths in scene units. For many nodes, call
+    /// [`at`](Self::at) once.
+    pub fn placement(&self, node: NodeId, frame: f64) -> Affine {
+        self.at(frame).placement(node)
+    }
+
+    /// Whether the placement of a node changes over time, by its own transform or that of an ancestor.
+    pub fn moves(&self, node: NodeId) -> bool {
+        self.self_and_ancestors(node).any(|node| {
+            self.changes(node, &transform::TRANSLATE)
+                || self.changes(node, &transform::ROTATE)
+                || self.changes(node, &transform::SCALE)
+        })
+    }
 }
 
-impl<'g> Moment<'g> {
+impl<'g> EvalContext<'g> {
     /// The frame.
     pub fn frame(&self) -> f64 {
         self.frame
     }
 
-    /// The value of an attribute: its source's, else what is set, else the default of the nearest row.
+    /// The value of an attribute: that of its source, else its setting, else the default of the nearest row.
     pub fn get<T: FromValue>(&self, node: NodeId, key: &Key<T>) -> T {
-        self.note(node);
+        self.mark_pulled(node);
         let own = self.graph.node(node);
         if self.graph.sources(node, key.row.name).next().is_none() {
             return own.at(key, self.frame);
         }
-        let value = own.node_type().attribute(key.row.name).and_then(|row| self.fed(own, node, row));
+        let value =
+            own.node_type().attribute(key.row.name).and_then(|row| self.value_from_source(own, node, row));
         value.as_ref().and_then(T::from_value).unwrap_or_else(|| own.at(key, self.frame))
     }
 
-    /// What carries points of a node into the world. Lengths in scene units.
+    /// The transform from a node's space to world space. Lengths in scene units.
     pub fn placement(&self, node: NodeId) -> Affine {
         let mut above = Vec::new();
         let mut known = Affine::identity();
-        for ancestor in self.graph.and_ancestors(node) {
+        for ancestor in self.graph.self_and_ancestors(node) {
             if let Some(affine) = self.placements.borrow().get(&ancestor) {
                 known = *affine;
                 break;
@@ -112,31 +132,41 @@ impl<'g> Moment<'g> {
         known
     }
 
-    /// Nodes of which something was asked, in the order in which that began.
+    fn transform(&self, node: NodeId) -> Transform {
+        Transform {
+            translate: Vector3::from(self.get(node, &transform::TRANSLATE)),
+            rotate: Vector3::from(self.get(node, &transform::ROTATE)),
+            order: ORDERS[self.get(node, &transform::ROTATE_ORDER).0.clamp(0, 5) as usize],
+            scale: Vector3::from(self.get(node, &transform::SCALE)),
+        }
+    }
+
+    /// The nodes evaluated so far, in the order of their first evaluation.
     pub fn pulled(&self) -> Vec<NodeId> {
         self.pulled.borrow().1.clone()
     }
 
-    fn note(&self, node: NodeId) {
+    fn mark_pulled(&self, node: NodeId) {
         let (seen, order) = &mut *self.pulled.borrow_mut();
         if seen.insert(node) {
             order.push(node);
         }
     }
 
-    /// What an attribute holds, whatever it is: its source's, else its own; nothing for what is only connected.
+    /// The value of an attribute of any kind: that of its source, else its own. `None` for attributes that have
+    /// no value and are only connected.
     pub fn held<T>(&self, node: NodeId, key: &Key<T>) -> Option<Value> {
-        self.note(node);
+        self.mark_pulled(node);
         let own = self.graph.node(node);
         let row = own.node_type().attribute(key.row.name)?;
         match self.graph.sources(node, row.name).next() {
-            Some(_) => self.fed(own, node, row),
+            Some(_) => self.value_from_source(own, node, row),
             None => own.value_at(row, self.frame),
         }
     }
 
-    /// The value of an attribute that something is connected to.
-    fn fed(&self, own: &Node, node: NodeId, row: &'static Attribute) -> Option<Value> {
+    /// The value of a connected attribute.
+    fn value_from_source(&self, own: &Node, node: NodeId, row: &'static Attribute) -> Option<Value> {
         match row.kind {
             Kind::Bool | Kind::Int | Kind::Float | Kind::Texture | Kind::Choice(_) => {
                 Some(as_kind(self.number(node, row, None), row))
@@ -147,27 +177,27 @@ impl<'g> Moment<'g> {
                 while let Some(wire) = self.graph.sources(last.node, last.attribute.name).next() {
                     last = wire.from;
                 }
-                self.note(last.node);
+                self.mark_pulled(last.node);
                 let held = self.graph.node(last.node).value_at(last.attribute, self.frame);
                 held.filter(|value| row.kind.admits(value)).or_else(|| own.value_at(row, self.frame))
             }
         }
     }
 
-    /// A number, or a part of a vector, from where its chain of connections begins.
+    /// A number, or a component of a vector, from the first plug of its chain of connections.
     fn number(&self, node: NodeId, row: &'static Attribute, part: Option<usize>) -> f64 {
-        let mut way = vec![(node, row, part)];
+        let mut path = vec![(node, row, part)];
         let mut number = loop {
-            let &(node, row, part) = &way[way.len() - 1];
+            let &(node, row, part) = &path[path.len() - 1];
             let feeds = |wire: &&Connection| wire.to.part.is_none() || wire.to.part == part;
             let Some(wire) = self.graph.sources(node, row.name).find(feeds) else {
-                break self.own_number(node, row, part);
+                break self.unconnected_number(node, row, part);
             };
             let from = wire.from;
-            way.push((from.node, from.attribute, from.part.or(part.filter(|_| wire.to.part.is_none()))));
+            path.push((from.node, from.attribute, from.part.or(part.filter(|_| wire.to.part.is_none()))));
         };
-        // On its way it is each time what the attribute can hold.
-        for (_, row, _) in way.into_iter().rev() {
+        // Each attribute on the path converts the number to its own kind and range.
+        for (_, row, _) in path.into_iter().rev() {
             number = match as_kind(number, row) {
                 Value::Bool(on) => f64::from(u8::from(on)),
                 Value::Int(x) => x as f64,
@@ -179,9 +209,9 @@ impl<'g> Moment<'g> {
         number
     }
 
-    /// What an attribute without a source holds.
-    fn own_number(&self, node: NodeId, row: &'static Attribute, part: Option<usize>) -> f64 {
-        self.note(node);
+    /// The number of an attribute without a source.
+    fn unconnected_number(&self, node: NodeId, row: &'static Attribute, part: Option<usize>) -> f64 {
+        self.mark_pulled(node);
         if row == &time::OUT_TIME.row {
             return self.frame;
         }

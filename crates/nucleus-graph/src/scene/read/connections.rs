@@ -1,37 +1,36 @@
-//! `connections: [("ball.translateY", "cloth1.friction")]`: connections made by hand, from output to input.
+//! Explicit connections, from output to input: `connections: [("ball.translateY", "cloth1.friction")]`.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::attributes::{Kind, NodeType};
+use crate::diagnostic::{Findings, nearest};
 use crate::graph::{CLOCK, Graph, NodeId, Plug, PlugError};
-use crate::scene::findings::Findings;
-use crate::scene::nearest;
 use crate::scene::syntax::{Node, Value};
 
 use super::value::{found, text};
 
-/// Connections as they are written.
+/// The explicit connections of a scene, as texts.
 #[derive(Default)]
-pub(super) struct Wires<'a> {
+pub(super) struct Connections<'a> {
     pairs: Vec<Pair<'a>>,
 }
 
-/// An output and an input, as they are written.
+/// An output and an input, as texts.
 struct Pair<'a> {
     span: &'a Range<usize>,
     ends: [(&'a str, &'a Range<usize>); 2],
 }
 
-/// Reads the list; what it names is looked for later.
-pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Wires<'a> {
-    let Some(node) = node else { return Wires::default() };
+/// Reads the list. Its plugs are resolved later, when all nodes exist.
+pub(super) fn read<'a>(node: Option<&'a Node>, findings: &mut Findings) -> Connections<'a> {
+    let Some(node) = node else { return Connections::default() };
     let Value::List(items) = &node.value else {
         let message = format!("`connections` takes a list, found {}", found(&node.value));
         findings.error(&node.span, message).help(EXAMPLE);
-        return Wires::default();
+        return Connections::default();
     };
-    Wires { pairs: items.iter().filter_map(|item| read_pair(item, findings)).collect() }
+    Connections { pairs: items.iter().filter_map(|item| read_pair(item, findings)).collect() }
 }
 
 const EXAMPLE: &str = "write `connections: [(\"ball.translateY\", \"cloth1.friction\")]`, output first";
@@ -49,8 +48,8 @@ fn read_pair<'a>(item: &'a Node, findings: &mut Findings) -> Option<Pair<'a>> {
     Some(Pair { span: &item.span, ends: [ends[0]?, ends[1]?] })
 }
 
-impl Wires<'_> {
-    /// The attributes that connections leave from, and those that they arrive at.
+impl Connections<'_> {
+    /// The attributes at the output ends, and those at the input ends.
     pub(super) fn ends(&self, graph: &Graph) -> [BTreeSet<(NodeId, &'static str)>; 2] {
         [0, 1].map(|end| {
             let plugs = self.pairs.iter().filter_map(|pair| graph.plug(pair.ends[end].0).ok());
@@ -58,9 +57,9 @@ impl Wires<'_> {
         })
     }
 
-    /// What the short form has connected without being told to makes room for what is connected by hand.
-    fn give_way(&self, graph: &mut Graph, to: Plug, by_hand: &[Plug]) {
-        if !IMPLICIT.contains(&to.attribute.name) || by_hand.iter().any(|taken| taken.overlaps(&to)) {
+    /// Removes an implicit connection of the short form from an input that is about to be connected explicitly.
+    fn replace_implicit(&self, graph: &mut Graph, to: Plug, explicit: &[Plug]) {
+        if !IMPLICIT.contains(&to.attribute.name) || explicit.iter().any(|taken| taken.overlaps(&to)) {
             return;
         }
         let old = graph.arriving(to.node).find(|wire| wire.to == to).copied();
@@ -69,14 +68,14 @@ impl Wires<'_> {
         }
     }
 
-    /// Makes the connections. A node that could not be read is not missed.
+    /// Makes the connections. Plugs of nodes with mistakes are skipped.
     pub(super) fn connect(
         &self,
         graph: &mut Graph,
         is_broken: &dyn Fn(&str) -> bool,
         findings: &mut Findings,
     ) {
-        let mut by_hand: Vec<Plug> = Vec::new();
+        let mut explicit: Vec<Plug> = Vec::new();
         for Pair { span, ends } in &self.pairs {
             let plugs = ends.map(|(text, span)| match graph.plug(text) {
                 Ok(plug) => Some(plug),
@@ -87,13 +86,13 @@ impl Wires<'_> {
                 }
             });
             let [Some(from), Some(to)] = plugs else { continue };
-            // What the short form has made already may be said once more.
+            // A connection that the short form implies may be repeated.
             if graph.arriving(to.node).any(|wire| wire.from == from && wire.to == to) {
                 continue;
             }
-            self.give_way(graph, to, &by_hand);
+            self.replace_implicit(graph, to, &explicit);
             match graph.connect(from, to) {
-                Ok(()) => by_hand.push(to),
+                Ok(()) => explicit.push(to),
                 Err(error) => {
                     findings.error(span, error.to_string());
                 }
@@ -102,26 +101,27 @@ impl Wires<'_> {
     }
 }
 
-/// Inputs that the short form connects without being told to.
+/// Inputs that the short form connects implicitly.
 const IMPLICIT: [&str; 2] = ["currentTime", "startFrame"];
 
 fn refuse(graph: &Graph, error: &PlugError, span: &Range<usize>, findings: &mut Findings) {
-    let said = findings.error(span, error.to_string());
+    let error_diagnostic = findings.error(span, error.to_string());
     match error {
         PlugError::NoNode { name } => {
             let names = graph.iter().map(|(_, node)| node.name());
-            said.did_you_mean(nearest(name, names));
+            error_diagnostic.did_you_mean(nearest(name, names));
         }
         PlugError::NoAttribute { node_type, attribute, .. } => {
-            said.did_you_mean(nearest_attribute(node_type, attribute).as_deref());
+            error_diagnostic.did_you_mean(nearest_attribute(node_type, attribute).as_deref());
         }
         _ => {
-            said.help(format!("a plug is `node.attribute` or `node.attribute[0]`, like `{CLOCK}.outTime`"));
+            error_diagnostic
+                .help(format!("a plug is `node.attribute` or `node.attribute[0]`, like `{CLOCK}.outTime`"));
         }
     }
 }
 
-/// The attribute that was probably meant, parts of vectors among them.
+/// The attribute with the nearest name, components of vectors included.
 pub(super) fn nearest_attribute(node_type: &'static NodeType, word: &str) -> Option<String> {
     let rows = node_type.attributes();
     let parts: Vec<String> =
