@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
-use nucleus_audit::{Account, Auditor, Body, Moment, Rules, World};
+use nucleus_audit::{AuditCounts, Auditor, Body, CollisionFilter, CollisionMesh, StateIndex};
 use nucleus_core::{self as core, Stage, StateView, StepObserver};
 
 use crate::compile::{Object, ObjectKind};
@@ -44,10 +44,10 @@ impl Audit {
         objects: &[Object],
         closeness: Closeness,
         state: &dyn StateView,
-        rules: impl Fn(&World) -> Rules,
+        rules: impl Fn(&CollisionMesh) -> CollisionFilter,
     ) -> Self {
         let body = |object: &Object| Body::mesh(object.name.clone(), object.points, object.faces.iter());
-        let world = World::new(objects.iter().map(body).collect());
+        let world = CollisionMesh::new(objects.iter().map(body).collect());
         let objects: Vec<ObjectKind> = objects.iter().map(|object| object.kind).collect();
         let mut positions = Vec::new();
         read(&objects, &world, (state, 1.0), &mut positions);
@@ -58,9 +58,9 @@ impl Audit {
     }
 
     /// Begins a frame.
-    pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&World) -> Rules) {
+    pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&CollisionMesh) -> CollisionFilter) {
         self.frame = frame;
-        self.auditor.set_rules(rules(self.auditor.world()));
+        self.auditor.set_filter(rules(self.auditor.collision_mesh()));
     }
 
     /// Where the ground planes are, to be told of what the frame brings while it is solved.
@@ -76,8 +76,8 @@ impl Audit {
     }
 
     /// What has been found so far.
-    pub fn account(&self) -> Account {
-        self.auditor.account()
+    pub fn account(&self) -> AuditCounts {
+        self.auditor.counts()
     }
 
     /// The first findings in words, in order of time.
@@ -89,24 +89,24 @@ impl Audit {
     fn step(&mut self, share: f64, substep: u32, state: &dyn StateView, grounds: &Grounds) {
         if self.closeness == Closeness::Steps {
             self.stepped = true;
-            read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
-            let now = Moment { frame: self.frame, substep };
+            read(&self.objects, self.auditor.collision_mesh(), (state, share), &mut self.positions);
+            let now = StateIndex { frame: self.frame, substep };
             self.see_grounds(now, share, grounds);
-            self.auditor.see(now, &self.positions);
+            self.auditor.check_motion(now, &self.positions);
         }
     }
 
-    fn see_grounds(&mut self, now: Moment, share: f64, grounds: &Grounds) {
+    fn see_grounds(&mut self, now: StateIndex, share: f64, grounds: &Grounds) {
         for (body, object) in self.objects.iter().enumerate() {
             if let ObjectKind::Cloth(cloth) = *object {
-                self.auditor.see_ground(now, body, grounds.of(cloth, share), &self.positions);
+                self.auditor.check_ground(now, body, grounds.of(cloth, share), &self.positions);
             }
         }
     }
 
     /// Takes up the end of a substep.
     fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView, grounds: &Grounds) {
-        let now = Moment { frame: self.frame, substep: moment.substep };
+        let now = StateIndex { frame: self.frame, substep: moment.substep };
         let share = f64::from(moment.substep) / f64::from(moment.substeps);
         if !std::mem::take(&mut self.stepped) {
             self.step(share, moment.substep, state, grounds);
@@ -114,11 +114,11 @@ impl Audit {
         }
         match self.closeness {
             _ if !moment.ends_frame() => {}
-            Closeness::Steps => self.auditor.look(now),
+            Closeness::Steps => self.auditor.check_intersections(now),
             Closeness::Frames => {
-                read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+                read(&self.objects, self.auditor.collision_mesh(), (state, share), &mut self.positions);
                 self.see_grounds(now, share, grounds);
-                self.auditor.follow(now, &self.positions);
+                self.auditor.check_state(now, &self.positions);
             }
         }
     }
@@ -127,7 +127,7 @@ impl Audit {
 /// Replaces `out` by the positions of all objects, in metres, in a state that a share of the frame has led to.
 fn read(
     objects: &[ObjectKind],
-    world: &World,
+    world: &CollisionMesh,
     (state, share): (&dyn StateView, f64),
     out: &mut Vec<Vector3<f64>>,
 ) {

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use nucleus_audit::World;
+use nucleus_audit::CollisionMesh;
 use nucleus_core::{
     ClothId, FrameInput, Pin, PointId, Real, Solver, StateView, StepObserver, StepReport, SubstepIndex,
 };
@@ -65,7 +65,7 @@ impl<R: Real> Simulation<R> {
     /// Has the run audited from here on.
     pub fn begin_audit(&mut self, closeness: Closeness) {
         let pins = self.next_pins();
-        let rules = |world: &World| self.program.kept_apart(self.next_frame(), &pins, world);
+        let rules = |world: &CollisionMesh| self.program.kept_apart(self.next_frame(), &pins, world);
         self.audit = Some(Audit::new(self.objects(), closeness, self.state(), rules));
     }
 

@@ -46,10 +46,10 @@ impl StateView for Level<'_> {
 }
 
 /// What an audit finds of a sheet that is put at one height after the other.
-fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
+fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> AuditCounts {
     let program = program(nodes);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| program.kept_apart(2, &[], world);
+    let rules = |world: &CollisionMesh| program.kept_apart(2, &[], world);
     let mut audit = Audit::new(run.objects(), closeness, run.state(), rules);
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
@@ -78,7 +78,7 @@ fn a_sheet_that_ends_inside_a_ball_is_seen_either_way() {
 fn what_is_shown_within_a_substep_is_followed() {
     let program = program(SHEET_AND_BALL);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| program.kept_apart(2, &[], world);
+    let rules = |world: &CollisionMesh| program.kept_apart(2, &[], world);
     let mut audit = Audit::new(run.objects(), Closeness::Steps, run.state(), rules);
     audit.begin_frame(2, rules);
     let level = |height: f64| Level { start: run.state(), height };
@@ -89,7 +89,11 @@ fn what_is_shown_within_a_substep_is_followed() {
     audited.step(1.0, &level(1.4));
     audited.substep(core::SubstepIndex { substep: 1, substeps: 1 }, &level(1.4));
     let account = audit.account();
-    assert_eq!((account.motions, account.overlaps), (2, 0), "the end of the substep is no motion of its own");
+    assert_eq!(
+        (account.motions, account.intersections),
+        (2, 0),
+        "the end of the substep is no motion of its own"
+    );
     assert!(account.crossings > 0, "it leapt down and up again");
 }
 
@@ -104,10 +108,12 @@ fn what_is_told_to_pass_through_may() {
     let mut run = Simulation::<f64>::new(&program, 1);
     run.begin_audit(Closeness::Steps);
     let pins = run.next_pins();
-    let world =
-        World::new(vec![Body { points: 49, ..Body::default() }, Body { points: 86, ..Body::default() }]);
-    let mut all = Rules::default();
-    (0..135).for_each(|point| all.hold(point));
+    let world = CollisionMesh::new(vec![
+        Body { points: 49, ..Body::default() },
+        Body { points: 86, ..Body::default() },
+    ]);
+    let mut all = CollisionFilter::default();
+    (0..135).for_each(|point| all.set_kinematic(point));
     all.ignore(1, 1); // as Maya makes an nRigid
     assert_eq!(program.kept_apart(2, &pins, &world), all);
 }
@@ -120,8 +126,8 @@ fn cloths_in_layers_far_apart_are_not_held_to_anything() {
                "c": nCloth(inputMesh: "sheet"), "d": nCloth(inputMesh: "other", collisionLayer: {layer})"#
         );
         let program = program(&nodes);
-        let world = World::new(vec![Body::default(), Body::default()]);
-        program.kept_apart(2, &[], &world) == Rules::default()
+        let world = CollisionMesh::new(vec![Body::default(), Body::default()]);
+        program.kept_apart(2, &[], &world) == CollisionFilter::default()
     };
     assert!(two(0.0) && two(3.9) && !two(4.0), "the range is 4 unless it is set");
 }

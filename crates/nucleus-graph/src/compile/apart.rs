@@ -1,6 +1,6 @@
 //! What is to be kept apart in a frame, for the audit: everything that is not told to pass through.
 
-use nucleus_audit::{Rules, World};
+use nucleus_audit::{CollisionFilter, CollisionMesh};
 use nucleus_core::Pin;
 
 use crate::attributes::{n_base, nucleus};
@@ -11,8 +11,8 @@ use super::program::{ObjectKind, Program, Universe};
 impl Program {
     /// The rules of the frame that ends at `frame`, over all objects in their order. Colliders and pinned points go
     /// where they are told, so nobody can keep them apart from each other.
-    pub(crate) fn kept_apart(&self, frame: i64, pins: &[Pin], world: &World) -> Rules {
-        let mut rules = Rules::default();
+    pub(crate) fn kept_apart(&self, frame: i64, pins: &[Pin], world: &CollisionMesh) -> CollisionFilter {
+        let mut rules = CollisionFilter::default();
         let objects = self.objects();
         let moment = self.graph().at(frame as f64);
         for a in 0..objects.len() {
@@ -22,13 +22,13 @@ impl Program {
                 }
             }
             if let ObjectKind::Collider(_) = objects[a].kind {
-                world.points_of(a).for_each(|point| rules.hold(point));
+                world.points_of(a).for_each(|point| rules.set_kinematic(point));
             }
         }
         for pin in pins {
             let is_it = |object: &super::Object| object.kind == ObjectKind::Cloth(pin.cloth);
             let cloth = objects.iter().position(is_it).map(|cloth| world.points_of(cloth));
-            cloth.into_iter().for_each(|points| rules.hold(points.start + pin.point.index()));
+            cloth.into_iter().for_each(|points| rules.set_kinematic(points.start + pin.point.index()));
         }
         rules
     }

@@ -1,12 +1,13 @@
-//! Work on the parts of a list side by side.
+//! Parallel map over the parts of a list.
 
 use std::thread;
 
 /// Items below which a thread costs more than it saves.
 const FEW: usize = 512;
 
-/// What `work` makes of each part of a list, one after the other. In the order of the list, on however many cores.
-pub fn in_chunks<T: Send>(items: &[u32], work: impl Fn(&[u32]) -> Vec<T> + Sync) -> Vec<T> {
+/// Concatenates the results of `work` on consecutive parts of a list, in the order of the list, for any number of
+/// cores.
+pub fn parallel_chunks<T: Send>(items: &[u32], work: impl Fn(&[u32]) -> Vec<T> + Sync) -> Vec<T> {
     let cores = thread::available_parallelism().map_or(1, usize::from).min(items.len() / FEW);
     if cores < 2 {
         return work(items);
@@ -34,7 +35,7 @@ mod tests {
     #[test]
     fn chunks_keep_the_order_of_the_list() {
         let items: Vec<u32> = (0..5000).rev().collect();
-        assert_eq!(in_chunks(&items, <[u32]>::to_vec), items);
-        assert_eq!(in_chunks(&[], <[u32]>::to_vec), []);
+        assert_eq!(parallel_chunks(&items, <[u32]>::to_vec), items);
+        assert_eq!(parallel_chunks(&[], <[u32]>::to_vec), []);
     }
 }

@@ -1,29 +1,88 @@
-//! A tree of boxes: which of many meet one.
+//! Axis-aligned boxes, and a bounding volume hierarchy over them. Boxes hold coordinates exactly, without rounding.
 
-use crate::bounds::Bounds;
+use nalgebra::Vector3;
+
+/// Axis-aligned box from `least` to `most`, both included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    pub least: [f64; 3],
+    pub most: [f64; 3],
+}
+
+impl Aabb {
+    pub const EMPTY: Self = Self { least: [f64::INFINITY; 3], most: [f64::NEG_INFINITY; 3] };
+
+    /// The box of some points. A coordinate that is not finite makes the box infinite, so that no candidate is missed.
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, point| bounds.with(point))
+    }
+
+    fn with(mut self, point: &Vector3<f64>) -> Self {
+        for axis in 0..3 {
+            let x = point[axis];
+            if x.is_finite() {
+                self.least[axis] = self.least[axis].min(x);
+                self.most[axis] = self.most[axis].max(x);
+            } else {
+                (self.least[axis], self.most[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
+            }
+        }
+        self
+    }
+
+    /// Enlarged by a distance along every axis, rounded to nearest.
+    pub fn grown(mut self, by: f64) -> Self {
+        self.least.iter_mut().for_each(|least| *least -= by);
+        self.most.iter_mut().for_each(|most| *most += by);
+        self
+    }
+
+    /// The box of both.
+    pub fn and(mut self, other: &Self) -> Self {
+        for axis in 0..3 {
+            self.least[axis] = self.least[axis].min(other.least[axis]);
+            self.most[axis] = self.most[axis].max(other.most[axis]);
+        }
+        self
+    }
+
+    /// Whether two closed boxes overlap.
+    pub fn meets(&self, other: &Self) -> bool {
+        let along =
+            |axis: usize| (self.least[axis] <= other.most[axis]) & (other.least[axis] <= self.most[axis]);
+        // Bitwise `&` avoids branches that are hard to predict.
+        along(0) & along(1) & along(2)
+    }
+
+    /// Twice the centre along an axis; zero for an infinite box.
+    pub fn middle(&self, axis: usize) -> f64 {
+        let sum = self.least[axis] + self.most[axis];
+        if sum.is_finite() { sum } else { 0.0 }
+    }
+}
 
 /// Boxes in a leaf.
 const LEAF: usize = 4;
 
-/// Boxes, halved again and again along the axis on which their middles lie farthest apart.
+/// Binary tree of boxes, split at the median along the axis of widest spread.
 #[derive(Default)]
-pub struct Tree {
-    /// The root first; the first child of a node stands behind it.
+pub struct Bvh {
+    /// Depth first: the first child of a node follows it.
     nodes: Vec<Node>,
     items: Vec<u32>,
 }
 
 struct Node {
-    bounds: Bounds,
-    /// The items below.
+    bounds: Aabb,
+    /// Range of the items below.
     items: [u32; 2],
-    /// The second child; 0 in a leaf.
+    /// Index of the second child; 0 in a leaf.
     second: u32,
 }
 
-impl Tree {
-    /// Of `items`, each with its box.
-    pub fn new(items: Vec<u32>, boxes: &[Bounds]) -> Self {
+impl Bvh {
+    /// Builds the tree over `items`, whose boxes are in `boxes`.
+    pub fn new(items: Vec<u32>, boxes: &[Aabb]) -> Self {
         let mut tree = Self { nodes: Vec::with_capacity(items.len()), items };
         if !tree.items.is_empty() {
             tree.grow(0, tree.items.len(), boxes);
@@ -31,10 +90,10 @@ impl Tree {
         tree
     }
 
-    fn grow(&mut self, from: usize, to: usize, boxes: &[Bounds]) {
+    fn grow(&mut self, from: usize, to: usize, boxes: &[Aabb]) {
         let items = &mut self.items[from..to];
         let of = |item: &u32| &boxes[*item as usize];
-        let bounds = items.iter().fold(Bounds::EMPTY, |all, item| all.and(of(item)));
+        let bounds = items.iter().fold(Aabb::EMPTY, |all, item| all.and(of(item)));
         let node = self.nodes.len();
         self.nodes.push(Node { bounds, items: [from as u32, to as u32], second: 0 });
         if items.len() <= LEAF {
@@ -48,9 +107,9 @@ impl Tree {
         self.grow(from + half, to, boxes);
     }
 
-    /// Takes up other boxes of the same items.
-    pub fn refit(&mut self, boxes: &[Bounds]) {
-        // Children stand behind their parents.
+    /// Updates the boxes of the same items; the topology stays.
+    pub fn refit(&mut self, boxes: &[Aabb]) {
+        // Children follow their parents.
         for index in (0..self.nodes.len()).rev() {
             let Node { items, second, .. } = self.nodes[index];
             self.nodes[index].bounds = if second > 0 {
@@ -58,33 +117,34 @@ impl Tree {
             } else {
                 let [from, to] = items.map(|item| item as usize);
                 let of = |item: &u32| &boxes[*item as usize];
-                self.items[from..to].iter().fold(Bounds::EMPTY, |all, item| all.and(of(item)))
+                self.items[from..to].iter().fold(Aabb::EMPTY, |all, item| all.and(of(item)))
             };
         }
     }
 
-    /// The leaves, neighbours near each other.
+    /// The leaves; neighbours in the list are near each other.
     pub fn leaves(&self) -> Vec<u32> {
         (0..).zip(&self.nodes).filter(|(_, node)| node.second == 0).map(|(index, _)| index).collect()
     }
 
-    /// Shows `visit` every item of a leaf with every item of another tree whose box it meets; each tree has its own boxes.
+    /// Calls `visit` for every item of a leaf and every item of another tree whose boxes overlap; `boxes` belong to
+    /// this tree.
     pub fn meeting_leaf(
         &self,
-        boxes: &[Bounds],
+        boxes: &[Aabb],
         leaf: u32,
-        (other, others): (&Self, &[Bounds]),
+        (other, others): (&Self, &[Aabb]),
         stack: &mut Vec<u32>,
         visit: impl FnMut(u32, u32),
     ) {
         self.leaf_and(0, boxes, leaf, (other, others), stack, visit);
     }
 
-    /// The same within the tree: with the items of its own leaf and of those behind it, so that over all leaves every pair
-    /// is shown once.
+    /// As [`meeting_leaf`](Self::meeting_leaf) within one tree: with the items of the same leaf and of later leaves.
+    /// Over all leaves, every pair is visited once.
     pub fn meeting_itself(
         &self,
-        boxes: &[Bounds],
+        boxes: &[Aabb],
         leaf: u32,
         stack: &mut Vec<u32>,
         mut visit: impl FnMut(u32, u32),
@@ -100,9 +160,9 @@ impl Tree {
     fn leaf_and(
         &self,
         first: u32,
-        boxes: &[Bounds],
+        boxes: &[Aabb],
         leaf: u32,
-        (other, others): (&Self, &[Bounds]),
+        (other, others): (&Self, &[Aabb]),
         stack: &mut Vec<u32>,
         mut visit: impl FnMut(u32, u32),
     ) {
@@ -117,17 +177,17 @@ impl Tree {
         });
     }
 
-    /// Shows `visit` every item whose box meets `bounds`.
-    pub fn meeting(&self, bounds: &Bounds, boxes: &[Bounds], stack: &mut Vec<u32>, visit: impl FnMut(u32)) {
+    /// Calls `visit` for every item whose box overlaps `bounds`.
+    pub fn meeting(&self, bounds: &Aabb, boxes: &[Aabb], stack: &mut Vec<u32>, visit: impl FnMut(u32)) {
         self.meeting_from(0, bounds, boxes, stack, visit);
     }
 
-    /// The same, of the leaves from node `first` on.
+    /// As [`meeting`](Self::meeting), for leaves from node `first` on.
     fn meeting_from(
         &self,
         first: u32,
-        bounds: &Bounds,
-        boxes: &[Bounds],
+        bounds: &Aabb,
+        boxes: &[Aabb],
         stack: &mut Vec<u32>,
         mut visit: impl FnMut(u32),
     ) {
@@ -140,7 +200,7 @@ impl Tree {
             }
             if node.second > 0 {
                 stack.push(node.second);
-                // All nodes below the first child stand before the second.
+                // All nodes below the first child precede the second child.
                 stack.extend(Some(index + 1).filter(|_| node.second > first));
                 continue;
             }
@@ -157,8 +217,8 @@ impl Tree {
     }
 }
 
-/// The axis on which middles spread most.
-fn widest<'a>(boxes: impl Iterator<Item = &'a Bounds>) -> usize {
+/// The axis along which centres spread most.
+fn widest<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> usize {
     let mut spread = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     for bounds in boxes {
         for (axis, [least, most]) in spread.iter_mut().enumerate() {
@@ -177,18 +237,18 @@ mod tests {
 
     use super::*;
 
-    fn some_box() -> impl Strategy<Value = Bounds> {
-        // On a coarse grid, so that surfaces often touch.
+    fn some_box() -> impl Strategy<Value = Aabb> {
+        // A coarse grid, so that boxes often touch.
         prop::array::uniform6(-8_i8..8).prop_map(|[a, b, c, d, e, f]| {
             let corner = |x, y, z| Vector3::new(f64::from(x), f64::from(y), f64::from(z));
-            Bounds::of([&corner(a, b, c), &corner(d, e, f)])
+            Aabb::of([&corner(a, b, c), &corner(d, e, f)])
         })
     }
 
     proptest! {
         #[test]
-        fn a_tree_finds_just_the_boxes_that_meet(boxes in prop::collection::vec(some_box(), 0..60), one in some_box()) {
-            let tree = Tree::new((0..boxes.len() as u32).collect(), &boxes);
+        fn a_bvh_query_finds_exactly_the_overlapping_boxes(boxes in prop::collection::vec(some_box(), 0..60), one in some_box()) {
+            let tree = Bvh::new((0..boxes.len() as u32).collect(), &boxes);
             let mut found = Vec::new();
             tree.meeting(&one, &boxes, &mut Vec::new(), |item| found.push(item));
             found.sort_unstable();
@@ -197,8 +257,8 @@ mod tests {
         }
 
         #[test]
-        fn a_tree_finds_every_pair_of_its_boxes_that_meet_once(boxes in prop::collection::vec(some_box(), 0..60)) {
-            let tree = Tree::new((0..boxes.len() as u32).collect(), &boxes);
+        fn a_bvh_finds_every_overlapping_pair_once(boxes in prop::collection::vec(some_box(), 0..60)) {
+            let tree = Bvh::new((0..boxes.len() as u32).collect(), &boxes);
             let mut found = Vec::new();
             for leaf in tree.leaves() {
                 tree.meeting_itself(&boxes, leaf, &mut Vec::new(), |a, b| found.push([a.min(b), a.max(b)]));
@@ -210,11 +270,11 @@ mod tests {
         }
 
         #[test]
-        fn a_refitted_tree_finds_just_the_boxes_that_meet(
+        fn a_refitted_bvh_finds_exactly_the_overlapping_boxes(
             pairs in prop::collection::vec((some_box(), some_box()), 0..60), one in some_box(),
         ) {
-            let (before, boxes): (Vec<Bounds>, Vec<Bounds>) = pairs.into_iter().unzip();
-            let mut tree = Tree::new((0..boxes.len() as u32).collect(), &before);
+            let (before, boxes): (Vec<Aabb>, Vec<Aabb>) = pairs.into_iter().unzip();
+            let mut tree = Bvh::new((0..boxes.len() as u32).collect(), &before);
             tree.refit(&boxes);
             let mut found = Vec::new();
             tree.meeting(&one, &boxes, &mut Vec::new(), |item| found.push(item));

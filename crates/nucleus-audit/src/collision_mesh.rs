@@ -1,22 +1,22 @@
-//! What there is to meet: bodies, their elements, and which of them are to be kept apart.
+//! The collision mesh: all bodies with their edges and triangles, and the filter of pairs.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// An edge of a [`World`].
+/// An edge of a [`CollisionMesh`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeId(pub u32);
 
-/// A triangle of a [`World`].
+/// A triangle of a [`CollisionMesh`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceId(pub u32);
 
-/// Something made of points, edges and faces, all of which have positions in every state.
+/// A body of points, edges and faces.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Body {
-    /// What reports call it.
+    /// Name in reports.
     pub name: String,
-    /// How many points it has.
+    /// Number of points.
     pub points: usize,
     /// Triangles, by their points.
     pub triangles: Vec<[u32; 3]>,
@@ -25,7 +25,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// A mesh of polygons, each cut into a fan of triangles round its first corner.
+    /// A mesh of polygons, each triangulated as a fan about its first corner.
     pub fn mesh<'a>(
         name: impl Into<String>,
         points: usize,
@@ -37,23 +37,23 @@ impl Body {
     }
 }
 
-/// All bodies, their elements numbered through.
+/// All bodies, with elements numbered across bodies.
 #[derive(Debug, Clone, Default)]
-pub struct World {
+pub struct CollisionMesh {
     bodies: Vec<Body>,
-    /// The first point of each body, and one past the last of all.
+    /// First point of each body, and one past the last point.
     first: Vec<u32>,
     body_of: Vec<u32>,
     edges: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
     /// The edges of each triangle.
     sides: Vec<[EdgeId; 3]>,
-    /// The edges at each point, and the triangles at each edge.
+    /// Edges at each point, and triangles at each edge.
     edges_at: Lists,
     faces_at: Lists,
 }
 
-/// Many short lists in one.
+/// Lists in compressed sparse row form.
 #[derive(Debug, Clone, Default)]
 struct Lists {
     starts: Vec<u32>,
@@ -61,7 +61,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// `count` lists: item by item, each with the lists that it is in.
+    /// Builds `count` lists from items, each given with the lists that contain it.
     fn new<const N: usize>(count: usize, items: impl Iterator<Item = [u32; N]> + Clone) -> Self {
         let mut starts = vec![0_u32; count + 1];
         items.clone().flatten().for_each(|list| starts[list as usize + 1] += 1);
@@ -83,19 +83,18 @@ impl Lists {
     }
 }
 
-impl World {
-    /// Numbers the elements of all bodies. A triangle or edge that names a point twice, or one that is not
-    /// there, is left out.
+impl CollisionMesh {
+    /// Numbers the elements of all bodies. Leaves out triangles and edges that repeat a point or refer to a missing
+    /// one.
     pub fn new(bodies: Vec<Body>) -> Self {
-        let mut world = Self { first: vec![0], ..Self::default() };
+        let mut mesh = Self { first: vec![0], ..Self::default() };
         for (index, body) in bodies.iter().enumerate() {
-            world.add(index as u32, body);
+            mesh.add(index as u32, body);
         }
-        world.bodies = bodies;
-        world.edges_at = Lists::new(world.body_of.len(), world.edges.iter().copied());
-        world.faces_at =
-            Lists::new(world.edges.len(), world.sides.iter().map(|sides| sides.map(|edge| edge.0)));
-        world
+        mesh.bodies = bodies;
+        mesh.edges_at = Lists::new(mesh.body_of.len(), mesh.edges.iter().copied());
+        mesh.faces_at = Lists::new(mesh.edges.len(), mesh.sides.iter().map(|sides| sides.map(|edge| edge.0)));
+        mesh
     }
 
     fn add(&mut self, index: u32, body: &Body) {
@@ -133,12 +132,12 @@ impl World {
         &self.bodies
     }
 
-    /// How many points there are in all.
+    /// Number of points of all bodies.
     pub fn points(&self) -> usize {
         self.body_of.len()
     }
 
-    /// The points of a body, numbered through.
+    /// The points of a body.
     pub fn points_of(&self, body: usize) -> Range<usize> {
         self.first[body] as usize..self.first[body + 1] as usize
     }
@@ -148,7 +147,7 @@ impl World {
         self.body_of[point as usize] as usize
     }
 
-    /// All edges, those of triangles too, each once.
+    /// All edges, including those of triangles, each once.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
     }
@@ -173,22 +172,22 @@ impl World {
         self.faces_at.list(edge.0).iter().map(|&face| FaceId(face))
     }
 
-    /// The body of a point, and its number there.
+    /// The body of a point, and its index there.
     pub fn local(&self, point: u32) -> (usize, u32) {
         let body = self.body_of(point);
         (body, point - self.first[body])
     }
 }
 
-/// Which elements are to be kept apart. Without any rule all are.
+/// Which pairs of elements are tested. The default tests all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Rules {
+pub struct CollisionFilter {
     ignored: Vec<[usize; 2]>,
     held: Vec<bool>,
 }
 
-impl Rules {
-    /// Nothing is asked of two bodies, or of one with itself.
+impl CollisionFilter {
+    /// Excludes pairs between two bodies, or within one.
     pub fn ignore(&mut self, a: usize, b: usize) {
         let pair = [a.min(b), a.max(b)];
         if !self.ignored.contains(&pair) {
@@ -196,25 +195,25 @@ impl Rules {
         }
     }
 
-    /// A point that goes where it is told, whatever is in its way. Nothing is asked of two elements all of whose
-    /// points are held: nobody could keep them apart.
-    pub fn hold(&mut self, point: usize) {
+    /// Marks a point as kinematic: its motion is prescribed. Pairs of elements with kinematic points only are excluded,
+    /// since no solver can separate them.
+    pub fn set_kinematic(&mut self, point: usize) {
         if self.held.len() <= point {
             self.held.resize(point + 1, false);
         }
         self.held[point] = true;
     }
 
-    /// Whether a point goes where it is told.
-    pub(crate) fn holds(&self, point: usize) -> bool {
+    /// Whether a point is kinematic.
+    pub(crate) fn is_kinematic(&self, point: usize) -> bool {
         self.held.get(point).copied().unwrap_or(false)
     }
 
-    /// Whether two elements with these points are to be kept apart. Elements that share a point touch there
-    /// for ever; what they do beyond it shows at their other elements.
+    /// Whether a pair of elements with these points is tested. Elements that share a point always touch there; their
+    /// other neighbours show any further collision.
     pub(crate) fn apply<const A: usize, const B: usize>(
         &self,
-        world: &World,
+        mesh: &CollisionMesh,
         a: &[u32; A],
         b: &[u32; B],
     ) -> bool {
@@ -222,20 +221,24 @@ impl Rules {
         if a.iter().any(|point| b.contains(point)) {
             return false;
         }
-        let bodies = [world.body_of(a[0]), world.body_of(b[0])];
+        let bodies = [mesh.body_of(a[0]), mesh.body_of(b[0])];
         let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
-        let held = |point: &u32| self.holds(*point as usize);
+        let held = |point: &u32| self.is_kinematic(*point as usize);
         let are_held = a.iter().all(held) && b.iter().all(held);
         !(are_held || self.ignored.contains(&pair))
     }
 
-    /// The elements of which anything is asked at all.
-    pub(crate) fn concerned<const N: usize>(&self, world: &World, elements: &[[u32; N]]) -> Vec<u32> {
-        let bodies = 0..world.bodies().len();
+    /// The elements of bodies with at least one tested pair.
+    pub(crate) fn active_elements<const N: usize>(
+        &self,
+        mesh: &CollisionMesh,
+        elements: &[[u32; N]],
+    ) -> Vec<u32> {
+        let bodies = 0..mesh.bodies().len();
         let asked = |a: usize, b: usize| !self.ignored.contains(&[a.min(b), a.max(b)]);
-        let concerned: Vec<bool> =
+        let active_elements: Vec<bool> =
             bodies.clone().map(|body| bodies.clone().any(|other| asked(body, other))).collect();
-        let is_concerned = |(_, points): &(u32, &[u32; N])| concerned[world.body_of(points[0])];
+        let is_concerned = |(_, points): &(u32, &[u32; N])| active_elements[mesh.body_of(points[0])];
         (0..).zip(elements).filter(is_concerned).map(|(index, _)| index).collect()
     }
 }
