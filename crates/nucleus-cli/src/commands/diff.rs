@@ -42,7 +42,7 @@ impl Diff {
     }
 
     fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
-        let moments = figures::count(comparison.moments, "moment");
+        let moments = figures::count(comparison.time_samples, "moment");
         if comparison.differences.is_empty() {
             let how = if self.tolerance > 0.0 { "within the tolerance" } else { "in every bit" };
             return Ok(format!("the same {how}, {moments} compared\n"));
@@ -76,7 +76,7 @@ impl Diff {
                     "object `{name}` has other faces or another number of points at frame {frame} substep {substep}"
                 )
             }
-            Difference::Moment { frame, in_first, .. } => {
+            Difference::TimeSample { frame, in_first, .. } => {
                 format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
             }
             Difference::Points(found) => format!(
@@ -114,7 +114,7 @@ fn as_json(comparison: &Comparison) -> Value {
         Difference::Mesh { name, frame, substep } => {
             json!({ "mesh": name, "frame": frame, "substep": substep })
         }
-        Difference::Moment { frame, substep, in_first } => {
+        Difference::TimeSample { frame, substep, in_first } => {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
         }
         Difference::Points(found) => json!({ "points": points(found) }),
@@ -122,7 +122,7 @@ fn as_json(comparison: &Comparison) -> Value {
     });
     json!({
         "same": comparison.differences.is_empty(),
-        "moments": comparison.moments,
+        "moments": comparison.time_samples,
         "differences": differences.collect::<Vec<_>>(),
         "rms": comparison.rms,
         "largest": comparison.largest.as_ref().map(points),

@@ -194,5 +194,5 @@ fn a_cache_that_has_lost_its_start_is_recovered_with_the_meshes_of_its_scene() {
     let cache = nucleus_cache::Playback::open(folder.path().join("meshes.mcap")).unwrap();
     assert_eq!((cache.objects()[0].name.as_str(), cache.objects()[0].faces.len()), ("cloth1", 36));
     assert_eq!((cache.run().units_per_metre, cache.run().start), (100.0, 1));
-    assert!(cache.moments().len() >= 4, "{}", cache.loss());
+    assert!(cache.time_samples().len() >= 4, "{}", cache.corruption());
 }

@@ -137,7 +137,7 @@ fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Ve
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
     recorder.record_start(simulation.state())?;
-    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|found| found.len());
+    let length = || std::fs::metadata(nucleus_cache::part_path(&path)).map(|found| found.len());
     let (before, begin) = (length()?, now());
     let state = simulation.save();
     let saved = now() - begin;
