@@ -1,10 +1,14 @@
 //! Compares two caches: where they differ first, and by how much.
 
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
 use std::io::{Read, Seek};
+use std::mem::replace;
 
 use crate::error::ReadError;
 use crate::read::playback::Playback;
 use crate::read::time_index::TimeSample;
+use crate::run::ObjectInfo;
 
 /// One difference between two caches.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +39,13 @@ pub enum Difference {
         /// Whether the first cache has it.
         in_first: bool,
     },
+    /// A frame of one cache is damaged or missing and is not compared.
+    Damaged {
+        /// The frame.
+        frame: i32,
+        /// Whether it is in the first cache.
+        in_first: bool,
+    },
     /// Positions differ.
     Points(PointDifference),
 }
@@ -61,9 +72,10 @@ pub struct PointDifference {
 /// The result of [`compare`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Comparison {
-    /// Number of compared time samples: those that both caches have.
+    /// Number of compared time samples: those that both caches have, undamaged.
     pub time_samples: usize,
-    /// Differences: first of objects, then of time samples, then the first mesh and position difference of each object.
+    /// Differences: first of objects, then of time samples, then damaged frames and the first mesh and position difference
+    /// of each object, in order of time.
     pub differences: Vec<Difference>,
     /// Root mean square distance over all compared points and time samples, in scene units.
     pub rms: f64,
@@ -71,54 +83,131 @@ pub struct Comparison {
     pub largest: Option<PointDifference>,
 }
 
-/// Compares what two caches show. Distances up to `tolerance`, in scene units, are no difference; at 0 every bit
-/// counts, save that all not-a-numbers are alike.
+/// Compares the time samples that two caches share. Distances up to `tolerance`, in scene units, are no difference; at
+/// 0 every bit counts, except that all NaNs are equal.
 ///
-/// Only what is shown counts, not how it is packed: caches of substeps and of frames are compared where both
-/// have time_samples.
+/// Only the shown positions and faces count, not their compression or the recorded sample rate. A damaged frame is a
+/// difference; the other frames are still compared.
 ///
 /// # Errors
-/// When a frame of either cannot be read.
+/// When the system fails to read.
 pub fn compare<A: Read + Seek, B: Read + Seek>(
     a: &mut Playback<A>,
     b: &mut Playback<B>,
     tolerance: f64,
 ) -> Result<Comparison, ReadError> {
-    let mut comparison = Comparison::default();
-    let objects = common_objects(a, b, &mut comparison.differences);
-    let time_samples = common_moments(a, b, &mut comparison.differences);
-    comparison.time_samples = time_samples.len();
-    let mut sum = SquaredError::default();
-    let (mut seen, mut seen_mesh) = (vec![false; objects.len()], vec![false; objects.len()]);
-    for &(moment_a, moment_b) in &time_samples {
+    let mut differences = Vec::new();
+    let mut damaged = BTreeSet::new();
+    let objects = common_objects(a, b, &mut differences);
+    let samples = common_samples(a, b, &mut differences, &mut damaged);
+    let mut comparer = Comparer {
+        tolerance,
+        comparison: Comparison { differences, ..Comparison::default() },
+        error: SquaredError::default(),
+        damaged,
+        mesh_differs: vec![false; objects.len()],
+        points_differ: vec![false; objects.len()],
+    };
+    for (sample_a, sample_b) in samples {
+        let (sample, mut is_readable) = (a.time_samples()[sample_a], true);
         for (place, &(object_a, object_b)) in objects.iter().enumerate() {
-            let (one, two) = (a.object_at(object_a, moment_a)?, b.object_at(object_b, moment_b)?);
-            let is_comparable = one.rest.len() == two.rest.len();
-            let is_same = is_comparable && one.faces == two.faces;
-            if !is_same && !std::mem::replace(&mut seen_mesh[place], true) {
-                let (name, TimeSample { frame, substep, .. }) =
-                    (one.name.clone(), a.time_samples()[moment_a]);
-                comparison.differences.push(Difference::Mesh { name, frame, substep });
-            }
-            if !is_comparable {
-                continue;
-            }
-            let (one, two) = (a.positions(object_a, moment_a)?, b.positions(object_b, moment_b)?);
-            let Some(mut found) = first_difference(&one, &two, tolerance, &mut sum) else { continue };
-            let sample = a.time_samples()[moment_a];
-            found.object.clone_from(&a.objects()[object_a].name);
-            (found.frame, found.substep) = (sample.frame, sample.substep);
-            let most = comparison.largest.as_ref().map_or(0.0, |largest| largest.farthest.1);
-            if comparison.largest.is_none() || found.farthest.1 > most {
-                comparison.largest = Some(found.clone());
-            }
-            if !std::mem::replace(&mut seen[place], true) {
-                comparison.differences.push(Difference::Points(found));
+            let one = comparer.readable(true, object_at(a, object_a, sample_a))?;
+            let two = comparer.readable(false, object_at(b, object_b, sample_b))?;
+            match one.zip(two) {
+                Some((one, two)) => comparer.compare(place, sample, one, two),
+                None => is_readable = false,
             }
         }
+        comparer.comparison.time_samples += usize::from(is_readable);
     }
-    comparison.rms = sum.rms();
-    Ok(comparison)
+    Ok(comparer.finish())
+}
+
+/// An object at one time sample: its mesh and its positions.
+type Shown<'a> = (&'a ObjectInfo, Vec<[f32; 3]>);
+
+fn object_at<R: Read + Seek>(
+    cache: &mut Playback<R>,
+    object: usize,
+    sample: usize,
+) -> Result<Shown<'_>, ReadError> {
+    let positions = cache.positions(object, sample)?;
+    Ok((cache.object_at(object, sample)?, positions))
+}
+
+/// Collects the differences of two caches.
+struct Comparer {
+    tolerance: f64,
+    comparison: Comparison,
+    error: SquaredError,
+    /// Damaged frames, and whether they are in the first cache.
+    damaged: BTreeSet<(i32, bool)>,
+    /// By common object, whether a difference of its mesh or of its positions was found.
+    mesh_differs: Vec<bool>,
+    points_differ: Vec<bool>,
+}
+
+impl Comparer {
+    /// The result of reading, or `None` and a difference where the frame is damaged.
+    fn readable<T>(&mut self, in_first: bool, read: Result<T, ReadError>) -> Result<Option<T>, ReadError> {
+        match read {
+            Ok(value) => Ok(Some(value)),
+            Err(
+                ReadError::Damaged { frame }
+                | ReadError::MeshLost { frame, .. }
+                | ReadError::Nothing { frame, .. },
+            ) => {
+                note_damage(frame, in_first, &mut self.damaged, &mut self.comparison.differences);
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Compares the common object number `place` at a time sample.
+    fn compare(
+        &mut self,
+        place: usize,
+        sample: TimeSample,
+        (one, at_one): Shown<'_>,
+        (two, at_two): Shown<'_>,
+    ) {
+        let TimeSample { frame, substep, .. } = sample;
+        let is_comparable = one.rest.len() == two.rest.len();
+        let is_same = is_comparable && one.faces == two.faces;
+        if !is_same && !replace(&mut self.mesh_differs[place], true) {
+            self.comparison.differences.push(Difference::Mesh { name: one.name.clone(), frame, substep });
+        }
+        if !is_comparable {
+            return;
+        }
+        let found = first_difference(&at_one, &at_two, self.tolerance, &mut self.error);
+        let Some(found) = found else { return };
+        let found = PointDifference { object: one.name.clone(), frame, substep, ..found };
+        let largest = &mut self.comparison.largest;
+        if largest.as_ref().is_none_or(|largest| found.farthest.1 > largest.farthest.1) {
+            *largest = Some(found.clone());
+        }
+        if !replace(&mut self.points_differ[place], true) {
+            self.comparison.differences.push(Difference::Points(found));
+        }
+    }
+
+    fn finish(self) -> Comparison {
+        Comparison { rms: self.error.rms(), ..self.comparison }
+    }
+}
+
+/// Adds a damaged frame to the differences, once.
+fn note_damage(
+    frame: i32,
+    in_first: bool,
+    damaged: &mut BTreeSet<(i32, bool)>,
+    differences: &mut Vec<Difference>,
+) {
+    if damaged.insert((frame, in_first)) {
+        differences.push(Difference::Damaged { frame, in_first });
+    }
 }
 
 /// Sum of squared distances.
@@ -205,40 +294,43 @@ fn common_objects<A: Read + Seek, B: Read + Seek>(
 }
 
 /// Indices in both caches of the time samples that both have. Of the other samples, only the first of each cache at a
-/// frame end is a difference: the recorded sample rate does not matter.
-fn common_moments<A: Read + Seek, B: Read + Seek>(
+/// frame end is a difference: the recorded sample rate does not matter. A frame that the other cache has lost is damaged.
+fn common_samples<A: Read + Seek, B: Read + Seek>(
     a: &Playback<A>,
     b: &Playback<B>,
     differences: &mut Vec<Difference>,
+    damaged: &mut BTreeSet<(i32, bool)>,
 ) -> Vec<(usize, usize)> {
     let (mut i, mut j) = (0, 0);
     let mut common = Vec::new();
     let (one, two) = (a.time_samples(), b.time_samples());
-    let mut told = [false; 2];
+    let mut is_reported = [false; 2];
     while i < one.len() || j < two.len() {
         let order = match (one.get(i), two.get(j)) {
             (Some(x), Some(y)) => x.log_time.cmp(&y.log_time),
-            (Some(_), None) => std::cmp::Ordering::Less,
-            _ => std::cmp::Ordering::Greater,
+            (Some(_), None) => Ordering::Less,
+            _ => Ordering::Greater,
         };
-        let lonely = match order {
-            std::cmp::Ordering::Equal => {
+        let (sample, in_first) = match order {
+            Ordering::Equal => {
                 common.push((i, j));
                 (i, j) = (i + 1, j + 1);
                 continue;
             }
-            std::cmp::Ordering::Less => {
+            Ordering::Less => {
                 i += 1;
                 (one[i - 1], true)
             }
-            std::cmp::Ordering::Greater => {
+            Ordering::Greater => {
                 j += 1;
                 (two[j - 1], false)
             }
         };
-        let (sample, in_first) = lonely;
-        if sample.ends_frame() && !std::mem::replace(&mut told[usize::from(in_first)], true) {
-            let (frame, substep) = (sample.frame, sample.substep);
+        let other = if in_first { b.corruption() } else { a.corruption() };
+        let (frame, substep) = (sample.frame, sample.substep);
+        if other.frames.contains(&frame) {
+            note_damage(frame, !in_first, damaged, differences);
+        } else if sample.ends_frame() && !replace(&mut is_reported[usize::from(in_first)], true) {
             differences.push(Difference::TimeSample { frame, substep, in_first });
         }
     }

@@ -75,3 +75,41 @@ fn frames_and_objects_in_one_cache_only_are_named() {
             .all(|difference| matches!(difference, Difference::TimeSample { in_first: false, .. }))
     );
 }
+
+/// Flips a bit in the chunk of `frame`.
+fn damage(bytes: &mut [u8], frame: i32) {
+    let summary = mcap::Summary::read(bytes).unwrap().unwrap();
+    let chunk = &summary.chunk_indexes[(frame - START) as usize];
+    bytes[(chunk.chunk_start_offset + chunk.chunk_length) as usize - 9] ^= 1;
+}
+
+#[test]
+fn a_damaged_frame_is_named_and_the_other_frames_are_compared() {
+    let sound = falling::whole_run(&falling::run_info()).0;
+    let mut damaged = sound.clone();
+    damage(&mut damaged, START + 4);
+    // Without its index, the frame is missing instead of unreadable.
+    let unindexed = damaged[..damaged.len() - 20].to_vec();
+    for bytes in [damaged, unindexed] {
+        let comparison = compare(&mut open(sound.clone()), &mut open(bytes.clone()), 0.0).unwrap();
+        let expected = Difference::Damaged { frame: START + 4, in_first: false };
+        assert_eq!(comparison.differences, [expected]);
+        assert_eq!(comparison.time_samples as i32, END - START);
+        let comparison = compare(&mut open(bytes), &mut astray(START + 6), 0.0).unwrap();
+        let [Difference::Damaged { frame, in_first }, Difference::Points(first)] =
+            &comparison.differences[..]
+        else {
+            panic!("{comparison:?}")
+        };
+        assert_eq!((*frame, *in_first, first.frame), (START + 4, true, START + 6));
+    }
+}
+
+#[test]
+fn a_frame_damaged_in_both_caches_is_named_for_each() {
+    let mut bytes = falling::whole_run(&falling::run_info()).0;
+    damage(&mut bytes, START + 2);
+    let comparison = compare(&mut open(bytes.clone()), &mut open(bytes), 0.0).unwrap();
+    let damaged = |in_first| Difference::Damaged { frame: START + 2, in_first };
+    assert_eq!(comparison.differences, [damaged(true), damaged(false)]);
+}

@@ -14,6 +14,7 @@ use crate::{cache_file, figures, output};
 /// Compares two caches: names the first frame, substep, object and point that differ, and the largest distance.
 ///
 /// Exits with 0 if they show the same and with 1 if they do not. How finely time was recorded makes no difference.
+/// A damaged frame is named and counts as a difference; all others are compared.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// A cache (.mcap).
@@ -79,6 +80,9 @@ impl Diff {
             Difference::TimeSample { frame, in_first, .. } => {
                 format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
             }
+            Difference::Damaged { frame, in_first } => {
+                format!("frame {frame} of `{}` is damaged and was not compared", name(in_first))
+            }
             Difference::Points(found) => format!(
                 "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
                 found.object,
@@ -116,6 +120,9 @@ fn as_json(comparison: &Comparison) -> Value {
         }
         Difference::TimeSample { frame, substep, in_first } => {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
+        }
+        Difference::Damaged { frame, in_first } => {
+            json!({ "damaged": { "frame": frame }, "in": 1 + u8::from(!in_first) })
         }
         Difference::Points(found) => json!({ "points": points(found) }),
         _ => Value::Null,
