@@ -147,10 +147,10 @@ impl Auditor {
     /// When the number of positions differs from the number of points.
     pub fn check_motion(&mut self, index: StateIndex, positions: &[Vector3<f64>]) {
         self.counts.motions += 1;
-        let events = self.move_to(positions, true);
-        for event in events {
-            self.count_result(event.result);
-            self.record(Finding { state: index, kind: FindingKind::Collision(event) });
+        let collisions = self.move_to(positions, true);
+        for collision in collisions {
+            self.count_result(collision.result);
+            self.record(Finding { state: index, kind: FindingKind::Collision(collision) });
         }
     }
 
@@ -169,25 +169,25 @@ impl Auditor {
         self.check_intersections(index);
     }
 
-    /// Takes up a state and returns the collisions that are not attributed to initial intersections. With `seen`, the
+    /// Takes up a state and returns the collisions that are not attributed to initial intersections. With `is_checked`, the
     /// intersections they lead to count as reported.
-    fn move_to(&mut self, positions: &[Vector3<f64>], seen: bool) -> Vec<Collision> {
+    fn move_to(&mut self, positions: &[Vector3<f64>], is_checked: bool) -> Vec<Collision> {
         let motion = Motion::new(&self.mesh, &self.filter, [&self.state, positions]);
-        let mut events = self.intervals.collisions(&motion);
+        let mut collisions = self.intervals.collisions(&motion);
         self.state.copy_from_slice(positions);
-        if events.is_empty() && self.initial.is_empty() {
-            return events;
+        if collisions.is_empty() && self.initial.is_empty() {
+            return collisions;
         }
-        let propagation = self.initial.exclude(&self.mesh, &mut events);
+        let propagation = self.initial.exclude(&self.mesh, &mut collisions);
         self.counts.excluded_collisions += propagation.excluded;
         let inside = intersections(&self.mesh, &self.filter, &self.state);
         self.initial.update(&propagation, &inside);
-        if seen {
+        if is_checked {
             let new = inside.iter().filter(|found| !self.initial.has(found));
             self.reported = new.map(|found| (found.edge, found.face)).collect();
         }
         self.count_state(&inside);
-        events
+        collisions
     }
 
     /// Checks the current state for intersections without a collision that led to them.

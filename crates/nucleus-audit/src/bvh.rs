@@ -2,15 +2,15 @@
 
 use nalgebra::Vector3;
 
-/// Axis-aligned box from `least` to `most`, both included.
+/// Axis-aligned box from `min` to `max`, both included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
-    pub least: [f64; 3],
-    pub most: [f64; 3],
+    pub min: [f64; 3],
+    pub max: [f64; 3],
 }
 
 impl Aabb {
-    pub const EMPTY: Self = Self { least: [f64::INFINITY; 3], most: [f64::NEG_INFINITY; 3] };
+    pub const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
 
     /// The box of some points. A coordinate that is not finite makes the box infinite, so that no candidate is missed.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
@@ -21,42 +21,41 @@ impl Aabb {
         for axis in 0..3 {
             let x = point[axis];
             if x.is_finite() {
-                self.least[axis] = self.least[axis].min(x);
-                self.most[axis] = self.most[axis].max(x);
+                self.min[axis] = self.min[axis].min(x);
+                self.max[axis] = self.max[axis].max(x);
             } else {
-                (self.least[axis], self.most[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
+                (self.min[axis], self.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
             }
         }
         self
     }
 
     /// Enlarged by a distance along every axis, rounded to nearest.
-    pub fn grown(mut self, by: f64) -> Self {
-        self.least.iter_mut().for_each(|least| *least -= by);
-        self.most.iter_mut().for_each(|most| *most += by);
+    pub fn inflated(mut self, by: f64) -> Self {
+        self.min.iter_mut().for_each(|min| *min -= by);
+        self.max.iter_mut().for_each(|max| *max += by);
         self
     }
 
     /// The box of both.
-    pub fn and(mut self, other: &Self) -> Self {
+    pub fn union(mut self, other: &Self) -> Self {
         for axis in 0..3 {
-            self.least[axis] = self.least[axis].min(other.least[axis]);
-            self.most[axis] = self.most[axis].max(other.most[axis]);
+            self.min[axis] = self.min[axis].min(other.min[axis]);
+            self.max[axis] = self.max[axis].max(other.max[axis]);
         }
         self
     }
 
     /// Whether two closed boxes overlap.
-    pub fn meets(&self, other: &Self) -> bool {
-        let along =
-            |axis: usize| (self.least[axis] <= other.most[axis]) & (other.least[axis] <= self.most[axis]);
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let along = |axis: usize| (self.min[axis] <= other.max[axis]) & (other.min[axis] <= self.max[axis]);
         // Bitwise `&` avoids branches that are hard to predict.
         along(0) & along(1) & along(2)
     }
 
     /// Twice the centre along an axis; zero for an infinite box.
-    pub fn middle(&self, axis: usize) -> f64 {
-        let sum = self.least[axis] + self.most[axis];
+    pub fn centre(&self, axis: usize) -> f64 {
+        let sum = self.min[axis] + self.max[axis];
         if sum.is_finite() { sum } else { 0.0 }
     }
 }
@@ -93,7 +92,7 @@ impl Bvh {
     fn grow(&mut self, from: usize, to: usize, boxes: &[Aabb]) {
         let items = &mut self.items[from..to];
         let of = |item: &u32| &boxes[*item as usize];
-        let bounds = items.iter().fold(Aabb::EMPTY, |all, item| all.and(of(item)));
+        let bounds = items.iter().fold(Aabb::EMPTY, |all, item| all.union(of(item)));
         let node = self.nodes.len();
         self.nodes.push(Node { bounds, items: [from as u32, to as u32], second: 0 });
         if items.len() <= LEAF {
@@ -101,7 +100,7 @@ impl Bvh {
         }
         let axis = widest(items.iter().map(of));
         let half = items.len() / 2;
-        items.select_nth_unstable_by(half, |a, b| of(a).middle(axis).total_cmp(&of(b).middle(axis)));
+        items.select_nth_unstable_by(half, |a, b| of(a).centre(axis).total_cmp(&of(b).centre(axis)));
         self.grow(from, from + half, boxes);
         self.nodes[node].second = self.nodes.len() as u32;
         self.grow(from + half, to, boxes);
@@ -113,11 +112,11 @@ impl Bvh {
         for index in (0..self.nodes.len()).rev() {
             let Node { items, second, .. } = self.nodes[index];
             self.nodes[index].bounds = if second > 0 {
-                self.nodes[index + 1].bounds.and(&self.nodes[second as usize].bounds)
+                self.nodes[index + 1].bounds.union(&self.nodes[second as usize].bounds)
             } else {
                 let [from, to] = items.map(|item| item as usize);
                 let of = |item: &u32| &boxes[*item as usize];
-                self.items[from..to].iter().fold(Aabb::EMPTY, |all, item| all.and(of(item)))
+                self.items[from..to].iter().fold(Aabb::EMPTY, |all, item| all.union(of(item)))
             };
         }
     }
@@ -129,7 +128,7 @@ impl Bvh {
 
     /// Calls `visit` for every item of a leaf and every item of another tree whose boxes overlap; `boxes` belong to
     /// this tree.
-    pub fn meeting_leaf(
+    pub fn query_leaf(
         &self,
         boxes: &[Aabb],
         leaf: u32,
@@ -140,9 +139,9 @@ impl Bvh {
         self.leaf_and(0, boxes, leaf, (other, others), stack, visit);
     }
 
-    /// As [`meeting_leaf`](Self::meeting_leaf) within one tree: with the items of the same leaf and of later leaves.
+    /// As [`query_leaf`](Self::query_leaf) within one tree: with the items of the same leaf and of later leaves.
     /// Over all leaves, every pair is visited once.
-    pub fn meeting_itself(
+    pub fn query_self(
         &self,
         boxes: &[Aabb],
         leaf: u32,
@@ -151,7 +150,7 @@ impl Bvh {
     ) {
         let [from, to] = self.nodes[leaf as usize].items.map(|item| item as usize);
         for (k, &one) in (from..to).zip(&self.items[from..to]) {
-            let meets = |other: &&u32| boxes[one as usize].meets(&boxes[**other as usize]);
+            let meets = |other: &&u32| boxes[one as usize].overlaps(&boxes[**other as usize]);
             self.items[k + 1..to].iter().filter(meets).for_each(|&other| visit(one, other));
         }
         self.leaf_and(leaf + 1, boxes, leaf, (self, boxes), stack, visit);
@@ -168,9 +167,9 @@ impl Bvh {
     ) {
         let Node { bounds, items, .. } = &self.nodes[leaf as usize];
         let own = &self.items[items[0] as usize..items[1] as usize];
-        other.meeting_from(first, bounds, others, stack, |found| {
+        other.query_from(first, bounds, others, stack, |found| {
             for &item in own {
-                if boxes[item as usize].meets(&others[found as usize]) {
+                if boxes[item as usize].overlaps(&others[found as usize]) {
                     visit(item, found);
                 }
             }
@@ -178,12 +177,12 @@ impl Bvh {
     }
 
     /// Calls `visit` for every item whose box overlaps `bounds`.
-    pub fn meeting(&self, bounds: &Aabb, boxes: &[Aabb], stack: &mut Vec<u32>, visit: impl FnMut(u32)) {
-        self.meeting_from(0, bounds, boxes, stack, visit);
+    pub fn query(&self, bounds: &Aabb, boxes: &[Aabb], stack: &mut Vec<u32>, visit: impl FnMut(u32)) {
+        self.query_from(0, bounds, boxes, stack, visit);
     }
 
-    /// As [`meeting`](Self::meeting), for leaves from node `first` on.
-    fn meeting_from(
+    /// As [`query`](Self::query), for leaves from node `first` on.
+    fn query_from(
         &self,
         first: u32,
         bounds: &Aabb,
@@ -195,7 +194,7 @@ impl Bvh {
         stack.extend(self.nodes.first().map(|_| 0));
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index as usize];
-            if !node.bounds.meets(bounds) {
+            if !node.bounds.overlaps(bounds) {
                 continue;
             }
             if node.second > 0 {
@@ -209,7 +208,7 @@ impl Bvh {
             }
             let [from, to] = node.items.map(|item| item as usize);
             for &item in &self.items[from..to] {
-                if boxes[item as usize].meets(bounds) {
+                if boxes[item as usize].overlaps(bounds) {
                     visit(item);
                 }
             }
@@ -221,9 +220,9 @@ impl Bvh {
 fn widest<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> usize {
     let mut spread = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     for bounds in boxes {
-        for (axis, [least, most]) in spread.iter_mut().enumerate() {
-            let middle = bounds.middle(axis);
-            (*least, *most) = (least.min(middle), most.max(middle));
+        for (axis, [min, max]) in spread.iter_mut().enumerate() {
+            let middle = bounds.centre(axis);
+            (*min, *max) = (min.min(middle), max.max(middle));
         }
     }
     let width = |axis: &usize| spread[*axis][1] - spread[*axis][0];
@@ -250,9 +249,9 @@ mod tests {
         fn a_bvh_query_finds_exactly_the_overlapping_boxes(boxes in prop::collection::vec(some_box(), 0..60), one in some_box()) {
             let tree = Bvh::new((0..boxes.len() as u32).collect(), &boxes);
             let mut found = Vec::new();
-            tree.meeting(&one, &boxes, &mut Vec::new(), |item| found.push(item));
+            tree.query(&one, &boxes, &mut Vec::new(), |item| found.push(item));
             found.sort_unstable();
-            let all: Vec<u32> = (0..boxes.len() as u32).filter(|&item| boxes[item as usize].meets(&one)).collect();
+            let all: Vec<u32> = (0..boxes.len() as u32).filter(|&item| boxes[item as usize].overlaps(&one)).collect();
             prop_assert_eq!(found, all);
         }
 
@@ -261,11 +260,11 @@ mod tests {
             let tree = Bvh::new((0..boxes.len() as u32).collect(), &boxes);
             let mut found = Vec::new();
             for leaf in tree.leaves() {
-                tree.meeting_itself(&boxes, leaf, &mut Vec::new(), |a, b| found.push([a.min(b), a.max(b)]));
+                tree.query_self(&boxes, leaf, &mut Vec::new(), |a, b| found.push([a.min(b), a.max(b)]));
             }
             found.sort_unstable();
             let pairs = (0..boxes.len() as u32).flat_map(|a| (a + 1..boxes.len() as u32).map(move |b| [a, b]));
-            let all: Vec<_> = pairs.filter(|&[a, b]| boxes[a as usize].meets(&boxes[b as usize])).collect();
+            let all: Vec<_> = pairs.filter(|&[a, b]| boxes[a as usize].overlaps(&boxes[b as usize])).collect();
             prop_assert_eq!(found, all);
         }
 
@@ -277,9 +276,9 @@ mod tests {
             let mut tree = Bvh::new((0..boxes.len() as u32).collect(), &before);
             tree.refit(&boxes);
             let mut found = Vec::new();
-            tree.meeting(&one, &boxes, &mut Vec::new(), |item| found.push(item));
+            tree.query(&one, &boxes, &mut Vec::new(), |item| found.push(item));
             found.sort_unstable();
-            let all: Vec<u32> = (0..boxes.len() as u32).filter(|&item| boxes[item as usize].meets(&one)).collect();
+            let all: Vec<u32> = (0..boxes.len() as u32).filter(|&item| boxes[item as usize].overlaps(&one)).collect();
             prop_assert_eq!(found, all);
         }
     }

@@ -70,13 +70,13 @@ impl Trajectories {
     }
 
     /// A radius that bounds all positions accepted by [`contains`](Self::contains).
-    fn reach(&self) -> f64 {
+    fn margin(&self) -> f64 {
         self.radius + 4.0 * self.rounding
     }
 
     fn bounds<const N: usize>(&self, points: &[u32; N], steps: u32) -> Aabb {
         let ends = points.map(|point| [0, steps].map(|step| self.at(point as usize, step)));
-        Aabb::of(ends.as_flattened()).grown(self.reach())
+        Aabb::of(ends.as_flattened()).inflated(self.margin())
     }
 }
 
@@ -115,7 +115,7 @@ impl ElementBounds {
             for &leaf in leaves {
                 let others = (&other.tree, other.boxes.as_slice());
                 let visit = |one, other| take([one, other], &mut pairs);
-                self.tree.meeting_leaf(&self.boxes, leaf, others, &mut stack, visit);
+                self.tree.query_leaf(&self.boxes, leaf, others, &mut stack, visit);
             }
             pairs
         })
@@ -127,7 +127,7 @@ impl ElementBounds {
             let (mut stack, mut pairs) = (Vec::new(), Vec::new());
             for &leaf in leaves {
                 let visit = |one, other| take([one, other], &mut pairs);
-                self.tree.meeting_itself(&self.boxes, leaf, &mut stack, visit);
+                self.tree.query_self(&self.boxes, leaf, &mut stack, visit);
             }
             pairs
         })
@@ -183,10 +183,10 @@ impl std::fmt::Debug for CandidateIntervals {
 }
 
 /// Maximum number of steps in an interval.
-const LONGEST: u32 = 128;
+const MAX_STEPS: u32 = 128;
 
 /// Intervals after which the trees are rebuilt, since the shape may have changed.
-const OLD: u32 = 16;
+const MAX_AGE: u32 = 16;
 
 /// Radius of motion bounds, as a fraction of the mean edge length.
 const RADIUS: f64 = 1.0 / 32.0;
@@ -200,21 +200,21 @@ impl CandidateIntervals {
 
     /// The pairs that collide in a motion, in order. The motion begins where the last one ended.
     pub fn collisions(&mut self, motion: &Motion<'_>) -> Vec<Collision> {
-        if !self.goes_on(motion) {
+        if !self.covers(motion) {
             self.begin(motion);
         }
         self.elapsed += 1;
-        let mut events =
-            motion.collisions(self.uncertified.iter().copied().filter(|&pair| !self.bounds_violated(pair)));
+        let mut collisions =
+            motion.collisions(self.uncertified.iter().copied().filter(|&pair| !self.is_violating(pair)));
         self.spent += self.uncertified.len() / PAIRS_PER_QUERY;
         if !self.points.violating.is_empty() {
-            events.extend(self.violating_collisions(motion));
+            collisions.extend(self.violating_collisions(motion));
         }
-        events.sort_by_key(|event| event.pair);
-        events
+        collisions.sort_by_key(|collision| collision.pair);
+        collisions
     }
 
-    fn bounds_violated(&self, pair: Pair) -> bool {
+    fn is_violating(&self, pair: Pair) -> bool {
         match pair {
             Pair::PointFace(point, face) => {
                 self.points.bounds_violated[point as usize] || self.faces.bounds_violated[face.0 as usize]
@@ -226,7 +226,7 @@ impl CandidateIntervals {
     }
 
     /// Whether the interval covers a motion; marks points that violate their bounds.
-    fn goes_on(&mut self, motion: &Motion<'_>) -> bool {
+    fn covers(&mut self, motion: &Motion<'_>) -> bool {
         if self.trajectories.is_none() || self.elapsed == self.steps {
             return false;
         }
@@ -258,12 +258,12 @@ impl CandidateIntervals {
         let is_first = self.trajectories.is_none();
         self.steps = match () {
             () if is_first => 1,
-            () if self.elapsed == self.steps => (2 * self.steps).min(LONGEST),
+            () if self.elapsed == self.steps => (2 * self.steps).min(MAX_STEPS),
             () => self.elapsed.max(1),
         };
         let radius = if self.steps == 1 { 0.0 } else { RADIUS * mean_length(mesh, motion.before) };
         let at = Trajectories::new(motion, self.steps, radius);
-        let rebuild = self.age.is_multiple_of(OLD);
+        let rebuild = self.age.is_multiple_of(MAX_AGE);
         if is_first {
             self.singles = (0..mesh.points() as u32).map(|point| [point]).collect();
         }
@@ -294,24 +294,24 @@ impl CandidateIntervals {
         let (edges, triangles) = (motion.mesh.edges(), motion.mesh.triangles());
         let violating_faces = self.faces.violating_bvh(triangles, motion);
         let violating_edges = self.edges.violating_bvh(edges, motion);
-        let mut events = parallel_chunks(&self.points.violating, |points| {
+        let mut collisions = parallel_chunks(&self.points.violating, |points| {
             let (mut stack, mut pairs) = (Vec::new(), Vec::new());
             for &point in points {
                 let bounds = motion.swept(&[point]);
                 let mut found = |face| pairs.push(Pair::PointFace(point, FaceId(face)));
-                let held = |face: &u32| !self.faces.bounds_violated[*face as usize];
-                self.faces.tree.meeting(&bounds, &self.faces.boxes, &mut stack, |face| {
-                    Some(face).filter(held).into_iter().for_each(&mut found);
+                let within_bounds = |face: &u32| !self.faces.bounds_violated[*face as usize];
+                self.faces.tree.query(&bounds, &self.faces.boxes, &mut stack, |face| {
+                    Some(face).filter(within_bounds).into_iter().for_each(&mut found);
                 });
-                violating_faces.meeting(&bounds, &self.faces.boxes, &mut stack, found);
+                violating_faces.query(&bounds, &self.faces.boxes, &mut stack, found);
             }
             motion.collisions(pairs.into_iter())
         });
-        events.extend(parallel_chunks(&self.faces.violating, |faces| {
+        collisions.extend(parallel_chunks(&self.faces.violating, |faces| {
             let (mut stack, mut pairs) = (Vec::new(), Vec::new());
             for &face in faces {
                 let bounds = &self.faces.boxes[face as usize];
-                self.points.tree.meeting(bounds, &self.points.boxes, &mut stack, |point| {
+                self.points.tree.query(bounds, &self.points.boxes, &mut stack, |point| {
                     if !self.points.bounds_violated[point as usize] {
                         pairs.push(Pair::PointFace(point, FaceId(face)));
                     }
@@ -319,17 +319,17 @@ impl CandidateIntervals {
             }
             motion.collisions(pairs.into_iter())
         }));
-        events.extend(parallel_chunks(&self.edges.violating, |violating| {
+        collisions.extend(parallel_chunks(&self.edges.violating, |violating| {
             let (mut stack, mut pairs) = (Vec::new(), Vec::new());
             for &edge in violating {
                 let bounds = &self.edges.boxes[edge as usize];
                 let pair = |other: u32| Pair::EdgeEdge(EdgeId(edge.min(other)), EdgeId(edge.max(other)));
-                self.edges.tree.meeting(bounds, &self.edges.boxes, &mut stack, |other| {
+                self.edges.tree.query(bounds, &self.edges.boxes, &mut stack, |other| {
                     if !self.edges.bounds_violated[other as usize] {
                         pairs.push(pair(other));
                     }
                 });
-                violating_edges.meeting(bounds, &self.edges.boxes, &mut stack, |other| {
+                violating_edges.query(bounds, &self.edges.boxes, &mut stack, |other| {
                     if other > edge {
                         pairs.push(pair(other));
                     }
@@ -337,7 +337,7 @@ impl CandidateIntervals {
             }
             motion.collisions(pairs.into_iter())
         }));
-        events
+        collisions
     }
 }
 
@@ -368,7 +368,7 @@ impl Certify<'_> {
     fn take(&self, pair: Pair, uncertified: &mut Vec<Pair>) {
         let Some((kind, points)) = self.motion.elements(pair) else { return };
         let [start, end] = [0, self.steps].map(|step| points.map(|point| self.at.at(point as usize, step)));
-        if !separated_throughout(kind, [&start, &end], 2.0 * self.at.reach()) {
+        if !separated_throughout(kind, [&start, &end], 2.0 * self.at.margin()) {
             uncertified.push(pair);
         }
     }

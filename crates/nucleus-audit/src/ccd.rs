@@ -12,10 +12,10 @@ use crate::float_filter::{Bernstein, FilteredPolynomial};
 use crate::pair::{CcdResult, Corners, PairKind};
 
 /// Bisection depth after which integers decide: beyond it the error bounds exceed the coefficients.
-const HALVINGS: u32 = 24;
+const MAX_DEPTH: u32 = 24;
 
 /// Number of time intervals that bisection visits before integers decide.
-const SPANS: u32 = 96;
+const MAX_INTERVALS: u32 = 96;
 
 /// Bounds the rounding of the slack along an axis.
 const SLACK_ROUNDING: f64 = 1.0 + 1e-12;
@@ -55,13 +55,13 @@ fn vectors(kind: PairKind, corners: &Corners) -> [Vector3<f64>; 3] {
 /// both ends of the motion suffice.
 fn has_separating_plane(kind: PairKind, vectors: &[[Vector3<f64>; 3]; 2], slack: f64) -> bool {
     let [first, second, third] = std::array::from_fn(|k| 0.5 * (vectors[0][k] + vectors[1][k]));
-    // From centre to centre: separates most neighbouring pairs.
-    let middles = match kind {
+    // From centre to centre: separates max neighbouring pairs.
+    let centres = match kind {
         PairKind::PointFace => third - (first + second) / 3.0,
         PairKind::EdgeEdge => third + 0.5 * (second - first),
     };
     let separates = |axis: &Vector3<f64>| separates(kind, vectors, axis, slack);
-    if separates(&middles) {
+    if separates(&centres) {
         return true;
     }
     let normal = first.cross(&second);
@@ -75,32 +75,32 @@ fn has_separating_plane(kind: PairKind, vectors: &[[Vector3<f64>; 3]; 2], slack:
             sides.iter().any(|side| separates(&normal.cross(side)))
         }
         PairKind::EdgeEdge => [first, second].iter().any(|edge| {
-            let across = edge.cross(&middles);
+            let across = edge.cross(&centres);
             separates(&edge.cross(&across))
         }),
     }
 }
 
 fn separates(kind: PairKind, vectors: &[[Vector3<f64>; 3]; 2], axis: &Vector3<f64>, slack: f64) -> bool {
-    let mut least = f64::INFINITY;
-    let mut most = f64::NEG_INFINITY;
-    let mut reach = 0.0_f64;
+    let mut min = f64::INFINITY;
+    let mut max = f64::NEG_INFINITY;
+    let mut size = 0.0_f64;
     for [first, second, third] in vectors {
         let heights = [first, second, third].map(|vector| axis.dot(vector));
-        reach = [first, second, third].iter().fold(reach, |reach, vector| reach.max(vector.amax()));
+        size = [first, second, third].iter().fold(size, |size, vector| size.max(vector.amax()));
         let [x, y, z] = heights;
         // Heights of all points of the second element over all points of the first.
         let all = match kind {
             PairKind::PointFace => [z, z - x, z - y, z],
             PairKind::EdgeEdge => [z, z - x, z + y, z + y - x],
         };
-        least = all.iter().fold(least, |least, height| least.min(*height));
-        most = all.iter().fold(most, |most, height| most.max(*height));
+        min = all.iter().fold(min, |min, height| min.min(*height));
+        max = all.iter().fold(max, |max, height| max.max(*height));
     }
     // Vectors are rounded once, each height five times, their sums twice: below 32 roundings.
-    let rounding = 32.0 * f64::EPSILON * axis.amax() * reach + f64::MIN_POSITIVE;
+    let rounding = 32.0 * f64::EPSILON * axis.amax() * size + f64::MIN_POSITIVE;
     let error = rounding + SLACK_ROUNDING * slack * (axis.x.abs() + axis.y.abs() + axis.z.abs());
-    least > error || most < -error
+    min > error || max < -error
 }
 
 /// Decides by bisection; `None` where the signs cannot be certified.
@@ -114,8 +114,8 @@ fn classify_by_bisection(kind: PairKind, vectors: &[[Vector3<f64>; 3]; 2]) -> Op
         return Some(CcdResult::Separated);
     }
     let inside = pair.inside().map(|estimate| estimate.bernstein());
-    let mut search = Search { spans: 0, open: false };
-    match search.look(&volume, &inside, [0.0, 1.0], 0) {
+    let mut search = Search { intervals: 0, open: false };
+    match search.first_crossing(&volume, &inside, [0.0, 1.0], 0) {
         Some(at) => Some(CcdResult::Crossing { at }),
         None if search.open => None,
         None => Some(CcdResult::Separated),
@@ -123,36 +123,38 @@ fn classify_by_bisection(kind: PairKind, vectors: &[[Vector3<f64>; 3]; 2]) -> Op
 }
 
 struct Search {
-    spans: u32,
+    intervals: u32,
     /// Whether a time interval remained undecided.
     open: bool,
 }
 
 impl Search {
     /// The first certified crossing in a time interval.
-    fn look(
+    fn first_crossing(
         &mut self,
         volume: &Bernstein,
         inside: &[Bernstein; 4],
-        span: [f64; 2],
+        interval: [f64; 2],
         depth: u32,
     ) -> Option<f64> {
-        self.spans += 1;
+        self.intervals += 1;
         if volume.is_positive() || volume.is_negative() || inside.iter().any(Bernstein::is_negative) {
             return None;
         }
-        let middle = 0.5 * (span[0] + span[1]);
+        let middle = 0.5 * (interval[0] + interval[1]);
         if volume.changes_sign() && inside.iter().all(Bernstein::is_positive) {
             return Some(middle);
         }
-        if depth == HALVINGS || self.spans > SPANS {
+        if depth == MAX_DEPTH || self.intervals > MAX_INTERVALS {
             self.open = true;
             return None;
         }
         let [early, late] = volume.halves();
         let halves = inside.map(|condition| condition.halves());
-        self.look(&early, &halves.map(|[early, _]| early), [span[0], middle], depth + 1)
-            .or_else(|| self.look(&late, &halves.map(|[_, late]| late), [middle, span[1]], depth + 1))
+        self.first_crossing(&early, &halves.map(|[early, _]| early), [interval[0], middle], depth + 1)
+            .or_else(|| {
+                self.first_crossing(&late, &halves.map(|[_, late]| late), [middle, interval[1]], depth + 1)
+            })
     }
 }
 

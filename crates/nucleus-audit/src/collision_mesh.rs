@@ -183,7 +183,7 @@ impl CollisionMesh {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CollisionFilter {
     ignored: Vec<[usize; 2]>,
-    held: Vec<bool>,
+    kinematic: Vec<bool>,
 }
 
 impl CollisionFilter {
@@ -198,15 +198,15 @@ impl CollisionFilter {
     /// Marks a point as kinematic: its motion is prescribed. Pairs of elements with kinematic points only are excluded,
     /// since no solver can separate them.
     pub fn set_kinematic(&mut self, point: usize) {
-        if self.held.len() <= point {
-            self.held.resize(point + 1, false);
+        if self.kinematic.len() <= point {
+            self.kinematic.resize(point + 1, false);
         }
-        self.held[point] = true;
+        self.kinematic[point] = true;
     }
 
     /// Whether a point is kinematic.
     pub(crate) fn is_kinematic(&self, point: usize) -> bool {
-        self.held.get(point).copied().unwrap_or(false)
+        self.kinematic.get(point).copied().unwrap_or(false)
     }
 
     /// Whether a pair of elements with these points is tested. Elements that share a point always touch there; their
@@ -223,9 +223,9 @@ impl CollisionFilter {
         }
         let bodies = [mesh.body_of(a[0]), mesh.body_of(b[0])];
         let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
-        let held = |point: &u32| self.is_kinematic(*point as usize);
-        let are_held = a.iter().all(held) && b.iter().all(held);
-        !(are_held || self.ignored.contains(&pair))
+        let is_kinematic = |point: &u32| self.is_kinematic(*point as usize);
+        let are_kinematic = a.iter().all(is_kinematic) && b.iter().all(is_kinematic);
+        !(are_kinematic || self.ignored.contains(&pair))
     }
 
     /// The elements of bodies with at least one tested pair.

@@ -36,22 +36,24 @@ impl InitialIntersections {
         self.inside.is_empty()
     }
 
-    /// Removes the collisions that propagate an initial intersection from `events`; returns the pairs they may have
+    /// Removes the collisions that propagate an initial intersection from `collisions`; returns the pairs they may have
     /// reached.
-    pub fn exclude(&self, mesh: &CollisionMesh, events: &mut Vec<Collision>) -> Propagation {
+    pub fn exclude(&self, mesh: &CollisionMesh, collisions: &mut Vec<Collision>) -> Propagation {
         let mut propagation = Propagation::default();
         if self.inside.is_empty() {
             return propagation;
         }
         self.inside.iter().for_each(|&(edge, face)| propagation.add(mesh, edge, face));
-        // One motion may cross several elements, in another order than that of `events`.
+        // One motion may cross several elements, in another order than that of `collisions`.
         loop {
-            let before = events.len();
-            events.retain(|event| !propagation.has(event.pair) || !propagation.propagate(mesh, event.pair));
-            if events.len() == before {
+            let before = collisions.len();
+            collisions.retain(|collision| {
+                !propagation.has(collision.pair) || !propagation.propagate(mesh, collision.pair)
+            });
+            if collisions.len() == before {
                 return propagation;
             }
-            propagation.excluded += (before - events.len()) as u64;
+            propagation.excluded += (before - collisions.len()) as u64;
         }
     }
 
@@ -71,7 +73,7 @@ impl InitialIntersections {
 #[derive(Debug, Default)]
 pub struct Propagation {
     inside: HashSet<(EdgeId, FaceId)>,
-    events: HashSet<Pair>,
+    pairs: HashSet<Pair>,
     /// Collisions that propagated an intersection.
     pub excluded: u64,
 }
@@ -83,12 +85,12 @@ impl Propagation {
             return;
         }
         let ends = mesh.edges()[edge.0 as usize];
-        self.events.extend(ends.map(|point| Pair::PointFace(point, face)));
-        self.events.extend(mesh.sides(face).map(|side| Pair::EdgeEdge(edge.min(side), edge.max(side))));
+        self.pairs.extend(ends.map(|point| Pair::PointFace(point, face)));
+        self.pairs.extend(mesh.sides(face).map(|side| Pair::EdgeEdge(edge.min(side), edge.max(side))));
     }
 
     fn has(&self, pair: Pair) -> bool {
-        self.events.contains(&pair)
+        self.pairs.contains(&pair)
     }
 
     /// Adds the pairs that a collision leads to. Always `true`: the collision is excluded.

@@ -35,7 +35,7 @@ pub fn intersections(
         let (mut stack, mut found) = (Vec::new(), Vec::new());
         for &edge in edges {
             let ends = &mesh.edges()[edge as usize];
-            tree.meeting(&Aabb::of(ends.map(at)), &boxes, &mut stack, |face| {
+            tree.query(&Aabb::of(ends.map(at)), &boxes, &mut stack, |face| {
                 let corners = &mesh.triangles()[face as usize];
                 if filter.apply(mesh, ends, corners) {
                     let kind = intersect_edge_face(&ends.map(|p| *at(p)), &corners.map(|p| *at(p)));

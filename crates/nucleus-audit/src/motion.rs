@@ -58,8 +58,8 @@ impl<'a> Motion<'a> {
         let (kind, points) = self.elements(pair)?;
         let [a, b, c, d] = points;
         let meet = match kind {
-            PairKind::PointFace => self.swept(&[a]).meets(&self.swept(&[b, c, d])),
-            PairKind::EdgeEdge => self.swept(&[a, b]).meets(&self.swept(&[c, d])),
+            PairKind::PointFace => self.swept(&[a]).overlaps(&self.swept(&[b, c, d])),
+            PairKind::EdgeEdge => self.swept(&[a, b]).overlaps(&self.swept(&[c, d])),
         };
         let [before, after] =
             [self.before, self.after].map(|state| points.map(|point| state[point as usize]));

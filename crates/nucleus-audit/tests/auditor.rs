@@ -110,9 +110,9 @@ fn ignored_bodies_and_kinematic_points_are_not_tested() {
     let mut ignored = CollisionFilter::default();
     ignored.ignore(1, 0);
     assert!(run(&mesh, &ignored, &states).counts().is_clean());
-    let mut held = CollisionFilter::default();
-    (0..50).for_each(|point| held.set_kinematic(point));
-    assert!(run(&mesh, &held, &states).counts().is_clean());
+    let mut kinematic = CollisionFilter::default();
+    (0..50).for_each(|point| kinematic.set_kinematic(point));
+    assert!(run(&mesh, &kinematic, &states).counts().is_clean());
     let mut half = CollisionFilter::default();
     (0..25).for_each(|point| half.set_kinematic(point));
     assert!(!run(&mesh, &half, &states).counts().is_clean(), "the upper one was free to give way");
@@ -272,9 +272,9 @@ fn vertices_that_rest_on_a_rising_plane_have_not_passed_through_it() {
 fn vertices_that_begin_below_a_plane_or_are_kinematic_do_not_pass_through_it() {
     let begins_below = over_a_plane(CollisionFilter::default(), &[-0.1, -0.2, 0.1, -0.1], &[0.0; 4]);
     assert_eq!(begins_below.counts().below_ground, 9, "only once they were above it");
-    let mut held = CollisionFilter::default();
-    (0..9).for_each(|point| held.set_kinematic(point));
-    assert!(over_a_plane(held, &[0.1; 3], &[0.0, 0.2, 0.2]).counts().is_clean());
+    let mut kinematic = CollisionFilter::default();
+    (0..9).for_each(|point| kinematic.set_kinematic(point));
+    assert!(over_a_plane(kinematic, &[0.1; 3], &[0.0, 0.2, 0.2]).counts().is_clean());
 }
 
 #[test]
@@ -322,13 +322,13 @@ proptest! {
     fn no_intersection_begins_or_ends_without_a_collision(before in crumpled(), after in crumpled()) {
         let mesh = CollisionMesh::new(vec![sheet("a", 3).0, sheet("b", 3).0]);
         let rules = CollisionFilter::default();
-        let events = collisions(&mesh, &rules, &before, &after);
+        let found = collisions(&mesh, &rules, &before, &after);
         let inside = |state: &[Vector3<f64>]| -> HashSet<(EdgeId, FaceId)> {
             let found = intersections(&mesh, &rules, state);
             found.iter().filter(|found| found.kind == IntersectionKind::Through).map(|f| (f.edge, f.face)).collect()
         };
         for &(edge, face) in inside(&before).symmetric_difference(&inside(&after)) {
-            prop_assert!(events.iter().any(|event| leads(&mesh, event.pair, edge, face)), "{edge:?} {face:?}");
+            prop_assert!(found.iter().any(|collision| leads(&mesh, collision.pair, edge, face)), "{edge:?} {face:?}");
         }
     }
 
@@ -336,7 +336,7 @@ proptest! {
     fn the_broad_phase_changes_no_result(before in crumpled(), after in crumpled()) {
         let mesh = CollisionMesh::new(vec![sheet("a", 3).0, sheet("b", 3).0]);
         let found: Vec<Pair> =
-            collisions(&mesh, &CollisionFilter::default(), &before, &after).iter().map(|event| event.pair).collect();
+            collisions(&mesh, &CollisionFilter::default(), &before, &after).iter().map(|collision| collision.pair).collect();
         let mut all = Vec::new();
         for point in 0..mesh.points() as u32 {
             for (face, corners) in (0..).zip(mesh.triangles()) {
@@ -362,14 +362,14 @@ proptest! {
 
     #[test]
     fn candidate_intervals_miss_no_collision(
-        start in crumpled(), drift in crumpled(), leaps in prop::collection::vec((0..40_usize, 0..18_usize, -0.5..0.5_f64), 0..6),
+        start in crumpled(), drift in crumpled(), jumps in prop::collection::vec((0..40_usize, 0..18_usize, -0.5..0.5_f64), 0..6),
     ) {
         let mesh = CollisionMesh::new(vec![sheet("a", 3).0, sheet("b", 3).0]);
         let mut auditor = Auditor::new(mesh.clone(), CollisionFilter::default(), &start);
         let (mut state, mut all) = (start, 0);
         for step in 0..40 {
             let mut next: Vec<_> = state.iter().zip(&drift).map(|(place, drift)| place + 0.02 * drift).collect();
-            for &(_, point, by) in leaps.iter().filter(|(at, ..)| *at == step) {
+            for &(_, point, by) in jumps.iter().filter(|(at, ..)| *at == step) {
                 // One point stays NaN.
                 next[point].y += if point == 17 { f64::NAN } else { by };
             }

@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut cache = Playback::open(&path)?;
     let open = 1e3 * begin.elapsed().as_secs_f64();
     let read = read(&mut cache)?;
-    let cold = forget(&path).then(|| seek(&mut cache)).transpose()?;
+    let cold = drop_from_page_cache(&path).then(|| seek(&mut cache)).transpose()?;
     let warm = seek(&mut cache)?;
     let gigabytes = 1e-9 * recorded.bytes as f64;
     println!(
@@ -133,7 +133,7 @@ fn seek(cache: &mut Playback) -> Result<[f64; 2], Box<dyn Error>> {
 }
 
 /// Drops a file from the page cache; returns whether that succeeded.
-fn forget(path: &Path) -> bool {
+fn drop_from_page_cache(path: &Path) -> bool {
     let mut dd = Command::new("dd");
     dd.arg(format!("if={}", path.display())).args(["iflag=nocache", "count=0", "status=none"]);
     let synced = Command::new("sync").arg(path).status().is_ok_and(|status| status.success());
@@ -163,9 +163,9 @@ fn sheet(side: u32) -> ObjectInfo {
 /// them.
 fn clock() -> f64 {
     static BEGIN: OnceLock<Instant> = OnceLock::new();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let worked = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    worked.map_or_else(
+    let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let busy = schedstat.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    busy.map_or_else(
         || BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64(),
         |nanoseconds| 1e-9 * nanoseconds,
     )

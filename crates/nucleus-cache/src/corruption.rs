@@ -64,14 +64,14 @@ impl fmt::Display for CorruptionReport {
             });
         }
         if self.index {
-            parts.push("the index is damaged; the frames were found without it".to_owned());
+            parts.push("the index is damaged; it was rebuilt from the frames".to_owned());
         }
         if self.start {
-            parts.push("the start of the file is damaged; it was read from a copy".to_owned());
+            parts.push("the start of the file is damaged; it was read from a redundant copy".to_owned());
         }
         if self.run {
             parts.push(
-                "the record of the run is lost; its frames were found by what is in them, its units are unknown"
+                "the metadata of the run is lost; it was reconstructed from the frames, and its units are unknown"
                     .to_owned(),
             );
         }

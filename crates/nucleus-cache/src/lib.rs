@@ -73,6 +73,7 @@ pub use read::playback::{Playback, Sizes};
 pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
 pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source};
-pub use write::recorder::{FrameRecorder, Recorded, Recorder};
+pub use write::frame_recorder::FrameRecorder;
+pub use write::recorder::{Recorded, Recorder};
 pub use write::resume::ResumeRange;
 pub use write::topic_file::TopicFile;

@@ -17,8 +17,7 @@ use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
 use crate::messages::byte_shuffle::PlaneEncoder;
 use crate::messages::metadata::{LIBRARY, PROFILE};
-use crate::messages::points;
-use crate::messages::topology;
+use crate::messages::{points, topology};
 
 /// Name of the attachments.
 pub(crate) const NAME: &str = "nucleus.copy";

@@ -11,10 +11,9 @@ use mcap::{Compression, McapResult, WriteOptions, Writer};
 use crate::container::redundant_copies::RedundantCopies;
 use crate::error::{RecordError, cause};
 use crate::messages::attribute::{self, Attribute};
-use crate::messages::checkpoint;
 use crate::messages::metadata::{LIBRARY, PROFILE};
 use crate::messages::points::{self, Stamp};
-use crate::messages::topology;
+use crate::messages::{checkpoint, topology};
 use crate::run::Packing;
 
 /// Level 3 makes files 1 % smaller than level 1 at the same speed.

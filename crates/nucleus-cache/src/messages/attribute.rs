@@ -4,8 +4,7 @@
 use nucleus_core::ContactState;
 
 use crate::messages::points::{HEAD, Stamp};
-use crate::run::ObjectInfo;
-use crate::run::RunInfo;
+use crate::run::{ObjectInfo, RunInfo};
 
 /// A per-point attribute.
 pub(crate) struct Attribute {

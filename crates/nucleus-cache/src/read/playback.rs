@@ -7,16 +7,13 @@ use std::path::Path;
 
 use crate::container::atomic_file;
 use crate::container::chunk::Chunk;
-use crate::container::index::FileIndex;
-use crate::container::index::rebuild;
-use crate::container::index::summary;
+use crate::container::index::{FileIndex, rebuild, summary};
 use crate::corruption::CorruptionReport;
 use crate::error::OpenError;
 use crate::messages::metadata::PROFILE;
 use crate::messages::topology;
 use crate::read::time_index::{self, TimeSample};
-use crate::run::ObjectInfo;
-use crate::run::RunInfo;
+use crate::run::{ObjectInfo, RunInfo};
 
 /// An open cache.
 ///

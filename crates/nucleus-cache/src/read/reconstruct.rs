@@ -7,14 +7,10 @@ use mcap::records::{Channel, MessageHeader};
 use nucleus_core::Faces;
 
 use crate::error::ReadError;
-use crate::messages::attribute;
-use crate::messages::checkpoint;
-use crate::messages::metadata;
 use crate::messages::points::{self, PointsMessage, Stamp};
-use crate::messages::topology;
+use crate::messages::{attribute, checkpoint, metadata, topology};
 use crate::read::playback::Playback;
-use crate::run::{Detail, RunInfo};
-use crate::run::{ObjectInfo, ObjectKind};
+use crate::run::{Detail, ObjectInfo, ObjectKind, RunInfo};
 
 /// Last part of a topic, and the encoding of a message.
 type Kind = (&'static str, &'static str);
@@ -154,10 +150,10 @@ impl<R: Read + Seek> Playback<R> {
     }
 
     /// Visits every message of every valid chunk.
-    fn each_message(&mut self, mut see: impl FnMut(&MessageHeader, &[u8])) -> Result<(), ReadError> {
+    fn each_message(&mut self, mut visit: impl FnMut(&MessageHeader, &[u8])) -> Result<(), ReadError> {
         for index in 0..self.file_index.chunks.len() {
             match self.load(index) {
-                Ok(()) => self.chunk.messages().for_each(|(header, data)| see(header, data)),
+                Ok(()) => self.chunk.messages().for_each(|(header, data)| visit(header, data)),
                 Err(ReadError::Damaged { .. }) => {}
                 Err(error) => return Err(error),
             }

@@ -6,15 +6,12 @@ use std::io::{Read, Seek, Write};
 use mcap::records::MessageHeader;
 
 use crate::container::writer::CacheWriter;
-use crate::error::ReadError;
-use crate::error::RecordError;
+use crate::error::{ReadError, RecordError};
 use crate::messages::attribute::Attribute;
-use crate::messages::points;
-use crate::messages::topology;
+use crate::messages::{points, topology};
 use crate::read::load::LatestMessage;
 use crate::read::playback::{FIRST, Playback};
-use crate::run::ObjectKind;
-use crate::run::Packing;
+use crate::run::{ObjectKind, Packing};
 
 /// The result of a recovery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

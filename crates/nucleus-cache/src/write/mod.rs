@@ -1,6 +1,6 @@
-//! Writes caches: recorder, mesh changes, replay check, resume, and MCAP files in public schemas.
+//! Writes caches: recorder, frames, replay check, resume, and MCAP files in public schemas.
 
-pub(crate) mod mesh_change;
+pub(crate) mod frame_recorder;
 pub(crate) mod recorder;
 pub(crate) mod replay_check;
 pub(crate) mod resume;

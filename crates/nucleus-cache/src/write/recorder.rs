@@ -5,22 +5,17 @@ use std::fs::File;
 use std::io::{Seek, Write};
 use std::path::Path;
 
-use nucleus_core::{ClothId, ContactState, StateView, StepObserver, SubstepIndex};
+use nucleus_core::{ContactState, StateView};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::container::atomic_file;
-use crate::container::atomic_file::{AtomicFile, AtomicPaths};
+use crate::container::atomic_file::{self, AtomicFile, AtomicPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
-use crate::messages::attribute::RestEdges;
-use crate::messages::attribute::{CONTACTS, STRAIN, write_contacts};
-use crate::messages::byte_shuffle::shuffle;
-use crate::messages::checkpoint;
+use crate::messages::attribute::{CONTACTS, RestEdges, STRAIN};
 use crate::messages::points::{self, Stamp};
-use crate::messages::topology;
-use crate::run::{Detail, RunInfo};
-use crate::run::{ObjectInfo, ObjectKind, Source};
+use crate::messages::{checkpoint, topology};
+use crate::run::{ObjectInfo, ObjectKind, RunInfo, Source};
 use crate::write::replay_check::ReplayCheck;
 
 /// Records a run.
@@ -53,25 +48,25 @@ pub struct Recorder<W: Write + Seek = File> {
     pub(crate) last_frame: i32,
     pub(crate) time_samples: u64,
     /// Frame before the one in flight, and the number of time samples at its end.
-    before: Option<(i32, u64)>,
+    pub(crate) before: Option<(i32, u64)>,
     pub(crate) paths: Option<AtomicPaths>,
     /// Compares new messages with those of an older cache, in a resumed run.
     pub(crate) replay_check: Option<Box<ReplayCheck>>,
     /// The first error during a step; [`end_frame`](Self::end_frame) returns it.
     pub(crate) deferred_error: Option<RecordError>,
-    // Reused for every message.
-    values: Vec<[f32; 3]>,
-    strain: Vec<f32>,
-    contacts: Vec<Vec<ContactState>>,
+    /// Buffers that are reused for every message.
+    pub(crate) values: Vec<[f32; 3]>,
+    pub(crate) strain: Vec<f32>,
+    pub(crate) contacts: Vec<Vec<ContactState>>,
     /// Number of points in contact and of compressed points at the end of the frame, where recorded.
-    contact_counts: Option<[usize; 2]>,
+    pub(crate) contact_counts: Option<[usize; 2]>,
     pub(crate) message: Vec<u8>,
 }
 
 /// The channels and the state of one recorded object.
 pub(crate) struct Track {
     pub name: String,
-    source: Source,
+    pub source: Source,
     pub channel: u16,
     /// Channel of its meshes, and the number of its current mesh.
     pub mesh_channel: u16,
@@ -177,20 +172,6 @@ impl<W: Write + Seek> Recorder<W> {
     pub fn record_start(&mut self, state: &dyn StateView) -> Result<(), RecordError> {
         self.record(Stamp::start(self.run.start), state)?;
         self.writer.close_frame()
-    }
-
-    /// The observer of frame `frame`, to which the solver shows its substeps.
-    ///
-    /// # Errors
-    /// When the frame does not follow the last one.
-    pub fn frame(&mut self, frame: i32) -> Result<FrameRecorder<'_, W>, RecordError> {
-        if frame <= self.last_frame {
-            return Err(RecordError::FrameOrder { frame, last: self.last_frame });
-        }
-        self.before = Some((self.last_frame, self.time_samples));
-        self.last_frame = frame;
-        self.contact_counts = None;
-        Ok(FrameRecorder { recorder: self })
     }
 
     /// Ends the frame with its report and hands it to the system. The report becomes a JSON object with the field
@@ -331,12 +312,6 @@ impl<W: Write + Seek> Recorder<W> {
         Ok(())
     }
 
-    /// The stamp of a substep of the current frame.
-    pub(crate) fn stamp(&self, SubstepIndex { substep, substeps }: SubstepIndex) -> Stamp {
-        let frame = self.last_frame;
-        Stamp { frame, substep, substeps, time: self.run.time(frame, substep, substeps) }
-    }
-
     /// Adds a channel of an object.
     fn channel(
         &mut self,
@@ -346,106 +321,6 @@ impl<W: Write + Seek> Recorder<W> {
         encoding: &str,
     ) -> Result<u16, RecordError> {
         self.writer.channel(&format!("/{name}/{topic}"), schemas.of(encoding), encoding)
-    }
-
-    /// Notes which colliders move in a substep that is not recorded.
-    fn note_motion(&mut self, state: &dyn StateView) {
-        for track in &mut self.tracks {
-            if let Source::Collider(id) = track.source {
-                track.has_moved |= state.collider_moved(id);
-            }
-        }
-    }
-
-    /// Writes one message per object that may have changed.
-    fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
-        let units = self.run.units_per_metre;
-        if self.run.contacts {
-            state.contacts(&mut self.contacts);
-            self.contact_counts = Some(
-                [ContactState::Touching, ContactState::Compressed]
-                    .map(|state| self.contacts.iter().flatten().filter(|&&found| found == state).count()),
-            );
-        }
-        for k in 0..self.tracks.len() {
-            let &Track { source, channel, mesh, points, has_moved, .. } = &self.tracks[k];
-            match source {
-                Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
-                    continue;
-                }
-                Source::Collider(id) => state.collider_positions(id, units, &mut self.values),
-                Source::Cloth(id) => state.positions(id, units, &mut self.values),
-            }
-            if self.values.len() != points {
-                let (object, found) = (self.tracks[k].name.clone(), self.values.len());
-                return Err(RecordError::PointCount { object, expected: points, found });
-            }
-            if let Some((_, edges)) = &self.tracks[k].strain {
-                edges.strain(&self.values, &mut self.strain);
-            }
-            let cloth = match source {
-                Source::Cloth(id) if self.run.velocities => Some(id),
-                _ => None,
-            };
-            points::write_head(&stamp, points, mesh, cloth.is_some(), &mut self.message);
-            shuffle(self.values.as_flattened(), &mut self.message);
-            if let Some(id) = cloth {
-                state.velocities(id, units, &mut self.values);
-                shuffle(self.values.as_flattened(), &mut self.message);
-            }
-            if let Some(replay_check) = &mut self.replay_check {
-                replay_check.compare(&stamp, &self.tracks[k].name, "points", &self.message);
-            }
-            self.writer.send(&stamp, channel, &self.message)?;
-            self.tracks[k].has_moved = false;
-            if let Source::Cloth(id) = source {
-                self.record_attributes(k, id, &stamp)?;
-            }
-        }
-        self.time_samples += 1;
-        Ok(())
-    }
-
-    /// Writes strain and contact states of a cloth.
-    fn record_attributes(&mut self, track: usize, cloth: ClothId, stamp: &Stamp) -> Result<(), RecordError> {
-        let Track { contacts, strain, points, .. } = &self.tracks[track];
-        if let Some((channel, _)) = strain {
-            points::write_head(stamp, *points, 0, false, &mut self.message);
-            shuffle(&self.strain, &mut self.message);
-            self.writer.send(stamp, *channel, &self.message)?;
-        }
-        let states = self.contacts.get(cloth.index()).filter(|states| states.len() == *points);
-        // A scene without contact has no contact states.
-        if let (Some(channel), Some(states)) = (contacts, states) {
-            points::write_head(stamp, *points, 0, false, &mut self.message);
-            write_contacts(states, &mut self.message);
-            self.writer.send(stamp, *channel, &self.message)?;
-        }
-        Ok(())
-    }
-}
-
-/// Records the substeps of one frame. [`Recorder::end_frame`] reports errors.
-pub struct FrameRecorder<'a, W: Write + Seek = File> {
-    pub(crate) recorder: &'a mut Recorder<W>,
-}
-
-impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
-    fn substep(&mut self, index: SubstepIndex, state: &dyn StateView) {
-        let RunInfo { detail, start, end, .. } = self.recorder.run;
-        let wanted = match detail {
-            Detail::Substeps => true,
-            Detail::Frames => index.ends_frame(),
-            Detail::Every(_) => index.ends_frame() && detail.includes(self.recorder.last_frame, start, end),
-        };
-        if self.recorder.deferred_error.is_some() {
-            return;
-        }
-        if !wanted {
-            self.recorder.note_motion(state);
-            return;
-        }
-        self.recorder.deferred_error = self.recorder.record(self.recorder.stamp(index), state).err();
     }
 }
 

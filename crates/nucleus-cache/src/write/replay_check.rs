@@ -17,12 +17,12 @@ impl ReplayCheck {
     }
 
     /// Compares a message with the recorded one. A message that the older cache lacks or cannot read is no difference.
-    pub fn compare(&mut self, stamp: &Stamp, object: &str, what: &str, message: &[u8]) {
+    pub fn compare(&mut self, stamp: &Stamp, object: &str, topic: &str, message: &[u8]) {
         if stamp.frame > self.until || self.differs.is_some() {
             return;
         }
         let file_index = &self.old.file_index;
-        let Some(channel) = file_index.channel(&format!("/{object}/{what}")) else { return };
+        let Some(channel) = file_index.channel(&format!("/{object}/{topic}")) else { return };
         let time = stamp.log_time();
         let Some((_, chunk)) = file_index.latest(channel, time).filter(|&(found, _)| found == time) else {
             return;

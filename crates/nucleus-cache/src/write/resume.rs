@@ -7,14 +7,11 @@ use std::io::{BufReader, Seek, Write};
 use std::path::Path;
 
 use crate::container::atomic_file::{self, AtomicFile, AtomicPaths};
-use crate::error::RecordError;
-use crate::error::{OpenError, ReadError};
+use crate::error::{OpenError, ReadError, RecordError};
 use crate::messages::attribute::{CONTACTS, STRAIN};
-use crate::messages::checkpoint;
-use crate::messages::topology;
+use crate::messages::{checkpoint, topology};
 use crate::read::playback::{Playback, file_at};
-use crate::run::RunInfo;
-use crate::run::{ObjectInfo, Source};
+use crate::run::{ObjectInfo, RunInfo, Source};
 use crate::write::recorder::{Recorder, check};
 use crate::write::replay_check::ReplayCheck;
 
@@ -155,13 +152,13 @@ impl<W: Write + Seek> Recorder<W> {
             "/report" => Some(self.report_channel),
             checkpoint::TOPIC => self.checkpoint_channel,
             _ => {
-                let (name, what) = topic.strip_prefix('/')?.rsplit_once('/')?;
+                let (name, attribute) = topic.strip_prefix('/')?.rsplit_once('/')?;
                 let track = self.tracks.iter().find(|track| track.name == name)?;
-                match what {
+                match attribute {
                     "points" => Some(track.channel),
                     "topology" => Some(track.mesh_channel),
-                    _ if what == CONTACTS.topic => track.contacts,
-                    _ if what == STRAIN.topic => track.strain.as_ref().map(|(channel, _)| *channel),
+                    _ if attribute == CONTACTS.topic => track.contacts,
+                    _ if attribute == STRAIN.topic => track.strain.as_ref().map(|(channel, _)| *channel),
                     _ => None,
                 }
             }

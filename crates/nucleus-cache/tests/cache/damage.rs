@@ -137,10 +137,10 @@ fn a_run_that_ends_early_but_is_closed_has_lost_nothing() {
 #[test]
 fn no_cache_of_the_corpus_makes_the_reader_panic() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus");
-    let mut seen = 0;
+    let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let bytes = std::fs::read(entry.unwrap().path()).unwrap();
-        seen += 1;
+        count += 1;
         let Ok(mut cache) = open(&bytes) else { continue };
         for object in 0..cache.objects().len() {
             for sample in 0..cache.time_samples().len() {
@@ -159,5 +159,5 @@ fn no_cache_of_the_corpus_makes_the_reader_panic() {
         cache.reports().unwrap();
         cache.sizes().unwrap();
     }
-    assert!(seen > 20, "the corpus is there: {seen}");
+    assert!(count > 20, "the corpus is there: {count}");
 }

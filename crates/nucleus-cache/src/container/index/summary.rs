@@ -72,7 +72,7 @@ fn each_record(
     file: &mut (impl Read + Seek),
     begin: u64,
     length: u64,
-    mut see: impl FnMut(Record<'static>),
+    mut visit: impl FnMut(Record<'static>),
 ) -> Option<()> {
     let options = LinearReaderOptions::default()
         .with_skip_start_magic(true)
@@ -87,7 +87,7 @@ fn each_record(
                 reader.notify_read(read);
             }
             LinearReadEvent::Record { opcode, data } => {
-                see(mcap::parse_record(opcode, data).ok()?.into_owned());
+                visit(mcap::parse_record(opcode, data).ok()?.into_owned());
             }
         }
     }
