@@ -1,6 +1,6 @@
 //! Runs under audit, for tests that show that nothing passes through anything.
 
-use nucleus_audit::Account;
+use nucleus_audit::AuditCounts;
 use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::compile::Program;
@@ -9,7 +9,7 @@ use nucleus_graph::compile::Program;
 #[derive(Debug)]
 pub struct Audited {
     /// The counts.
-    pub account: Account,
+    pub account: AuditCounts,
     /// The first findings.
     pub findings: Vec<String>,
 }

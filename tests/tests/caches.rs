@@ -41,7 +41,7 @@ fn the_positions_in_the_cache_are_those_of_the_solver() {
     state.positions(ClothId(0), units, &mut cloth);
     state.collider_positions(ColliderId(0), units, &mut ball);
     let mut cache = recording.play();
-    let last = cache.moments().len() - 1;
+    let last = cache.time_samples().len() - 1;
     assert_eq!(last, 12);
     let names: Vec<String> = cache.objects().iter().map(|object| object.name.clone()).collect();
     for (name, expected) in [("cloth", cloth), ("ball", ball)] {
@@ -54,7 +54,7 @@ fn the_positions_in_the_cache_are_those_of_the_solver() {
 fn recording_substeps_gives_every_substep() {
     let recording = record(&drape(), 3, 1, Detail::Substeps);
     let cache = recording.play();
-    let moments: Vec<_> = cache.moments().iter().map(|moment| (moment.frame, moment.substep)).collect();
+    let moments: Vec<_> = cache.time_samples().iter().map(|moment| (moment.frame, moment.substep)).collect();
     let expected = (2..=4).flat_map(|frame| (1..=4).map(move |substep| (frame, substep)));
     assert_eq!(moments, [(1, 0)].into_iter().chain(expected).collect::<Vec<_>>());
 }

@@ -1,17 +1,17 @@
-//! When four moving points lie in one plane, and whether the two elements meet there. The algebra, for any
-//! arithmetic.
+//! The coplanarity condition of four moving points, and the conditions that two elements meet where they are coplanar.
+//! The algebra, for any arithmetic.
 //!
-//! Both cases are told by three vectors, each linear in time:
+//! Three vectors, each linear in time, describe both kinds of pair:
 //!
 //! | pair            | first   | second  | third   | `n`              |
 //! |-----------------|---------|---------|---------|------------------|
 //! | face abc, point p | b - a | c - a   | p - a   | first × second   |
 //! | edge ab, edge cd  | b - a | d - c   | c - a   | first × second   |
 //!
-//! The volume n · third is a cubic in time, and nought where the four lie in one plane. There the elements meet
-//! where the coordinates of the meeting point, multiplied by n · n so that nothing is divided, are not negative.
+//! The volume n · third is a cubic in time. It is zero where the four points are coplanar. There the elements meet if
+//! and only if the coordinates of the meeting point are not negative; they are multiplied by n · n to avoid a division.
 
-use crate::passage::Kind;
+use crate::pair::PairKind;
 
 /// A polynomial in time, in some arithmetic.
 pub trait Polynomial: Sized {
@@ -20,47 +20,47 @@ pub trait Polynomial: Sized {
     fn times(&self, other: &Self) -> Self;
 }
 
-/// A vector that moves.
+/// A moving vector.
 pub type Moving<P> = [P; 3];
 
 /// The three vectors of a pair and their normal.
 pub struct Coplanarity<P> {
-    kind: Kind,
+    kind: PairKind,
     vectors: [Moving<P>; 3],
     normal: Moving<P>,
 }
 
 impl<P: Polynomial> Coplanarity<P> {
     /// From the three vectors of the table above.
-    pub fn new(kind: Kind, vectors: [Moving<P>; 3]) -> Self {
+    pub fn new(kind: PairKind, vectors: [Moving<P>; 3]) -> Self {
         let normal = cross(&vectors[0], &vectors[1]);
         Self { kind, vectors, normal }
     }
 
-    /// Six times the volume between the four points: a cubic.
+    /// Six times the signed volume of the four points: a cubic.
     pub fn volume(&self) -> P {
         dot(&self.normal, &self.vectors[2])
     }
 
-    /// The square of the normal: a quartic, nought where the face has no area or the edges are parallel.
+    /// The square of the normal: a quartic, zero where the face has no area or the edges are parallel.
     pub fn area(&self) -> P {
         dot(&self.normal, &self.normal)
     }
 
-    /// What is nowhere negative where the pair meets, provided that the four points lie in one plane: quartics.
+    /// Quartics that are all non-negative where the pair meets, if the four points are coplanar.
     pub fn inside(&self) -> [P; 4] {
         let [first, second, third] = &self.vectors;
         let area = self.area();
         match self.kind {
-            Kind::PointFace => {
-                // Barycentric coordinates of p at c and b; what is left of the area is that at a.
+            PairKind::PointFace => {
+                // Barycentric coordinates of p at c and b; the remainder of the area is the coordinate at a.
                 let c = dot(&self.normal, &cross(first, third));
                 let b = dot(&self.normal, &cross(third, second));
                 let a = area.minus(&b).minus(&c);
                 [a, b, c, area]
             }
-            Kind::EdgeEdge => {
-                // a + s first = c + r second, both sides crossed with one of the edges.
+            PairKind::EdgeEdge => {
+                // a + s first = c + r second, crossed with one of the edges on both sides.
                 let s = dot(&self.normal, &cross(third, second));
                 let r = dot(&self.normal, &cross(third, first));
                 let (s_left, r_left) = (area.minus(&s), area.minus(&r));
@@ -69,7 +69,7 @@ impl<P: Polynomial> Coplanarity<P> {
         }
     }
 
-    /// Which of the three vectors from a's edge to c: nought wherever parallel edges lie on one line.
+    /// Squared distance of c from the line of edge ab, scaled: zero where parallel edges lie on one line.
     pub fn offset_from_line(&self) -> P {
         let across = cross(&self.vectors[0], &self.vectors[2]);
         dot(&across, &across)

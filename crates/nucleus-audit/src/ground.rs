@@ -1,17 +1,17 @@
-//! Which vertices pass through the ground plane.
+//! Vertices that pass through the ground plane.
 //!
-//! A plane has no far side to come from: a vertex that was above it and is below it in a later state has passed. So
-//! states are enough, and no motion between them is looked at.
+//! A plane has no far side to come from: a vertex that was above it and is below it in a later state has passed
+//! through. So states suffice, without the motion between them.
 
 use nalgebra::Vector3;
 
-use crate::world::{Rules, World};
+use crate::collision_mesh::{CollisionFilter, CollisionMesh};
 
-/// Height below the plane, as a share of the largest coordinate of the body and of the plane's origin, from which on a
-/// vertex is below it: 1e-6 m at one metre. It pays for the rounding of single-precision states, and for nothing else.
+/// Tolerance below the plane, as a fraction of the largest coordinate of the body and of the plane's origin: 1e-6 m at
+/// one metre. It covers only the rounding of single-precision states.
 const TOLERANCE: f64 = 1e-6;
 
-/// A plane that cloth stays above.
+/// A ground plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
     origin: Vector3<f64>,
@@ -19,14 +19,15 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Through a point in metres, with a normal of any length; nothing where it has no direction or is not finite.
+    /// Through a point in metres, with a normal of any length; `None` when the normal is zero or a coordinate is not
+    /// finite.
     pub fn new(origin: Vector3<f64>, normal: Vector3<f64>) -> Option<Self> {
         let normal = normal.try_normalize(0.0)?;
         let is_finite = origin.iter().chain(&normal).all(|x| x.is_finite());
         is_finite.then_some(Self { origin, normal })
     }
 
-    /// This plane on its way to another: origin and normal are interpolated linearly.
+    /// Linear interpolation of origin and normal to another plane.
     pub fn towards(&self, end: &Self, share: f64) -> Self {
         let origin = self.origin + (end.origin - self.origin) * share;
         let normal = self.normal + (end.normal - self.normal) * share;
@@ -38,27 +39,27 @@ impl Plane {
     }
 }
 
-/// Which vertices were above the ground plane when last looked.
+/// Which vertices were above the ground plane in the last state.
 #[derive(Debug, Default)]
 pub struct Ground {
     above: Vec<bool>,
-    /// Whether a body has met a plane up to now.
+    /// Whether a body had a ground plane in the last state.
     has_met: Vec<bool>,
 }
 
 impl Ground {
-    /// The vertices of a body that a motion brings from above the plane to below it. `planes` are those at the start and
-    /// the end of the motion; nothing where the body meets none.
+    /// The vertices of a body that a motion takes from above the plane to below it. `planes` are those at the start and
+    /// at the end of the motion; `None` where the body has no ground plane.
     pub fn passed(
         &mut self,
-        (world, rules): (&World, &Rules),
+        (mesh, filter): (&CollisionMesh, &CollisionFilter),
         body: usize,
         planes: Option<[Plane; 2]>,
         [before, after]: [&[Vector3<f64>]; 2],
     ) -> Vec<u32> {
-        self.above.resize(world.points(), false);
-        self.has_met.resize(world.bodies().len(), false);
-        let points = world.points_of(body);
+        self.above.resize(mesh.points(), false);
+        self.has_met.resize(mesh.bodies().len(), false);
+        let points = mesh.points_of(body);
         let had_met = std::mem::replace(&mut self.has_met[body], planes.is_some());
         let Some([start, end]) = planes else { return Vec::new() };
         if !had_met {
@@ -69,10 +70,10 @@ impl Ground {
         let mut passed = Vec::new();
         for point in points {
             let height = end.height(&after[point]);
-            // What is no number has no side.
+            // A NaN height keeps the previous side.
             let is_above = if height.is_nan() { self.above[point] } else { height >= depth };
             let was_above = std::mem::replace(&mut self.above[point], is_above);
-            if was_above && !is_above && !rules.holds(point) {
+            if was_above && !is_above && !filter.is_kinematic(point) {
                 passed.push(point as u32);
             }
         }

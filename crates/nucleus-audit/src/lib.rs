@@ -1,54 +1,53 @@
-//! Has anything passed through anything? An answer that shares nothing with the solver.
+//! Continuous collision audit of a run: does anything pass through anything? Independent of the solver.
 //!
 //! ```text
-//! before, after ─▶ motion bounds ─tree─▶ pairs of elements ─certify─▶ few ─exact─▶ Event
-//! after         ─▶ boxes         ─tree─▶ edges and faces   ─exact──────────────▶ Overlap
+//! before, after ─▶ motion bounds ─BVH─▶ candidates     ─separating plane─▶ few ─filter, exact─▶ Collision
+//! after         ─▶ boxes         ─BVH─▶ edges and faces ─exact predicates────────────────────▶ Intersection
 //! ```
 //!
-//! | You want to know...                                      | Read                   |
-//! |----------------------------------------------------------|------------------------|
-//! | how a run is watched, and what is said of it             | [`Auditor`]            |
-//! | what there is to meet: bodies and their elements         | [`Body`], [`World`]    |
-//! | which pairs pass through each other during a motion      | [`crossings`]          |
-//! | which vertices pass through the ground plane             | [`Plane`]              |
-//! | which edges are inside which faces in a state            | [`intersections`]      |
-//! | what is certified apart for several steps at once        | `window`               |
-//! | whether one pair does                                    | [`passage()`]          |
-//! | how that is decided where rounding could deceive         | `exact`                |
+//! | You want to know…                                        | Read                        |
+//! |----------------------------------------------------------|-----------------------------|
+//! | how a run is audited, and what is reported               | [`Auditor`], [`Finding`]    |
+//! | the audited bodies and their elements                    | [`Body`], [`CollisionMesh`] |
+//! | which pairs pass through each other in a motion          | [`collisions`]              |
+//! | which vertices pass through the ground plane             | [`Plane`]                   |
+//! | which edges intersect which faces in a state             | [`intersections`]           |
+//! | how pairs are certified for several steps at once        | `candidate_interval`        |
+//! | the continuous collision test of one pair                | [`ccd()`]                   |
+//! | how it is decided where rounding could be wrong          | `exact`                     |
 //!
-//! A motion is linear: every point goes straight from one state to the next. Then two elements can only change
-//! sides at a moment when their four points lie in one plane, which is the root of a cubic.
+//! A motion is linear: every point moves straight from one state to the next. Two elements can then change sides only
+//! at a time when their four points are coplanar, which is a root of a cubic.
 //!
-//! **Invariant:** nothing is missed. Whatever floating point cannot prove is decided in integers; the input's
-//! bits are taken as they are. What is left, degenerate pairs, is named as undecided.
+//! **Invariant:** no collision is missed. Where floating point cannot certify a sign, integers decide it from the bits
+//! of the input. Degenerate pairs are reported as undecided.
 //!
-//! **Invariant:** this crate does not know the solver.
+//! **Invariant:** this crate does not depend on the solver.
 
 #![forbid(unsafe_code)]
 
 mod auditor;
-mod bounds;
+mod bvh;
+mod candidate_interval;
+mod ccd;
+mod collision_mesh;
 mod coplanarity;
-mod crossings;
-mod estimate;
-mod event;
 mod exact;
+mod finding;
+mod float_filter;
 mod ground;
+mod initial_intersections;
 mod intersections;
-mod overlap;
-mod passage;
+mod motion;
+mod pair;
+mod parallel;
 mod sturm;
-mod tangle;
-mod threads;
-mod tree;
-mod window;
-mod world;
 
-pub use auditor::{Account, Auditor, Finding, Moment, What};
-pub use crossings::crossings;
-pub use event::{Event, Overlapping, Pair};
+pub use auditor::{AuditCounts, Auditor};
+pub use candidate_interval::collisions;
+pub use ccd::ccd;
+pub use collision_mesh::{Body, CollisionFilter, CollisionMesh, EdgeId, FaceId};
+pub use finding::{Finding, FindingKind, StateIndex};
 pub use ground::Plane;
-pub use intersections::intersections;
-pub use overlap::{Overlap, overlap};
-pub use passage::{Kind, Passage, passage};
-pub use world::{Body, EdgeId, FaceId, Rules, World};
+pub use intersections::{Intersection, IntersectionKind, intersect_edge_face, intersections};
+pub use pair::{CcdResult, Collision, Pair, PairKind};

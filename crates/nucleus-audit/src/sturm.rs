@@ -1,30 +1,30 @@
-//! Polynomials with integer coefficients: how many roots they have where, and the sign of one at a root of
-//! another (Sturm's theorem, and Tarski's query; Basu, Pollack and Roy 2006, §2.2).
+//! Polynomials with integer coefficients: root isolation, and the sign of one at a root of another (Sturm's theorem,
+//! and Tarski's query; Basu, Pollack and Roy 2006, §2.2).
 
 use std::cmp::Ordering;
 
 use num_bigint::{BigInt, Sign};
 
-/// Coefficients, that of x^0 first; the last is not nought.
+/// Coefficients, the constant first; the last is not zero.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Integers(Vec<BigInt>);
+pub struct IntegerPolynomial(Vec<BigInt>);
 
-/// A number above nought: `count / 2^halvings`.
+/// A non-negative dyadic number `count / 2^halvings`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dyadic {
     pub count: BigInt,
     pub halvings: u64,
 }
 
-/// One root of a polynomial, between two numbers that are none.
+/// An isolated root: the only one between two numbers that are no roots.
 #[derive(Debug, Clone)]
 pub struct Root {
     pub above: Dyadic,
     pub below: Dyadic,
 }
 
-impl Integers {
-    /// Without what is nought at the end.
+impl IntegerPolynomial {
+    /// Removes leading coefficients that are zero.
     pub fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(|last| last.sign() == Sign::NoSign) {
             coefficients.pop();
@@ -32,8 +32,8 @@ impl Integers {
         Self(coefficients)
     }
 
-    /// Nought everywhere.
-    pub fn is_nought(&self) -> bool {
+    /// Whether this is the zero polynomial.
+    pub fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
 
@@ -51,14 +51,16 @@ impl Integers {
         Self::new(self.0.iter().enumerate().skip(1).map(|(k, c)| c * BigInt::from(k)).collect())
     }
 
-    /// The remainder of a division, times a number above nought, its sign turned.
-    fn turned_remainder(&self, divisor: &Self) -> Self {
+    /// Negated remainder of a division, times a positive number.
+    fn negated_pseudo_remainder(&self, divisor: &Self) -> Self {
         let mut rest = self.0.clone();
         let (size, last) = (divisor.0.len(), divisor.0[divisor.0.len() - 1].clone());
         while rest.len() >= size {
             let lead = rest.pop().expect("it is longer than the divisor");
             let shift = rest.len() + 1 - size;
-            // Multiplied by |last| and not by `last`, so that the sign stays.
+            // Multiplied by
+            // last
+            //  instead of `last`, so that the sign stays.
             let factor = if last.sign() == Sign::Minus { -lead } else { lead };
             let scale = BigInt::from(last.magnitude().clone());
             for (k, c) in rest.iter_mut().enumerate() {
@@ -81,23 +83,23 @@ impl Integers {
         ordering(sum.sign())
     }
 
-    /// Divided by x as often as it has a root at nought, which no root above sees.
-    pub fn without_roots_at_nought(self) -> Self {
-        let noughts = self.0.iter().take_while(|c| c.sign() == Sign::NoSign).count();
-        Self(self.0[noughts..].to_vec())
+    /// Divided by x as often as zero is a root; positive roots stay.
+    pub fn without_zero_roots(self) -> Self {
+        let zeros = self.0.iter().take_while(|c| c.sign() == Sign::NoSign).count();
+        Self(self.0[zeros..].to_vec())
     }
 
-    /// The roots above nought of a polynomial that has none at nought, each alone between two numbers.
-    pub fn roots_above_nought(&self) -> Vec<Root> {
+    /// Isolates the positive roots of a polynomial without a root at zero.
+    pub fn positive_roots(&self) -> Vec<Root> {
         if self.0.len() < 2 {
             return Vec::new();
         }
-        let chain = chain(self, self.derivative());
+        let chain = sturm_chain(self, self.derivative());
         let zero = Dyadic { count: BigInt::ZERO, halvings: 0 };
         let mut open = vec![Root { above: zero, below: self.bound() }];
         let mut roots = Vec::new();
         while let Some(span) = open.pop() {
-            match variations(&chain, &span.above) - variations(&chain, &span.below) {
+            match sign_variations(&chain, &span.above) - sign_variations(&chain, &span.below) {
                 0 => {}
                 1 => roots.push(span),
                 _ => open.extend(span.split(self)),
@@ -115,8 +117,8 @@ impl Integers {
 
     /// The sign of `other` at a root of this polynomial.
     pub fn sign_of(&self, other: &Self, root: &Root) -> Ordering {
-        let chain = chain(self, self.derivative().times(other));
-        (variations(&chain, &root.above) - variations(&chain, &root.below)).cmp(&0)
+        let chain = sturm_chain(self, self.derivative().times(other));
+        (sign_variations(&chain, &root.above) - sign_variations(&chain, &root.below)).cmp(&0)
     }
 
     /// Whether the sign changes at a root.
@@ -126,12 +128,12 @@ impl Integers {
 }
 
 impl Root {
-    /// Two spans that cover this one and meet at a number that is no root.
-    fn split(self, polynomial: &Integers) -> [Self; 2] {
+    /// Splits the interval at a number that is no root.
+    fn split(self, polynomial: &IntegerPolynomial) -> [Self; 2] {
         let [above, below] = level([self.above, self.below]);
         let halvings = above.halvings + 3;
         let width = &below.count - &above.count;
-        // More places than a quartic has roots.
+        // More candidates than a quartic has roots.
         let places =
             [4, 3, 5, 2, 6, 1, 7].map(|eighths| (&above.count << 3) + &width * BigInt::from(eighths));
         let mut places = places.into_iter().map(|count| Dyadic { count, halvings });
@@ -141,13 +143,13 @@ impl Root {
         [Self { above, below: middle.clone() }, Self { above: middle, below }]
     }
 
-    /// The root to a few digits, for people.
-    pub fn approximation(&self, polynomial: &Integers) -> f64 {
-        let chain = chain(polynomial, polynomial.derivative());
+    /// The root to about seven digits, for display.
+    pub fn approximation(&self, polynomial: &IntegerPolynomial) -> f64 {
+        let chain = sturm_chain(polynomial, polynomial.derivative());
         let mut span = self.clone();
         for _ in 0..24 {
             let [low, high] = span.split(polynomial);
-            let is_low = variations(&chain, &low.above) > variations(&chain, &low.below);
+            let is_low = sign_variations(&chain, &low.above) > sign_variations(&chain, &low.below);
             span = if is_low { low } else { high };
         }
         span.above.to_f64()
@@ -156,33 +158,33 @@ impl Root {
 
 impl Dyadic {
     fn to_f64(&self) -> f64 {
-        // 64 bits of the count carry all that an f64 can hold.
+        // An f64 holds no more than 64 bits of the count.
         let spare = self.count.bits().saturating_sub(64);
         let lead = u64::try_from(&self.count >> spare).unwrap_or(u64::MAX) as f64;
         lead * 2_f64.powi(spare.min(4000) as i32 - self.halvings.min(4000) as i32)
     }
 }
 
-/// Both with as many halvings.
+/// Both with the same number of halvings.
 fn level(pair: [Dyadic; 2]) -> [Dyadic; 2] {
     let halvings = pair[0].halvings.max(pair[1].halvings);
     pair.map(|number| Dyadic { count: number.count << (halvings - number.halvings), halvings })
 }
 
-fn chain(first: &Integers, second: Integers) -> Vec<Integers> {
+fn sturm_chain(first: &IntegerPolynomial, second: IntegerPolynomial) -> Vec<IntegerPolynomial> {
     let mut chain = vec![first.clone(), second];
     while let [.., before, last] = chain.as_slice() {
-        if last.is_nought() {
+        if last.is_zero() {
             break;
         }
-        let next = before.turned_remainder(last);
+        let next = before.negated_pseudo_remainder(last);
         chain.push(next);
     }
     chain
 }
 
-/// How often the sign changes along a chain, noughts left out.
-fn variations(chain: &[Integers], x: &Dyadic) -> i32 {
+/// Number of sign changes along a Sturm sequence, ignoring zeros.
+fn sign_variations(chain: &[IntegerPolynomial], x: &Dyadic) -> i32 {
     let signs = chain.iter().map(|link| link.sign_at(x)).filter(|sign| *sign != Ordering::Equal);
     let signs: Vec<Ordering> = signs.collect();
     signs.windows(2).filter(|pair| pair[0] != pair[1]).count() as i32
@@ -200,16 +202,16 @@ fn ordering(sign: Sign) -> Ordering {
 mod tests {
     use super::*;
 
-    fn polynomial(coefficients: &[i64]) -> Integers {
-        Integers::new(coefficients.iter().map(|&c| BigInt::from(c)).collect())
+    fn polynomial(coefficients: &[i64]) -> IntegerPolynomial {
+        IntegerPolynomial::new(coefficients.iter().map(|&c| BigInt::from(c)).collect())
     }
 
     #[test]
-    fn roots_are_told_apart_and_counted_once() {
+    fn roots_are_isolated_and_counted_once() {
         // (x - 1)² (x - 2) (2x - 3)
         let f = polynomial(&[-1, 1]);
         let f = f.times(&f).times(&polynomial(&[-2, 1])).times(&polynomial(&[-3, 2]));
-        let roots = f.roots_above_nought();
+        let roots = f.positive_roots();
         let mut found: Vec<f64> = roots.iter().map(|root| root.approximation(&f)).collect();
         assert_eq!(roots.len(), 3);
         found.sort_by(f64::total_cmp);
@@ -218,21 +220,21 @@ mod tests {
     }
 
     #[test]
-    fn roots_at_nought_and_below_are_left_out() {
+    fn roots_at_zero_and_below_are_left_out() {
         // x (x + 1) (x - 5)
         let f = polynomial(&[0, 1]).times(&polynomial(&[1, 1])).times(&polynomial(&[-5, 1]));
-        let f = f.without_roots_at_nought();
-        let roots = f.roots_above_nought();
+        let f = f.without_zero_roots();
+        let roots = f.positive_roots();
         assert_eq!(roots.len(), 1);
         assert!((roots[0].approximation(&f) - 5.0).abs() < 1e-6);
     }
 
     #[test]
     fn signs_at_an_irrational_root_are_exact() {
-        // At the root of two: x² - 2 is nought, x - 1.41421356 is above, x - 1.41421357 below.
+        // At the root of two: x² - 2 is zero, x - 1.41421356 is above, x - 1.41421357 below.
         let f = polynomial(&[-2, 0, 1]);
-        let [root] = &f.roots_above_nought()[..] else { panic!("it has one root above nought") };
-        let sign = |g: &Integers| f.sign_of(g, root);
+        let [root] = &f.positive_roots()[..] else { panic!("it has one root above zero") };
+        let sign = |g: &IntegerPolynomial| f.sign_of(g, root);
         assert_eq!(sign(&polynomial(&[-141_421_356, 100_000_000])), Ordering::Greater);
         assert_eq!(sign(&polynomial(&[-141_421_357, 100_000_000])), Ordering::Less);
         assert_eq!(sign(&polynomial(&[-2, 0, 1]).times(&polynomial(&[7, 3]))), Ordering::Equal);

@@ -1,11 +1,11 @@
-//! Opens and reads damaged caches, millions of them, and stops at the first that makes the reader panic, take
-//! long or ask for too much memory.
+//! Fuzzes the reader: opens and reads millions of damaged caches, and stops at the first that makes the reader panic,
+//! take too long or allocate too much.
 //!
-//! `cargo run --release -p nucleus-cache --example fuzz -- 600 tests/corpus` (seconds, where to keep the corpus).
+//! `cargo run --release -p nucleus-cache --example fuzz -- 600 tests/corpus` (seconds, and the folder of the corpus).
 //!
-//! Bytes are changed blindly in some caches; in others they are changed inside the frames, and the checksum is
-//! then made to fit again, so that what is damaged reaches the readers of meshes and points. One small cache is
-//! kept for each way in which reading has ended; a test reads them all.
+//! Some mutations change arbitrary bytes. Others change bytes inside frames and recompute the checksum, so that the
+//! damage reaches the readers of meshes and points. The corpus has one small cache for each outcome of reading; a test
+//! reads them all.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -25,7 +25,7 @@ mod torn;
 
 /// Reading a cache of a few thousand bytes takes a millisecond.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// And a few megabytes.
+/// A cache of a few thousand bytes takes a few megabytes.
 const MOST_KILOBYTES: u64 = 1_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Reads all there is to read; says how that ended, without numbers.
+/// Reads everything and returns the outcome as text without numbers.
 fn read(bytes: &[u8]) -> String {
     let mut cache = match Playback::read(Cursor::new(bytes)) {
         Ok(cache) => cache,
@@ -85,11 +85,11 @@ fn read(bytes: &[u8]) -> String {
     };
     let mut faults = Vec::new();
     for object in 0..cache.objects().len() {
-        for moment in (0..cache.moments().len()).take(40) {
-            let all = object_is_whole(&mut cache, object, moment)
-                .and(cache.velocities(object, moment).map(drop))
-                .and(cache.contacts(object, moment).map(drop))
-                .and(cache.strain(object, moment).map(drop));
+        for sample in (0..cache.time_samples().len()).take(40) {
+            let all = object_is_whole(&mut cache, object, sample)
+                .and(cache.velocities(object, sample).map(drop))
+                .and(cache.contacts(object, sample).map(drop))
+                .and(cache.strain(object, sample).map(drop));
             faults.extend(all.err().map(|error| error.to_string()));
         }
     }
@@ -101,40 +101,40 @@ fn read(bytes: &[u8]) -> String {
     let loss = cache.verify().map_or_else(|error| error.to_string(), ToString::to_string);
     let mut saved = Cursor::new(Vec::new());
     if cache.recover(&mut saved).is_ok() {
-        // Whatever was saved is sound, unless it lacks what makes it a cache at all.
+        // A recovered file is sound, unless it lacks the records that make it a cache.
         if let Ok(again) = Playback::read(saved) {
-            assert!(!again.loss().cut_off && !again.loss().index);
+            assert!(!again.corruption().truncated && !again.corruption().index);
         }
     }
     faults.dedup();
     plain(&format!("opened; {loss}; {}", faults.first().cloned().unwrap_or_default()))
 }
 
-/// Reads a mesh and its positions; whoever draws relies on it that they fit each other.
+/// Reads a mesh and its positions, which must fit each other: renderers rely on it.
 fn object_is_whole(
     cache: &mut Playback<Cursor<&[u8]>>,
     object: usize,
-    moment: usize,
+    sample: usize,
 ) -> Result<(), ReadError> {
-    let points = cache.positions(object, moment)?.len();
-    let mesh = cache.object_at(object, moment)?;
+    let points = cache.positions(object, sample)?.len();
+    let mesh = cache.object_at(object, sample)?;
     assert!(mesh.rest.len() == points && mesh.faces.corners().iter().all(|&point| (point as usize) < points));
     Ok(())
 }
 
-/// A message with its numbers and quoted words taken out.
+/// A message without numbers and quoted words.
 fn plain(message: &str) -> String {
     let mut quoted = false;
     let kept = message.chars().filter(|&c| {
         quoted ^= c == '`';
         !quoted && !c.is_ascii_digit() && c != '-'
     });
-    // How many frames there are, and which, makes no other way to end.
+    // The number of damaged frames makes no new outcome.
     let kept = kept.collect::<String>().replace(',', " ").replace(" to ", " ").replace("frames", "frame");
     kept.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The same cache with chunks that are not compressed, so that their bytes can be changed.
+/// The same cache with uncompressed chunks, so that their bytes can be changed.
 fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
     let summary = mcap::Summary::read(bytes)?.ok_or("no summary")?;
     let mut plain = Cursor::new(Vec::new());
@@ -158,7 +158,7 @@ fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(plain.into_inner())
 }
 
-/// Changes any bytes.
+/// Changes arbitrary bytes.
 fn blindly(bytes: &mut Vec<u8>, random: &mut Random) {
     let (at, length) = (random.below(bytes.len()), 1 + random.below(16));
     let end = (at + length).min(bytes.len());
@@ -176,9 +176,9 @@ fn blindly(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Changes bytes inside an uncompressed chunk and makes its checksum fit.
+/// Changes bytes inside an uncompressed chunk and recomputes its checksum.
 fn inside(bytes: &mut [u8], random: &mut Random) {
-    // The record's head, two times, the size, the checksum, an empty word for the compression, a length.
+    // Record header, two times, size, checksum, the empty name of the compression, length.
     const HEAD: usize = 9 + 24 + 4 + 4 + 8;
     let mut chunks = Vec::new();
     let mut at = 8;
@@ -201,7 +201,7 @@ fn inside(bytes: &mut [u8], random: &mut Random) {
     bytes[begin + 33..begin + 37].copy_from_slice(&sum.to_le_bytes());
 }
 
-/// Numbers that come in the same order each time (xorshift).
+/// Deterministic pseudo-random numbers (xorshift).
 struct Random(u64);
 
 impl Random {
@@ -221,7 +221,7 @@ impl Random {
     }
 }
 
-/// The most memory this process has held, where the system tells.
+/// Peak memory of this process in kB, where the system reports it.
 fn peak_kilobytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,8 +1,8 @@
-//! Writes and reads a waving sheet and prints, as JSON: megabytes of positions per second, memory per point, how long it
-//! takes to open the file and to get to any frame of it.
+//! Writes and reads a waving sheet and prints as JSON: megabytes of positions per second, memory per point, and the
+//! times to open the file and to seek to any frame.
 //!
 //! `cargo run --release -p nucleus-cache --example throughput -- 1000 20` (points along a side, frames; then `compact`,
-//! and `keep=PATH` where the file is to stay).
+//! and `keep=PATH` to keep the file).
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,10 @@ use nucleus_cache::{ObjectInfo, ObjectKind, Packing, Playback, Recorded, Recorde
 use nucleus_core::{ClothId, ColliderId, Faces, StateView, StepObserver, SubstepIndex};
 use serde_json::json;
 
-/// Shapes that the sheet goes through, again and again: making them would take longer than writing them.
+/// Number of precomputed shapes of the sheet: computing them takes longer than writing them.
 const SHAPES: usize = 12;
 
-/// A sheet of a metre, with waves that make every float differ from shape to shape.
+/// A sheet 1 m wide, with waves that make every float differ from shape to shape.
 struct Sheet(Vec<[f32; 3]>);
 
 impl Sheet {
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut cache = Playback::open(&path)?;
     let open = 1e3 * begin.elapsed().as_secs_f64();
     let read = read(&mut cache)?;
-    let cold = forget(&path).then(|| seek(&mut cache)).transpose()?;
+    let cold = drop_from_page_cache(&path).then(|| seek(&mut cache)).transpose()?;
     let warm = seek(&mut cache)?;
     let gigabytes = 1e-9 * recorded.bytes as f64;
     println!(
@@ -89,7 +89,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Records all frames; the seconds are those of recording alone.
+/// Records all frames; returns the seconds of recording alone.
 fn write(
     path: &Path,
     run: &RunInfo,
@@ -108,46 +108,45 @@ fn write(
     Ok((recorded, clock() - begin))
 }
 
-/// Seconds to read all frames, one after the other.
+/// Seconds to read all frames in order.
 fn read(cache: &mut Playback) -> Result<f64, Box<dyn Error>> {
     let begin = clock();
     let mut positions = Vec::new();
-    for moment in 1..cache.moments().len() {
-        cache.positions_into(0, moment, &mut positions)?;
+    for sample in 1..cache.time_samples().len() {
+        cache.positions_into(0, sample, &mut positions)?;
         std::hint::black_box(&positions);
     }
     Ok(clock() - begin)
 }
 
-/// Milliseconds by the clock to read the sheet at a moment anywhere in the run: the median of 301, and what 99 of 100 stay
-/// below.
+/// Milliseconds of wall time to read the sheet at a random time sample: the median and the 99th percentile of 301.
 fn seek(cache: &mut Playback) -> Result<[f64; 2], Box<dyn Error>> {
-    let moments = cache.moments().len();
+    let samples = cache.time_samples().len();
     let mut times = Vec::new();
     for k in 0..301 {
         let begin = Instant::now();
-        std::hint::black_box(cache.positions(0, 7_919 * (k + 1) % moments)?);
+        std::hint::black_box(cache.positions(0, 7_919 * (k + 1) % samples)?);
         times.push(1e3 * begin.elapsed().as_secs_f64());
     }
     times.sort_by(f64::total_cmp);
     Ok([times[150], times[297]])
 }
 
-/// Has the system forget what it holds of a file in memory; whether that could be done.
-fn forget(path: &Path) -> bool {
+/// Drops a file from the page cache; returns whether that succeeded.
+fn drop_from_page_cache(path: &Path) -> bool {
     let mut dd = Command::new("dd");
     dd.arg(format!("if={}", path.display())).args(["iflag=nocache", "count=0", "status=none"]);
     let synced = Command::new("sync").arg(path).status().is_ok_and(|status| status.success());
     synced && dd.status().is_ok_and(|status| status.success())
 }
 
-/// Megabytes that a process of its own comes to hold when it reads a file from end to end.
+/// Peak memory in MB of a separate process that reads a file from end to end.
 fn memory(path: &Path) -> Option<f64> {
     let child = Command::new(std::env::current_exe().ok()?).env(READER, path).output().ok()?;
     String::from_utf8(child.stdout).ok()?.trim().parse().ok()
 }
 
-/// Set to a path, the program only reads that and says how much memory that took.
+/// If set to a path, the program reads that file and prints its peak memory.
 const READER: &str = "NUCLEUS_READS";
 
 fn sheet(side: u32) -> ObjectInfo {
@@ -160,19 +159,19 @@ fn sheet(side: u32) -> ObjectInfo {
     ObjectInfo { name: "sheet".to_owned(), kind: ObjectKind::Cloth, faces, rest }
 }
 
-/// Seconds that this thread has been at work, so that what else runs on the machine does not count; seconds by
-/// the clock where the system does not tell.
+/// Processor seconds of this thread, so that other processes do not count; wall time where the system does not report
+/// them.
 fn clock() -> f64 {
     static BEGIN: OnceLock<Instant> = OnceLock::new();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let worked = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    worked.map_or_else(
+    let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let busy = schedstat.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    busy.map_or_else(
         || BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64(),
         |nanoseconds| 1e-9 * nanoseconds,
     )
 }
 
-/// The most memory this process has held, where the system tells.
+/// Peak memory of this process in kB, where the system reports it.
 fn peak_kilobytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

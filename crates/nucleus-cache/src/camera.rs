@@ -1,4 +1,4 @@
-//! The cameras that a run can be seen from, as metadata: they are known before it begins.
+//! The cameras of a run, stored as metadata: their motion is known before the run begins.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,40 +9,40 @@ use std::str::FromStr;
 pub struct Camera {
     /// Its name.
     pub name: String,
-    /// How a picture of another shape than the film is laid on it.
+    /// How the film gate fits a picture of another aspect ratio.
     pub fit: FilmFit,
-    /// Where it is in each frame from the start frame on; the last holds on. At least one.
+    /// One view per frame from the start frame on, at least one. The last view holds for all later frames.
     pub views: Vec<CameraView>,
 }
 
-/// A camera at a frame. Lengths in scene units.
+/// A camera at one frame. Lengths are in scene units unless stated otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CameraView {
-    /// Where the eye is.
+    /// Eye position.
     pub eye: [f32; 3],
-    /// Where it looks, of unit length.
+    /// View direction, of unit length.
     pub forward: [f32; 3],
-    /// What is up in the picture, of unit length.
+    /// Up direction of the picture, of unit length.
     pub up: [f32; 3],
     /// Focal length in millimetres.
     pub focal_length: f32,
     /// Width and height of the film in inches.
     pub film: [f32; 2],
-    /// How far before the eye is what one looks at.
+    /// Distance from the eye to the centre of interest.
     pub interest: f32,
 }
 
-/// How a picture is laid on the film.
+/// How the picture is fitted to the film gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FilmFit {
-    /// Inside it, as large as can be.
+    /// The picture lies inside the film gate and is as large as possible.
     #[default]
     Fill,
-    /// As wide as it.
+    /// The picture has the width of the film gate.
     Horizontal,
-    /// As high as it.
+    /// The picture has the height of the film gate.
     Vertical,
-    /// Round it, as small as can be.
+    /// The picture contains the film gate and is as small as possible.
     Overscan,
 }
 
@@ -52,13 +52,13 @@ const FITS: [(FilmFit, &str); 4] = [
     (FilmFit::Vertical, "vertical"),
     (FilmFit::Overscan, "overscan"),
 ];
-/// What stands before the name of a camera, as a key.
+/// Prefix of a metadata key; the name of the camera follows.
 const KEY: &str = "camera ";
-/// Numbers of a view.
+/// Numbers in a stored view.
 const NUMBERS: usize = 13;
 
 impl Camera {
-    /// The view at a frame of a run that starts at `start`.
+    /// The view at `frame` of a run that starts at `start`.
     pub fn at(&self, frame: i32, start: i32) -> Option<&CameraView> {
         let place = usize::try_from(i64::from(frame) - i64::from(start)).unwrap_or_default();
         self.views.get(place).or(self.views.last())
@@ -66,7 +66,7 @@ impl Camera {
 }
 
 impl CameraView {
-    /// The view that lies at a share of the way from one to the other.
+    /// Linear interpolation from one view to the other; `share` is 0 at `from` and 1 at `to`.
     pub fn between(from: &Self, to: &Self, share: f32) -> Self {
         let (a, b) = (from.numbers(), to.numbers());
         Self::of(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share))
@@ -83,7 +83,8 @@ impl CameraView {
         Self { eye, forward, up, focal_length, film: [w, v], interest }
     }
 
-    /// Tangents of half the angles of view, across and upward, of a picture `aspect` times as wide as it is high.
+    /// Tangents of half the horizontal and vertical angles of view. `aspect` is the width of the picture over its
+    /// height.
     pub fn tangents(&self, fit: FilmFit, aspect: f32) -> [f32; 2] {
         let [across, upward] = self.film.map(|side| 0.5 * 25.4 * side / self.focal_length);
         let is_wider = aspect > across / upward;
@@ -97,7 +98,7 @@ impl CameraView {
     }
 }
 
-/// Cameras as the keys and values of a metadata record: the fit in the first line, a view in each that follows.
+/// Cameras as keys and values of a metadata record: the fit in the first line, one view in each line that follows.
 pub(crate) fn to_keys(cameras: &[Camera]) -> BTreeMap<String, String> {
     let text = |camera: &Camera| {
         let fit = FITS.iter().find(|(fit, _)| *fit == camera.fit).map_or("fill", |(_, word)| word);
@@ -112,7 +113,7 @@ pub(crate) fn to_keys(cameras: &[Camera]) -> BTreeMap<String, String> {
     cameras.iter().map(|camera| (format!("{KEY}{}", camera.name), text(camera))).collect()
 }
 
-/// Cameras from such keys; what is none is left out.
+/// Cameras from such keys; malformed entries are left out.
 pub(crate) fn from_keys(keys: &BTreeMap<String, String>) -> Vec<Camera> {
     let camera = |(key, text): (&String, &String)| {
         let mut lines = text.lines();
@@ -151,17 +152,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_camera_is_left_out() {
+    fn malformed_cameras_are_left_out() {
         for text in ["", "fill", "full\n1 2 3", "fill\n1 2 3", "fill\nNaN 0 0 0 0 0 0 0 0 0 0 0 0"] {
             assert_eq!(from_keys(&BTreeMap::from([("camera a".to_owned(), text.to_owned())])), [], "{text}");
         }
     }
 
     #[test]
-    fn a_film_of_36_by_24_millimetres_is_seen_as_its_fit_says() {
+    fn angles_of_view_follow_the_film_fit() {
         let tangents = |fit, aspect| view_at(0.0).tangents(fit, aspect).map(|x| (1e3 * x).round());
         let [across, upward] = [18.0 / 35.0, 12.0 / 35.0].map(|x: f32| (1e3 * x).round());
-        // Of a wide picture the whole width of the film is used, and all of its height with overscan.
+        // A wide picture uses the whole width of the film; with overscan it uses the whole height.
         assert_eq!(tangents(FilmFit::Fill, 2.0), [across, 257.0]);
         assert_eq!(tangents(FilmFit::Overscan, 2.0), [686.0, upward]);
         assert_eq!(tangents(FilmFit::Fill, 1.0), [upward, upward]);

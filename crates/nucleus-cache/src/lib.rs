@@ -1,25 +1,31 @@
-//! A run as one MCAP file: recorded while it is simulated, found again frame by frame.
+//! Records a simulation run as one MCAP file, and reads it back by frame.
 //!
-//! | You want to know…                                   | Read                                |
-//! |-----------------------------------------------------|-------------------------------------|
-//! | how a run is written, and what a full disk does     | [`Recorder`]                        |
-//! | how a frame is found and read back                  | [`Playback`]                        |
-//! | what a killed run or a flipped byte costs           | [`Loss`]                            |
-//! | where two runs differ first                         | [`compare`]                         |
-//! | how the start of a file survives damage            | `copies.rs`                         |
-//! | how an object gets another mesh on the way          | [`FrameRecorder::change_mesh`], [`Playback::object_at`] |
-//! | how a damaged file becomes a sound one              | [`Playback::recover`]               |
-//! | how a run goes on from its cache                    | [`Recorder::resume`]                |
-//! | what is known of the run: scene, frames, units      | [`RunInfo`]                         |
-//! | the bytes of a message                              | `points.rs`, `attribute.rs`, `topology.rs` |
-//! | how one frame is kept from harming another          | `stream.rs`, `chunk.rs`             |
-//! | why floats are stored byte by byte                  | `shuffle.rs`                        |
+//! | You want to know…                                  | Read                                      |
+//! |----------------------------------------------------|-------------------------------------------|
+//! | how a run is recorded, and what a full disk does   | [`Recorder`]                              |
+//! | how a frame is read                                | [`Playback`]                              |
+//! | what a killed run or a flipped byte costs          | [`CorruptionReport`]                      |
+//! | where two runs differ first                        | [`compare`]                               |
+//! | how metadata survives a damaged start of the file  | `container/redundant_copies.rs`           |
+//! | how the mesh of an object changes                  | [`FrameRecorder::change_mesh`], [`Playback::object_at`] |
+//! | how a damaged file is recovered                    | [`Playback::recover`]                     |
+//! | how a run is resumed from its cache                | [`Recorder::resume`]                      |
+//! | the metadata of a run: scene, frames, units        | [`RunInfo`]                               |
+//! | the bytes of a message                             | `messages/`                               |
+//! | how chunks isolate frames from each other          | `container/writer.rs`, `container/chunk.rs` |
+//! | why floats are stored in byte planes               | `messages/byte_shuffle.rs`                |
 //!
-//! Each frame is one compressed chunk with a checksum, closed and handed to the system before the next
-//! begins. A run that is killed loses the frame in flight and nothing else, and a damaged chunk costs its own frame:
-//! what holds beyond a frame (the run, meshes, colliders that stand still) has a copy behind the next.
+//! ```text
+//! messages ─▶ container ─▶ read ─▶ write
+//! ```
 //!
-//! **Invariant:** this crate knows no scene and no node; a cache opens without them. Same run, same bytes.
+//! Each frame is one compressed chunk with a checksum. The recorder closes the chunk and hands it to the system before
+//! the next frame begins. A killed run loses only the frame in flight. A damaged chunk costs only its own frame: the
+//! run metadata, meshes and positions of resting colliders, which hold for later frames, have a redundant copy behind
+//! the next frame.
+//!
+//! **Invariant:** this crate knows no scene and no node; a cache opens without its scene. The same run gives the same
+//! bytes.
 //!
 //! A cache in a few lines:
 //!
@@ -39,7 +45,7 @@
 //! # recorder.record_start(&Solver::<f32>::new(builder, 1))?;
 //! # recorder.finish()?;
 //! let mut cache = nucleus_cache::Playback::open("hang.mcap")?;
-//! let last = cache.moments().len() - 1;
+//! let last = cache.time_samples().len() - 1;
 //! for object in 0..cache.objects().len() {
 //!     let first = cache.positions(object, last)?[0];
 //!     println!("{}: {first:?}", cache.objects()[object].name);
@@ -48,50 +54,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod attribute;
 mod camera;
-mod checkpoint;
-mod chunk;
-mod contents;
-mod copies;
-mod diff;
-mod infer;
-mod loss;
-mod mesh;
-mod moment;
-mod object;
-mod open_error;
-mod playback;
-mod points;
-mod provenance;
-mod record_error;
-mod recorder;
-mod recover;
-mod resume;
+mod container;
+mod corruption;
+mod error;
+mod messages;
+mod read;
 mod run;
-mod salvage;
-mod shuffle;
-mod strain;
-mod stream;
-mod summary;
-mod tally;
-mod target;
-mod topic_file;
-mod topology;
-mod witness;
+mod write;
 
 pub use camera::{Camera, CameraView, FilmFit};
-pub use checkpoint::Checkpoint;
-pub use diff::{Comparison, Difference, PointDifference, compare};
-pub use loss::Loss;
-pub use moment::RecordedMoment;
-pub use object::{ObjectInfo, ObjectKind, Source};
-pub use open_error::{OpenError, ReadError};
-pub use playback::{Playback, Sizes};
-pub use record_error::RecordError;
-pub use recorder::{FrameRecorder, Recorded, Recorder};
-pub use recover::{RecoverError, Recovered};
-pub use resume::Kept;
-pub use run::{Detail, Packing, Plane, RunInfo};
-pub use target::unfinished;
-pub use topic_file::TopicFile;
+pub use container::atomic_file::part_path;
+pub use corruption::CorruptionReport;
+pub use error::{OpenError, ReadError, RecordError};
+pub use messages::checkpoint::Checkpoint;
+pub use read::diff::{Comparison, Difference, PointDifference, compare};
+pub use read::playback::{Playback, Sizes};
+pub use read::recover::{RecoverError, Recovered};
+pub use read::time_index::TimeSample;
+pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source};
+pub use write::frame_recorder::FrameRecorder;
+pub use write::recorder::{Recorded, Recorder};
+pub use write::resume::ResumeRange;
+pub use write::topic_file::TopicFile;

@@ -1,10 +1,12 @@
-//! What a run is: which scene, which frames, which units, and how frames become times.
+//! Metadata of a run, its objects, and the conversion between frames and times.
 
 use std::collections::BTreeMap;
 
+use nucleus_core::{ClothId, ColliderId, Faces};
+
 use crate::camera::Camera;
 
-/// How finely time is recorded.
+/// Which states of the run are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
     /// The end of each frame.
@@ -12,13 +14,13 @@ pub enum Detail {
     Frames,
     /// The end of each substep.
     Substeps,
-    /// The end of every so manieth frame after the start, and of the last.
+    /// The end of every n-th frame after the start frame, and of the last frame.
     Every(u32),
 }
 
 impl Detail {
     /// Whether the end of `frame` is recorded in a run from `start` to `end`.
-    pub(crate) fn takes(self, frame: i32, start: i32, end: i32) -> bool {
+    pub(crate) fn includes(self, frame: i32, start: i32, end: i32) -> bool {
         match self {
             Self::Every(n) => {
                 frame == end || (i64::from(frame) - i64::from(start)) % i64::from(n.max(1)) == 0
@@ -28,66 +30,66 @@ impl Detail {
     }
 }
 
-/// How much time is spent on making a cache small. Nothing is ever lost.
+/// Compression level of a cache. Both levels are lossless.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Packing {
-    /// As fast as a disk.
+    /// Fast: level 3 of zstd.
     #[default]
     Fast,
-    /// A tenth smaller, at a hundred times the time: what is noise in a float cannot be packed.
+    /// Small: a tenth smaller than `Fast` at a hundred times the cost, since the low bits of a float do not compress.
     Small,
 }
 
-/// A plane that everything rests on, in scene units.
+/// The ground plane, in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
-    /// A point of it.
+    /// A point on the plane.
     pub origin: [f64; 3],
-    /// Its normal.
+    /// Normal of the plane.
     pub normal: [f64; 3],
 }
 
-/// What a cache says about the run it holds.
+/// Metadata of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunInfo {
-    /// The file the scene was read from, as it was given.
+    /// Path of the scene file, as given.
     pub scene_path: String,
-    /// The text of that file.
+    /// Text of that file.
     pub scene_text: String,
     /// The frame of the initial state.
     pub start: i32,
-    /// The last frame that was asked for; the run may have ended sooner.
+    /// The last requested frame; a run that was interrupted ends sooner.
     pub end: i32,
-    /// Frames per second; fixes the times of the messages.
+    /// Frames per second; converts frames to message times.
     pub frames_per_second: f64,
-    /// Units of the recorded positions that make a metre (100 for centimetres).
+    /// Scene units per metre (100 for centimetres); recorded positions are in scene units.
     pub units_per_metre: f64,
-    /// How finely time is recorded.
+    /// Which states are recorded.
     pub detail: Detail,
-    /// Whether velocities follow the positions (units per second). Doubles the size.
+    /// Whether velocities are recorded, in scene units per second. Doubles the size.
     pub velocities: bool,
-    /// Whether it is told how contact stands at each point of cloth.
+    /// Whether the contact state of each cloth point is recorded.
     pub contacts: bool,
-    /// Whether the strain at each point of cloth follows. Whoever has positions can find it again.
+    /// Whether the strain at each cloth point is recorded. It can also be computed from positions and rest meshes.
     pub strain: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
-    /// Radius of the particles of each object that has some, by its name, in scene units.
+    /// Particle radius of each particle object, by object name, in scene units.
     pub radii: BTreeMap<String, f64>,
-    /// The cameras of the scene; a picture is taken by the first, if nobody says otherwise.
+    /// Cameras of the scene; the first is the default for pictures.
     pub cameras: Vec<Camera>,
-    /// Frames from one checkpoint to the next; at 0 there is none.
+    /// Frames between two checkpoints; 0 records none.
     pub checkpoint: u32,
-    /// How much time is spent on making the file small. Any reader reads both.
+    /// Compression level; a reader accepts both.
     pub packing: Packing,
-    /// The version of Nucleus that wrote the cache. A recorder sets it.
+    /// The version of Nucleus that wrote the cache; the recorder sets it.
     pub version: String,
-    /// Anything else worth keeping. Keys of the format itself are ignored when writing.
+    /// Further metadata. Keys that the format defines are ignored when writing.
     pub extra: BTreeMap<String, String>,
 }
 
 impl Default for RunInfo {
-    /// An unnamed scene of 24 frames a second in metres, only its start frame.
+    /// An unnamed scene at 24 frames per second, in metres, with the start frame only.
     fn default() -> Self {
         Self {
             scene_path: String::new(),
@@ -112,7 +114,7 @@ impl Default for RunInfo {
 }
 
 impl RunInfo {
-    /// Why nothing can be recorded under this description, if so.
+    /// The reason why this description cannot be recorded, if there is one.
     pub(crate) fn fault(&self) -> Option<String> {
         let positive = |name: &str, x: f64| {
             (!(x.is_finite() && x > 0.0)).then(|| format!("{name} must be above zero and finite, not {x}"))
@@ -134,12 +136,52 @@ impl RunInfo {
         (frames + f64::from(substep) / f64::from(substeps.max(1))) / self.frames_per_second
     }
 
-    /// The frame in which a message of this time was recorded.
+    /// The frame that a message of this time belongs to.
     pub(crate) fn frame_at(&self, log_time: u64) -> i32 {
-        // Times are rounded to nanoseconds; substeps are far longer than the slack given here.
+        // Times are rounded to nanoseconds; a substep is far longer than this tolerance.
         let frames = (log_time as f64 * 1e-9 * self.frames_per_second - 1e-6).ceil();
         self.start.saturating_add(frames as i32)
     }
+}
+
+/// The role of an object in the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ObjectKind {
+    /// A simulated surface.
+    Cloth,
+    /// A surface that cloth collides with.
+    Collider,
+    /// Simulated points without faces.
+    Particles,
+}
+
+/// One object of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectInfo {
+    /// Name in the scene: any characters, unique in the run.
+    pub name: String,
+    /// Its role in the solver.
+    pub kind: ObjectKind,
+    /// Faces; corners index the points.
+    pub faces: Faces,
+    /// Rest positions in scene units, one per point.
+    pub rest: Vec<[f32; 3]>,
+}
+
+impl ObjectInfo {
+    /// Whether every face refers to existing points.
+    pub(crate) fn is_valid(&self) -> bool {
+        self.faces.corners().iter().all(|&point| (point as usize) < self.rest.len())
+    }
+}
+
+/// Where the recorder reads an object's positions from the solver's state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// A cloth.
+    Cloth(ClothId),
+    /// A collider; it is recorded only in frames in which it moves.
+    Collider(ColliderId),
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use crate::output::say;
 /// Opens a cache; the error names the file.
 pub fn open(path: &Path) -> Result<Playback> {
     Playback::open(path).map_err(|error| match error {
-        OpenError::Io { .. } if nucleus_cache::unfinished(path).exists() => {
-            let part = nucleus_cache::unfinished(path);
+        OpenError::Io { .. } if nucleus_cache::part_path(path).exists() => {
+            let part = nucleus_cache::part_path(path);
             let part = part.display();
             anyhow!(
                 "there is no `{}` yet; its run is going on or was killed: `nucleus play {part}` shows how far it \
@@ -27,15 +27,15 @@ pub fn open(path: &Path) -> Result<Playback> {
 /// Opens a cache to look at it: what is lost is said on standard error.
 pub fn open_and_warn(path: &Path) -> Result<Playback> {
     let cache = open(path)?;
-    if !cache.loss().is_none() {
-        say!("warning: `{}`: {}", path.display(), cache.loss());
+    if !cache.corruption().is_intact() {
+        say!("warning: `{}`: {}", path.display(), cache.corruption());
     }
     Ok(cache)
 }
 
 /// The moment that shows the end of `frame`, or the last one.
 pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
-    let moments = cache.moments();
+    let moments = cache.time_samples();
     let (first, last) = moments.first().zip(moments.last()).context("the cache holds no frame")?;
     match frame {
         None => Ok(moments.len() - 1),

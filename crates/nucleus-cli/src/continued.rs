@@ -30,7 +30,7 @@ impl Continued {
     pub fn open(path: &Path) -> Result<Self> {
         let is_part = path.extension().is_some_and(|end| end == "part");
         let whole = if is_part { path.with_extension("") } else { path.to_owned() };
-        let part = nucleus_cache::unfinished(&whole);
+        let part = nucleus_cache::part_path(&whole);
         let has_part = fs::metadata(&part).is_ok_and(|found| found.is_file() && found.len() > 0);
         let file = if has_part { part } else { path.to_owned() };
         let cannot = || format!("cannot go on with `{}`", file.display());
@@ -43,13 +43,13 @@ impl Continued {
         let mut cache = opened.with_context(cannot)?;
         cache.verify().with_context(cannot)?;
         ensure!(
-            cache.loss().knows_run(),
+            cache.corruption().can_resume(),
             "{}: {}; `nucleus recover` saves its frames",
             cannot(),
-            cache.loss()
+            cache.corruption()
         );
         ensure!(
-            !cache.moments().is_empty(),
+            !cache.time_samples().is_empty(),
             "`{}` holds no frame: `nucleus run` begins it again",
             file.display()
         );
@@ -58,12 +58,12 @@ impl Continued {
 
     /// The last frame that was recorded.
     pub fn last(&self) -> i32 {
-        self.cache.moments().last().map_or(self.cache.run().start, |moment| moment.frame)
+        self.cache.time_samples().last().map_or(self.cache.run().start, |moment| moment.frame)
     }
 
     /// The frames that are lost before the last, in order.
     pub fn lost(&self) -> &[i32] {
-        &self.cache.loss().frames
+        &self.cache.corruption().frames
     }
 
     /// The scene, up to `end`: as the cache holds it, or as `changed` is now. Nothing if it has mistakes, which are told.

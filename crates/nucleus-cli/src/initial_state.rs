@@ -119,7 +119,7 @@ impl InitialState {
 fn guessed(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f32; 3]>> {
     let now = cache.positions(object, moment)?;
     let Some(before) = moment.checked_sub(1) else { return Ok(vec![[0.0; 3]; now.len()]) };
-    let passed = cache.moments()[moment].time - cache.moments()[before].time;
+    let passed = cache.time_samples()[moment].time - cache.time_samples()[before].time;
     let earlier = cache.positions(object, before)?;
     if earlier.len() != now.len() {
         return Ok(vec![[0.0; 3]; now.len()]); // It had another mesh.

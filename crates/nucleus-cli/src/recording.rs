@@ -60,7 +60,7 @@ pub fn begin(
     };
     let mut recorder = recorder?;
     recorder.record_start(simulation.state())?;
-    if recorder.wants_checkpoint() {
+    if recorder.checkpoint_due() {
         recorder.record_checkpoint(&simulation.save())?;
     }
     Ok(Some(recorder))

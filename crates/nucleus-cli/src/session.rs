@@ -83,9 +83,9 @@ fn close(simulation: &Simulation, recorder: Option<Recorder>, ending: &mut Endin
         Ending::NotFinite => None,
         // The state is that of a frame that is dropped.
         Ending::Stopped(stopped) => stopped.state.take(),
-        _ => recorder.wants_last_checkpoint().then(|| simulation.save()),
+        _ => recorder.final_checkpoint_due().then(|| simulation.save()),
     };
-    let state = state.filter(|_| recorder.wants_last_checkpoint());
+    let state = state.filter(|_| recorder.final_checkpoint_due());
     let last = state.map_or(Ok(()), |state| recorder.record_checkpoint(&state));
     match last.and_then(|()| recorder.finish()) {
         Ok(recorded) => Some(recorded.bytes),

@@ -71,7 +71,7 @@ pub fn simulate(
         if interrupt::asked() {
             return Ok((account, Ending::Interrupted));
         }
-        if recorder.as_ref().is_some_and(Recorder::makes_checkpoints) {
+        if recorder.as_ref().is_some_and(Recorder::records_checkpoints) {
             kept.keep(simulation, account.last);
         }
         let begin = Instant::now();
@@ -79,7 +79,7 @@ pub fn simulate(
         let figures = match advance(simulation, frame, recorder, judge) {
             Ok(Some(figures)) => figures,
             Ok(None) => {
-                let is_clean = recorder.as_mut().is_none_or(Recorder::drop_frame);
+                let is_clean = recorder.as_mut().is_none_or(Recorder::discard_frame);
                 let stopped = Stopped { state: kept.state, is_clean };
                 return Ok((account, Ending::Stopped(stopped)));
             }
@@ -115,7 +115,7 @@ fn advance(
     }
     let figures = look(seen, judge);
     recorder.end_frame(&figures)?;
-    if figures.finite && recorder.wants_checkpoint() {
+    if figures.finite && recorder.checkpoint_due() {
         recorder.record_checkpoint(&simulation.save())?;
     }
     Ok(Some(figures))

@@ -220,7 +220,7 @@ fn audit_lines(audit: &Audit) -> String {
         false => {
             let kinds = [
                 (account.crossings, "passed through each other"),
-                (account.overlaps, "were found inside each other"),
+                (account.intersections, "were found inside each other"),
                 (account.touches, "touched"),
                 (account.undecided, "could not be told apart"),
             ];
@@ -235,8 +235,8 @@ fn audit_lines(audit: &Audit) -> String {
             format!("audit of {motions}: {}\n", said.join(", "))
         }
     };
-    if account.tangled_at_start > 0 {
-        let (start, now) = (account.tangled_at_start, account.tangled);
+    if account.initial_intersections > 0 {
+        let (start, now) = (account.initial_intersections, account.remaining_initial_intersections);
         let start = figures::count(start as usize, "pair");
         text += &format!("audit: {start} of edge and face began inside each other, {now} still are\n");
     }
@@ -250,13 +250,13 @@ fn audit_json(audit: &Audit) -> Value {
     json!({
         "steps": account.motions,
         "crossings": account.crossings,
-        "overlaps": account.overlaps,
+        "overlaps": account.intersections,
         "touches": account.touches,
         "undecided": account.undecided,
         "below_ground": account.below_ground,
-        "tangled_at_start": account.tangled_at_start,
-        "tangled": account.tangled,
-        "inside": account.inside,
+        "tangled_at_start": account.initial_intersections,
+        "tangled": account.remaining_initial_intersections,
+        "inside": account.current_intersections,
         "first": audit.findings().next(),
     })
 }

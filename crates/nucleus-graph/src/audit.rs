@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
-use nucleus_audit::{Account, Auditor, Body, Moment, Rules, World};
+use nucleus_audit::{AuditCounts, Auditor, Body, CollisionFilter, CollisionMesh, StateIndex};
 use nucleus_core::{self as core, Stage, StateView, StepObserver};
 
 use crate::compile::{Object, ObjectKind};
@@ -44,10 +44,10 @@ impl Audit {
         objects: &[Object],
         closeness: Closeness,
         state: &dyn StateView,
-        rules: impl Fn(&World) -> Rules,
+        rules: impl Fn(&CollisionMesh) -> CollisionFilter,
     ) -> Self {
         let body = |object: &Object| Body::mesh(object.name.clone(), object.points, object.faces.iter());
-        let world = World::new(objects.iter().map(body).collect());
+        let world = CollisionMesh::new(objects.iter().map(body).collect());
         let objects: Vec<ObjectKind> = objects.iter().map(|object| object.kind).collect();
         let mut positions = Vec::new();
         read(&objects, &world, (state, 1.0), &mut positions);
@@ -58,9 +58,9 @@ impl Audit {
     }
 
     /// Begins a frame.
-    pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&World) -> Rules) {
+    pub(crate) fn begin_frame(&mut self, frame: i64, rules: impl Fn(&CollisionMesh) -> CollisionFilter) {
         self.frame = frame;
-        self.auditor.set_rules(rules(self.auditor.world()));
+        self.auditor.set_filter(rules(self.auditor.collision_mesh()));
     }
 
     /// Takes the ground planes out, for the simulation to move while it solves the frame.
@@ -114,7 +114,7 @@ impl Audit {
         }
         match self.closeness {
             _ if !moment.ends_frame() => {}
-            Closeness::Steps => self.auditor.look(now),
+            Closeness::Steps => self.auditor.check_intersections(now),
             Closeness::Frames => {
                 read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
                 self.audit_ground(now, share, planes);
@@ -127,7 +127,7 @@ impl Audit {
 /// Replaces `out` by the positions of all objects in metres. `share` is the share of the frame that has passed.
 fn read(
     objects: &[ObjectKind],
-    world: &World,
+    world: &CollisionMesh,
     (state, share): (&dyn StateView, f64),
     out: &mut Vec<Vector3<f64>>,
 ) {

@@ -207,7 +207,7 @@ fn objects<R: Read + Seek>(cache: &Playback<R>, names: &[String]) -> Result<Vec<
 }
 
 fn samples<R: Read + Seek>(cache: &Playback<R>, selection: &Selection) -> Result<Vec<Sample>, ExportError> {
-    let moments = cache.moments();
+    let moments = cache.time_samples();
     let (Some(begin), Some(end)) = (moments.first(), moments.last()) else { return Err(ExportError::Empty) };
     let has = (begin.frame, end.frame);
     let (first, last) = selection.frames.unwrap_or(has);

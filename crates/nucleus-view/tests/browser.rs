@@ -156,7 +156,7 @@ fn a_run_that_was_killed_plays_as_far_as_it_came() {
     let mut recorder = sample::begin(&path, Sample::default());
     (2..=9).for_each(|frame| sample::step(&mut recorder, Sample::default(), frame));
     // As after a kill: the last frame half written, and no index.
-    let bytes = std::fs::read(nucleus_cache::unfinished(&path)).unwrap();
+    let bytes = std::fs::read(nucleus_cache::part_path(&path)).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 5000]).unwrap();
     drop(recorder);
     let seen = look(chromium, &path, "frame=24");

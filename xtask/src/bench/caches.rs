@@ -16,11 +16,15 @@ use goal::Goal;
 /// What stands above the tables.
 pub const HEAD: &str = "# Caches
 
-**Write** and **read** are megabytes of positions in a second of one core, as they are in memory: byte shuffling, zstd, checksums and the system's own work are all in it.
-The sheet waves so that every float differs from frame to frame; the median of three runs counts.
-**Packed** is the file over that.
-**Seek** is the time to any frame in milliseconds by the clock: the median, and what 99 of 100 stay below.
-`cargo xtask book --only caches` makes this page anew; it takes 12 GB of disk for a while.
+How fast caches are written and read, and how much memory and disk space they take.
+
+- **Write** and **read** are megabytes of uncompressed positions per second of processor time on one core. They include byte shuffle, zstd, checksums and system calls.
+- **Ratio** is the size of the file over the size of its uncompressed positions.
+- **Seek** is the wall time in milliseconds to read a random frame: the median and the 99th percentile.
+
+The test object is a waving sheet in which every float differs from frame to frame.
+Throughput is the median of three runs.
+`cargo xtask book --only caches` measures and writes this page again; it needs 12 GB of temporary disk space.
 ";
 
 /// Points along a side, frames, and whether it is packed hard.
@@ -46,8 +50,15 @@ pub fn tables(root: &Path) -> anyhow::Result<String> {
 }
 
 fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let head =
-        ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
+    let head = [
+        "sheet",
+        "compression",
+        "write MB/s",
+        "read MB/s",
+        "ratio",
+        "recorder, bytes per point",
+        "reader, MB",
+    ];
     let mut table = Table::new("Speed and memory", &head);
     let mut goals = Vec::new();
     for (side, frames, is_compact) in SHEETS {
@@ -60,38 +71,38 @@ fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> 
             all.sort_by(f64::total_cmp);
             all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
         };
-        let packing = if is_compact { "`--compact`" } else { "usual" };
+        let packing = if is_compact { "`--compact`" } else { "default" };
         let keys = ["write_mb_s", "read_mb_s", "packed", "recorder_bytes_per_point", "reader_mb"];
         let cells = [format!("{side}²"), packing.to_owned()];
         table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
         if !is_compact {
-            goals.push(Goal::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
-            goals.push(Goal::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
+            goals.push(Goal::above(&format!("write {side}², MB/s"), WRITE, median("write_mb_s")));
+            goals.push(Goal::above(&format!("read {side}², MB/s"), READ, median("read_mb_s")));
         }
     }
-    table.note("Memory is what recorder and reader add to the process at the most, meshes among it: a few frames, however long the run.");
-    table.note("The sheet's mesh is in the file as well: of 60 frames it is a larger share of what is packed than of 600.");
+    table.note("Memory is the peak increase of the process by recorder or reader, including meshes: a few frames, independent of the length of the run.");
+    table.note("The file also holds the sheet's mesh, which is a larger share of a file of 60 frames than of one of 600.");
     Ok((table, goals))
 }
 
 fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let found = example(root, folder, 129, LARGE, false, None)?;
-    let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
+    let mut table = Table::new("A file of 10 GB", &["", "median, ms", "99th percentile, ms"]);
     let mut row = |name: &str, key: &str| {
         let times = [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
         table.row([name.to_owned()].into_iter().chain(times));
     };
-    row("seek, the system has forgotten the file", "cold_seek_ms");
-    row("seek, it has not", "seek_ms");
+    row("seek, cold page cache", "cold_seek_ms");
+    row("seek, warm page cache", "seek_ms");
     let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
-        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process that grew by {} MB.",
+        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process whose memory grew by {} MB.",
         number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
     ));
     let cold = |k: usize| found["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
     let goals = vec![
-        Goal::below("seek in 10 GB that the system has forgotten, median ms", SEEK, cold(0)),
-        Goal::below("the same, 99 of 100", SEEK, cold(1)),
+        Goal::below("seek in a 10 GB file, cold page cache, median, ms", SEEK, cold(0)),
+        Goal::below("the same, 99th percentile, ms", SEEK, cold(1)),
     ];
     Ok((table, goals))
 }

@@ -173,7 +173,7 @@ fn judge(workload: Workload, sizes: &[u32], runs: &[Outcome], report: &mut Repor
 
 #[cfg(test)]
 mod tests {
-    use nucleus_audit::Account;
+    use nucleus_audit::AuditCounts;
 
     use super::*;
 
@@ -183,7 +183,7 @@ mod tests {
         let mut run = trial.timed_and_audited().unwrap();
         let peer = Peer { size: 9, stretch: None, ..PEERS[0] };
         assert!(answer(&peer, std::slice::from_ref(&run)).is_some());
-        run.audit = Some(Account { overlaps: 1, ..Account::default() });
+        run.audit = Some(AuditCounts { intersections: 1, ..AuditCounts::default() });
         assert!(answer(&peer, std::slice::from_ref(&run)).is_none());
     }
 

@@ -1,4 +1,4 @@
-//! Two caches, held against each other.
+//! Comparison of two caches.
 
 use std::io::Cursor;
 
@@ -15,7 +15,7 @@ fn run(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
     open(falling::whole_run(run).0)
 }
 
-/// A run in which, from a frame on, every height is that of another frame.
+/// A run that lags by one frame from frame `from` on.
 fn astray(from: i32) -> Playback<Cursor<Vec<u8>>> {
     let file = Shared::default();
     let mut recorder = Recorder::to_writer(file.clone(), &falling::run_info(), falling::objects()).unwrap();
@@ -31,14 +31,14 @@ fn astray(from: i32) -> Playback<Cursor<Vec<u8>>> {
 }
 
 #[test]
-fn a_cache_does_not_differ_from_itself_however_finely_time_was_recorded() {
+fn the_recorded_sample_rate_makes_no_difference() {
     let same = compare(&mut run(&falling::run_info()), &mut run(&falling::with_substeps()), 0.0).unwrap();
     assert_eq!((same.differences, same.rms, same.largest), (vec![], 0.0, None));
-    assert_eq!(same.moments as i32, END - START + 1);
+    assert_eq!(same.time_samples as i32, END - START + 1);
 }
 
 #[test]
-fn the_first_place_that_differs_is_named_with_its_distance() {
+fn the_first_differing_point_is_named_with_its_distance() {
     let (from, mut one, mut two) = (START + 3, run(&falling::run_info()), astray(START + 3));
     let comparison = compare(&mut one, &mut two, 0.0).unwrap();
     let Difference::Points(first) = &comparison.differences[0] else { panic!("{comparison:?}") };
@@ -54,7 +54,7 @@ fn the_first_place_that_differs_is_named_with_its_distance() {
 }
 
 #[test]
-fn frames_and_objects_that_one_of_them_lacks_are_named() {
+fn frames_and_objects_in_one_cache_only_are_named() {
     let short = RunInfo { end: END - 2, ..falling::run_info() };
     let mut objects = falling::objects();
     objects[1].1.name = "ceiling".to_owned();
@@ -64,14 +64,52 @@ fn frames_and_objects_that_one_of_them_lacks_are_named() {
     recorder.finish().unwrap();
     let comparison = compare(&mut run(&falling::run_info()), &mut open(file.contents()), 0.0).unwrap();
     let object = |name: &str, in_first| Difference::Object { name: name.to_owned(), in_first };
-    let moment = Difference::Moment { frame: END - 1, substep: 1, in_first: true };
-    assert_eq!(comparison.differences, [object("floor", true), object("ceiling", false), moment]);
+    let sample = Difference::TimeSample { frame: END - 1, substep: 1, in_first: true };
+    assert_eq!(comparison.differences, [object("floor", true), object("ceiling", false), sample]);
     let every = RunInfo { detail: Detail::Every(2), ..falling::run_info() };
     let coarse = compare(&mut run(&every), &mut run(&falling::run_info()), 0.0).unwrap();
     assert!(
         coarse
             .differences
             .iter()
-            .all(|difference| matches!(difference, Difference::Moment { in_first: false, .. }))
+            .all(|difference| matches!(difference, Difference::TimeSample { in_first: false, .. }))
     );
+}
+
+/// Flips a bit in the chunk of `frame`.
+fn damage(bytes: &mut [u8], frame: i32) {
+    let summary = mcap::Summary::read(bytes).unwrap().unwrap();
+    let chunk = &summary.chunk_indexes[(frame - START) as usize];
+    bytes[(chunk.chunk_start_offset + chunk.chunk_length) as usize - 9] ^= 1;
+}
+
+#[test]
+fn a_damaged_frame_is_named_and_the_other_frames_are_compared() {
+    let sound = falling::whole_run(&falling::run_info()).0;
+    let mut damaged = sound.clone();
+    damage(&mut damaged, START + 4);
+    // Without its index, the frame is missing instead of unreadable.
+    let unindexed = damaged[..damaged.len() - 20].to_vec();
+    for bytes in [damaged, unindexed] {
+        let comparison = compare(&mut open(sound.clone()), &mut open(bytes.clone()), 0.0).unwrap();
+        let expected = Difference::Damaged { frame: START + 4, in_first: false };
+        assert_eq!(comparison.differences, [expected]);
+        assert_eq!(comparison.time_samples as i32, END - START);
+        let comparison = compare(&mut open(bytes), &mut astray(START + 6), 0.0).unwrap();
+        let [Difference::Damaged { frame, in_first }, Difference::Points(first)] =
+            &comparison.differences[..]
+        else {
+            panic!("{comparison:?}")
+        };
+        assert_eq!((*frame, *in_first, first.frame), (START + 4, true, START + 6));
+    }
+}
+
+#[test]
+fn a_frame_damaged_in_both_caches_is_named_for_each() {
+    let mut bytes = falling::whole_run(&falling::run_info()).0;
+    damage(&mut bytes, START + 2);
+    let comparison = compare(&mut open(bytes.clone()), &mut open(bytes), 0.0).unwrap();
+    let damaged = |in_first| Difference::Damaged { frame: START + 2, in_first };
+    assert_eq!(comparison.differences, [damaged(true), damaged(false)]);
 }

@@ -1,4 +1,4 @@
-//! Cut off anywhere, or a byte flipped anywhere: what is whole is played, what is not is named.
+//! Truncation at every byte and a flipped bit in every byte: whole frames play, all others are reported.
 
 use std::io::Cursor;
 
@@ -10,13 +10,13 @@ fn open(bytes: &[u8]) -> Result<Playback<Cursor<&[u8]>>, OpenError> {
     Playback::read(Cursor::new(bytes))
 }
 
-/// Reads everything; fails when a frame that can be read is not the one that was recorded.
+/// Reads everything; fails when a readable frame differs from the recorded one.
 fn frames_that_play(cache: &mut Playback<Cursor<&[u8]>>) -> Vec<i32> {
     let mut played = Vec::new();
-    for moment in 0..cache.moments().len() {
-        let frame = cache.moments()[moment].frame;
+    for sample in 0..cache.time_samples().len() {
+        let frame = cache.time_samples()[sample].frame;
         let state = if frame == START { Falling::INITIAL } else { Falling { frame, substep: SUBSTEPS } };
-        if let Ok(positions) = cache.positions(0, moment) {
+        if let Ok(positions) = cache.positions(0, sample) {
             assert_eq!(positions, state.cloth_positions(100.0), "frame {frame}");
             played.push(frame);
         }
@@ -24,7 +24,7 @@ fn frames_that_play(cache: &mut Playback<Cursor<&[u8]>>) -> Vec<i32> {
     played
 }
 
-/// Ends of the frames in the file, each with the number of frames before it.
+/// End offsets of all chunks.
 fn chunk_ends(bytes: &[u8]) -> Vec<u64> {
     let summary = mcap::Summary::read(bytes).unwrap().unwrap();
     summary.chunk_indexes.iter().map(|chunk| chunk.chunk_start_offset + chunk.chunk_length).collect()
@@ -39,7 +39,7 @@ fn a_file_cut_off_at_any_byte_plays_every_whole_frame() {
         match open(&bytes[..cut]) {
             Ok(mut cache) => {
                 assert_eq!(frames_that_play(&mut cache).len(), whole, "cut at {cut}");
-                assert!(!cache.loss().is_none(), "cut at {cut}");
+                assert!(!cache.corruption().is_intact(), "cut at {cut}");
             }
             Err(error) => assert_eq!(whole, 0, "cut at {cut}: {error}"),
         }
@@ -47,7 +47,7 @@ fn a_file_cut_off_at_any_byte_plays_every_whole_frame() {
 }
 
 #[test]
-fn a_flipped_bit_is_never_played_and_never_makes_a_panic() {
+fn a_flipped_bit_is_never_played_and_never_panics() {
     let (bytes, _) = falling::whole_run(&falling::run_info());
     for at in 0..bytes.len() {
         let mut flipped = bytes.clone();
@@ -58,7 +58,11 @@ fn a_flipped_bit_is_never_played_and_never_makes_a_panic() {
         let whole: Vec<i32> = (START..=END).filter(|frame| !lost.contains(frame)).collect();
         let tail_lost = whole.starts_with(&played);
         assert!(tail_lost, "byte {at}: played {played:?}, named as lost {lost:?}");
-        assert!(played.len() == whole.len() || cache.loss().cut_off, "byte {at}: {}", cache.loss());
+        assert!(
+            played.len() == whole.len() || cache.corruption().truncated,
+            "byte {at}: {}",
+            cache.corruption()
+        );
         assert!(played.len() as i32 >= END - START, "byte {at} costs more than one frame: {played:?}");
     }
 }
@@ -74,21 +78,21 @@ fn a_killed_run_with_a_damaged_length_loses_that_frame_only() {
             let mut flipped = killed.to_vec();
             flipped[at] ^= 1 << bit;
             let mut cache = open(&flipped).unwrap();
-            assert_eq!(cache.loss().frames, [START + 3], "byte {at}, bit {bit}");
+            assert_eq!(cache.corruption().frames, [START + 3], "byte {at}, bit {bit}");
             assert_eq!(frames_that_play(&mut cache).len(), 6);
         }
     }
 }
 
 #[test]
-fn a_flipped_bit_in_a_frame_names_that_frame_and_spares_the_others() {
+fn a_flipped_bit_in_a_frame_costs_that_frame_only() {
     let (bytes, _) = falling::whole_run(&falling::run_info());
     let end = chunk_ends(&bytes)[4] as usize;
     let mut flipped = bytes.clone();
     flipped[end - 9] ^= 0x10;
     let mut cache = open(&flipped).unwrap();
-    let moment = cache.end_of(START + 4).unwrap();
-    let error = cache.positions(0, moment).unwrap_err();
+    let sample = cache.end_of(START + 4).unwrap();
+    let error = cache.positions(0, sample).unwrap_err();
     assert_eq!(error.to_string(), format!("frame {} is damaged and cannot be read", START + 4));
     assert_eq!(frames_that_play(&mut cache).len() as i32, END - START);
     assert_eq!(cache.verify().unwrap().to_string(), format!("missing or damaged: frame {}", START + 4));
@@ -101,20 +105,20 @@ fn a_damaged_frame_of_a_killed_run_is_named_when_opened() {
     let mut killed = bytes[..ends[6] as usize].to_vec();
     killed[ends[4] as usize - 9] ^= 0x10;
     let cache = open(&killed).unwrap();
-    assert_eq!(cache.loss().frames, [START + 4]);
-    assert!(cache.loss().cut_off);
+    assert_eq!(cache.corruption().frames, [START + 4]);
+    assert!(cache.corruption().truncated);
 }
 
 #[test]
-fn a_recorder_that_is_forgotten_leaves_all_its_frames() {
+fn a_killed_recorder_leaves_all_its_whole_frames() {
     let file = Shared::default();
     let mut recorder = Recorder::to_writer(file.clone(), &falling::run_info(), falling::objects()).unwrap();
     falling::record(&mut recorder, START + 3).unwrap();
-    std::mem::forget(recorder); // What a kill does: no destructor runs.
+    std::mem::forget(recorder); // Like a kill: no destructor runs.
     let bytes = file.contents();
     let mut cache = open(&bytes).unwrap();
     assert_eq!(frames_that_play(&mut cache), [START, START + 1, START + 2, START + 3]);
-    assert_eq!(cache.loss().to_string(), "the file was cut off before its index");
+    assert_eq!(cache.corruption().to_string(), "the file was cut off before its index");
 }
 
 #[test]
@@ -125,27 +129,26 @@ fn a_run_that_ends_early_but_is_closed_has_lost_nothing() {
     recorder.finish().unwrap();
     let bytes = file.contents();
     let cache = open(&bytes).unwrap();
-    assert!(cache.loss().is_none(), "{}", cache.loss());
-    assert_eq!((cache.moments().len(), cache.run().end), (3, END));
+    assert!(cache.corruption().is_intact(), "{}", cache.corruption());
+    assert_eq!((cache.time_samples().len(), cache.run().end), (3, END));
 }
 
-/// One cache for each way in which reading has ended while millions of damaged ones were tried; see the example
-/// `fuzz`.
+/// The corpus has one cache for each outcome of the example `fuzz`.
 #[test]
 fn no_cache_of_the_corpus_makes_the_reader_panic() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus");
-    let mut seen = 0;
+    let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let bytes = std::fs::read(entry.unwrap().path()).unwrap();
-        seen += 1;
+        count += 1;
         let Ok(mut cache) = open(&bytes) else { continue };
         for object in 0..cache.objects().len() {
-            for moment in 0..cache.moments().len() {
-                let _ = cache.velocities(object, moment).map(drop);
-                let _ = cache.contacts(object, moment).map(drop);
-                let _ = cache.strain(object, moment).map(drop);
-                if let Ok(positions) = cache.positions(object, moment) {
-                    assert_eq!(cache.object_at(object, moment).unwrap().rest.len(), positions.len());
+            for sample in 0..cache.time_samples().len() {
+                let _ = cache.velocities(object, sample).map(drop);
+                let _ = cache.contacts(object, sample).map(drop);
+                let _ = cache.strain(object, sample).map(drop);
+                if let Ok(positions) = cache.positions(object, sample) {
+                    assert_eq!(cache.object_at(object, sample).unwrap().rest.len(), positions.len());
                 }
             }
         }
@@ -156,5 +159,5 @@ fn no_cache_of_the_corpus_makes_the_reader_panic() {
         cache.reports().unwrap();
         cache.sizes().unwrap();
     }
-    assert!(seen > 20, "the corpus is there: {seen}");
+    assert!(count > 20, "the corpus is there: {count}");
 }

@@ -1,4 +1,4 @@
-//! A run for the tests: a cloth of four points that falls, under a collider that moves in some frames.
+//! A run for the tests: a falling cloth of four points, and a collider that moves in one frame.
 
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
@@ -16,8 +16,7 @@ pub const SUBSTEPS: u32 = 3;
 /// The collider moves in this frame and in no other.
 pub const SHOVE: i32 = 13;
 
-/// The end of a substep. Where the points are then is a formula, so that every recorded number can be
-/// computed again.
+/// The end of a substep. Positions are a formula of it, so that tests can compute every recorded number.
 #[derive(Clone, Copy)]
 pub struct Falling {
     pub frame: i32,
@@ -34,7 +33,7 @@ impl Falling {
         10.0 - frames * frames
     }
 
-    /// All that is to be recorded of the cloth.
+    /// Positions of the cloth as recorded.
     pub fn cloth_positions(self, units: f64) -> Vec<[f32; 3]> {
         let mut out = Vec::new();
         self.positions(ClothId(0), units, &mut out);
@@ -69,7 +68,7 @@ impl StateView for Falling {
     }
 }
 
-/// What the run says of itself.
+/// Metadata of the run.
 pub fn run_info() -> RunInfo {
     RunInfo {
         scene_path: "scenes/falling.ron".to_owned(),
@@ -81,14 +80,14 @@ pub fn run_info() -> RunInfo {
     }
 }
 
-/// The same, with all that can be recorded of cloth.
+/// The same, with all attributes of cloth.
 pub fn with_all_channels() -> RunInfo {
     let views = (0..3).map(|k| CameraView { eye: [k as f32; 3], ..CameraView::default() }).collect();
     let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Fill, views };
     RunInfo { contacts: true, strain: true, cameras: vec![camera], checkpoint: 3, ..with_substeps() }
 }
 
-/// Its objects. One name holds what names may hold.
+/// The objects of the run. One name has unusual characters.
 pub fn objects() -> Vec<(Source, ObjectInfo)> {
     let mut quad = Faces::default();
     quad.push(&[0, 1, 2, 3]);
@@ -109,8 +108,7 @@ pub fn objects() -> Vec<(Source, ObjectInfo)> {
     vec![(Source::Cloth(ClothId(0)), cloth), (Source::Collider(ColliderId(0)), collider)]
 }
 
-/// Records the initial state and the frames up to `last`, with a checkpoint wherever one is due; `finish` is left to
-/// the caller.
+/// Records the initial state and the frames up to `last`, with all due checkpoints; the caller finishes the file.
 pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, last: i32) -> Result<(), RecordError> {
     recorder.record_start(&Falling::INITIAL)?;
     checkpoint(recorder, START)?;
@@ -126,13 +124,13 @@ pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, last: i32) -> Result<
 }
 
 fn checkpoint<W: Write + Seek>(recorder: &mut Recorder<W>, frame: i32) -> Result<(), RecordError> {
-    match recorder.wants_checkpoint() {
+    match recorder.checkpoint_due() {
         true => recorder.record_checkpoint(&state_bytes(frame)),
         false => Ok(()),
     }
 }
 
-/// What stands for the state of a solver in a checkpoint.
+/// Stands for the state of a solver in a checkpoint.
 pub fn state_bytes(frame: i32) -> Vec<u8> {
     frame.to_le_bytes().repeat(100)
 }
@@ -146,7 +144,7 @@ pub fn whole_run(run: &RunInfo) -> (Vec<u8>, Recorded) {
     (file.contents(), recorded)
 }
 
-/// The same cache with all its copies damaged, as one that was recorded before there were any.
+/// The same cache with all redundant copies damaged, like one of a version without them.
 pub fn without_copies(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for copy in mcap::Summary::read(&bytes).unwrap().unwrap().attachment_indexes {
@@ -160,7 +158,7 @@ pub fn with_substeps() -> RunInfo {
     RunInfo { detail: Detail::Substeps, velocities: true, ..run_info() }
 }
 
-/// A file in memory that can be looked at from outside, and that is full at `room` bytes.
+/// A file in memory that can be inspected while it is written, with space for `room` bytes.
 #[derive(Clone)]
 pub struct Shared {
     cursor: Arc<Mutex<std::io::Cursor<Vec<u8>>>>,

@@ -1,4 +1,4 @@
-//! A flipped bit anywhere costs the frame that it is in and no other, whether the run was finished or killed.
+//! A flipped bit costs only the frame that contains it, in finished files and in those of killed runs.
 
 use std::io::Cursor;
 use std::ops::Range;
@@ -9,24 +9,24 @@ use crate::falling::{self, END, SHOVE, START, Shared};
 use crate::torn;
 
 type Cache = Playback<Cursor<Vec<u8>>>;
-/// All that is shown at one moment: frame, time, and each object with its positions.
+/// Everything shown at one time sample: frame, time, and each object with its positions.
 type Shown = (i32, f64, Vec<(ObjectInfo, Vec<[f32; 3]>)>);
 
-/// Each bit of the first bytes is flipped, and one in about so many bytes of the rest.
+/// Every bit of the first bytes is flipped, and a sample of the others.
 const EVERY_BIT: usize = 1024;
 const SAMPLE: usize = 11;
-/// One file in so many is recovered too, which takes longest.
+/// One file in this many is also recovered, which takes longest.
 const RECOVERED: usize = 5;
 
-/// All moments that can be read whole.
+/// All time samples that can be read completely.
 fn shown(cache: &mut Cache) -> Vec<Shown> {
     let mut all = Vec::new();
-    for moment in 0..cache.moments().len() {
-        let (frame, time) = (cache.moments()[moment].frame, cache.moments()[moment].time);
+    for sample in 0..cache.time_samples().len() {
+        let (frame, time) = (cache.time_samples()[sample].frame, cache.time_samples()[sample].time);
         let objects = 0..cache.objects().len();
         let read = objects.map(|object| {
-            let positions = cache.positions(object, moment)?;
-            Ok((cache.object_at(object, moment)?.clone(), positions))
+            let positions = cache.positions(object, sample)?;
+            Ok((cache.object_at(object, sample)?.clone(), positions))
         });
         let read: Result<Vec<_>, nucleus_cache::ReadError> = read.collect();
         all.extend(read.ok().filter(|all| !all.is_empty()).map(|objects| (frame, time, objects)));
@@ -38,7 +38,7 @@ fn open(bytes: &[u8]) -> Cache {
     Playback::read(Cursor::new(bytes.to_vec())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Places of all frames: their chunks, by frame. Those of checkpoints are none.
+/// Byte ranges of the chunks of all frames, without those of checkpoints.
 fn frames(bytes: &[u8]) -> Vec<(i32, Range<usize>)> {
     let summary = mcap::Summary::read(bytes).unwrap().unwrap();
     let is_frame = |chunk: &&mcap::records::ChunkIndex| {
@@ -53,8 +53,8 @@ fn frames(bytes: &[u8]) -> Vec<(i32, Range<usize>)> {
     summary.chunk_indexes.iter().filter(is_frame).map(place).collect()
 }
 
-/// Flips a bit and demands that all frames but the one it is in are there, in the file and in what is recovered of it.
-/// That one may be there too: not every bit of a compressed frame counts.
+/// Flips a bit. All frames but the one that contains it must be readable, in the file and in the recovered one. That
+/// frame may be readable too: not every bit of a compressed frame matters.
 fn flip(bytes: &[u8], at: usize, bit: usize, frames: &[(i32, Range<usize>)], sound: &[Shown]) {
     let mut flipped = bytes.to_vec();
     flipped[at] ^= 1 << bit;
@@ -63,7 +63,7 @@ fn flip(bytes: &[u8], at: usize, bit: usize, frames: &[(i32, Range<usize>)], sou
     let is_expected = |found: &[Shown]| found.iter().eq(others.iter().copied()) || found == sound;
     let mut damaged = open(&flipped);
     let found = shown(&mut damaged);
-    assert!(is_expected(&found), "byte {at}, bit {bit}: {}", damaged.loss());
+    assert!(is_expected(&found), "byte {at}, bit {bit}: {}", damaged.corruption());
     assert_eq!(damaged.run().scene_text, "Scene()", "byte {at}, bit {bit}");
     if !(8 * at + bit).is_multiple_of(RECOVERED) {
         return;
@@ -71,9 +71,9 @@ fn flip(bytes: &[u8], at: usize, bit: usize, frames: &[(i32, Range<usize>)], sou
     let file = Shared::default();
     damaged.recover(file.clone()).unwrap();
     let mut recovered = open(&file.contents());
-    assert!(shown(&mut recovered) == found, "byte {at}, bit {bit}, recovered: {}", recovered.loss());
+    assert!(shown(&mut recovered) == found, "byte {at}, bit {bit}, recovered: {}", recovered.corruption());
     assert_eq!(recovered.run(), damaged.run());
-    // Nothing tells that there was a frame behind the last.
+    // Without the index, a frame after the last readable one is unknown.
     let last = found.last().map_or(START, |(frame, ..)| *frame);
     let lost = hit.filter(|&frame| found.len() < sound.len() && frame < last);
     assert_eq!(
@@ -86,7 +86,7 @@ fn flip(bytes: &[u8], at: usize, bit: usize, frames: &[(i32, Range<usize>)], sou
 fn flip_all_over(bytes: &[u8], every_bit: usize) {
     let frames_at = frames(bytes);
     let sound = shown(&mut open(bytes));
-    // A killed run ends behind a frame. Then the last frames have nothing behind them that could be a copy, but need none.
+    // A killed run ends behind a frame. No copies follow the last frames, and none are needed.
     let killed = &bytes[..frames_at[frames_at.len() - 2].1.start];
     let shown_till_then = shown(&mut open(killed));
     assert_eq!(open(bytes).run().end, END);
@@ -111,7 +111,7 @@ fn a_flipped_bit_costs_only_its_frame_where_cloth_tears() {
 }
 
 #[test]
-fn a_hole_at_the_start_costs_only_the_frames_that_are_in_it() {
+fn a_hole_at_the_start_costs_only_the_frames_in_it() {
     let bytes = falling::whole_run(&falling::with_all_channels()).0;
     let sound = shown(&mut open(&bytes));
     for (frame, place) in frames(&bytes) {
@@ -121,11 +121,11 @@ fn a_hole_at_the_start_costs_only_the_frames_that_are_in_it() {
         let found = shown(&mut open(&holed));
         if frame <= SHOVE + 1 {
             assert!(found.iter().eq(kept.iter().copied()), "{frame}");
-            // The index at the end is gone too.
+            // The index at the end is lost too.
             holed.truncate(bytes.len() - 20);
             assert!(shown(&mut open(&holed)).iter().eq(kept), "{frame}");
         } else {
-            // Where the collider was shoved to is in the hole, twice. It is not shown anywhere else.
+            // Both copies of the collider's last position are lost, so no later frame is shown.
             assert_eq!(found, [], "{frame}");
         }
     }
@@ -140,7 +140,7 @@ fn a_cache_is_a_valid_mcap_file_whose_copies_are_valid_mcap_files() {
     }
     let messages = mcap::MessageStream::new(&bytes).unwrap().filter(|message| message.is_ok()).count() as u64;
     assert_eq!(messages, summary.stats.as_ref().unwrap().message_count);
-    // The start twice, and the mesh of each of two tears: the collider is shoved in the frame of the first.
+    // The start twice, and the mesh of each of two tears; the collider moves in the frame of the first tear.
     assert_eq!(summary.attachment_indexes.len(), 4);
     let mut topologies = Vec::new();
     for index in &summary.attachment_indexes {

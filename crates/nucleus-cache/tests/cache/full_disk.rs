@@ -1,4 +1,4 @@
-//! A disk that fills up is told with how far the run got, and what is on it plays.
+//! A full disk: the error states how far the run got, and the written frames play.
 
 use std::io::Cursor;
 
@@ -7,7 +7,7 @@ use nucleus_cache::{Playback, RecordError, Recorder};
 use crate::falling::{self, Shared};
 
 #[test]
-fn a_disk_full_at_any_byte_is_told_and_leaves_what_it_says() {
+fn a_disk_full_at_any_byte_keeps_the_frames_that_the_error_states() {
     let (bytes, recorded) = falling::whole_run(&falling::run_info());
     for room in 0..bytes.len() as u64 {
         let disk = Shared::with_room(room);
@@ -20,14 +20,15 @@ fn a_disk_full_at_any_byte_is_told_and_leaves_what_it_says() {
             panic!("{room} bytes of room: {result:?}");
         };
         assert!(bytes <= room);
-        let playable = Playback::read(Cursor::new(disk.contents())).map_or(0, |cache| cache.moments().len());
+        let playable =
+            Playback::read(Cursor::new(disk.contents())).map_or(0, |cache| cache.time_samples().len());
         assert!(playable >= frames as usize, "{room} bytes of room: {frames} promised, {playable} there");
         assert!(frames <= recorded.frames);
     }
 }
 
 #[test]
-fn the_message_says_how_far_the_run_got() {
+fn a_full_disk_error_states_the_written_frames_and_bytes() {
     let (bytes, _) = falling::whole_run(&falling::run_info());
     let disk = Shared::with_room(bytes.len() as u64 / 2);
     let mut recorder = Recorder::to_writer(disk, &falling::run_info(), falling::objects()).unwrap();

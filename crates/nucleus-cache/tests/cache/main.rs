@@ -1,4 +1,4 @@
-//! The cache as others use it: recorded, damaged, refused, and played back.
+//! The public interface of the cache: record, damage, refuse, play back.
 
 mod checkpoints;
 mod compared;

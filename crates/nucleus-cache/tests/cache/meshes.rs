@@ -1,9 +1,11 @@
-//! An object that gets another mesh on the way: torn, in two pieces, with more points than it began with.
+//! An object whose mesh changes: torn twice, with more points than before.
 
 use std::fs;
 use std::io::Cursor;
 
-use nucleus_cache::{Detail, Difference, Kept, Playback, ReadError, RecordError, Recorder, RunInfo, compare};
+use nucleus_cache::{
+    Detail, Difference, Playback, ReadError, RecordError, Recorder, ResumeRange, RunInfo, compare,
+};
 use nucleus_core::{Faces, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
@@ -15,32 +17,32 @@ fn open(bytes: &[u8]) -> Playback<Cursor<Vec<u8>>> {
 
 const DETAILS: [Detail; 3] = [Detail::Frames, Detail::Substeps, Detail::Every(4)];
 
-/// Tears up to a recorded moment; without substeps a moment is the end of its frame.
-fn tears_at(cache: &Playback<Cursor<Vec<u8>>>, moment: usize) -> usize {
-    let found = cache.moments()[moment];
+/// Number of tears at a recorded sample; without substeps a sample is the end of its frame.
+fn tears_at(cache: &Playback<Cursor<Vec<u8>>>, sample: usize) -> usize {
+    let found = cache.time_samples()[sample];
     tears(found.frame, if found.substeps == 1 { SUBSTEPS } else { found.substep })
 }
 
 #[test]
-fn each_moment_has_the_mesh_that_holds_then_and_as_many_points() {
+fn each_time_sample_has_its_mesh_and_as_many_points() {
     for detail in DETAILS {
         let mut cache = open(&recorded(&run_info(detail), END));
-        assert!(cache.verify().unwrap().is_none(), "{}", cache.loss());
-        // Forwards and backwards: a mesh that was asked for before is no hindrance.
-        let moments = (0..cache.moments().len()).chain((0..cache.moments().len()).rev());
-        for moment in moments.collect::<Vec<_>>() {
-            let expected = torn(tears_at(&cache, moment));
-            assert_eq!(cache.object_at(0, moment).unwrap(), &expected);
-            assert_eq!(cache.objects_at(moment).unwrap()[0], &expected);
+        assert!(cache.verify().unwrap().is_intact(), "{}", cache.corruption());
+        // Forwards and backwards, to test the mesh cache.
+        let samples = (0..cache.time_samples().len()).chain((0..cache.time_samples().len()).rev());
+        for sample in samples.collect::<Vec<_>>() {
+            let expected = torn(tears_at(&cache, sample));
+            assert_eq!(cache.object_at(0, sample).unwrap(), &expected);
+            assert_eq!(cache.objects_at(sample).unwrap()[0], &expected);
             let points = expected.rest.len();
-            assert_eq!(cache.positions(0, moment).unwrap().len(), points);
-            assert_eq!(cache.velocities(0, moment).unwrap().unwrap().len(), points);
-            assert_eq!(cache.contacts(0, moment).unwrap().unwrap().len(), points);
-            assert_eq!(cache.strain(0, moment).unwrap().unwrap().len(), points);
+            assert_eq!(cache.positions(0, sample).unwrap().len(), points);
+            assert_eq!(cache.velocities(0, sample).unwrap().unwrap().len(), points);
+            assert_eq!(cache.contacts(0, sample).unwrap().unwrap().len(), points);
+            assert_eq!(cache.strain(0, sample).unwrap().unwrap().len(), points);
         }
         assert_eq!(cache.objects()[0], torn(0));
         let changes: Vec<i32> =
-            cache.mesh_changes(0).iter().map(|&moment| cache.moments()[moment].frame).collect();
+            cache.mesh_changes(0).iter().map(|&sample| cache.time_samples()[sample].frame).collect();
         let expected = match detail {
             Detail::Every(_) => vec![START + 4, START + 8],
             _ => vec![START + 3, START + 5],
@@ -50,7 +52,7 @@ fn each_moment_has_the_mesh_that_holds_then_and_as_many_points() {
 }
 
 #[test]
-fn a_torn_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
+fn a_resumed_torn_run_writes_the_file_of_an_uninterrupted_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.mcap");
     for detail in DETAILS {
@@ -59,8 +61,8 @@ fn a_torn_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
         for last in CHECKPOINT..=END {
             fs::write(&path, recorded(&run, last)).unwrap();
             let old = Playback::open_to_resume(&path).unwrap();
-            let compared = old.moments().last().unwrap().frame.max(CHECKPOINT);
-            let kept = Kept { copied: CHECKPOINT, compared };
+            let compared = old.time_samples().last().unwrap().frame.max(CHECKPOINT);
+            let kept = ResumeRange { copied: CHECKPOINT, compared };
             let mut recorder = Recorder::resume(&path, true, &run, falling::objects(), old, kept).unwrap();
             record(&mut recorder, CHECKPOINT, END).unwrap();
             recorder.finish().unwrap();
@@ -70,7 +72,7 @@ fn a_torn_run_that_goes_on_gives_the_file_of_one_that_never_stopped() {
 }
 
 #[test]
-fn a_mesh_that_is_lost_with_its_copy_is_named_and_never_taken_for_another() {
+fn a_mesh_lost_with_its_copy_is_reported_and_never_confused_with_another() {
     let run = RunInfo { checkpoint: 0, ..run_info(Detail::Frames) };
     let mut bytes = falling::without_copies(&recorded(&run, END));
     let chunk = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[3].clone();
@@ -82,11 +84,11 @@ fn a_mesh_that_is_lost_with_its_copy_is_named_and_never_taken_for_another() {
     let cut = bytes.len() - 20;
     for bytes in [&bytes[..], &bytes[..cut], &file.contents()] {
         let mut cache = open(bytes);
-        for moment in 0..cache.moments().len() {
-            let frame = cache.moments()[moment].frame;
-            match cache.positions(0, moment) {
+        for sample in 0..cache.time_samples().len() {
+            let frame = cache.time_samples()[sample].frame;
+            match cache.positions(0, sample) {
                 Ok(positions) => {
-                    assert_eq!(positions.len(), cache.object_at(0, moment).unwrap().rest.len());
+                    assert_eq!(positions.len(), cache.object_at(0, sample).unwrap().rest.len());
                     assert!(!(START + 3..START + 5).contains(&frame), "{frame}");
                 }
                 Err(ReadError::MeshLost { object, .. }) => assert_eq!(object, CLOTH),
@@ -99,7 +101,7 @@ fn a_mesh_that_is_lost_with_its_copy_is_named_and_never_taken_for_another() {
 }
 
 #[test]
-fn a_torn_file_cut_off_anywhere_is_recovered_with_all_that_it_still_had() {
+fn recovery_keeps_every_whole_frame_of_a_truncated_torn_run() {
     let bytes = recorded(&run_info(Detail::Substeps), END);
     let file = Shared::default();
     open(&bytes).recover(file.clone()).unwrap();
@@ -109,7 +111,7 @@ fn a_torn_file_cut_off_anywhere_is_recovered_with_all_that_it_still_had() {
         let file = Shared::default();
         damaged.recover(file.clone()).unwrap();
         let comparison = compare(&mut damaged, &mut open(&file.contents()), 0.0).unwrap();
-        assert_eq!((comparison.differences, comparison.moments), (vec![], damaged.moments().len()));
+        assert_eq!((comparison.differences, comparison.time_samples), (vec![], damaged.time_samples().len()));
     }
 }
 
@@ -128,14 +130,14 @@ fn a_torn_run_differs_from_a_whole_one_where_it_tears() {
 }
 
 #[test]
-fn meshes_that_cannot_be_and_objects_that_are_not_there_are_refused() {
-    let moment = SubstepIndex { substep: 1, substeps: 1 };
+fn invalid_meshes_and_unknown_objects_are_refused() {
+    let sample = SubstepIndex { substep: 1, substeps: 1 };
     let refusal = |name: &str, corner: u32| {
         let mut recorder =
             Recorder::to_writer(Shared::default(), &falling::run_info(), falling::objects()).unwrap();
         recorder.record_start(&Falling::INITIAL).unwrap();
         let faces = Faces::from_iter([&[0, 1, corner][..]]);
-        recorder.frame(START + 1).unwrap().change_mesh(moment, name, faces, vec![[0.0; 3]; 3]);
+        recorder.frame(START + 1).unwrap().change_mesh(sample, name, faces, vec![[0.0; 3]; 3]);
         recorder.end_frame(&()).map_err(|error| error.to_string())
     };
     assert_eq!(refusal("floor", 2), Ok(()));

@@ -1,4 +1,4 @@
-//! What is refused, and in which words.
+//! Refused files and runs, and their error messages.
 
 use std::fs;
 use std::io::Cursor;
@@ -16,7 +16,7 @@ fn create_error(path: &Path) -> RecordError {
     Recorder::create(path, &falling::run_info(), falling::objects()).err().expect("it should be refused")
 }
 
-/// A cache of one frame, which has no copies yet, whose bytes have `from` exchanged for `to`, of the same length.
+/// A cache of one frame, without copies, in which `from` is replaced by `to` of the same length.
 fn forged(from: &str, to: &str) -> Result<Playback<Cursor<Vec<u8>>>, OpenError> {
     let (mut bytes, _) = falling::whole_run(&falling::run_info());
     let first = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes[0].clone();
@@ -27,7 +27,7 @@ fn forged(from: &str, to: &str) -> Result<Playback<Cursor<Vec<u8>>>, OpenError> 
 }
 
 #[test]
-fn a_missing_file_a_folder_and_an_empty_file_are_told_apart() {
+fn a_missing_file_a_folder_and_an_empty_file_have_different_errors() {
     let folder = tempfile::tempdir().unwrap();
     let empty = folder.path().join("empty.mcap");
     fs::write(&empty, "").unwrap();
@@ -54,15 +54,15 @@ fn an_mcap_file_of_another_tool_is_refused_by_name() {
 }
 
 #[test]
-fn a_later_layout_is_refused_with_both_versions() {
-    // The key's length, the key, the value's length, the value.
+fn a_later_format_version_is_refused_with_both_versions() {
+    // Length of the key, key, length of the value, value.
     let error = forged("format\u{1}\0\0\x001", "format\u{1}\0\0\x007").err().unwrap();
     let OpenError::Newer { format, known, .. } = error else { panic!("{error}") };
     assert_eq!((format, known), (7, 1));
 }
 
 #[test]
-fn a_cache_is_replaced_only_when_that_is_asked_for_and_any_other_file_never() {
+fn a_cache_is_replaced_only_on_request_and_any_other_file_never() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
     let older = falling::whole_run(&falling::with_substeps()).0;
@@ -83,16 +83,16 @@ fn a_cache_is_replaced_only_when_that_is_asked_for_and_any_other_file_never() {
 }
 
 #[test]
-fn a_cache_has_its_name_when_it_is_whole_and_not_before() {
+fn a_cache_gets_its_name_only_when_it_is_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
-    let growing = nucleus_cache::unfinished(&path);
+    let growing = nucleus_cache::part_path(&path);
     let mut recorder = Recorder::create(&path, &falling::run_info(), falling::objects()).unwrap();
     falling::record(&mut recorder, falling::START + 3).unwrap();
     assert!(!path.exists());
-    assert_eq!(Playback::open(&growing).unwrap().moments().len(), 4, "it can be read while it grows");
+    assert_eq!(Playback::open(&growing).unwrap().time_samples().len(), 4, "it can be read while it grows");
     assert!(matches!(create_error(&path), RecordError::InUse { .. }));
-    drop(recorder); // as after a kill
+    drop(recorder); // like a kill
     assert!(matches!(create_error(&path), RecordError::Unfinished { .. }));
     let mut recorder = Recorder::replace(&path, &falling::run_info(), falling::objects()).unwrap();
     falling::record(&mut recorder, falling::END).unwrap();
@@ -102,12 +102,12 @@ fn a_cache_has_its_name_when_it_is_whole_and_not_before() {
 
 #[cfg(unix)]
 #[test]
-fn a_folder_that_cannot_be_written_to_is_told_by_the_system() {
+fn a_read_only_folder_gives_the_error_of_the_system() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
     let path = folder.path().join("run.mcap");
-    // Whoever may do everything is not stopped by permissions.
+    // The superuser ignores permissions.
     if fs::write(folder.path().join("probe"), "").is_err() {
         assert!(matches!(create_error(&path), RecordError::Create { .. }));
     }
@@ -115,7 +115,7 @@ fn a_folder_that_cannot_be_written_to_is_told_by_the_system() {
 }
 
 #[test]
-fn an_impossible_run_is_refused_before_a_file_is_made() {
+fn an_invalid_run_is_refused_before_a_file_is_created() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
     let run = RunInfo { frames_per_second: 0.0, ..falling::run_info() };
@@ -136,7 +136,7 @@ fn a_frame_out_of_order_is_refused() {
 }
 
 #[test]
-fn an_object_of_another_size_is_named() {
+fn an_object_with_another_number_of_points_is_named() {
     let disk = falling::Shared::default();
     let mut objects = falling::objects();
     objects[1].1.rest.push([0.0; 3]);

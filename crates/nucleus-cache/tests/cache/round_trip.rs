@@ -1,4 +1,4 @@
-//! What is recorded is what is played.
+//! Playback returns what the recorder was given.
 
 use std::io::Cursor;
 
@@ -15,25 +15,25 @@ fn open(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
 #[test]
 fn every_frame_comes_back_bit_for_bit() {
     let mut cache = open(&falling::run_info());
-    assert_eq!(cache.moments().len() as i32, END - START + 1);
+    assert_eq!(cache.time_samples().len() as i32, END - START + 1);
     assert_eq!(cache.positions(0, 0).unwrap(), Falling::INITIAL.cloth_positions(100.0));
     for frame in START + 1..=END {
-        let moment = cache.end_of(frame).unwrap();
+        let sample = cache.end_of(frame).unwrap();
         let expected = Falling { frame, substep: SUBSTEPS }.cloth_positions(100.0);
-        assert_eq!(cache.positions(0, moment).unwrap(), expected, "frame {frame}");
+        assert_eq!(cache.positions(0, sample).unwrap(), expected, "frame {frame}");
     }
-    assert!(cache.loss().is_none(), "{}", cache.loss());
+    assert!(cache.corruption().is_intact(), "{}", cache.corruption());
 }
 
 #[test]
 fn every_substep_comes_back_with_its_velocities() {
     let mut cache = open(&falling::with_substeps());
-    assert_eq!(cache.moments().len() as i32, 1 + (END - START) * SUBSTEPS as i32);
-    for moment in 1..cache.moments().len() {
-        let (frame, substep) = (cache.moments()[moment].frame, cache.moments()[moment].substep);
+    assert_eq!(cache.time_samples().len() as i32, 1 + (END - START) * SUBSTEPS as i32);
+    for sample in 1..cache.time_samples().len() {
+        let (frame, substep) = (cache.time_samples()[sample].frame, cache.time_samples()[sample].substep);
         let state = Falling { frame, substep };
-        assert_eq!(cache.positions(0, moment).unwrap(), state.cloth_positions(100.0));
-        let velocities = cache.velocities(0, moment).unwrap().unwrap();
+        assert_eq!(cache.positions(0, sample).unwrap(), state.cloth_positions(100.0));
+        let velocities = cache.velocities(0, sample).unwrap().unwrap();
         assert_eq!(velocities[2], [0.0, -100.0 * frame as f32, 200.0]);
     }
 }
@@ -42,9 +42,9 @@ fn every_substep_comes_back_with_its_velocities() {
 fn contacts_and_strain_come_back_where_they_were_recorded() {
     let mut cache = open(&falling::with_all_channels());
     assert_eq!(cache.run(), &falling::with_all_channels());
-    for moment in 1..cache.moments().len() {
-        let contacts = cache.contacts(0, moment).unwrap().unwrap();
-        let first = if cache.moments()[moment].frame >= SHOVE {
+    for sample in 1..cache.time_samples().len() {
+        let contacts = cache.contacts(0, sample).unwrap().unwrap();
+        let first = if cache.time_samples()[sample].frame >= SHOVE {
             ContactState::Depenetrating
         } else {
             ContactState::Free
@@ -53,8 +53,8 @@ fn contacts_and_strain_come_back_where_they_were_recorded() {
             contacts,
             [first, ContactState::Touching, ContactState::Compressed, ContactState::Intersecting]
         );
-        // The cloth is recorded in centimetres, a hundred times as large as it says it is at rest.
-        assert_eq!(cache.strain(0, moment).unwrap().unwrap(), [99.0; 4]);
+        // The cloth is recorded in centimetres, a hundred times as large as its rest mesh.
+        assert_eq!(cache.strain(0, sample).unwrap().unwrap(), [99.0; 4]);
     }
     assert_eq!((cache.contacts(1, 3).unwrap(), cache.strain(1, 3).unwrap()), (None, None), "of a collider");
     let mut plain = open(&falling::run_info());
@@ -63,17 +63,17 @@ fn contacts_and_strain_come_back_where_they_were_recorded() {
 }
 
 #[test]
-fn a_moment_knows_its_frame_substep_and_time() {
+fn a_time_sample_has_frame_substep_and_time() {
     let cache = open(&falling::with_substeps());
-    let first = cache.moments()[0];
+    let first = cache.time_samples()[0];
     assert_eq!((first.frame, first.substep, first.time), (START, 0, 0.0));
-    let third = cache.moments()[1 + SUBSTEPS as usize];
+    let third = cache.time_samples()[1 + SUBSTEPS as usize];
     assert_eq!((third.frame, third.substep, third.substeps), (START + 2, 1, SUBSTEPS));
     assert!((third.time - (1.0 + 1.0 / f64::from(SUBSTEPS)) / 24.0).abs() < 1e-9);
 }
 
 #[test]
-fn what_was_said_of_run_and_objects_comes_back() {
+fn metadata_and_objects_come_back() {
     let cache = open(&falling::run_info());
     assert_eq!(cache.run(), &falling::run_info());
     let objects: Vec<_> = falling::objects().into_iter().map(|(_, object)| object).collect();
@@ -100,7 +100,7 @@ fn each_frame_has_its_report() {
 }
 
 #[test]
-fn a_report_counts_the_points_on_each_rung_where_contacts_are_recorded() {
+fn a_report_counts_points_by_contact_state_where_contacts_are_recorded() {
     for report in open(&falling::with_all_channels()).reports().unwrap() {
         assert_eq!((&report["touching"], &report["pinched"]), (&1.into(), &1.into()), "{report}");
     }
@@ -114,13 +114,13 @@ fn the_same_run_gives_the_same_bytes() {
 }
 
 #[test]
-fn the_size_that_is_told_is_the_size_of_the_file() {
+fn the_returned_size_is_the_size_of_the_file() {
     let (bytes, recorded) = falling::whole_run(&falling::run_info());
     assert_eq!(recorded.bytes, bytes.len() as u64);
     assert_eq!(recorded.frames as i32, END - START + 1);
 }
 
-/// What the player in the browser relies on; read with nothing but the `mcap` crate.
+/// The browser's player relies on this; read with the `mcap` crate only.
 #[test]
 fn any_mcap_reader_finds_channels_schemas_and_one_chunk_per_frame() {
     let (bytes, _) = falling::whole_run(&falling::run_info());
@@ -137,25 +137,25 @@ fn any_mcap_reader_finds_channels_schemas_and_one_chunk_per_frame() {
 }
 
 #[test]
-fn every_third_frame_and_the_last_are_recorded_and_what_moved_between_is_not_forgotten() {
-    // The collider moves in the third frame after the start, which is recorded, or in one before or after.
+fn every_nth_frame_and_the_last_are_recorded_with_all_motion_between_them() {
+    // The collider moves in the third frame after the start: in a recorded frame, or in one before or after it.
     for n in [2, 3, 4, 5] {
         let run = RunInfo { detail: Detail::Every(n), ..falling::run_info() };
         let mut cache = open(&run);
-        let frames: Vec<i32> = cache.moments().iter().map(|moment| moment.frame).collect();
+        let frames: Vec<i32> = cache.time_samples().iter().map(|sample| sample.frame).collect();
         let mut expected: Vec<i32> = (START..=END).step_by(n as usize).collect();
         if expected.last() != Some(&END) {
             expected.push(END);
         }
         assert_eq!(frames, expected);
-        assert!(cache.loss().is_none(), "{}", cache.loss());
-        for moment in 0..frames.len() {
-            let shoved = if frames[moment] >= SHOVE { 100.0 } else { 0.0 };
+        assert!(cache.corruption().is_intact(), "{}", cache.corruption());
+        for sample in 0..frames.len() {
+            let shoved = if frames[sample] >= SHOVE { 100.0 } else { 0.0 };
             assert_eq!(
-                cache.positions(1, moment).unwrap()[0][0],
+                cache.positions(1, sample).unwrap()[0][0],
                 shoved,
                 "every {n}, frame {}",
-                frames[moment]
+                frames[sample]
             );
         }
         assert_eq!(cache.reports().unwrap().len() as i32, END - START, "reports are of every frame");

@@ -1,4 +1,4 @@
-//! A run for the tests in which the falling cloth tears twice: it gets another mesh, with more points than before.
+//! A run for the tests in which the falling cloth tears twice; each tear gives it a mesh with one more point.
 
 use std::io::{Seek, Write};
 
@@ -8,18 +8,18 @@ use nucleus_core::{ClothId, ColliderId, ContactState, Faces, StateView, StepObse
 
 use crate::falling::{self, Falling, START, SUBSTEPS, Shared};
 
-/// The cloth tears in the second substep of the first and at the beginning of the other.
+/// Frame and substep of the tears.
 const TEARS: [(i32, u32); 2] = [(START + 3, 2), (START + 5, 1)];
 pub const CLOTH: &str = "a|b:cloth/1 \u{e4}";
-/// The checkpoint that a resumed run goes on from.
+/// Frame of the checkpoint that a run resumes from.
 pub const CHECKPOINT: i32 = START + 3;
 
-/// How many tears there have been by the end of a substep.
+/// Number of tears by the end of a substep.
 pub fn tears(frame: i32, substep: u32) -> usize {
     TEARS.iter().filter(|&&tear| tear <= (frame, substep)).count()
 }
 
-/// The cloth after so many tears: each gives it a point more, and the faces other corners.
+/// The cloth after `tears` tears: each adds a point and changes the faces.
 pub fn torn(tears: usize) -> ObjectInfo {
     let mut cloth = falling::objects()[0].1.clone();
     cloth.faces = match tears {
@@ -66,12 +66,12 @@ pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, from: i32, last: i32)
     for frame in from + 1..=last {
         let mut observer = recorder.frame(frame)?;
         for substep in 1..=SUBSTEPS {
-            let moment = SubstepIndex { substep, substeps: SUBSTEPS };
+            let sample = SubstepIndex { substep, substeps: SUBSTEPS };
             if TEARS.contains(&(frame, substep)) {
                 let ObjectInfo { faces, rest, .. } = torn(tears(frame, substep));
-                observer.change_mesh(moment, CLOTH, faces, rest);
+                observer.change_mesh(sample, CLOTH, faces, rest);
             }
-            observer.substep(moment, &Torn(Falling { frame, substep }));
+            observer.substep(sample, &Torn(Falling { frame, substep }));
         }
         recorder.end_frame(&())?;
         if frame == CHECKPOINT {
@@ -81,12 +81,12 @@ pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, from: i32, last: i32)
     Ok(())
 }
 
-/// All channels, and a checkpoint at [`CHECKPOINT`].
+/// All attributes, and a checkpoint at [`CHECKPOINT`].
 pub fn run_info(detail: Detail) -> RunInfo {
     RunInfo { detail, checkpoint: (CHECKPOINT - START) as u32, ..falling::with_all_channels() }
 }
 
-/// A whole run in memory, up to a frame.
+/// A run in memory, up to frame `last`.
 pub fn recorded(run: &RunInfo, last: i32) -> Vec<u8> {
     let file = Shared::default();
     let mut recorder = Recorder::to_writer(file.clone(), run, falling::objects()).unwrap();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use nucleus_cache::{Detail, Loss, ObjectInfo, ObjectKind, Playback, Sizes};
+use nucleus_cache::{CorruptionReport, Detail, ObjectInfo, ObjectKind, Playback, Sizes};
 use serde_json::json;
 
 use crate::figures;
@@ -31,7 +31,7 @@ pub fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<St
         }
         None => writeln!(text, "  packed      not counted in a file of this size; --verify does")?,
     }
-    writeln!(text, "  lost        {}", lost(cache.loss(), sizes.is_some()))?;
+    writeln!(text, "  lost        {}", lost(cache.corruption(), sizes.is_some()))?;
     if let Some(last) = cache.checkpoints().last() {
         let (count, size) = (cache.checkpoints().len(), figures::bytes(cache.checkpoint_bytes()));
         writeln!(
@@ -80,7 +80,7 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
                 "points": object.rest.len(),
                 "faces": object.faces.len(),
                 "size_metres": size(object, run.units_per_metre),
-                "mesh_changes": cache.mesh_changes(place).iter().map(|&at| cache.moments()[at].frame).collect::<Vec<_>>(),
+                "mesh_changes": cache.mesh_changes(place).iter().map(|&at| cache.time_samples()[at].frame).collect::<Vec<_>>(),
             })
         })
         .collect();
@@ -88,7 +88,7 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         .channels()
         .map(|(topic, encoding, messages)| json!({ "topic": topic, "encoding": encoding, "messages": messages, "bytes": channel_bytes(sizes, topic) }))
         .collect();
-    let loss = cache.loss();
+    let loss = cache.corruption();
     json!({
         "scene": run.scene_path,
         "written_by": cache.library(),
@@ -96,10 +96,10 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "frames": {
             "start": run.start,
             "end": run.end,
-            "last": cache.moments().last().map(|moment| moment.frame),
+            "last": cache.time_samples().last().map(|moment| moment.frame),
             "per_second": run.frames_per_second,
         },
-        "moments": cache.moments().len(),
+        "moments": cache.time_samples().len(),
         "record": detail(cache),
         "velocities": run.velocities,
         "contacts": run.contacts,
@@ -108,9 +108,9 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "bytes": cache.bytes(),
         "loss": {
             // Only who has read every frame knows.
-            "none": if loss.is_none() && sizes.is_none() { None } else { Some(loss.is_none()) },
+            "none": if loss.is_intact() && sizes.is_none() { None } else { Some(loss.is_intact()) },
             "verified": sizes.is_some(),
-            "cut_off": loss.cut_off,
+            "cut_off": loss.truncated,
             "index": loss.index,
             "scene": loss.scene,
             "bytes": loss.bytes,
@@ -133,8 +133,8 @@ pub fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
 }
 
 /// What is lost, as far as that is known: frames are, once every one of them has been read.
-fn lost(loss: &Loss, is_verified: bool) -> String {
-    match (is_verified, loss.is_none()) {
+fn lost(loss: &CorruptionReport, is_verified: bool) -> String {
+    match (is_verified, loss.is_intact()) {
         (true, _) => loss.to_string(),
         (false, true) => "not verified; --verify reads every frame".to_owned(),
         (false, false) => format!("{loss}; frames not verified, --verify reads them all"),
@@ -144,7 +144,7 @@ fn lost(loss: &Loss, is_verified: bool) -> String {
 /// `1 to 48 at 24 a second; 120 was asked for`.
 fn frames(cache: &Playback) -> String {
     let run = cache.run();
-    let Some((first, last)) = cache.moments().first().zip(cache.moments().last()) else {
+    let Some((first, last)) = cache.time_samples().first().zip(cache.time_samples().last()) else {
         return "none".to_owned();
     };
     let rate = figures::number(run.frames_per_second);
@@ -172,7 +172,7 @@ fn channel_bytes(sizes: Option<&Sizes>, topic: &str) -> Option<u64> {
 fn changes(cache: &Playback, object: usize) -> String {
     let changes = cache.mesh_changes(object);
     let Some(&first) = changes.first() else { return String::new() };
-    let (times, frame) = (figures::count(changes.len(), "time"), cache.moments()[first].frame);
+    let (times, frame) = (figures::count(changes.len(), "time"), cache.time_samples()[first].frame);
     format!("; its mesh changes {times}, first in frame {frame}")
 }
 
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn nothing_is_said_to_be_whole_that_was_not_read() {
-        let none = Loss::default();
+        let none = CorruptionReport::default();
         assert_eq!(lost(&none, true), "nothing is lost");
         assert_eq!(lost(&none, false), "not verified; --verify reads every frame");
     }

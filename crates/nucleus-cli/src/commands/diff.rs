@@ -14,6 +14,7 @@ use crate::{cache_file, figures, output};
 /// Compares two caches: names the first frame, substep, object and point that differ, and the largest distance.
 ///
 /// Exits with 0 if they show the same and with 1 if they do not. How finely time was recorded makes no difference.
+/// A damaged frame is named and counts as a difference; all others are compared.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// A cache (.mcap).
@@ -42,7 +43,7 @@ impl Diff {
     }
 
     fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
-        let moments = figures::count(comparison.moments, "moment");
+        let moments = figures::count(comparison.time_samples, "moment");
         if comparison.differences.is_empty() {
             let how = if self.tolerance > 0.0 { "within the tolerance" } else { "in every bit" };
             return Ok(format!("the same {how}, {moments} compared\n"));
@@ -76,8 +77,11 @@ impl Diff {
                     "object `{name}` has other faces or another number of points at frame {frame} substep {substep}"
                 )
             }
-            Difference::Moment { frame, in_first, .. } => {
+            Difference::TimeSample { frame, in_first, .. } => {
                 format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
+            }
+            Difference::Damaged { frame, in_first } => {
+                format!("frame {frame} of `{}` is damaged and was not compared", name(in_first))
             }
             Difference::Points(found) => format!(
                 "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
@@ -114,15 +118,18 @@ fn as_json(comparison: &Comparison) -> Value {
         Difference::Mesh { name, frame, substep } => {
             json!({ "mesh": name, "frame": frame, "substep": substep })
         }
-        Difference::Moment { frame, substep, in_first } => {
+        Difference::TimeSample { frame, substep, in_first } => {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
+        }
+        Difference::Damaged { frame, in_first } => {
+            json!({ "damaged": { "frame": frame }, "in": 1 + u8::from(!in_first) })
         }
         Difference::Points(found) => json!({ "points": points(found) }),
         _ => Value::Null,
     });
     json!({
         "same": comparison.differences.is_empty(),
-        "moments": comparison.moments,
+        "moments": comparison.time_samples,
         "differences": differences.collect::<Vec<_>>(),
         "rms": comparison.rms,
         "largest": comparison.largest.as_ref().map(points),

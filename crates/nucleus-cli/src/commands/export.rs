@@ -86,7 +86,7 @@ impl Export {
     pub fn run(self) -> Result<Outcome> {
         let mut cache = cache_file::open_and_warn(&self.file)?;
         let (format, out) = self.target()?;
-        let start = cache.moments().first().context("the cache holds no frame")?.frame;
+        let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let frames = self.frames.map(|frames| frames.within(start).context("there are not so many frames"));
         let selection = Selection {
             objects: self.object.clone(),

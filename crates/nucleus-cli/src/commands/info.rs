@@ -49,7 +49,7 @@ impl Info {
                 sizes.as_ref(),
             )?)?,
         }
-        Ok(if cache.loss().is_none() { Outcome::Fine } else { Outcome::Trouble })
+        Ok(if cache.corruption().is_intact() { Outcome::Fine } else { Outcome::Trouble })
     }
 
     fn scene(&self) -> Result<Outcome> {

@@ -39,7 +39,9 @@ impl Recover {
             let simulation = Simulation::new(&program, 1);
             let run = recording::of_scene(&simulation, (scene, &text))?;
             let objects = recording::objects(&simulation).into_iter().map(|(_, object)| object).collect();
-            cache.supply(&run, objects).map_err(|fault| anyhow!("`{}`: {fault}", scene.display()))?;
+            cache
+                .restore_from_scene(&run, objects)
+                .map_err(|fault| anyhow!("`{}`: {fault}", scene.display()))?;
         }
         let out = self.out()?;
         ensure!(out != self.file, "a damaged file is not overwritten; give another name with `-o`");
@@ -63,16 +65,16 @@ impl Recover {
         fs::rename(&beside, &out).with_context(|| format!("cannot write `{}`", out.display()))?;
         let frames = figures::count(recovered.frames, "frame");
         let size = figures::bytes(recovered.bytes);
-        let loss = cache.loss();
+        let loss = cache.corruption();
         output::tell(&format!(
             "`{}`: {loss}\n{frames} in `{}` ({size})\n",
             self.file.display(),
             out.display()
         ));
-        if let Some(gone) = loss.for_good() {
+        if let Some(gone) = loss.unrecoverable() {
             output::tell(&format!("lost for good: {gone}\n"));
         }
-        Ok(if loss.for_good().is_some() { Outcome::Trouble } else { Outcome::Fine })
+        Ok(if loss.unrecoverable().is_some() { Outcome::Trouble } else { Outcome::Fine })
     }
 
     fn out(&self) -> Result<PathBuf> {

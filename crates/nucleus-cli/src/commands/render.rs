@@ -80,17 +80,17 @@ impl Render {
 
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = cache_file::moment(cache, self.frame)?;
-        let frame = cache.moments()[moment].frame;
+        let frame = cache.time_samples()[moment].frame;
         let camera = self.seen_from(camera(cache, moment, self.size)?);
         // The floor is that of the whole run, found from a few of its frames.
-        let (every, scene_camera) = (cache.moments().len() / 24, self.scene_camera(cache)?);
+        let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
         let film = Film::of(cache, every, self.style())?.seen_by(camera);
         film::picture(&look_through(film, scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
     }
 
     fn film(&self, cache: &mut Playback, out: &Path, way: Way) -> Result<String> {
-        let start = cache.moments().first().context("the cache holds no frame")?.frame;
+        let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let scene_camera = self.scene_camera(cache)?;
         let mut film = Film::of(cache, self.every as usize, self.style())?;
         if let Some(frames) = self.frames {

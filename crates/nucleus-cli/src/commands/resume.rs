@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use nucleus_cache::{Kept, RecordError, Recorder, RunInfo};
+use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo};
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
 
@@ -94,12 +94,12 @@ impl Resume {
         let objects = recording::sources(&simulation, old.cache.objects().to_vec());
         let help = self.help(&old, copied);
         let start_is_lost = old.lost().contains(&start);
-        let kept = Kept { copied: if start_is_lost { start - 1 } else { copied }, compared };
+        let kept = ResumeRange { copied: if start_is_lost { start - 1 } else { copied }, compared };
         let mut recorder = Recorder::resume(&out, replace, &run, objects, old.cache, kept)?;
         if start_is_lost {
             recorder.record_start(simulation.state())?;
         }
-        if recorder.wants_checkpoint() {
+        if recorder.checkpoint_due() {
             recorder.record_checkpoint(&simulation.save())?; // that of the start was lost
         }
         let frames = end.abs_diff(copied);
@@ -109,11 +109,11 @@ impl Resume {
         let is_refusal = |error: &anyhow::Error| {
             matches!(
                 error.downcast_ref(),
-                Some(RecordError::Differs { .. } | RecordError::NotCaughtUp { .. })
+                Some(RecordError::ReplayMismatch { .. } | RecordError::ReplayIncomplete { .. })
             )
         };
         session.run(is_refusal).map_err(|error| match error.downcast_ref() {
-            Some(RecordError::Differs { .. }) => error.context(help),
+            Some(RecordError::ReplayMismatch { .. }) => error.context(help),
             _ => error,
         })
     }

@@ -140,6 +140,23 @@ fn damage_a_frame(path: &std::path::Path) {
 }
 
 #[test]
+fn diff_names_a_damaged_frame_and_compares_the_others() {
+    let folder = folder();
+    let path = cache(folder.path());
+    fs::copy(&path, folder.path().join("sound.mcap")).unwrap();
+    damage_a_frame(&path);
+    let frame = nucleus_cache::Playback::open(&path).unwrap().verify().unwrap().frames[0];
+    let output = nucleus(folder.path(), &["diff", "sound.mcap", "fall.mcap"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let expected = format!("frame {frame} of `fall.mcap` is damaged and was not compared\n");
+    assert_eq!(stdout(&output), expected);
+    let json = nucleus(folder.path(), &["diff", "sound.mcap", "fall.mcap", "--json"]);
+    let said: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(said["differences"], serde_json::json!([{ "damaged": { "frame": frame }, "in": 2 }]));
+    assert_eq!(said["moments"], END - 1);
+}
+
+#[test]
 fn a_damaged_frame_is_told_once_by_recover_and_without_being_asked_by_info() {
     let folder = folder();
     let path = cache(folder.path());
@@ -194,5 +211,5 @@ fn a_cache_that_has_lost_its_start_is_recovered_with_the_meshes_of_its_scene() {
     let cache = nucleus_cache::Playback::open(folder.path().join("meshes.mcap")).unwrap();
     assert_eq!((cache.objects()[0].name.as_str(), cache.objects()[0].faces.len()), ("cloth1", 36));
     assert_eq!((cache.run().units_per_metre, cache.run().start), (100.0, 1));
-    assert!(cache.moments().len() >= 4, "{}", cache.loss());
+    assert!(cache.time_samples().len() >= 4, "{}", cache.corruption());
 }

@@ -18,7 +18,8 @@ fn long_run(folder: &Path) -> Child {
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let begin = Instant::now();
     // A cache can be read while it is written.
-    let frames = || Playback::open(folder.join("drape.mcap.part")).map_or(0, |cache| cache.moments().len());
+    let frames =
+        || Playback::open(folder.join("drape.mcap.part")).map_or(0, |cache| cache.time_samples().len());
     while frames() < 4 {
         assert!(begin.elapsed() < Duration::from_secs(60), "the run does not begin");
         sleep(Duration::from_millis(5));
@@ -38,10 +39,10 @@ fn a_killed_run_leaves_a_cache_that_plays() {
     run.kill().unwrap();
     run.wait().unwrap();
     let mut cache = Playback::open(folder.path().join("drape.mcap.part")).unwrap();
-    let last = cache.moments().len() - 1;
+    let last = cache.time_samples().len() - 1;
     assert!(last >= 3);
     assert!(cache.positions(0, last).unwrap().iter().flatten().all(|x| x.is_finite()));
-    assert!(cache.loss().cut_off);
+    assert!(cache.corruption().truncated);
     assert_eq!(nucleus(folder.path(), &["info", "drape.mcap.part"]).status.code(), Some(1));
     let asked = nucleus(folder.path(), &["info", "drape.mcap"]);
     assert_refused(&asked, "`nucleus recover drape.mcap.part` makes it whole");
@@ -50,7 +51,7 @@ fn a_killed_run_leaves_a_cache_that_plays() {
     let recovered = nucleus(folder.path(), &["recover", "drape.mcap.part"]);
     assert_eq!(recovered.status.code(), Some(0), "{}", stderr(&recovered));
     let whole = Playback::open(folder.path().join("drape.mcap")).unwrap();
-    assert_eq!((whole.moments().len(), whole.loss().is_none()), (last + 1, true));
+    assert_eq!((whole.time_samples().len(), whole.corruption().is_intact()), (last + 1, true));
 }
 
 #[test]
@@ -100,7 +101,7 @@ fn stopped_within_a_frame(folder: &Path, substeps: u32, record: &str) -> Output 
 }
 
 fn last_frame(cache: &Playback) -> i32 {
-    cache.moments().last().map_or(0, |moment| moment.frame)
+    cache.time_samples().last().map_or(0, |moment| moment.frame)
 }
 
 /// Goes on with what an interrupted run has left, and holds the cache to that of a run that was not.

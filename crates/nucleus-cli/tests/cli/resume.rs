@@ -215,7 +215,8 @@ mod killed {
         run.args(arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
         let child = run.spawn().unwrap();
         let begin = Instant::now();
-        let count = || Playback::open(folder.join("x.mcap.part")).map_or(0, |cache| cache.moments().len());
+        let count =
+            || Playback::open(folder.join("x.mcap.part")).map_or(0, |cache| cache.time_samples().len());
         while count() < frames {
             assert!(begin.elapsed() < Duration::from_secs(60), "the run does not come so far");
             sleep(Duration::from_millis(2));
@@ -229,7 +230,7 @@ mod killed {
         scene(folder.path(), 1_000_000, "");
         let last = || {
             let cache = Playback::open(folder.path().join("x.mcap.part")).unwrap();
-            cache.moments().last().unwrap().frame
+            cache.time_samples().last().unwrap().frame
         };
         let run = ["run", "drape.ron", "--checkpoint", "5", "-o", "x.mcap"];
         let mut child = until(folder.path(), &run, 8);

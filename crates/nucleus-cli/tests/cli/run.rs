@@ -17,8 +17,8 @@ fn a_run_records_a_cache_and_tells_how_to_watch_it() {
     assert!(said.contains("check noPenetration: passed") && said.contains("check finite: passed"), "{said}");
     assert!(said.contains("`nucleus play drape.mcap`"), "{said}");
     let cache = nucleus_cache::Playback::open(folder.path().join("drape.mcap")).unwrap();
-    assert!(cache.loss().is_none());
-    assert_eq!((cache.moments().len(), cache.run().scene_path.as_str()), (5, "drape.ron"));
+    assert!(cache.corruption().is_intact());
+    assert_eq!((cache.time_samples().len(), cache.run().scene_path.as_str()), (5, "drape.ron"));
     let names: Vec<_> = cache.objects().iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names, ["cloth1", "rigid1"]);
 }
@@ -63,7 +63,7 @@ fn frames_and_what_is_recorded_can_be_chosen() {
         let output =
             nucleus(folder.path(), &[&["run", "drape.ron", "-o", "x.mcap", "--force"], arguments].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        nucleus_cache::Playback::open(folder.path().join("x.mcap")).unwrap().moments().len()
+        nucleus_cache::Playback::open(folder.path().join("x.mcap")).unwrap().time_samples().len()
     };
     assert_eq!(moments(&["--frames", "3"]), 3);
     assert_eq!(moments(&["--frames", "2..9"]), 8);

@@ -104,10 +104,12 @@ fn objects_that_do_not_collide_and_pinned_points_are_not_audited() {
     let mut run = Simulation::<f64>::new(&program, 1);
     run.begin_audit(Closeness::Steps);
     let pins = run.next_pins();
-    let world =
-        World::new(vec![Body { points: 49, ..Body::default() }, Body { points: 86, ..Body::default() }]);
-    let mut all = Rules::default();
-    (0..135).for_each(|point| all.hold(point));
+    let world = CollisionMesh::new(vec![
+        Body { points: 49, ..Body::default() },
+        Body { points: 86, ..Body::default() },
+    ]);
+    let mut all = CollisionFilter::default();
+    (0..135).for_each(|point| all.set_kinematic(point));
     all.ignore(1, 1); // as Maya makes an nRigid
     assert_eq!(collision_rules(&program, 2, &pins, &world), all);
 }

@@ -39,7 +39,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// If a frame that is needed to find the camera is damaged, or if there is none.
     pub fn of(cache: &'a mut Playback<R>, every: usize, style: Style) -> Result<Self, ViewError> {
         let every = every.max(1);
-        let ends = (0..cache.moments().len()).filter(|moment| cache.moments()[*moment].ends_frame());
+        let ends =
+            (0..cache.time_samples().len()).filter(|moment| cache.time_samples()[*moment].ends_frame());
         let moments: Vec<usize> = ends.step_by(every).collect();
         if moments.is_empty() {
             return Err(ViewError::NoMoment);
@@ -59,7 +60,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If none of them was recorded.
     pub fn between(mut self, first: i32, last: i32) -> Result<Self, ViewError> {
-        let moments = self.cache.moments();
+        let moments = self.cache.time_samples();
         self.moments.retain(|&moment| (first..=last).contains(&moments[moment].frame));
         if self.moments.is_empty() { Err(ViewError::NoMoment) } else { Ok(self) }
     }
@@ -76,7 +77,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
 
     /// The frame that a picture shows.
     pub fn frame(&self, place: usize) -> i32 {
-        self.cache.moments()[self.moments[place.min(self.moments.len() - 1)]].frame
+        self.cache.time_samples()[self.moments[place.min(self.moments.len() - 1)]].frame
     }
 
     /// The same, seen by another camera.
@@ -91,7 +92,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
 
     /// The camera at a recorded moment. Within a frame, cameras go straight.
     fn camera_at(&self, moment: usize) -> Camera {
-        let (run, moments) = (self.cache.run(), self.cache.moments());
+        let (run, moments) = (self.cache.run(), self.cache.time_samples());
         let Some((track, moment)) = self.through.as_ref().zip(moments.get(moment)) else {
             return self.camera;
         };

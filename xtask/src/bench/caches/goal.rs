@@ -28,7 +28,7 @@ impl Goal {
 
 /// The first table of the page.
 pub fn table(goals: &[&Goal]) -> Table {
-    let mut table = Table::new("What was aimed at", &["", "aim", "found", "reached"]);
+    let mut table = Table::new("Targets", &["", "target", "measured", "met"]);
     for goal in goals {
         let sign = if goal.is_most { "below" } else { "above" };
         let reached = if goal.is_reached() { "yes" } else { "no" };

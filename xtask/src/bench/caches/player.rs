@@ -24,7 +24,7 @@ const AT_ONCE: f64 = 1e3;
 
 /// The table of the page, which says so where there is no browser; and what was aimed at.
 pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median ms", "99 of 100 ms"]);
+    let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median, ms", "99th percentile, ms"]);
     let Some(chromium) = PLACES.iter().map(Path::new).find(|path| path.exists()) else {
         table.note("There was no Chromium here.");
         return Ok((table, Vec::new()));
@@ -36,16 +36,16 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     fs::remove_file(cache)?;
     let both = |key: &str| [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
     for (name, key) in [
-        ("the bytes of a frame anywhere, from the server", "fetch"),
-        ("unpack them: zstd, checksum, floats", "unpack"),
-        ("take them up: normals, bounds, to the graphics", "update"),
+        ("fetch a random frame from the server", "fetch"),
+        ("decode: zstd, checksum, floats", "unpack"),
+        ("update: normals, bounds, upload to the GPU", "update"),
         ("draw, 1280 x 720, without a graphics card", "draw"),
     ] {
         table.row([name.to_owned()].into_iter().chain(both(key)));
     }
     let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
-        "From the call of the page to the first picture: {} ms. {}, headless; a screen of 60 Hz leaves 16.7 ms.",
+        "From the request of the page to the first picture: {} ms. {}, headless; at 60 Hz a frame has 16.7 ms.",
         number("opened"),
         found["browser"].as_str().unwrap_or_default()
     ));
@@ -53,8 +53,8 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let frame = median("fetch") + median("unpack") + median("update");
     let opened = found["opened"].as_f64().unwrap_or(f64::NAN);
     let goals = vec![
-        Goal::below("a cache of 2 GB opens at once in the player, ms", AT_ONCE, opened),
-        Goal::below("scrubbing 129² at 60 Hz: all but drawing, ms a frame", REFRESH, frame),
+        Goal::below("open a 2 GB cache in the player, ms", AT_ONCE, opened),
+        Goal::below("scrub 129² without drawing, ms per frame", REFRESH, frame),
     ];
     Ok((table, goals))
 }

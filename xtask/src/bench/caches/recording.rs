@@ -1,4 +1,4 @@
-//! What recording costs a run: the processor time of the recorder beside that of the solver, and of checkpoints.
+//! Cost of recording a run: the processor time of the recorder beside that of the solver, and of checkpoints.
 
 use std::path::Path;
 use std::time::Duration;
@@ -29,7 +29,7 @@ const FRAMES: [i32; 2] = [16, 8];
 const WAYS: [(&str, Detail, bool, bool); 3] = [
     ("frames, with contacts", Detail::Frames, true, false),
     ("substeps, with contacts", Detail::Substeps, true, false),
-    ("substeps, with all there is", Detail::Substeps, true, true),
+    ("substeps, with all attributes", Detail::Substeps, true, true),
 ];
 
 /// A way to record, and what it has cost so far.
@@ -106,15 +106,15 @@ fn begin(simulation: &Simulation, folder: &Path) -> anyhow::Result<Vec<Way>> {
 }
 
 fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let head = ["recorded", "solver, ms a frame", "recorder, ms a frame", "more", "kB a frame"];
-    let mut table = Table::new("What recording costs", &head);
+    let head = ["recorded", "solver, ms per frame", "recorder, ms per frame", "overhead", "kB per frame"];
+    let mut table = Table::new("Cost of recording", &head);
     let mut goals = Vec::new();
     let frames = f64::from(FRAMES[1]);
     for Way { name, detail, recorder, spent } in ways {
         let (spent, bytes) = (spent.as_secs_f64() / frames, recorder.finish()?.bytes as f64 / frames);
         let share = 100.0 * spent / solver;
         if detail == Detail::Substeps {
-            goals.push(Goal::below(&format!("recording {name}, % of a run of 129²"), MOST, share));
+            goals.push(Goal::below(&format!("record {name}, % of a 129² run"), MOST, share));
         }
         let more = format!("{} %", figure(share));
         let [solver, spent, bytes] = [1e3 * solver, 1e3 * spent, 1e-3 * bytes].map(figure);
@@ -137,7 +137,7 @@ fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Ve
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
     recorder.record_start(simulation.state())?;
-    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|found| found.len());
+    let length = || std::fs::metadata(nucleus_cache::part_path(&path)).map(|found| found.len());
     let (before, begin) = (length()?, now());
     let state = simulation.save();
     let saved = now() - begin;
@@ -145,12 +145,18 @@ fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Ve
     let written = now() - begin - saved;
     let (packed, each) = (length()? - before, (saved + written).as_secs_f64() / PERIOD);
     let [saved, written] = [saved, written].map(|time| 1e3 * time.as_secs_f64());
-    let head =
-        ["gathered, ms", "packed and written, ms", "MB", "packed, MB", "ms a frame at one in 48", "more"];
-    let mut table = Table::new("What a checkpoint costs", &head);
+    let head = [
+        "serialise, ms",
+        "compress and write, ms",
+        "MB",
+        "compressed, MB",
+        "ms per frame at one in 48",
+        "overhead",
+    ];
+    let mut table = Table::new("Cost of a checkpoint", &head);
     let figures = [saved, written, 1e-6 * state.len() as f64, 1e-6 * packed as f64, 1e3 * each];
     table.row(figures.map(figure).into_iter().chain([format!("{} %", figure(100.0 * each / solver))]));
-    table.note(format!("The same sheet after frame {start}; `nucleus resume` goes on from a checkpoint."));
+    table.note(format!("The same sheet after frame {start}; `nucleus resume` continues from a checkpoint."));
     Ok((table, Vec::new()))
 }
 

@@ -39,7 +39,7 @@ pub fn own(workload: Workload, runs: &[Outcome]) -> Table {
             depth,
             worst_depth,
             account.found() as f64,
-            account.inside as f64,
+            account.current_intersections as f64,
         ];
         let setting = [run.trial.setting.to_string(), format!("{:016x}", run.timed.hash)];
         table.row([format!("{}²", run.trial.size)].into_iter().chain(cells.map(figure)).chain(setting));

@@ -1,7 +1,7 @@
 //! One workload at one setting: timed, measured, and run again under audit.
 
 use anyhow::ensure;
-use nucleus_audit::Account;
+use nucleus_audit::AuditCounts;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
@@ -34,7 +34,7 @@ pub struct Outcome {
     /// Its deepest point in the ball in metres, at the last frame and at the worst.
     pub depths: [f64; 2],
     /// What the audit found, where there was one.
-    pub audit: Option<Account>,
+    pub audit: Option<AuditCounts>,
 }
 
 impl Outcome {

@@ -1,0 +1,136 @@
+//! A file that gets its final name only when it is whole. It replaces an older cache on request, and no other file.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use mcap::MAGIC;
+use mcap::records::{Record, op};
+
+use crate::error::RecordError;
+use crate::messages::metadata::PROFILE;
+
+/// A file under its temporary name.
+#[derive(Debug)]
+pub(crate) struct AtomicFile {
+    pub file: File,
+    /// Its temporary and its final path.
+    pub paths: AtomicPaths,
+}
+
+/// Temporary and final path of a file.
+#[derive(Debug)]
+pub(crate) struct AtomicPaths {
+    partial: PathBuf,
+    final_path: PathBuf,
+}
+
+/// Creates the temporary file beside `path`. With `replace` it may overwrite an older cache, and the partial cache of a
+/// killed run.
+pub(crate) fn create(path: &Path, replace: bool) -> Result<AtomicFile, RecordError> {
+    check_existing(path, replace)?;
+    let partial = part_path(path);
+    let file = open(&partial, path)?;
+    let length = file.metadata().map_err(|source| failed(path, source))?.len();
+    if length > 0 && !replace {
+        return Err(RecordError::Unfinished { path: partial });
+    }
+    file.set_len(0).map_err(|source| failed(path, source))?;
+    Ok(AtomicFile { file, paths: AtomicPaths { partial, final_path: path.to_owned() } })
+}
+
+/// Creates the temporary file of a resumed run, beside the partial cache. With `replace` it may overwrite an older
+/// cache.
+pub(crate) fn create_for_resume(path: &Path, replace: bool) -> Result<AtomicFile, RecordError> {
+    check_existing(path, replace)?;
+    let mut partial = path.file_name().unwrap_or_default().to_owned();
+    partial.push(".resuming");
+    let partial = path.with_file_name(partial);
+    let file = open(&partial, path)?;
+    file.set_len(0).map_err(|source| failed(path, source))?;
+    Ok(AtomicFile { file, paths: AtomicPaths { partial, final_path: path.to_owned() } })
+}
+
+fn failed(path: &Path, source: io::Error) -> RecordError {
+    RecordError::Create { path: path.to_owned(), source }
+}
+
+/// Opens a file for writing and locks it.
+fn open(partial: &Path, path: &Path) -> Result<File, RecordError> {
+    let mut options = File::options();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let file = options.open(partial).map_err(|source| failed(path, source))?;
+    if is_locked(&file) { Err(RecordError::InUse { path: partial.to_owned() }) } else { Ok(file) }
+}
+
+/// Whether another run has locked the file; if not, this call locks it.
+pub(crate) fn is_locked(file: &File) -> bool {
+    // A file system without locks must not prevent recording.
+    matches!(file.try_lock(), Err(TryLockError::WouldBlock))
+}
+
+/// Checks whether an existing file may be replaced.
+fn check_existing(path: &Path, replace: bool) -> Result<(), RecordError> {
+    let failed = |source| failed(path, source);
+    let path_buf = || path.to_owned();
+    match path.metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => return Err(failed(error)),
+        Ok(found) if !found.is_file() => return Err(RecordError::NotAFile { path: path_buf() }),
+        Ok(found) if found.len() > 0 && !is_cache(path).map_err(failed)? => {
+            return Err(RecordError::NotOurs { path: path_buf() });
+        }
+        Ok(_) if !replace => return Err(RecordError::Exists { path: path_buf() }),
+        Ok(found) if found.permissions().readonly() => {
+            return Err(failed(io::Error::from(ErrorKind::PermissionDenied)));
+        }
+        Ok(_) => {}
+    }
+    Ok(())
+}
+
+/// Path of a partial cache: the final path with `.part` appended.
+pub fn part_path(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+impl AtomicPaths {
+    /// Renames the file of a resumed run to the path of a partial cache.
+    pub fn promote(&mut self) -> io::Result<()> {
+        let partial = part_path(&self.final_path);
+        fs::rename(&self.partial, &partial)?;
+        self.partial = partial;
+        Ok(())
+    }
+
+    /// Removes the temporary file. A failure is ignored: the name marks it as temporary.
+    pub fn remove(&self) {
+        let _ = fs::remove_file(&self.partial);
+    }
+
+    /// Renames the whole file to its final path.
+    pub fn commit(&self) -> io::Result<()> {
+        fs::rename(&self.partial, &self.final_path)
+    }
+}
+
+/// Whether the file begins like a cache.
+fn is_cache(path: &Path) -> io::Result<bool> {
+    let mut head = Vec::new();
+    File::open(path)?.take(4096).read_to_end(&mut head)?;
+    Ok(read_header(&head).is_some_and(|(profile, _)| profile == PROFILE))
+}
+
+/// Profile and library from the first bytes of an MCAP file.
+pub(crate) fn read_header(head: &[u8]) -> Option<(String, String)> {
+    let record = head.strip_prefix(MAGIC)?;
+    let (&opcode, record) = record.split_first()?;
+    let (length, body) = record.split_first_chunk::<8>()?;
+    let body = body.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+    match (opcode == op::HEADER).then(|| mcap::parse_record(opcode, body))? {
+        Ok(Record::Header(header)) => Some((header.profile, header.library)),
+        _ => None,
+    }
+}

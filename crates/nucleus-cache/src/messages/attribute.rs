@@ -1,0 +1,137 @@
+//! Bytes of per-point attributes: the messages on `/<object>/contacts` and `/<object>/strain`, little-endian; and the
+//! computation of strain.
+
+use nucleus_core::ContactState;
+
+use crate::messages::points::{HEAD, Stamp};
+use crate::run::{ObjectInfo, RunInfo};
+
+/// A per-point attribute.
+pub(crate) struct Attribute {
+    /// Last part of its topics.
+    pub topic: &'static str,
+    pub encoding: &'static str,
+    /// Description of a message for other readers; stored in the file.
+    pub schema: &'static str,
+    /// Bytes per value.
+    width: usize,
+}
+
+pub(crate) const CONTACTS: Attribute = Attribute {
+    topic: "contacts",
+    encoding: "nucleus.contacts.v1",
+    schema: "\
+Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then a byte
+for each point: 0 free, 1 touching, 2 pinched (nearer than nine tenths of its thickness), 3 trapped (inside a closed
+collider, being led out), 4 tangled (at an edge of cloth that goes through a face of cloth, being worked apart).
+",
+    width: 1,
+};
+
+pub(crate) const STRAIN: Attribute = Attribute {
+    topic: "strain",
+    encoding: "nucleus.strain.v1",
+    schema: "\
+Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then a f32
+for each point, as four planes of count bytes: plane k holds byte k of every f32 (0 is the lowest). It is the strain of
+largest size among the edges of faces at the point, length over rest length less one.
+",
+    width: 4,
+};
+
+/// All attributes.
+pub(crate) const ALL: [&Attribute; 2] = [&CONTACTS, &STRAIN];
+
+impl Attribute {
+    /// Whether a run records it.
+    pub fn is_recorded(&self, run: &RunInfo) -> bool {
+        (self.encoding == CONTACTS.encoding && run.contacts)
+            || (self.encoding == STRAIN.encoding && run.strain)
+    }
+
+    /// The bytes of the values in a message; `None` when its time stamp or its number of points differs.
+    pub fn read<'a>(&self, data: &'a [u8], count: usize, stamp: (i32, u64)) -> Option<&'a [u8]> {
+        let (head, values) = data.split_at_checked(HEAD)?;
+        let (found, stated) = Stamp::read(head)?;
+        let fits = stated as usize == count && values.len() == self.width * count;
+        (fits && (found.frame, found.log_time()) == stamp).then_some(values)
+    }
+}
+
+/// Appends contact states, one byte each.
+pub(crate) fn write_contacts(contacts: &[ContactState], out: &mut Vec<u8>) {
+    out.extend(contacts.iter().map(|&contact| contact as u8));
+}
+
+/// Contact states from their bytes; `None` when one is unknown.
+pub(crate) fn read_contacts(bytes: &[u8]) -> Option<Vec<ContactState>> {
+    let contact = |&byte: &u8| {
+        let known = [
+            ContactState::Free,
+            ContactState::Touching,
+            ContactState::Compressed,
+            ContactState::Depenetrating,
+            ContactState::Intersecting,
+        ];
+        known.into_iter().find(|&contact| contact as u8 == byte)
+    };
+    bytes.iter().map(contact).collect()
+}
+
+/// The edges of a mesh, each once, with their rest lengths.
+pub(crate) struct RestEdges(Vec<([u32; 2], f32)>);
+
+impl RestEdges {
+    /// The edges of an object's faces; edges of zero rest length are left out.
+    pub fn new(object: &ObjectInfo) -> Self {
+        let around = |face: &[u32]| {
+            let next = face.iter().copied().cycle().skip(1);
+            face.iter().copied().zip(next).map(|(a, b)| [a.min(b), a.max(b)]).collect::<Vec<_>>()
+        };
+        let mut edges: Vec<[u32; 2]> = object.faces.iter().flat_map(around).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let with_length = edges.into_iter().map(|edge| (edge, length(&object.rest, edge)));
+        Self(with_length.filter(|&(_, length)| length > 0.0).collect())
+    }
+
+    /// Replaces `out` by the signed strain of largest magnitude among the edges at each point; 0 where there is none.
+    pub fn strain(&self, positions: &[[f32; 3]], out: &mut Vec<f32>) {
+        out.clear();
+        out.resize(positions.len(), 0.0);
+        for &(edge, rest) in &self.0 {
+            let strain = length(positions, edge) / rest - 1.0;
+            for point in edge {
+                let largest = &mut out[point as usize];
+                if strain.abs() > largest.abs() {
+                    *largest = strain;
+                }
+            }
+        }
+    }
+}
+
+fn length(positions: &[[f32; 3]], [a, b]: [u32; 2]) -> f32 {
+    let [a, b] = [a, b].map(|point| positions[point as usize]);
+    let square = |axis: usize| (a[axis] - b[axis]) * (a[axis] - b[axis]);
+    (square(0) + square(1) + square(2)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::Faces;
+
+    use super::*;
+    use crate::run::ObjectKind;
+
+    #[test]
+    fn a_point_has_the_strain_of_its_worst_edge() {
+        let faces = Faces::from_iter([&[0_u32, 1, 2][..]]);
+        let rest = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let object = ObjectInfo { name: "a".into(), kind: ObjectKind::Cloth, faces, rest };
+        let mut strain = Vec::new();
+        RestEdges::new(&object).strain(&[[0.0; 3], [0.25, 0.0, 0.0], [0.0, 1.5, 0.0]], &mut strain);
+        assert_eq!(strain[..2], [-0.75, -0.75]);
+        assert_eq!(strain[2], 0.5);
+    }
+}

@@ -1,0 +1,289 @@
+//! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene` and `nucleus.cameras`.
+
+use std::collections::BTreeMap;
+
+use mcap::records::Metadata;
+
+use crate::camera;
+use crate::error::OpenError;
+use crate::messages::attribute::{CONTACTS, STRAIN};
+use crate::run::{Detail, Packing, Plane, RunInfo};
+
+/// Format version. A reader refuses a higher one.
+const FORMAT: u32 = 1;
+pub(crate) const PROFILE: &str = "nucleus";
+/// Name of the writing program in the file.
+pub(crate) const LIBRARY: &str = concat!("nucleus ", env!("CARGO_PKG_VERSION"));
+const SCENE: &str = "nucleus.scene";
+const CAMERAS: &str = "nucleus.cameras";
+const RUN: &str = "nucleus.run";
+/// Number of cameras; a reader detects a lost camera by it.
+const COUNT_OF_CAMERAS: &str = "cameras";
+const GROUND: &str = "ground";
+/// Prefix of the key for the particle radius of an object; the object's name follows.
+const RADIUS: &str = "radius of ";
+const CHECKPOINT: &str = "checkpoint";
+const PACKING: &str = "packing";
+const SMALL: &str = "small";
+/// Key of a record's checksum over all its other keys and values.
+const CHECKSUM: &str = "crc32";
+
+impl RunInfo {
+    pub(crate) fn to_metadata(&self) -> [Metadata; 2] {
+        let detail = match self.detail {
+            Detail::Frames => "frames".to_owned(),
+            Detail::Substeps => "substeps".to_owned(),
+            Detail::Every(n) => format!("every {n}"),
+        };
+        let mut run = self.extra.clone();
+        run.extend(
+            [
+                ("format", FORMAT.to_string()),
+                ("start", self.start.to_string()),
+                ("end", self.end.to_string()),
+                ("fps", self.frames_per_second.to_string()),
+                ("units_per_metre", self.units_per_metre.to_string()),
+                ("record", detail),
+                ("velocities", self.velocities.to_string()),
+                ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ]
+            .map(|(key, value)| (key.to_owned(), value)),
+        );
+        let also = [(CONTACTS.topic, self.contacts), (STRAIN.topic, self.strain)];
+        run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
+        if !self.cameras.is_empty() {
+            run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
+        }
+        // Keys with default values are left out.
+        run.extend(self.radii.iter().map(|(name, radius)| (format!("{RADIUS}{name}"), radius.to_string())));
+        if self.checkpoint > 0 {
+            run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
+        }
+        if self.packing == Packing::Small {
+            run.insert(PACKING.to_owned(), SMALL.to_owned());
+        }
+        if let Some(Plane { origin, normal }) = self.ground {
+            run.insert(
+                GROUND.to_owned(),
+                origin.iter().chain(&normal).map(f64::to_string).collect::<Vec<_>>().join(" "),
+            );
+        }
+        let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
+            .map(|(key, value)| (key.to_owned(), value.clone()));
+        [with_checksum(SCENE, scene.into()), with_checksum(RUN, run)]
+    }
+
+    /// The camera record, if there are cameras.
+    pub(crate) fn cameras_to_metadata(&self) -> Option<Metadata> {
+        (!self.cameras.is_empty()).then(|| with_checksum(CAMERAS, camera::to_keys(&self.cameras)))
+    }
+
+    /// The run, and whether its scene is undamaged. A damaged scene is left out.
+    pub(crate) fn from_metadata(records: &[Metadata]) -> Result<(Self, bool), OpenError> {
+        let find = |name: &str| {
+            let mut named = records.iter().filter(|record| record.name == name);
+            named.clone().find(|record| checksum_holds(record)).or(named.next())
+        };
+        let missing = OpenError::NoRecord { name: RUN };
+        let Some(record) = find(RUN) else { return Err(missing) };
+        let mut run = Keys(record.metadata.clone());
+        let version = run.0.remove("version").unwrap_or_default();
+        match run.parse("format") {
+            Ok(format) if format > FORMAT => return Err(OpenError::Newer { format, version, known: FORMAT }),
+            _ if !checksum_holds(record) => return Err(missing),
+            _ => {}
+        }
+        run.0.remove(CHECKSUM);
+        let scene = find(SCENE).filter(|record| checksum_holds(record));
+        let cameras = find(CAMERAS).filter(|record| checksum_holds(record));
+        let cameras = cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default();
+        let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
+        let (scene_is_sound, mut scene) =
+            (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
+        let scene_is_sound = scene_is_sound && cameras.len() == count;
+        let info = Self {
+            scene_path: scene.remove("path").unwrap_or_default(),
+            scene_text: scene.remove("text").unwrap_or_default(),
+            start: run.parse("start")?,
+            end: run.parse("end")?,
+            frames_per_second: run.parse("fps")?,
+            units_per_metre: run.parse("units_per_metre")?,
+            detail: run.detail()?,
+            velocities: run.parse("velocities")?,
+            contacts: run.flag(CONTACTS.topic),
+            strain: run.flag(STRAIN.topic),
+            ground: run.ground()?,
+            radii: run.radii()?,
+            cameras,
+            checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
+            packing: run.packing(),
+            version,
+            extra: run.0,
+        };
+        match info.fault() {
+            Some(fault) => Err(OpenError::BadValue { key: RUN, value: fault }),
+            None => Ok((info, scene_is_sound)),
+        }
+    }
+}
+
+/// A run whose own record is lost, with the cameras of their record.
+pub(crate) fn with_cameras(run: RunInfo, records: &[Metadata]) -> RunInfo {
+    let found = records.iter().find(|record| record.name == CAMERAS && checksum_holds(record));
+    RunInfo { cameras: found.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default(), ..run }
+}
+
+/// A metadata record with a checksum: MCAP has none for metadata.
+fn with_checksum(name: &str, mut values: BTreeMap<String, String>) -> Metadata {
+    values.remove(CHECKSUM);
+    let checksum = checksum(&values);
+    values.insert(CHECKSUM.to_owned(), checksum);
+    Metadata { name: name.to_owned(), metadata: values }
+}
+
+/// Whether the checksum of a record matches.
+pub(crate) fn checksum_holds(record: &Metadata) -> bool {
+    let mut values = record.metadata.clone();
+    values.remove(CHECKSUM).is_some_and(|found| found == checksum(&values))
+}
+
+fn checksum(values: &BTreeMap<String, String>) -> String {
+    let mut hasher = crc32fast::Hasher::new();
+    for text in values.iter().flat_map(|(key, value)| [key, value]) {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    }
+    format!("{:08x}", hasher.finalize())
+}
+
+/// The record `nucleus.run` while it is parsed; the remaining keys become `extra`.
+struct Keys(BTreeMap<String, String>);
+
+impl Keys {
+    fn parse<T: std::str::FromStr>(&mut self, key: &'static str) -> Result<T, OpenError> {
+        let value = self.0.remove(key).unwrap_or_default();
+        value.parse().map_err(|_| OpenError::BadValue { key, value })
+    }
+
+    /// A boolean key that older caches do not have; missing means false.
+    fn flag(&mut self, key: &'static str) -> bool {
+        self.0.remove(key).is_some_and(|value| value == "true")
+    }
+
+    fn detail(&mut self) -> Result<Detail, OpenError> {
+        let value = self.0.remove("record").unwrap_or_default();
+        match value.as_str() {
+            "frames" => Ok(Detail::Frames),
+            "substeps" => Ok(Detail::Substeps),
+            other => {
+                let every = other.strip_prefix("every ").and_then(|n| n.parse().ok()).filter(|&n| n > 0);
+                every.map(Detail::Every).ok_or(OpenError::BadValue { key: "record", value })
+            }
+        }
+    }
+
+    fn packing(&mut self) -> Packing {
+        if self.0.remove(PACKING).is_some_and(|packing| packing == SMALL) {
+            Packing::Small
+        } else {
+            Packing::Fast
+        }
+    }
+
+    /// The particle radii; removes their keys.
+    fn radii(&mut self) -> Result<BTreeMap<String, f64>, OpenError> {
+        let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(RADIUS)).cloned().collect();
+        let mut radii = BTreeMap::new();
+        for key in keys {
+            let text = self.0.remove(&key).unwrap_or_default();
+            match text.parse::<f64>() {
+                Ok(radius) if radius >= 0.0 && radius.is_finite() => {
+                    radii.insert(key[RADIUS.len()..].to_owned(), radius)
+                }
+                _ => return Err(OpenError::BadValue { key: "radius of", value: text }),
+            };
+        }
+        Ok(radii)
+    }
+
+    /// Six numbers: a point and the normal.
+    fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
+        let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.split(' ').map(|x| x.parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, z, a, b, c]) => Ok(Some(Plane { origin: [x, y, z], normal: [a, b, c] })),
+            _ => Err(OpenError::BadValue { key: GROUND, value }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, CameraView, FilmFit};
+
+    #[test]
+    fn metadata_of_a_run_comes_back() {
+        let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
+        let ground = Some(Plane { origin: [0.1, -2.0, 0.0], normal: [0.0, 1.0, 1e-9] });
+        let run = RunInfo {
+            scene_path: "a.ron".into(),
+            start: -3,
+            end: 9,
+            extra,
+            ground,
+            contacts: true,
+            radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
+            ..RunInfo::default()
+        };
+        for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
+            let run = RunInfo { detail, checkpoint: 24, packing: Packing::Small, ..run.clone() };
+            assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
+        }
+    }
+
+    /// The error for a run with one changed value.
+    fn refusal(key: &str, value: &str) -> String {
+        let [scene, mut run] = RunInfo::default().to_metadata();
+        run.metadata.insert(key.to_owned(), value.to_owned());
+        RunInfo::from_metadata(&[scene, with_checksum(RUN, run.metadata)]).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn impossible_values_are_refused_by_name() {
+        assert_eq!(refusal("record", "framez"), "the run's `record` cannot be `framez`");
+        assert_eq!(refusal("start", ""), "the run's `start` cannot be ``");
+        assert!(refusal("fps", "-4").contains("frames per second must be above zero"));
+        assert!(refusal("units_per_metre", "NaN").contains("units per metre must be above zero"));
+        assert!(refusal("end", "-9").contains("frame -9 ends before frame 1"));
+    }
+
+    #[test]
+    fn lost_cameras_are_detected() {
+        let view = CameraView::default();
+        let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
+        let run = RunInfo { cameras: vec![camera], ..RunInfo::default() };
+        let [scene, record] = run.to_metadata();
+        let mut cameras = run.cameras_to_metadata().unwrap();
+        let read = |cameras: &Metadata| {
+            RunInfo::from_metadata(&[scene.clone(), record.clone(), cameras.clone()]).unwrap()
+        };
+        assert_eq!(read(&cameras), (run.clone(), true));
+        cameras.metadata.insert("camera shot".to_owned(), "fill".to_owned());
+        assert_eq!((read(&cameras).0.cameras, read(&cameras).1), (Vec::new(), false));
+        cameras.name = "nucleus.camerbs".to_owned();
+        assert!(!read(&cameras).1);
+    }
+
+    #[test]
+    fn a_changed_scene_is_left_out_and_a_changed_run_is_refused() {
+        let run = RunInfo { scene_text: "a".to_owned(), ..RunInfo::default() };
+        let [mut scene, mut record] = run.to_metadata();
+        scene.metadata.insert("text".to_owned(), "b".to_owned());
+        let (read, sound) = RunInfo::from_metadata(&[scene.clone(), record.clone()]).unwrap();
+        assert_eq!((read.scene_text.as_str(), sound), ("", false));
+        record.metadata.insert("fps".to_owned(), "25".to_owned());
+        assert!(matches!(RunInfo::from_metadata(&[scene, record]), Err(OpenError::NoRecord { .. })));
+    }
+}
