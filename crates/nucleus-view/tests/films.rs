@@ -3,7 +3,7 @@
 mod sample;
 
 use nucleus_cache::Playback;
-use nucleus_view::{Camera, Film, GifWriter, Ground, Style, ViewError};
+use nucleus_view::{Bounds, Camera, Film, GifWriter, Ground, Image, Style, ViewError, draw};
 use sample::{FRAMES, Sample};
 
 fn small() -> Style {
@@ -44,12 +44,41 @@ fn the_floor_is_constant_while_objects_move() {
         Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
     let mut film = Film::of(&mut cache, 1, small()).unwrap().seen_by(camera);
     let [first, last] = [0, 23].map(|place| film.picture(place).unwrap());
-    let row = |image: &nucleus_view::Image| (0..96).map(|x| image.pixel(x, 53)).collect::<Vec<_>>();
+    let row = |image: &Image| (0..96).map(|x| image.pixel(x, 53)).collect::<Vec<_>>();
     assert_eq!(row(&first), row(&last), "in front of everything");
     assert_ne!(first, last);
     let bare = Style { ground: Ground::None, ..small() };
     let without = Film::of(&mut cache, 1, bare).unwrap().seen_by(camera).picture(0).unwrap();
     assert_ne!(row(&without), row(&first));
+}
+
+/// Whether the outermost pixels of a picture all show the background, so that no object is cropped.
+fn has_margin(picture: &Image, background: &Image) -> bool {
+    let [width, height] = picture.size();
+    let is_border = |column: u32, row: u32| column % (width - 1) == 0 || row % (height - 1) == 0;
+    (0..width * height)
+        .map(|k| (k % width, k / width))
+        .filter(|&(column, row)| is_border(column, row))
+        .all(|(column, row)| picture.pixel(column, row) == background.pixel(column, row))
+}
+
+#[test]
+fn the_automatic_camera_crops_neither_the_cloth_nor_the_colliders_near_it() {
+    let (_folder, mut cache) = recorded(Sample::default());
+    let style = Style { ground: Ground::None, ..small() };
+    let background = draw(&[], &Camera::default(), &style);
+    let mut cloth = Bounds::default();
+    cloth.include(&cache.positions(0, 12).unwrap());
+    let mut film = Film::of(&mut cache, 1, style.clone()).unwrap();
+    assert!(has_margin(&film.picture(12).unwrap(), &background), "over the whole run");
+    let still = film.framing(12).unwrap();
+    let mut film = film.seen_by(still);
+    assert!(has_margin(&film.picture(12).unwrap(), &background), "at one time");
+    let mut film = film.seen_by(Camera::framing(&cloth, style.size));
+    assert!(
+        !has_margin(&film.picture(12).unwrap(), &background),
+        "a camera that frames the cloth crops a collider"
+    );
 }
 
 #[test]
@@ -135,7 +164,7 @@ fn the_picture_of_the_synthetic_run_is_the_inspected_one() {
     );
 }
 
-const GOLDEN: u64 = 0x07e2_645b_9158_7d6b;
+const GOLDEN: u64 = 0x29bb_acd0_8135_8e2c;
 
 #[test]
 fn a_mesh_that_changes_is_drawn_with_the_topology_of_each_frame() {

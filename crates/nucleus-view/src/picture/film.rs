@@ -87,7 +87,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// If the index is out of range, or the frame is damaged.
     pub fn framing(&mut self, moment: usize) -> Result<Camera, ViewError> {
         let positions = positions(self.cache, moment)?;
-        let framed = Bounds::of_interest(&objects(self.cache, moment, &positions)?);
+        let framed = Bounds::to_frame(&objects(self.cache, moment, &positions)?);
         Ok(Camera::framing(&framed, self.style.size))
     }
 
@@ -175,7 +175,7 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
     for moment in moments {
         let positions = positions(cache, *moment)?;
         let objects = objects(cache, *moment, &positions)?;
-        framed.merge(&Bounds::of_interest(&objects));
+        framed.merge(&Bounds::to_frame(&objects));
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include(object.positions));
     }
