@@ -67,7 +67,7 @@ pub enum ViewError {
     },
     /// The cache holds none of the requested frames.
     #[error("the cache holds none of these frames")]
-    NoMoment,
+    NoRecordedFrame,
     /// An animation was finished without a frame.
     #[error("`{}` has no frame", path.display())]
     NoFrame {

@@ -55,7 +55,9 @@ fn the_floor_is_constant_while_objects_move() {
 /// Whether the outermost pixels of a picture all show the background, so that no object is cropped.
 fn has_margin(picture: &Image, background: &Image) -> bool {
     let [width, height] = picture.size();
-    let is_border = |column: u32, row: u32| column % (width - 1) == 0 || row % (height - 1) == 0;
+    let is_border = |column: u32, row: u32| {
+        [(column, width - 1), (row, height - 1)].iter().any(|(at, last)| at.is_multiple_of(*last))
+    };
     (0..width * height)
         .map(|k| (k % width, k / width))
         .filter(|&(column, row)| is_border(column, row))

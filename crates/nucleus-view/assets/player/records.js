@@ -122,7 +122,7 @@ export function readChunkIndex(body) {
   return { start, end, offset, length, channels };
 }
 
-// A chunk holds one frame. Larger ones are not unpacked.
+// Largest chunk that is unpacked, in bytes. A chunk holds one frame.
 const MAX_CHUNK = 2 ** 30;
 
 // The channels that are declared in a chunk, and its messages: { channel, time, data }.

@@ -49,7 +49,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let ends = (0..cache.moments().len()).filter(|moment| cache.moments()[*moment].ends_frame());
         let moments: Vec<usize> = ends.step_by(every).collect();
         if moments.is_empty() {
-            return Err(ViewError::NoMoment);
+            return Err(ViewError::NoRecordedFrame);
         }
         let Survey { framed, stage, floor } = survey(cache, &moments)?;
         let camera = Camera::framing(&framed, style.size);
@@ -68,7 +68,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     pub fn between(mut self, first: i32, last: i32) -> Result<Self, ViewError> {
         let moments = self.cache.moments();
         self.moments.retain(|&moment| (first..=last).contains(&moments[moment].frame));
-        if self.moments.is_empty() { Err(ViewError::NoMoment) } else { Ok(self) }
+        if self.moments.is_empty() { Err(ViewError::NoRecordedFrame) } else { Ok(self) }
     }
 
     /// Pictures per second.
