@@ -36,7 +36,6 @@ mod simulate;
 mod summary;
 mod threads;
 mod trouble;
-mod whole_file;
 
 use std::process::ExitCode;
 

@@ -1,6 +1,5 @@
-//! Writes a small cache by a formula, with everything that makes exports go wrong: faces of three to six
-//! corners, points that no face uses, names that other tools do not take, a collider that moves late, one that
-//! never does, and particles.
+//! Writes a small synthetic cache of cases that break exporters: faces of three to six corners, points without
+//! faces, names that other tools reject, a collider that starts to move late, a static collider, and particles.
 //!
 //! `cargo run -p nucleus-interop --example sample -- sample.mcap`
 

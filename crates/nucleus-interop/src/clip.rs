@@ -1,4 +1,4 @@
-//! The part of a cache that is exported: which objects, which moments, in which units.
+//! The exported part of a cache: objects, time samples and unit of length.
 
 use std::io::{Read, Seek};
 
@@ -6,18 +6,18 @@ use nucleus_cache::{ObjectInfo, Playback};
 
 use crate::error::ExportError;
 
-/// What is to be taken from a cache.
+/// Which part of a cache to export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
-    /// Names of objects; all if there is none.
+    /// Names of objects; all objects if empty.
     pub objects: Vec<String>,
-    /// First and last frame; all that were recorded if not given.
+    /// First and last frame, inclusive; all recorded frames if not given.
     pub frames: Option<(i32, i32)>,
-    /// Every how manieth frame.
+    /// Step in frames: 1 takes every frame, 2 every second one.
     pub every: u32,
-    /// Whether substeps are samples too, where they were recorded.
+    /// Whether recorded substeps become samples too.
     pub substeps: bool,
-    /// Factor on all lengths, after the units of the format.
+    /// Factor on all lengths, applied after the conversion to the unit of the format.
     pub scale: f64,
 }
 
@@ -27,23 +27,23 @@ impl Default for Selection {
     }
 }
 
-/// A moment that is exported.
+/// A time sample: a recorded time that is exported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// The frame it belongs to.
     pub frame: i32,
-    /// Its place among the moments of its frame; equal to `substeps` at the end of the frame.
+    /// Its number among the samples of its frame, from 1; equal to `substeps` at the end of the frame.
     pub substep: u32,
-    /// How many moments of the frame are exported.
+    /// How many samples the frame has.
     pub substeps: u32,
-    /// Its time in frames: whole at the end of a frame.
-    pub at: f64,
+    /// Its time in frames; a whole number at the end of a frame.
+    pub frame_time: f64,
     moment: usize,
 }
 
 impl Sample {
     /// Whether it is the end of its frame.
-    pub fn is_whole(&self) -> bool {
+    pub fn ends_frame(&self) -> bool {
         self.substep == self.substeps
     }
 }
@@ -57,30 +57,30 @@ pub struct Clip<'a, R> {
 }
 
 impl<'a, R: Read + Seek> Clip<'a, R> {
-    /// Takes a part of a cache.
+    /// Selects a part of a cache.
     ///
     /// # Errors
-    /// When an object or all frames that are asked for are not there.
+    /// When the cache lacks a requested object, or every requested frame.
     pub fn of(cache: &'a mut Playback<R>, selection: &Selection) -> Result<Self, ExportError> {
         let objects = objects(cache, &selection.objects)?;
         let samples = samples(cache, selection)?;
         Ok(Self { cache, objects, samples, scale: selection.scale })
     }
 
-    /// The objects as they begin, in the order of the cache.
+    /// The objects with their first mesh, in the order of the cache.
     pub fn objects(&self) -> impl ExactSizeIterator<Item = &ObjectInfo> {
         self.objects.iter().map(|&object| &self.cache.objects()[object])
     }
 
-    /// An object with the mesh that it has at a sample.
+    /// An object with its mesh at a sample.
     ///
     /// # Errors
-    /// When the frame of its mesh is damaged.
+    /// When the frame that holds the mesh is damaged.
     pub fn object_at(&mut self, object: usize, sample: usize) -> Result<&ObjectInfo, ExportError> {
         Ok(self.cache.object_at(self.objects[object], self.samples[sample].moment)?)
     }
 
-    /// The samples at which an object has another mesh than at the sample before.
+    /// The samples at which the topology of an object differs from the sample before.
     pub fn mesh_changes(&self, object: usize) -> Vec<usize> {
         let first = self.samples[0].moment;
         let changes = self.cache.mesh_changes(self.objects[object]);
@@ -91,11 +91,15 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         samples
     }
 
-    /// For a format that knows one mesh for all time.
+    /// Checks an object for a format with constant topology.
     ///
     /// # Errors
-    /// When an object has another at a later sample than at the first.
-    pub(crate) fn refuse_changes(&self, object: usize, format: &'static str) -> Result<(), ExportError> {
+    /// When the topology changes after the first sample.
+    pub(crate) fn require_constant_topology(
+        &self,
+        object: usize,
+        format: &'static str,
+    ) -> Result<(), ExportError> {
         match self.mesh_changes(object).first() {
             None => Ok(()),
             Some(&sample) => Err(ExportError::MeshChanges {
@@ -106,17 +110,17 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         }
     }
 
-    /// An object as it begins, by its place in [`objects`](Self::objects).
+    /// An object with its first mesh, by its index in [`objects`](Self::objects).
     pub fn object(&self, object: usize) -> &ObjectInfo {
         &self.cache.objects()[self.objects[object]]
     }
 
-    /// The radius of an object's particles, scaled; nothing for what has none.
+    /// The radius of an object's particles in exported units; `None` for other objects.
     pub fn radius(&self, object: usize) -> Option<f64> {
         self.cache.run().radii.get(&self.object(object).name).map(|radius| radius * self.scale)
     }
 
-    /// The samples in order of time, at least one.
+    /// The samples in order of time; at least one.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
@@ -126,23 +130,23 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         self.cache.run().frames_per_second
     }
 
-    /// Units of the scene in a metre.
+    /// Scene units per metre.
     pub fn units_per_metre(&self) -> f64 {
         self.cache.run().units_per_metre
     }
 
-    /// The scene that was run, as a title.
+    /// A title that names the scene.
     pub fn title(&self) -> String {
         let path = &self.cache.run().scene_path;
         if path.is_empty() { "a Nucleus run".to_owned() } else { format!("a Nucleus run of {path}") }
     }
 
-    /// Makes all lengths metres.
+    /// Converts all lengths from scene units to metres.
     pub(crate) fn in_metres(&mut self) {
         self.scale /= self.units_per_metre();
     }
 
-    /// Whether an object has other positions in any sample than in the first. Reads them all.
+    /// Whether any position of an object differs from the first sample. Reads every sample.
     pub(crate) fn moves(&mut self, object: usize) -> Result<bool, ExportError> {
         let first = self.positions(object, 0)?;
         for sample in 1..self.samples.len() {
@@ -153,10 +157,10 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         Ok(false)
     }
 
-    /// Positions of an object at a sample.
+    /// Positions of an object at a sample, in exported units.
     ///
     /// # Errors
-    /// When the frame is damaged or a point is not finite: no other tool knows what to do with that.
+    /// When the frame is damaged, or a coordinate is not finite: other tools cannot read such a file.
     pub fn positions(&mut self, object: usize, sample: usize) -> Result<Vec<[f32; 3]>, ExportError> {
         let Sample { moment, frame, .. } = self.samples[sample];
         let mut positions = self.cache.positions(self.objects[object], moment)?;
@@ -171,7 +175,7 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         }
     }
 
-    /// Velocities of an object at a sample in units per second, where they were recorded.
+    /// Velocities of an object at a sample in exported units per second; `None` if they were not recorded.
     ///
     /// # Errors
     /// When the frame is damaged.
@@ -184,6 +188,17 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
             all
         }))
     }
+}
+
+/// Lowest and highest corner of the bounding box of points.
+pub(crate) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
+    let begin = points.first().copied().unwrap_or_default();
+    points.iter().fold([begin; 2], |[low, high], point| {
+        [
+            std::array::from_fn(|axis| low[axis].min(point[axis])),
+            std::array::from_fn(|axis| high[axis].max(point[axis])),
+        ]
+    })
 }
 
 fn objects<R: Read + Seek>(cache: &Playback<R>, names: &[String]) -> Result<Vec<usize>, ExportError> {
@@ -213,20 +228,20 @@ fn samples<R: Read + Seek>(cache: &Playback<R>, selection: &Selection) -> Result
     let (first, last) = selection.frames.unwrap_or(has);
     let every = i64::from(selection.every.max(1));
     let from = i64::from(first.max(has.0));
-    let wanted =
+    let is_selected =
         |frame: i32| (first..=last).contains(&frame) && (i64::from(frame) - from).rem_euclid(every) == 0;
     let chosen = moments
         .iter()
         .enumerate()
-        .filter(|(_, moment)| wanted(moment.frame) && (selection.substeps || moment.ends_frame()));
+        .filter(|(_, moment)| is_selected(moment.frame) && (selection.substeps || moment.ends_frame()));
     let samples: Vec<Sample> = chosen
-        .map(|(place, moment)| {
+        .map(|(index, moment)| {
             let (substep, substeps) = match moment.ends_frame() {
                 true => (1, 1),
                 false => (moment.substep, moment.substeps),
             };
-            let at = f64::from(moment.frame) - 1.0 + f64::from(substep) / f64::from(substeps);
-            Sample { frame: moment.frame, substep, substeps, at, moment: place }
+            let frame_time = f64::from(moment.frame) - 1.0 + f64::from(substep) / f64::from(substeps);
+            Sample { frame: moment.frame, substep, substeps, frame_time, moment: index }
         })
         .collect();
     if samples.is_empty() { Err(ExportError::NoFrame { first, last, has }) } else { Ok(samples) }

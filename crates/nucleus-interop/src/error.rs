@@ -9,10 +9,10 @@ use nucleus_cache::{ReadError, RecordError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// Something stands where a file is to be written.
+    /// The destination exists.
     #[error("`{}` exists; `--force` replaces it", path.display())]
     Exists {
-        /// What is in the way.
+        /// The existing file or folder.
         path: PathBuf,
     },
     /// A file or folder cannot be written.
@@ -20,50 +20,50 @@ pub enum ExportError {
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
     /// A frame of the cache cannot be read.
     #[error("cannot read the cache")]
     Read(#[from] ReadError),
-    /// The cache that is written for other viewers cannot be recorded.
-    #[error("cannot write the file for other viewers")]
+    /// The MCAP file for other viewers cannot be written.
+    #[error("cannot write the MCAP file for other viewers")]
     Record(#[from] RecordError),
-    /// No object of that name.
+    /// The cache has no object of this name.
     #[error("the cache has no object `{name}`; it has {}", known.join(", "))]
     NoObject {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are, in backquotes.
+        /// The names in the cache, in backquotes.
         known: Vec<String>,
     },
-    /// No recorded frame lies in the range that was asked for.
+    /// No recorded frame lies in the requested range.
     #[error("no recorded frame lies between {first} and {last}; the cache has {} to {}", has.0, has.1)]
     NoFrame {
-        /// First frame that was asked for.
+        /// First requested frame.
         first: i32,
-        /// Last frame that was asked for.
+        /// Last requested frame.
         last: i32,
         /// First and last frame of the cache.
         has: (i32, i32),
     },
-    /// The cache holds nothing.
+    /// The cache has no frame.
     #[error("the cache holds no frame")]
     Empty,
-    /// Positions that no other tool takes.
+    /// Positions that other tools cannot read.
     #[error("{points} points of `{object}` are not finite at frame {frame}; export the frames before it")]
     NotFinite {
         /// The object.
         object: String,
         /// The frame.
         frame: i32,
-        /// How many points.
+        /// The number of points with such a coordinate.
         points: usize,
     },
-    /// A mesh that changes, in a format that has one for all time.
+    /// The topology changes, and the format stores it once.
     #[error(
-        "`{object}` gets another mesh at frame {frame}, and {format} has one for all time; export the frames before it, or \
-         write obj, ply, vtu, usda or foxglove"
+        "the topology of `{object}` changes at frame {frame}, and {format} stores one topology; export the frames before \
+         it, or write obj, ply, vtu, usda or foxglove"
     )]
     MeshChanges {
         /// The object.
@@ -73,12 +73,12 @@ pub enum ExportError {
         /// The format.
         format: &'static str,
     },
-    /// More than the format can count.
-    #[error("{what} is more than {format} can hold; export fewer frames, or write usda")]
+    /// A quantity exceeds the limit of the format.
+    #[error("{quantity} is more than {format} can hold; export fewer frames, or write usda")]
     TooLarge {
         /// The format.
         format: &'static str,
-        /// What there is too much of.
-        what: String,
+        /// The quantity, with its unit.
+        quantity: String,
     },
 }

@@ -1,43 +1,127 @@
-//! One export: from a clip to files.
+//! One export: which format, from a clip to files.
 
 use std::io::{Read, Seek};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nucleus_cache::Playback;
 
 use crate::clip::{Clip, Selection};
 use crate::error::ExportError;
-use crate::format::Format;
+use crate::mesh_files::{write_obj, write_ply};
 use crate::output::Output;
-use crate::{foxglove, glb, mdd, ncache, obj, pc2, ply, usda, vtu};
+use crate::point_caches::{write_mdd, write_pc2};
+use crate::{foxglove, glb, ncache, usda, vtu};
 
-/// What is to be exported, and where to.
+/// A format of another tool.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// A Wavefront OBJ file per object and sample.
+    Obj,
+    /// A binary PLY file per object and sample.
+    Ply,
+    /// A point cache of 3ds Max and Blender per object, beside its mesh as OBJ.
+    Pc2,
+    /// A point cache of LightWave, Modo, Houdini and Blender per object, beside its mesh as OBJ.
+    Mdd,
+    /// One scene of Pixar's USD as text, with time samples.
+    Usda,
+    /// One binary glTF file, with a morph target per sample.
+    Glb,
+    /// A VTK file per object and sample, and a ParaView collection per object.
+    Vtu,
+    /// A Maya nCache with 32-bit lengths per object: a description, and a file per sample.
+    Mc,
+    /// The same with 64-bit lengths.
+    Mcx,
+    /// One MCAP file in Foxglove's public schemas, for Foxglove, Lichtblick and rerun.
+    Foxglove,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 10] = [
+        Self::Obj,
+        Self::Ply,
+        Self::Pc2,
+        Self::Mdd,
+        Self::Usda,
+        Self::Glb,
+        Self::Vtu,
+        Self::Mc,
+        Self::Mcx,
+        Self::Foxglove,
+    ];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Pc2 => "pc2",
+            Self::Mdd => "mdd",
+            Self::Usda => "usda",
+            Self::Glb => "glb",
+            Self::Vtu => "vtu",
+            Self::Mc => "mc",
+            Self::Mcx => "mcx",
+            Self::Foxglove => "foxglove",
+        }
+    }
+
+    /// Whether the export is one file; otherwise it is a folder.
+    pub fn is_one_file(self) -> bool {
+        matches!(self, Self::Usda | Self::Glb | Self::Foxglove)
+    }
+
+    /// The format of a file extension, if one has it.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        let end = path.extension()?.to_str()?.to_ascii_lowercase();
+        match end.as_str() {
+            "mcap" => Some(Self::Foxglove),
+            "usd" => Some(Self::Usda),
+            "xml" => Some(Self::Mcx),
+            "pvd" => Some(Self::Vtu),
+            end => Self::ALL.into_iter().find(|format| format.name() == end),
+        }
+    }
+
+    /// The default name of the export, from the name of the cache without its extension.
+    pub fn default_name(self, stem: &str) -> String {
+        match self {
+            Self::Foxglove => format!("{stem}.foxglove.mcap"),
+            Self::Usda | Self::Glb => format!("{stem}.{}", self.name()),
+            _ => format!("{stem}_{}", self.name()),
+        }
+    }
+}
+
+/// An export: the format, the destination and the part of the cache.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// As what.
+    /// The format.
     pub format: Format,
-    /// The file, or the folder for formats of many files; it is made if it is not there.
+    /// The file, or the folder for formats of several files; missing folders are made.
     pub out: PathBuf,
-    /// What of the cache.
+    /// The part of the cache.
     pub selection: Selection,
-    /// Whether files that are there may be replaced.
+    /// Whether existing files may be replaced.
     pub force: bool,
 }
 
-/// What was exported.
+/// The result of an export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exported {
     /// The files, in the order in which they were finished.
     pub files: Vec<PathBuf>,
-    /// Samples of time in them.
+    /// Time samples in them.
     pub samples: usize,
     /// Objects in them.
     pub objects: usize,
 }
 
-/// Writes a part of a cache as files of another tool. `told` is called with the share that is done.
+/// Writes a part of a cache as files of another tool. `progress` receives the finished fraction, 0 to 1.
 ///
-/// A file is under its name only when it is whole.
+/// A file has its name only when it is complete.
 ///
 /// ```no_run
 /// use nucleus_interop::{Format, Request, Selection, export};
@@ -50,11 +134,11 @@ pub struct Exported {
 /// ```
 ///
 /// # Errors
-/// When something is in the way, cannot be read or written, or cannot be said in the format.
+/// When a file exists, the cache cannot be read, a file cannot be written, or the format cannot express the data.
 pub fn export<R: Read + Seek>(
     cache: &mut Playback<R>,
     request: &Request,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<Exported, ExportError> {
     let mut clip = Clip::of(cache, &request.selection)?;
     let mut output = Output::new(request.force);
@@ -65,16 +149,16 @@ pub fn export<R: Read + Seek>(
         (true, _) => {}
     }
     match request.format {
-        Format::Obj => obj::write(&mut clip, out, &mut output, told)?,
-        Format::Ply => ply::write(&mut clip, out, &mut output, told)?,
-        Format::Pc2 => pc2::write(&mut clip, out, &mut output, told)?,
-        Format::Mdd => mdd::write(&mut clip, out, &mut output, told)?,
-        Format::Usda => usda::write(&mut clip, out, &mut output, told)?,
-        Format::Glb => glb::write(&mut clip, out, &mut output, told)?,
-        Format::Vtu => vtu::write(&mut clip, out, &mut output, told)?,
-        Format::Mc => ncache::write(&mut clip, out, ncache::Width::Bits32, &mut output, told)?,
-        Format::Mcx => ncache::write(&mut clip, out, ncache::Width::Bits64, &mut output, told)?,
-        Format::Foxglove => foxglove::write(&mut clip, out, &mut output, told)?,
+        Format::Obj => write_obj(&mut clip, out, &mut output, progress)?,
+        Format::Ply => write_ply(&mut clip, out, &mut output, progress)?,
+        Format::Pc2 => write_pc2(&mut clip, out, &mut output, progress)?,
+        Format::Mdd => write_mdd(&mut clip, out, &mut output, progress)?,
+        Format::Usda => usda::write(&mut clip, out, &mut output, progress)?,
+        Format::Glb => glb::write(&mut clip, out, &mut output, progress)?,
+        Format::Vtu => vtu::write(&mut clip, out, &mut output, progress)?,
+        Format::Mc => ncache::write(&mut clip, out, ncache::Width::Bits32, &mut output, progress)?,
+        Format::Mcx => ncache::write(&mut clip, out, ncache::Width::Bits64, &mut output, progress)?,
+        Format::Foxglove => foxglove::write(&mut clip, out, &mut output, progress)?,
     }
     let (samples, objects) = (clip.samples().len(), clip.objects().len());
     Ok(Exported { files: output.written(), samples, objects })

@@ -1,7 +1,7 @@
-//! Binary glTF: a mesh for each object, a morph target for each sample, and an animation that goes through them.
+//! Binary glTF 2.0: a mesh per object, a morph target per sample, and an animation of the target weights.
 //!
-//! Target k is full at sample k and none is at sample 0, so that between two samples points move along straight
-//! lines, as they do in every point cache.
+//! The weight of target k is 1 at sample k, and all weights are 0 at sample 0. Between samples the weights are linear,
+//! so points move along straight lines, as in a point cache.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -9,10 +9,9 @@ use std::path::Path;
 use nucleus_cache::ObjectInfo;
 use serde_json::{Value, json};
 
-use crate::clip::Clip;
+use crate::clip::{Clip, extent};
 use crate::error::ExportError;
 use crate::output::{OutFile, Output};
-use crate::usda::extent;
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
@@ -21,20 +20,20 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const POINTS: u32 = 0;
 const TRIANGLES: u32 = 4;
 
-/// Writes one file, in metres as glTF demands.
+/// Writes one file in metres, as glTF requires.
 pub(crate) fn write<R: Read + Seek>(
     clip: &mut Clip<R>,
     out: &Path,
     output: &mut Output,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
     clip.in_metres();
-    let (text, length, moving) = describe(clip, &mut |share| told(0.5 * share))?;
+    let (text, length, moving) = describe(clip, &mut |share| progress(0.5 * share))?;
     let mut file = output.file(out.to_owned())?;
     let text = padded(text.to_string().into_bytes(), b' ');
     let total = 12 + 8 + text.len() as u64 + 8 + length;
     let total = u32::try_from(total)
-        .map_err(|_| ExportError::TooLarge { format: "glb", what: format!("{total} bytes") })?;
+        .map_err(|_| ExportError::TooLarge { format: "glb", quantity: format!("{total} bytes") })?;
     file.bytes(b"glTF");
     [2, total, text.len() as u32].iter().for_each(|word: &u32| file.bytes(&word.to_le_bytes()));
     file.bytes(b"JSON");
@@ -44,12 +43,12 @@ pub(crate) fn write<R: Read + Seek>(
     write_times(clip, &mut file);
     for (object, moves) in moving.iter().enumerate() {
         write_object(clip, object, *moves, &mut file)?;
-        told(0.5 + 0.5 * (object + 1) as f64 / moving.len() as f64);
+        progress(0.5 + 0.5 * (object + 1) as f64 / moving.len() as f64);
     }
     output.finish(file)
 }
 
-/// The JSON part while it is put together, and how long the binary part becomes.
+/// The JSON part under construction, and the length of the binary part in bytes.
 struct Document {
     accessors: Vec<Value>,
     views: Vec<Value>,
@@ -57,7 +56,7 @@ struct Document {
 }
 
 impl Document {
-    /// Adds a run of values; gives the number of its accessor.
+    /// Adds an array of values; returns the index of its accessor.
     fn add(&mut self, kind: &str, component: u32, count: usize, target: Option<u32>, bounds: Value) -> usize {
         let components = if kind == "VEC3" { 3 } else { 1 };
         let bytes = 4 * (components * count) as u64;
@@ -82,10 +81,10 @@ impl Document {
     }
 }
 
-/// What the file holds, the length of its binary part, and which objects move. Reads every frame once.
+/// The JSON part, the length of the binary part in bytes, and whether each object moves. Reads every frame once.
 fn describe<R: Read + Seek>(
     clip: &mut Clip<R>,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(Value, u64, Vec<bool>), ExportError> {
     let mut document = Document { accessors: Vec::new(), views: Vec::new(), length: 0 };
     let times = times(clip);
@@ -95,7 +94,7 @@ fn describe<R: Read + Seek>(
     let (mut meshes, mut nodes, mut moving) = (Vec::new(), Vec::new(), Vec::new());
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     for object in 0..objects {
-        clip.refuse_changes(object, "glTF")?;
+        clip.require_constant_topology(object, "glTF")?;
         let moves = clip.moves(object)?;
         meshes.push(describe_mesh(clip, object, moves, &mut document)?);
         nodes.push(json!({ "name": clip.object(object).name, "mesh": object }));
@@ -107,7 +106,7 @@ fn describe<R: Read + Seek>(
             samplers.push(json!({ "input": time, "output": output, "interpolation": "LINEAR" }));
         }
         moving.push(moves);
-        told((object + 1) as f64 / objects as f64);
+        progress((object + 1) as f64 / objects as f64);
     }
     let mut text = json!({
         "asset": { "version": "2.0", "generator": concat!("nucleus ", env!("CARGO_PKG_VERSION")) },
@@ -145,9 +144,9 @@ fn describe_mesh<R: Read + Seek>(
     if moves {
         let (mut targets, mut names) = (Vec::new(), Vec::new());
         for sample in 1..clip.samples().len() {
-            let moved = moved(clip, object, sample, &base)?;
+            let moved = displacements(clip, object, sample, &base)?;
             targets.push(json!({ "POSITION": document.add_points(&moved) }));
-            names.push(format!("frame {}", clip.samples()[sample].at));
+            names.push(format!("frame {}", clip.samples()[sample].frame_time));
         }
         mesh["weights"] = vec![0; targets.len()].into();
         mesh["extras"] = json!({ "targetNames": names });
@@ -157,7 +156,7 @@ fn describe_mesh<R: Read + Seek>(
     Ok(mesh)
 }
 
-/// Writes what [`describe_mesh`] has announced, in its order, and the weights of the animation.
+/// Writes the arrays that [`describe_mesh`] lists, in its order, and the weights of the animation.
 fn write_object<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
@@ -172,7 +171,7 @@ fn write_object<R: Read + Seek>(
     }
     let samples = clip.samples().len();
     for sample in 1..samples {
-        file.floats_le(&moved(clip, object, sample, &base)?);
+        file.floats_le(&displacements(clip, object, sample, &base)?);
     }
     for sample in 0..samples {
         for target in 1..samples {
@@ -191,14 +190,14 @@ fn write_times<R: Read + Seek>(clip: &Clip<R>, file: &mut OutFile) {
     times(clip).iter().for_each(|time| file.bytes(&time.to_le_bytes()));
 }
 
-/// Seconds from the first sample.
+/// Times of the samples in seconds, relative to the first.
 fn times<R: Read + Seek>(clip: &Clip<R>) -> Vec<f32> {
-    let begin = clip.samples()[0].at;
-    clip.samples().iter().map(|sample| ((sample.at - begin) / clip.fps()) as f32).collect()
+    let begin = clip.samples()[0].frame_time;
+    clip.samples().iter().map(|sample| ((sample.frame_time - begin) / clip.fps()) as f32).collect()
 }
 
-/// How far the points have come since the first sample.
-fn moved<R: Read + Seek>(
+/// Displacement of each point relative to the first sample.
+fn displacements<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     sample: usize,
@@ -212,7 +211,7 @@ fn moved<R: Read + Seek>(
         .collect())
 }
 
-/// Filled up to a multiple of four bytes.
+/// Pads to a multiple of four bytes.
 fn padded(mut bytes: Vec<u8>, with: u8) -> Vec<u8> {
     bytes.resize(bytes.len().next_multiple_of(4), with);
     bytes

@@ -1,35 +1,31 @@
 //! Caches as files of other tools: meshes, point caches, scenes with time samples.
 //!
-//! | You want to know…                                  | Read                             |
-//! |----------------------------------------------------|----------------------------------|
-//! | which formats there are, and what they can hold    | [`Format`]                       |
-//! | how an export is asked for, and what it writes     | [`export()`]                     |
-//! | which frames and objects are taken, in which units | [`Clip`]                         |
-//! | why a file is never half written                   | `output.rs`                      |
-//! | the bytes of a format                              | its file: `usda.rs`, `glb.rs`, … |
+//! | You want to know…                                      | Read                                   |
+//! |--------------------------------------------------------|----------------------------------------|
+//! | which formats exist, and which files they write        | [`Format`]                             |
+//! | how to request an export, and which files result       | [`export()`]                           |
+//! | which objects and frames are selected, in which units  | [`Clip`]                               |
+//! | how names are made valid, and files appear complete    | `output.rs`                            |
+//! | OBJ and PLY; PC2 and MDD                               | `mesh_files.rs`; `point_caches.rs`     |
+//! | the bytes of another format                            | its file: `usda.rs`, `glb.rs`, …       |
 //!
-//! **Invariant:** order and number of points are those of the cache in every format, and a position differs
-//! from the recorded one by no more than the rounding of one `f32`.
+//! **Invariant:** in every format the points have the order and count of the cache, and a position differs from the
+//! recorded one by no more than the rounding of one `f32`.
 
 #![forbid(unsafe_code)]
 
 mod clip;
 mod error;
 mod export;
-mod format;
 mod foxglove;
 mod glb;
-mod mdd;
-mod name;
+mod mesh_files;
 mod ncache;
-mod obj;
 mod output;
-mod pc2;
-mod ply;
+mod point_caches;
 mod usda;
 mod vtu;
 
 pub use clip::{Clip, Sample, Selection};
 pub use error::ExportError;
-pub use export::{Exported, Request, export};
-pub use format::Format;
+pub use export::{Exported, Format, Request, export};

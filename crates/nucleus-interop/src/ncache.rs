@@ -1,6 +1,6 @@
-//! Maya's nCache: an XML description and, for each sample, a file of nested blocks, highest byte first.
+//! Maya's nCache: an XML description, and per sample a big-endian file of nested blocks.
 //!
-//! Time is counted in ticks of 1/6000 s. The layout is taken from caches that Maya has written.
+//! Time is counted in ticks of 1/6000 s. The layout is that of caches written by Maya.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -9,12 +9,11 @@ use nucleus_cache::ObjectKind;
 
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
-use crate::name;
-use crate::output::{OutFile, Output};
+use crate::output::{OutFile, Output, node_names};
 
 const TICKS_PER_SECOND: f64 = 6000.0;
 
-/// How wide the lengths in a file are.
+/// The width of the length fields in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Width {
     /// `.mc`.
@@ -29,26 +28,26 @@ pub(crate) fn write<R: Read + Seek>(
     folder: &Path,
     width: Width,
     output: &mut Output,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    let names = name::for_nodes(clip.objects().map(|object| object.name.as_str()));
+    let names = node_names(clip.objects().map(|object| object.name.as_str()));
     let per_frame = ticks(1.0, clip.fps());
     for object in 0..names.len() {
-        // Of particles the count is told in each file.
+        // Each file states the number of particles, so that number may change.
         if clip.objects().nth(object).is_some_and(|object| object.kind != ObjectKind::Particles) {
-            clip.refuse_changes(object, "nCache")?;
+            clip.require_constant_topology(object, "nCache")?;
         }
     }
-    for place in 0..clip.samples().len() {
-        let sample = clip.samples()[place];
-        let tick = ticks(sample.at, clip.fps());
+    for index in 0..clip.samples().len() {
+        let sample = clip.samples()[index];
+        let tick = ticks(sample.frame_time, clip.fps());
         for (object, name) in names.iter().enumerate() {
             let file = format!("{name}{}.{}", numbered(&sample, tick, per_frame), width.end());
             let mut file = output.file(folder.join(file))?;
-            write_sample(clip, object, place, name, Frame { tick, width }, &mut file)?;
+            write_sample(clip, object, index, name, Frame { tick, width }, &mut file)?;
             output.finish(file)?;
         }
-        told((place + 1) as f64 / clip.samples().len() as f64);
+        progress((index + 1) as f64 / clip.samples().len() as f64);
     }
     for (object, name) in names.iter().enumerate() {
         let mut file = output.file(folder.join(format!("{name}.xml")))?;
@@ -63,21 +62,21 @@ fn ticks(frames: f64, fps: f64) -> i32 {
     (frames * TICKS_PER_SECOND / fps).round() as i32
 }
 
-/// `Frame12`, or `Frame11Tick125` half-way to it.
+/// `Frame12` at the end of a frame, `Frame11Tick125` halfway to it.
 fn numbered(sample: &Sample, tick: i32, per_frame: i32) -> String {
-    match sample.is_whole() {
+    match sample.ends_frame() {
         true => format!("Frame{}", sample.frame),
         false => format!("Frame{}Tick{}", sample.frame - 1, tick - (sample.frame - 1) * per_frame),
     }
 }
 
-/// Name, type and meaning of a channel.
+/// Name, type and interpretation of a channel.
 type Channel = (String, &'static str, &'static str);
 
 const VECTORS: &str = "FloatVectorArray";
 const NUMBERS: &str = "DoubleArray";
 
-/// The channels of an object: one for a mesh; for particles their numbers, count, positions and velocities.
+/// The channels of an object: positions for a mesh; ids, count, positions and velocities for particles.
 fn channels<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
@@ -95,11 +94,12 @@ fn channels<R: Read + Seek>(
 
 fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Width, per_frame: i32) -> String {
     let samples = clip.samples();
-    let [first, last] = [samples[0], samples[samples.len() - 1]].map(|sample| ticks(sample.at, clip.fps()));
+    let [first, last] =
+        [samples[0], samples[samples.len() - 1]].map(|sample| ticks(sample.frame_time, clip.fps()));
     let rate = if samples.len() > 1 { (last - first) / (samples.len() as i32 - 1) } else { per_frame };
-    let lines = channels.iter().enumerate().map(|(place, (name, holds, kind))| {
+    let lines = channels.iter().enumerate().map(|(index, (name, holds, kind))| {
         format!(
-            "    <channel{place} ChannelName=\"{name}\" ChannelType=\"{holds}\" ChannelInterpretation=\"{kind}\" \
+            "    <channel{index} ChannelName=\"{name}\" ChannelType=\"{holds}\" ChannelInterpretation=\"{kind}\" \
              SamplingType=\"Regular\" SamplingRate=\"{rate}\" StartTime=\"{first}\" EndTime=\"{last}\"/>\n"
         )
     });
@@ -113,7 +113,7 @@ fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Widt
     )
 }
 
-/// When a file is, and how wide its lengths are.
+/// The time of a file and the width of its length fields.
 #[derive(Clone, Copy)]
 struct Frame {
     tick: i32,
@@ -164,7 +164,7 @@ impl Width {
         }
     }
 
-    /// The word for it in a description.
+    /// The name of the format in a description.
     fn word(self) -> &'static str {
         match self {
             Self::Bits32 => "mcc",
@@ -172,7 +172,7 @@ impl Width {
         }
     }
 
-    /// A tag and a length.
+    /// Appends a tag and a length.
     fn length(self, tag: &[u8; 4], length: usize, out: &mut Vec<u8>) {
         out.extend_from_slice(tag);
         match self {
@@ -184,7 +184,7 @@ impl Width {
         }
     }
 
-    /// A block; its stated length leaves out the zeros that fill it up.
+    /// Appends a block, padded with zeros; the stated length excludes the padding.
     fn block(self, tag: &[u8; 4], data: &[u8], out: &mut Vec<u8>) {
         let step = if self == Self::Bits32 { 4 } else { 8 };
         self.length(tag, data.len(), out);
@@ -201,7 +201,7 @@ impl Width {
         out
     }
 
-    /// The head of a file of one sample.
+    /// The header of a file of one sample.
     fn head(self, tick: i32) -> Vec<u8> {
         let mut blocks = Vec::new();
         self.block(b"VRSN", b"0.1\0", &mut blocks);
@@ -233,7 +233,7 @@ mod tests {
 
     /// The first bytes of a file that Maya wrote: 349 points of `nClothShape1` at frame 3.
     #[test]
-    fn a_narrow_file_begins_as_maya_begins_it() {
+    fn a_32_bit_file_begins_with_the_bytes_that_maya_writes() {
         let maya = bytes(
             "464f5234 00000028 43414348 5652534e 00000004 302e3100 5354494d 00000004 000002ee 4554494d 00000004
              000002ee 464f5234 0000108c 4d594348 43484e4d 0000000d 6e436c6f 74685368 61706531 00000000
@@ -244,10 +244,10 @@ mod tests {
         assert_eq!(ours.len(), 4292, "the length of that file");
     }
 
-    /// Blocks of a file that Maya wrote with wide lengths. Maya leaves rubbish in the four bytes behind a
-    /// tag; here they are zero.
+    /// Blocks of a file that Maya wrote with 64-bit lengths. Maya leaves the four bytes after a tag undefined; here they
+    /// are zero.
     #[test]
-    fn wide_blocks_are_laid_out_as_mayas_are() {
+    fn blocks_of_64_bit_have_the_layout_that_maya_writes() {
         let head = bytes(
             "464f5238 00000000 00000000 0000004c 43414348 5652534e 00000000 00000000 00000004 302e3100 00000000
              5354494d 00000000 00000000 00000004 000000fa 00000000 4554494d 00000000 00000000 00000004 000000fa
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_six_thousandths_of_a_second() {
+    fn a_tick_is_a_six_thousandth_of_a_second() {
         assert_eq!((ticks(1.0, 24.0), ticks(3.0, 24.0), ticks(-1.0, 30.0)), (250, 750, -200));
     }
 }

@@ -1,65 +1,64 @@
-//! Files that are whole or not there: written beside their place, and moved there when they are done.
+//! The files of an export: their names, and writing them so that each appears only when it is complete.
 
-use std::fs::{self, File};
+use std::collections::HashSet;
+use std::fs;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use nucleus_cache::atomic_file::AtomicFile;
+
 use crate::error::ExportError;
 
-/// Where an export goes, and what it has written.
+/// The destination of an export, and the files that it has written.
 pub(crate) struct Output {
-    force: bool,
+    replaces: bool,
     written: Vec<PathBuf>,
 }
 
-/// A file on its way. Dropped before it is finished, it leaves nothing behind.
+/// An unfinished file. Dropped before [`Output::finish`], it leaves nothing behind.
+///
+/// The first error is kept and reported by `finish`, so that loops over points need not check each write.
 pub(crate) struct OutFile {
-    place: PathBuf,
-    beside: PathBuf,
-    file: BufWriter<File>,
+    file: BufWriter<AtomicFile>,
     failed: Option<io::Error>,
-    finished: bool,
 }
 
 impl Output {
-    pub fn new(force: bool) -> Self {
-        Self { force, written: Vec::new() }
+    /// An export that may replace files if `replaces` is set.
+    pub fn new(replaces: bool) -> Self {
+        Self { replaces, written: Vec::new() }
     }
 
     /// Begins a file.
-    pub fn file(&mut self, place: PathBuf) -> Result<OutFile, ExportError> {
-        self.check(&place)?;
-        let mut name = place.file_name().unwrap_or_default().to_owned();
-        name.push(".part");
-        let beside = place.with_file_name(name);
-        match File::create(&beside) {
-            Ok(file) => {
-                let file = BufWriter::with_capacity(1 << 18, file);
-                Ok(OutFile { place, beside, file, failed: None, finished: false })
-            }
-            Err(source) => Err(ExportError::Write { path: place, source }),
+    ///
+    /// # Errors
+    /// When something exists there that may not be replaced, or the folder cannot be written.
+    pub fn file(&mut self, path: PathBuf) -> Result<OutFile, ExportError> {
+        let is_replaceable = self.replaces && !path.is_dir();
+        if path.exists() && !is_replaceable {
+            return Err(ExportError::Exists { path });
+        }
+        match AtomicFile::create(&path) {
+            Ok(file) => Ok(OutFile { file: BufWriter::with_capacity(1 << 18, file), failed: None }),
+            Err(source) => Err(ExportError::Write { path, source }),
         }
     }
 
-    /// Refuses to replace anything without being told to.
-    pub fn check(&self, place: &Path) -> Result<(), ExportError> {
-        let replaceable = self.force && !place.is_dir();
-        if place.exists() && !replaceable {
-            return Err(ExportError::Exists { path: place.to_owned() });
+    /// Makes a folder, with its parents.
+    pub fn folder(&self, path: &Path) -> Result<(), ExportError> {
+        fs::create_dir_all(path).map_err(|source| ExportError::Write { path: path.to_owned(), source })
+    }
+
+    /// Completes a file and gives it its name.
+    ///
+    /// # Errors
+    /// When any write to it has failed.
+    pub fn finish(&mut self, file: OutFile) -> Result<(), ExportError> {
+        let path = file.file.get_ref().destination().to_owned();
+        match file.close() {
+            Ok(()) => self.written.push(path),
+            Err(source) => return Err(ExportError::Write { path, source }),
         }
-        Ok(())
-    }
-
-    /// Makes a folder, with those above it.
-    pub fn folder(&self, place: &Path) -> Result<(), ExportError> {
-        fs::create_dir_all(place).map_err(|source| ExportError::Write { path: place.to_owned(), source })
-    }
-
-    /// Moves a file to its place.
-    pub fn finish(&mut self, mut file: OutFile) -> Result<(), ExportError> {
-        let result = file.close();
-        result.map_err(|source| ExportError::Write { path: file.place.clone(), source })?;
-        self.written.push(file.place.clone());
         Ok(())
     }
 
@@ -69,41 +68,39 @@ impl Output {
     }
 }
 
-/// Writing is told of at the end, so that the loops over points need not ask.
 impl OutFile {
+    /// Writes bytes.
     pub fn bytes(&mut self, bytes: &[u8]) {
         if self.failed.is_none() {
             self.failed = self.file.write_all(bytes).err();
         }
     }
 
+    /// Writes text.
     pub fn text(&mut self, text: impl AsRef<str>) {
         self.bytes(text.as_ref().as_bytes());
     }
 
-    /// Floats, lowest byte first.
+    /// Writes little-endian floats.
     pub fn floats_le(&mut self, values: &[[f32; 3]]) {
         values.as_flattened().iter().for_each(|x| self.bytes(&x.to_le_bytes()));
     }
 
-    /// Floats, highest byte first.
+    /// Writes big-endian floats.
     pub fn floats_be(&mut self, values: &[[f32; 3]]) {
         values.as_flattened().iter().for_each(|x| self.bytes(&x.to_be_bytes()));
     }
 
-    /// Whether anything has failed: there is no sense in going on.
+    /// Whether a write has failed, after which all further work on the file is wasted.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
 
-    fn close(&mut self) -> io::Result<()> {
-        if let Some(error) = self.failed.take() {
-            return Err(error);
+    fn close(self) -> io::Result<()> {
+        match self.failed {
+            Some(error) => Err(error),
+            None => self.file.into_inner().map_err(io::IntoInnerError::into_error)?.commit(),
         }
-        self.file.flush()?;
-        fs::rename(&self.beside, &self.place)?;
-        self.finished = true;
-        Ok(())
     }
 }
 
@@ -123,11 +120,43 @@ impl Seek for OutFile {
     }
 }
 
-impl Drop for OutFile {
-    fn drop(&mut self) {
-        if !self.finished {
-            // What cannot be removed either is at least not under the final name.
-            let _ = fs::remove_file(&self.beside);
+/// Names of files: characters other than letters, digits, `_`, `-` and `.` become `_`, and no two names are equal,
+/// whatever the case of their letters.
+pub(crate) fn file_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    unique(names, |c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.'))
+}
+
+/// Names of nodes: letters, digits and `_`, not beginning with a digit.
+pub(crate) fn node_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    unique(names, |c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+fn unique<'a>(names: impl IntoIterator<Item = &'a str>, is_allowed: impl Fn(char) -> bool) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let made = names.into_iter().map(|name| {
+        let plain: String = name.chars().map(|c| if is_allowed(c) { c } else { '_' }).collect();
+        let needs_letter = plain.chars().next().is_none_or(|c| !c.is_ascii_alphabetic() && c != '_');
+        let plain = if needs_letter { format!("_{plain}") } else { plain };
+        let mut name = plain.clone();
+        let mut copy = 1;
+        while !taken.insert(name.to_ascii_lowercase()) {
+            copy += 1;
+            name = format!("{plain}_{copy}");
         }
+        name
+    });
+    made.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_have_allowed_characters_and_are_unique() {
+        let names = ["cloth1", "ns:cloth|1", "ns_cloth_1", "Cloth1", "1st", "ä", ""];
+        let expected = ["cloth1", "ns_cloth_1", "ns_cloth_1_2", "Cloth1_2", "_1st", "_", "__2"];
+        assert_eq!(node_names(names), expected);
+        assert_eq!(file_names(["a-b.c", "a/b"]), ["a-b.c", "a_b"]);
     }
 }

@@ -1,4 +1,4 @@
-//! USD as text: a mesh or points for each object, with a time sample for each sample.
+//! USD as text: per object a Mesh or Points, with time samples.
 
 use std::fmt::Write;
 use std::io::{Read, Seek};
@@ -6,27 +6,26 @@ use std::path::Path;
 
 use nucleus_cache::{ObjectInfo, ObjectKind};
 
-use crate::clip::Clip;
+use crate::clip::{Clip, extent};
 use crate::error::ExportError;
-use crate::name;
-use crate::output::{OutFile, Output};
+use crate::output::{OutFile, Output, node_names};
 
 /// Writes one scene.
 pub(crate) fn write<R: Read + Seek>(
     clip: &mut Clip<R>,
     out: &Path,
     output: &mut Output,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    let names = name::for_nodes(clip.objects().map(|object| object.name.as_str()));
+    let names = node_names(clip.objects().map(|object| object.name.as_str()));
     let mut file = output.file(out.to_owned())?;
     file.text(head(clip));
     for (object, name) in names.iter().enumerate() {
         let done = object as f64 / names.len() as f64;
-        let mut told = |share: f64| told(done + share / names.len() as f64);
-        write_object(clip, object, name, &mut file, &mut told)?;
+        let mut progress = |share: f64| progress(done + share / names.len() as f64);
+        write_object(clip, object, name, &mut file, &mut progress)?;
         if file.has_failed() {
-            break; // told by `finish`
+            break; // `finish` reports the error
         }
     }
     file.text("}\n");
@@ -34,7 +33,7 @@ pub(crate) fn write<R: Read + Seek>(
 }
 
 fn head<R: Read + Seek>(clip: &Clip<R>) -> String {
-    let (first, last) = (clip.samples()[0].at, clip.samples()[clip.samples().len() - 1].at);
+    let (first, last) = (clip.samples()[0].frame_time, clip.samples()[clip.samples().len() - 1].frame_time);
     let fps = clip.fps();
     format!(
         "#usda 1.0\n(\n    defaultPrim = \"run\"\n    doc = {}\n    metersPerUnit = {}\n    upAxis = \"Y\"\n    \
@@ -50,29 +49,30 @@ fn write_object<R: Read + Seek>(
     object: usize,
     name: &str,
     file: &mut OutFile,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
     let changes = !clip.mesh_changes(object).is_empty();
     let info = clip.object(object);
     let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
     file.text(format!("    def {} \"{name}\"\n    {{\n", if is_mesh { "Mesh" } else { "Points" }));
     file.text(format!("        custom string nucleus:name = {}\n", quoted(&info.name)));
-    write_meshes(clip, object, is_mesh, file)?;
+    write_topology(clip, object, is_mesh, file)?;
     if !is_mesh {
         write_widths(clip.radius(object), file);
     }
     let samples = clip.samples().to_vec();
     let mut extents = String::new();
     file.text("        point3f[] points.timeSamples = {\n");
-    for (place, sample) in samples.iter().enumerate() {
-        let positions = clip.positions(object, place)?;
-        file.text(format!("            {}: ", sample.at));
+    for (index, sample) in samples.iter().enumerate() {
+        let positions = clip.positions(object, index)?;
+        file.text(format!("            {}: ", sample.frame_time));
         write_vectors(&positions, file);
         file.text(",\n");
         let [low, high] = extent(&positions);
         // Writing to a string cannot fail.
-        let _ = writeln!(extents, "            {}: [{}, {}],", sample.at, vector(&low), vector(&high));
-        told((place + 1) as f64 / samples.len() as f64);
+        let _ =
+            writeln!(extents, "            {}: [{}, {}],", sample.frame_time, vector(&low), vector(&high));
+        progress((index + 1) as f64 / samples.len() as f64);
     }
     file.text("        }\n        float3[] extent.timeSamples = {\n");
     file.text(extents);
@@ -82,9 +82,8 @@ fn write_object<R: Read + Seek>(
     Ok(())
 }
 
-/// Writes what says which points belong together: once, or at each sample at which it changes. USD holds such values until
-/// the next.
-fn write_meshes<R: Read + Seek>(
+/// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
+fn write_topology<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     is_mesh: bool,
@@ -100,7 +99,7 @@ fn write_meshes<R: Read + Seek>(
     samples.extend(clip.mesh_changes(object));
     let mut attributes: Vec<(&str, Vec<String>)> = Vec::new();
     for &sample in &samples {
-        for (name, values) in mesh_attributes(clip.object_at(object, sample)?, is_mesh) {
+        for (name, values) in topology_attributes(clip.object_at(object, sample)?, is_mesh) {
             match attributes.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, all)) => all.push(values),
                 None => attributes.push((name, vec![values])),
@@ -114,16 +113,15 @@ fn write_meshes<R: Read + Seek>(
         }
         file.text(format!("        {name}.timeSamples = {{\n"));
         for (&sample, values) in samples.iter().zip(values) {
-            file.text(format!("            {}: [{values}],\n", clip.samples()[sample].at));
+            file.text(format!("            {}: [{values}],\n", clip.samples()[sample].frame_time));
         }
         file.text("        }\n");
     }
     Ok(())
 }
 
-/// Types and names of the attributes that a mesh has, with their values. Particles keep their numbers, so that other tools
-/// can follow each.
-fn mesh_attributes(object: &ObjectInfo, is_mesh: bool) -> Vec<(&'static str, String)> {
+/// Type, name and values of the topology attributes. Particles have ids, so that other tools can identify each over time.
+fn topology_attributes(object: &ObjectInfo, is_mesh: bool) -> Vec<(&'static str, String)> {
     let list = |numbers: &mut dyn Iterator<Item = u32>| {
         numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
     };
@@ -135,7 +133,7 @@ fn mesh_attributes(object: &ObjectInfo, is_mesh: bool) -> Vec<(&'static str, Str
     vec![("int[] faceVertexCounts", counts), ("int[] faceVertexIndices", corners)]
 }
 
-/// A width is what is seen of a particle: all of it, twice its radius.
+/// USD states the diameter of a particle: twice its radius.
 fn write_widths(radius: Option<f64>, file: &mut OutFile) {
     if let Some(radius) = radius {
         let width = (2.0 * radius) as f32;
@@ -152,13 +150,13 @@ fn write_velocities<R: Read + Seek>(
 ) -> Result<(), ExportError> {
     let samples = clip.samples().to_vec();
     let mut begun = false;
-    for (place, sample) in samples.iter().enumerate() {
-        let Some(velocities) = clip.velocities(object, place)? else { continue };
+    for (index, sample) in samples.iter().enumerate() {
+        let Some(velocities) = clip.velocities(object, index)? else { continue };
         if !begun {
             file.text("        vector3f[] velocities.timeSamples = {\n");
             begun = true;
         }
-        file.text(format!("            {}: ", sample.at));
+        file.text(format!("            {}: ", sample.frame_time));
         write_vectors(&velocities, file);
         file.text(",\n");
     }
@@ -170,8 +168,8 @@ fn write_velocities<R: Read + Seek>(
 
 fn write_vectors(values: &[[f32; 3]], file: &mut OutFile) {
     file.text("[");
-    for (place, value) in values.iter().enumerate() {
-        file.text(if place > 0 { ", " } else { "" });
+    for (index, value) in values.iter().enumerate() {
+        file.text(if index > 0 { ", " } else { "" });
         file.text(vector(value));
     }
     file.text("]");
@@ -181,18 +179,7 @@ fn vector([x, y, z]: &[f32; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// Lowest and highest corner of the box round points.
-pub(crate) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
-    let begin = points.first().copied().unwrap_or_default();
-    points.iter().fold([begin; 2], |[low, high], point| {
-        [
-            std::array::from_fn(|axis| low[axis].min(point[axis])),
-            std::array::from_fn(|axis| high[axis].max(point[axis])),
-        ]
-    })
-}
-
-/// A string of USD: quotes, backslashes and what is not printable are escaped.
+/// A string of USD: quotes and backslashes are escaped, other control characters than line breaks become spaces.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! VTK's unstructured grids: XML with raw binary behind it, and a ParaView collection that gives them times.
+//! VTK unstructured grids: XML followed by raw binary data, and a ParaView collection with the time of each file.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -7,35 +7,34 @@ use nucleus_cache::ObjectInfo;
 
 use crate::clip::Clip;
 use crate::error::ExportError;
-use crate::name;
-use crate::obj::numbered;
-use crate::output::{OutFile, Output};
+use crate::mesh_files::numbered;
+use crate::output::{OutFile, Output, file_names};
 
 /// Writes `<object>.<frame>.vtu` and `<object>.pvd` into a folder.
 pub(crate) fn write<R: Read + Seek>(
     clip: &mut Clip<R>,
     folder: &Path,
     output: &mut Output,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    let names = name::for_files(clip.objects().map(|object| object.name.as_str()));
+    let names = file_names(clip.objects().map(|object| object.name.as_str()));
     for sample in 0..clip.samples().len() {
-        let place = numbered(&clip.samples()[sample]);
+        let frame = numbered(&clip.samples()[sample]);
         for (object, name) in names.iter().enumerate() {
             let positions = clip.positions(object, sample)?;
             let velocities = clip.velocities(object, sample)?;
-            let mut file = output.file(folder.join(format!("{name}.{place}.vtu")))?;
+            let mut file = output.file(folder.join(format!("{name}.{frame}.vtu")))?;
             write_grid(&mut file, clip.object_at(object, sample)?, &positions, velocities.as_deref());
             output.finish(file)?;
         }
-        told((sample + 1) as f64 / clip.samples().len() as f64);
+        progress((sample + 1) as f64 / clip.samples().len() as f64);
     }
     for name in &names {
         let mut file = output.file(folder.join(format!("{name}.pvd")))?;
         file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n");
         for sample in clip.samples() {
-            let (time, place) = (sample.at / clip.fps(), numbered(sample));
-            file.text(format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{name}.{place}.vtu\"/>\n"));
+            let (time, frame) = (sample.frame_time / clip.fps(), numbered(sample));
+            file.text(format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{name}.{frame}.vtu\"/>\n"));
         }
         file.text("  </Collection>\n</VTKFile>\n");
         output.finish(file)?;
@@ -43,7 +42,7 @@ pub(crate) fn write<R: Read + Seek>(
     Ok(())
 }
 
-/// The kinds of cell.
+/// Cell types of VTK.
 const VERTEX: u8 = 1;
 const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
@@ -101,7 +100,7 @@ fn write_grid(
     file.text("\n</AppendedData>\n</VTKFile>\n");
 }
 
-/// Corners, ends and kinds of all cells: faces, or else a vertex for each point.
+/// Connectivity, offsets and types of the cells: the faces, or a vertex per point if there are none.
 fn cells(object: &ObjectInfo, points: usize) -> (Vec<i64>, Vec<i64>, Vec<u8>) {
     if object.faces.is_empty() {
         let all = 0..points as i64;

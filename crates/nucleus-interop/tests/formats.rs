@@ -1,5 +1,4 @@
-//! What is written, read back by readers made for these tests alone. Whether other tools read it is for
-//! `cargo xtask interop` to say.
+//! Exports, read back by readers written for these tests. `cargo xtask interop` checks them with other tools.
 
 mod sample;
 
@@ -15,11 +14,11 @@ const SHEET: &str = "ns:sheet|1";
 const POINTS: usize = 11;
 
 fn exported(format: Format, selection: Selection) -> (TempDir, PathBuf, Exported) {
-    let (folder, out, exported) = tried(sample::write, format, selection);
+    let (folder, out, exported) = try_export(sample::write, format, selection);
     (folder, out, exported.unwrap())
 }
 
-fn tried(
+fn try_export(
     write: impl Fn(&Path),
     format: Format,
     selection: Selection,
@@ -69,7 +68,7 @@ fn obj_keeps_every_bit_every_point_and_every_face() {
 }
 
 #[test]
-fn pc2_says_where_it_begins_and_how_fast_it_goes() {
+fn pc2_states_its_first_frame_and_its_sample_rate() {
     let substeps = Selection { substeps: true, frames: Some((5, 8)), ..Selection::default() };
     let (_folder, out, exported) = exported(Format::Pc2, substeps);
     let bytes = fs::read(out.join("ns_sheet_1.pc2")).unwrap();
@@ -82,7 +81,7 @@ fn pc2_says_where_it_begins_and_how_fast_it_goes() {
 }
 
 #[test]
-fn mdd_has_the_highest_byte_first_and_a_time_for_each_sample() {
+fn mdd_is_big_endian_and_has_a_time_for_each_sample() {
     let (_folder, out) = all(Format::Mdd);
     let bytes = fs::read(out.join("dust.mdd")).unwrap();
     let samples = (END - START + 1) as usize;
@@ -104,7 +103,7 @@ fn ply_and_vtu_hold_the_floats_of_the_cache() {
     }
 }
 
-/// JSON and binary part of a glTF file.
+/// The JSON and the binary part of a glTF file.
 fn parts(path: &Path) -> (serde_json::Value, Vec<u8>) {
     let bytes = fs::read(path).unwrap();
     assert_eq!((&bytes[..4], word(&bytes, 8) as usize), (&b"glTF"[..], bytes.len()));
@@ -113,7 +112,7 @@ fn parts(path: &Path) -> (serde_json::Value, Vec<u8>) {
 }
 
 #[test]
-fn glb_is_in_metres_and_reaches_every_frame_by_one_target() {
+fn glb_is_in_metres_and_has_a_morph_target_for_each_frame() {
     let (_folder, out) = all(Format::Glb);
     let (text, binary) = parts(&out);
     let positions = |accessor: &serde_json::Value| {
@@ -135,7 +134,7 @@ fn glb_is_in_metres_and_reaches_every_frame_by_one_target() {
         }
     }
     let wall = text["meshes"].as_array().unwrap().iter().find(|mesh| mesh["name"] == "wall").unwrap();
-    assert!(wall["primitives"][0].get("targets").is_none(), "what stands still needs no target");
+    assert!(wall["primitives"][0].get("targets").is_none(), "a static object needs no target");
 }
 
 #[test]
@@ -185,11 +184,11 @@ fn every_format_writes_the_same_bytes_twice() {
 }
 
 fn torn(format: Format, frames: Option<(i32, i32)>) -> (TempDir, PathBuf, Result<Exported, ExportError>) {
-    tried(sample::write_torn, format, Selection { frames, ..Selection::default() })
+    try_export(sample::write_torn, format, Selection { frames, ..Selection::default() })
 }
 
 #[test]
-fn files_of_one_sample_each_have_the_mesh_of_that_sample() {
+fn each_file_of_one_sample_has_the_mesh_of_that_sample() {
     let (_folder, out, exported) = torn(Format::Obj, None);
     exported.unwrap();
     for frame in START..=END {
@@ -214,7 +213,7 @@ fn files_of_one_sample_each_have_the_mesh_of_that_sample() {
 }
 
 #[test]
-fn usda_and_foxglove_tell_when_the_mesh_changes() {
+fn usda_and_foxglove_record_when_the_topology_changes() {
     let (_folder, out, exported) = torn(Format::Usda, None);
     exported.unwrap();
     let text = fs::read_to_string(out).unwrap();
@@ -226,7 +225,7 @@ fn usda_and_foxglove_tell_when_the_mesh_changes() {
         text.contains(&format!("int[] faceVertexIndices.timeSamples = {{\n            {times}")),
         "{text}"
     );
-    assert!(text.contains("int[] faceVertexCounts = [5]"), "that of the cart, which stays: {text}");
+    assert!(text.contains("int[] faceVertexCounts = [5]"), "the cart keeps its topology: {text}");
     let (_folder, out, exported) = torn(Format::Foxglove, None);
     exported.unwrap();
     let bytes = fs::read(out).unwrap();
@@ -240,7 +239,7 @@ fn usda_and_foxglove_tell_when_the_mesh_changes() {
 }
 
 #[test]
-fn formats_of_one_mesh_refuse_a_change_by_object_and_frame_and_take_what_lies_on_one_side_of_it() {
+fn formats_of_constant_topology_refuse_a_change_and_export_the_frames_on_either_side() {
     for (format, name) in [
         (Format::Pc2, "PC2"),
         (Format::Mdd, "MDD"),
@@ -250,11 +249,13 @@ fn formats_of_one_mesh_refuse_a_change_by_object_and_frame_and_take_what_lies_on
     ] {
         let (_folder, out, refused) = torn(format, None);
         let refused = refused.unwrap_err().to_string();
-        let expected =
-            format!("`{SHEET}` gets another mesh at frame {}, and {name} has one for all time", sample::TORN);
+        let expected = format!(
+            "the topology of `{SHEET}` changes at frame {}, and {name} stores one topology",
+            sample::TORN
+        );
         assert!(refused.contains(&expected), "{refused}");
         let written = fs::read_dir(&out).map_or(0, Iterator::count);
-        assert_eq!((written, out.is_file()), (0, false), "{name} leaves nothing");
+        assert_eq!((written, out.is_file()), (0, false), "{name} leaves no file");
         for frames in [(START, sample::TORN - 1), (sample::TORN, END)] {
             torn(format, Some(frames)).2.unwrap();
         }
@@ -265,7 +266,7 @@ fn formats_of_one_mesh_refuse_a_change_by_object_and_frame_and_take_what_lies_on
 }
 
 #[test]
-fn a_selection_takes_what_it_names_and_refuses_what_is_not_there() {
+fn a_selection_exports_the_named_objects_and_refuses_missing_ones() {
     let some = Selection {
         objects: vec!["wall".into(), SHEET.into()],
         frames: Some((4, 10)),
@@ -288,7 +289,7 @@ fn a_selection_takes_what_it_names_and_refuses_what_is_not_there() {
 }
 
 #[test]
-fn nothing_is_overwritten_without_being_told_to_and_nothing_is_left_half_written() {
+fn a_file_is_replaced_only_on_request_and_no_partial_file_remains() {
     let (folder, out) = all(Format::Usda);
     let mut cache = Playback::open(folder.path().join("sample.mcap")).unwrap();
     let before = fs::read(&out).unwrap();

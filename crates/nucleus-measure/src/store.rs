@@ -1,9 +1,10 @@
 //! Where results are kept: a folder per scene and solver, in which nothing is ever half written.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use nucleus_cache::atomic_file;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -104,25 +105,12 @@ impl Store {
     }
 }
 
-/// Writes a file beside its place first, and then puts it there in one go.
+/// Replaces a file as a whole, by way of a temporary file beside it.
 ///
 /// # Errors
 /// When it cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(format!(".{}.tmp", std::process::id()));
-    let beside = PathBuf::from(beside);
-    let put = || -> io::Result<()> {
-        let mut file = File::create(&beside)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&beside, path)
-    };
-    put().map_err(|source| {
-        // What is left beside helps nobody; that it cannot be removed either says nothing new.
-        let _ = fs::remove_file(&beside);
-        StoreError { path: path.to_owned(), source }
-    })
+    atomic_file::write(path, bytes).map_err(|source| StoreError { path: path.to_owned(), source })
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Draws a cloth that was shaped by a formula, to look at pictures without running a solver:
+//! Draws a cloth shaped by a formula, without running a solver:
 //! `cargo run --release -p nucleus-view --example draped -- <folder>`.
 
 use nucleus_core::Faces;
@@ -58,7 +58,7 @@ fn main() -> Result<(), ViewError> {
     film.finish()
 }
 
-/// A sheet that lies on a ball and falls in folds round it.
+/// A sheet that lies on a ball and falls in folds around it.
 fn drape(x: f32, z: f32) -> [f32; 3] {
     let (far, around) = ((x * x + z * z).sqrt().max(1e-6), z.atan2(x));
     let hang = ((far - 0.9) / 1.2).clamp(0.0, 1.0);

@@ -1,5 +1,5 @@
 //! Serves the player: `cargo run -p nucleus-view --example play -- [cache.mcap] [port]`.
-//! Without a cache it writes one that waves and plays that.
+//! Without a cache it plays a synthetic run.
 
 #[path = "../tests/sample/mod.rs"]
 mod sample;

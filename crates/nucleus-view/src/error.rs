@@ -1,11 +1,11 @@
-//! What can go wrong on the way to a picture or a page.
+//! Errors of pictures and of the player.
 
 use std::io;
 use std::path::PathBuf;
 
 use nucleus_cache::ReadError;
 
-/// Why a picture could not be written or a cache not be shown.
+/// An error of a picture or of the player.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
@@ -14,47 +14,47 @@ pub enum ViewError {
     Open {
         /// The cache.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// The player could not be served, most often because the port is taken.
-    #[error("cannot listen on port {port}")]
+    /// The server could not start, most often because the port is taken.
+    #[error("cannot listen on port {port}; `--port 0` takes a free one")]
     Listen {
-        /// The port that was asked for.
+        /// The requested port.
         port: u16,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// The file could not be opened for writing.
+    /// The file could not be created or replaced.
     #[error("cannot write `{}`", path.display())]
     Create {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// The picture could not be encoded or its bytes not be written.
+    /// The picture could not be encoded or written.
     #[error("cannot write the picture `{}`", path.display())]
     Encode {
         /// The file.
         path: PathBuf,
-        /// What the encoder said.
+        /// The error of the encoder.
         source: png::EncodingError,
     },
-    /// The film could not be encoded or its bytes not be written.
+    /// The GIF could not be encoded or written.
     #[error("cannot write the film `{}`", path.display())]
     Gif {
         /// The file.
         path: PathBuf,
-        /// What the encoder said.
+        /// The error of the encoder.
         source: gif::EncodingError,
     },
-    /// A frame of an animation has not the size of the others.
+    /// A frame of an animation has another size than the file.
     #[error("`{}` has frames of {}x{}, not {}x{}", path.display(), expected[0], expected[1], found[0], found[1])]
     FrameSize {
         /// The animation.
         path: PathBuf,
-        /// Width and height the animation was created with, in pixels.
+        /// Width and height of the file, in pixels.
         expected: [u32; 2],
         /// Width and height of the frame, in pixels.
         found: [u32; 2],
@@ -62,13 +62,13 @@ pub enum ViewError {
     /// A frame of the cache cannot be read.
     #[error("cannot read the cache")]
     Read {
-        /// What is wrong with it.
+        /// The error of the cache.
         source: ReadError,
     },
-    /// The cache holds no frame.
-    #[error("the cache holds no frame")]
-    NoMoment,
-    /// An animation without frames is not a picture.
+    /// The cache holds none of the requested frames.
+    #[error("the cache holds none of these frames")]
+    NoRecordedFrame,
+    /// An animation was finished without a frame.
     #[error("`{}` has no frame", path.display())]
     NoFrame {
         /// The animation.

@@ -1,18 +1,17 @@
-//! What a run looks like: still pictures, animated pictures, and a player in the browser.
+//! Pictures of a cache: stills, animations, and a player in the browser.
 //!
-//! | You want to know…                            | Read                     |
-//! |----------------------------------------------|--------------------------|
-//! | how meshes become a picture                  | [`draw()`]               |
-//! | where the camera stands when none is given   | [`Camera::framing`]      |
-//! | how a cache becomes pictures                 | [`Film`]                 |
-//! | how frames become an animated PNG            | [`AnimationWriter`]      |
-//! | how frames become a GIF                      | [`GifWriter`]            |
-//! | how a browser gets the player and the cache  | [`serve()`]              |
-//! | how the player reads a cache                 | `assets/player/cache.js` |
-//! | how strain becomes a colour                  | [`Colouring::Strain`]    |
+//! | You want to know…                               | Read                                      |
+//! |-------------------------------------------------|-------------------------------------------|
+//! | how objects become a picture                    | [`draw()`]                                |
+//! | what an automatic camera frames                 | [`Bounds::to_frame`], [`Camera::framing`] |
+//! | how a cache becomes pictures                    | [`Film`]                                  |
+//! | how frames become an animated PNG or a GIF      | [`AnimationWriter`], [`GifWriter`]        |
+//! | how strain becomes a colour                     | [`Colouring::Strain`]                     |
+//! | how the page and the cache reach the browser    | [`serve()`]                               |
+//! | how the player reads a cache                    | `assets/player/cache.js`                  |
 //!
-//! **Invariant:** this crate knows no solver; it draws what it is given, whatever the numbers are,
-//! and the same numbers give the same bytes on any machine.
+//! **Invariant:** this crate does not depend on how a run was solved. It draws any numbers, and the same numbers give the
+//! same bytes on any machine.
 
 mod error;
 mod picture;

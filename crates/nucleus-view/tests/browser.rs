@@ -1,4 +1,4 @@
-//! The player in a real browser. Where no Chromium is installed these tests say so and pass.
+//! The player in Chromium. Without Chromium these tests print a note and pass.
 
 mod sample;
 
@@ -10,29 +10,29 @@ use std::time::{Duration, Instant};
 use nucleus_view::{Player, serve, serve_both};
 use sample::Sample;
 
-/// A page that takes longer than this hangs.
-const PATIENCE: Duration = Duration::from_secs(180);
+/// Time after which a page counts as hanging.
+const PAGE_TIMEOUT: Duration = Duration::from_secs(180);
 
-/// What a browser shows of a cache.
-struct Seen {
+/// The page of a cache, as the browser shows it.
+struct Shown {
     /// The document, after its scripts have run.
     page: String,
-    /// Red, green and blue of the screen.
+    /// Red, green and blue of the screenshot.
     pixels: Vec<[u8; 3]>,
 }
 
-impl Seen {
+impl Shown {
     fn share(&self, is_wanted: impl Fn(&[u8; 3]) -> bool) -> f64 {
         self.pixels.iter().filter(|pixel| is_wanted(pixel)).count() as f64 / self.pixels.len() as f64
     }
 
-    /// The share of the screen in the red of the first cloth.
+    /// The fraction of the screen in the red of the first cloth.
     fn cloth(&self) -> f64 {
         self.share(|[red, green, blue]| *red > 80 && *red / 2 > *green && *red / 2 > *blue)
     }
 }
 
-/// Where Chromium is; `None`, with a word about it, if it is not installed.
+/// The path of Chromium; `None`, with a note, if it is not installed.
 fn chromium() -> Option<&'static Path> {
     let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
     let found = places.map(Path::new).into_iter().find(|path| path.exists());
@@ -42,40 +42,40 @@ fn chromium() -> Option<&'static Path> {
     found
 }
 
-/// Serves the cache and looks at it; `wish` is what stands behind the # of the address.
-fn look(chromium: &Path, cache: &Path, wish: &str) -> Seen {
-    look_with(chromium, cache, wish, SOFTWARE)
+/// Serves a cache and opens it; `options` follow the # of the address.
+fn look(chromium: &Path, cache: &Path, options: &str) -> Shown {
+    look_with(chromium, cache, options, SOFTWARE)
 }
 
-/// Graphics without a graphics card.
+/// Software rendering.
 const SOFTWARE: &[&str] = &["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
-fn look_with(chromium: &Path, cache: &Path, wish: &str, graphics: &[&str]) -> Seen {
-    look_at(&serve(cache, 0).unwrap(), chromium, wish, graphics)
+fn look_with(chromium: &Path, cache: &Path, options: &str, graphics: &[&str]) -> Shown {
+    look_at(&serve(cache, 0).unwrap(), chromium, options, graphics)
 }
 
-fn look_at(player: &Player, chromium: &Path, wish: &str, graphics: &[&str]) -> Seen {
-    look_for(player, chromium, wish, graphics, BUDGETS[0])
+fn look_at(player: &Player, chromium: &Path, options: &str, graphics: &[&str]) -> Shown {
+    look_for(player, chromium, options, graphics, BUDGETS[0])
 }
 
-/// Milliseconds of the page's own time after which it is looked at: what it reads and unpacks does not stop its clock, so
-/// on a busy machine the first may be too early.
+/// Virtual time in milliseconds until the screenshot. It does not stop while the page reads and unpacks, so the first may
+/// be too short on a busy machine.
 const BUDGETS: [u32; 3] = [5_000, 20_000, 80_000];
 
-/// Looks at the page ever later, until it shows what is wanted; at the last look it has to.
-fn look_until(player: &Player, chromium: &Path, wish: &str, is_there: impl Fn(&Seen) -> bool) -> Seen {
-    let look = |budget| look_for(player, chromium, wish, SOFTWARE, budget);
-    let mut seen = look(BUDGETS[0]);
+/// Opens the page with growing budgets until the condition holds; returns the last result.
+fn look_until(player: &Player, chromium: &Path, options: &str, is_there: impl Fn(&Shown) -> bool) -> Shown {
+    let look = |budget| look_for(player, chromium, options, SOFTWARE, budget);
+    let mut shown = look(BUDGETS[0]);
     for budget in &BUDGETS[1..] {
-        if is_there(&seen) {
+        if is_there(&shown) {
             break;
         }
-        seen = look(*budget);
+        shown = look(*budget);
     }
-    seen
+    shown
 }
 
-fn look_for(player: &Player, chromium: &Path, wish: &str, graphics: &[&str], budget: u32) -> Seen {
+fn look_for(player: &Player, chromium: &Path, options: &str, graphics: &[&str], budget: u32) -> Shown {
     let folder = tempfile::tempdir().unwrap();
     let screen = folder.path().join("screen.png");
     let page = folder.path().join("page.html");
@@ -87,25 +87,25 @@ fn look_for(player: &Player, chromium: &Path, wish: &str, graphics: &[&str], bud
         .args(["--window-size=800,500", "--dump-dom"])
         .arg(format!("--virtual-time-budget={budget}"))
         .arg(format!("--screenshot={}", screen.display()))
-        .arg(format!("{}#{wish}", player.url()))
+        .arg(format!("{}#{options}", player.url()))
         .stdout(std::fs::File::create(&page).unwrap())
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
     let begun = Instant::now();
     while child.try_wait().unwrap().is_none() {
-        if begun.elapsed() > PATIENCE {
+        if begun.elapsed() > PAGE_TIMEOUT {
             child.kill().unwrap();
             panic!("the page hangs");
         }
         thread::sleep(Duration::from_millis(20));
     }
-    // With `NUCLEUS_SCREENS` set to a folder, what was seen is kept there to be looked at.
+    // The environment variable `NUCLEUS_SCREENS` names a folder for the screenshots.
     if let Some(kept) = std::env::var_os("NUCLEUS_SCREENS") {
-        let name = wish.replace(['&', '='], "_");
+        let name = options.replace(['&', '='], "_");
         std::fs::copy(&screen, PathBuf::from(kept).join(format!("{name}.png"))).unwrap();
     }
-    Seen { page: std::fs::read_to_string(page).unwrap(), pixels: pixels(&screen) }
+    Shown { page: std::fs::read_to_string(page).unwrap(), pixels: pixels(&screen) }
 }
 
 fn pixels(png: &Path) -> Vec<[u8; 3]> {
@@ -124,32 +124,32 @@ fn written(folder: &Path, sample: Sample) -> PathBuf {
 }
 
 #[test]
-fn a_cache_opens_at_the_frame_that_is_asked_for() {
+fn a_cache_opens_at_the_requested_frame() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let seen =
+    let shown =
         look(chromium, &written(folder.path(), Sample { substeps: true, ..Sample::default() }), "frame=12");
-    assert!(seen.page.contains(r#"data-state="ready" data-frame="12" data-substep="4""#), "{}", seen.page);
-    assert!(seen.page.contains("of 24 · substep 4 of 4 · 0.458 s"), "{}", seen.page);
+    assert!(shown.page.contains(r#"data-state="ready" data-frame="12" data-substep="4""#), "{}", shown.page);
+    assert!(shown.page.contains("of 24 · substep 4 of 4 · 0.458 s"), "{}", shown.page);
     for figure in ["<dd class=\"\">1.23&nbsp;%", "0.980", "4,321", "scenes/sample.ron", "flag"] {
-        assert!(seen.page.replace(" %", "&nbsp;%").contains(figure), "{figure}");
+        assert!(shown.page.replace(" %", "&nbsp;%").contains(figure), "{figure}");
     }
-    assert!(seen.cloth() > 0.03, "the cloth fills {} of the screen", seen.cloth());
+    assert!(shown.cloth() > 0.03, "the cloth fills {} of the screen", shown.cloth());
 }
 
 #[test]
-fn colouring_by_strain_takes_the_colour_of_the_cloth_away() {
+fn colouring_by_strain_replaces_the_colour_of_the_cloth() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=1&strain=4&wireframe");
-    assert!(seen.page.contains("+400 %"), "{}", seen.page);
-    assert!(seen.cloth() < 0.01, "{} of the screen is red", seen.cloth());
-    let pale = seen.share(|[red, green, blue]| *red > 120 && red.abs_diff(*green) < 40 && *blue > 90);
+    let shown = look(chromium, &written(folder.path(), Sample::default()), "frame=1&strain=4&wireframe");
+    assert!(shown.page.contains("+400 %"), "{}", shown.page);
+    assert!(shown.cloth() < 0.01, "{} of the screen is red", shown.cloth());
+    let pale = shown.share(|[red, green, blue]| *red > 120 && red.abs_diff(*green) < 40 && *blue > 90);
     assert!(pale > 0.03, "hardly strained cloth is pale: {pale}");
 }
 
 #[test]
-fn a_run_that_was_killed_plays_as_far_as_it_came() {
+fn a_killed_run_plays_up_to_its_last_complete_frame() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("killed.mcap");
@@ -159,22 +159,22 @@ fn a_run_that_was_killed_plays_as_far_as_it_came() {
     let bytes = std::fs::read(nucleus_cache::part_path(&path)).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 5000]).unwrap();
     drop(recorder);
-    let seen = look(chromium, &path, "frame=24");
-    assert!(seen.page.contains(r#"data-frame="8""#), "{}", seen.page);
-    assert!(seen.page.contains("The run was cut short: frames 1 to 8 are shown."), "{}", seen.page);
-    assert!(seen.cloth() > 0.03);
+    let shown = look(chromium, &path, "frame=24");
+    assert!(shown.page.contains(r#"data-frame="8""#), "{}", shown.page);
+    assert!(shown.page.contains("The run is incomplete: frames 1 to 8 are shown."), "{}", shown.page);
+    assert!(shown.cloth() > 0.03);
 }
 
 #[test]
-fn points_that_are_no_numbers_are_counted_and_the_rest_is_shown() {
+fn points_that_are_not_finite_are_counted_and_the_others_are_shown() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = written(folder.path(), Sample { broken: true, ..Sample::default() });
-    let seen = look(chromium, &path, "frame=20&strain");
-    assert!(seen.page.contains(r#"data-frame="20""#), "{}", seen.page);
-    assert!(seen.page.contains("Points that are not finite</dt><dd class=\"bad\">22<"), "{}", seen.page);
-    let shown = look(chromium, &path, "frame=20").cloth();
-    assert!(shown > 0.02, "the cloth fills {shown} of the screen");
+    let shown = look(chromium, &path, "frame=20&strain");
+    assert!(shown.page.contains(r#"data-frame="20""#), "{}", shown.page);
+    assert!(shown.page.contains("Points that are not finite</dt><dd class=\"bad\">22<"), "{}", shown.page);
+    let cloth = look(chromium, &path, "frame=20").cloth();
+    assert!(cloth > 0.02, "the cloth fills {cloth} of the screen");
 }
 
 #[test]
@@ -186,13 +186,13 @@ fn a_damaged_frame_is_named_and_the_others_play() {
     let chunks = chunk_starts(&bytes);
     bytes[chunks[6] + 2000] ^= 0xFF; // the seventh chunk: frame 7
     std::fs::write(&path, bytes).unwrap();
-    let seen = look(chromium, &path, "frame=7");
-    assert!(seen.page.contains("Frame 7: A frame of the file is damaged."), "{}", seen.page);
-    let seen = look(chromium, &path, "frame=8");
-    assert!(seen.page.contains(r#"data-frame="8""#), "{}", seen.page);
+    let shown = look(chromium, &path, "frame=7");
+    assert!(shown.page.contains("Frame 7: A frame of the file is damaged."), "{}", shown.page);
+    let shown = look(chromium, &path, "frame=8");
+    assert!(shown.page.contains(r#"data-frame="8""#), "{}", shown.page);
 }
 
-/// Where the chunks of an MCAP file begin.
+/// The offsets of the chunks of an MCAP file.
 fn chunk_starts(bytes: &[u8]) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut at = 8;
@@ -214,23 +214,23 @@ fn a_damaged_index_costs_no_frame() {
     let in_summary = bytes.len() - 500;
     bytes[in_summary] ^= 0xFF;
     std::fs::write(&path, bytes).unwrap();
-    let seen = look(chromium, &path, "frame=24");
-    assert!(seen.page.contains(r#"data-frame="24""#), "{}", seen.page);
-    assert!(seen.page.contains("its index is damaged"), "{}", seen.page);
+    let shown = look(chromium, &path, "frame=24");
+    assert!(shown.page.contains(r#"data-frame="24""#), "{}", shown.page);
+    assert!(shown.page.contains("its index is damaged"), "{}", shown.page);
 }
 
 #[test]
-fn a_browser_without_webgl2_is_told_what_it_lacks() {
+fn a_browser_without_webgl2_gets_an_error_that_names_it() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = written(folder.path(), Sample::default());
-    let seen = look_with(chromium, &path, "", &["--disable-3d-apis"]);
-    assert!(seen.page.contains(r#"data-state="error""#), "{}", seen.page);
-    assert!(seen.page.contains("This browser offers no WebGL2."), "{}", seen.page);
+    let shown = look_with(chromium, &path, "", &["--disable-3d-apis"]);
+    assert!(shown.page.contains(r#"data-state="error""#), "{}", shown.page);
+    assert!(shown.page.contains("This browser offers no WebGL2."), "{}", shown.page);
 }
 
 #[test]
-fn what_is_no_cache_is_refused_in_plain_words() {
+fn a_file_that_is_not_a_cache_is_refused_with_a_reason() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("holiday.mcap");
@@ -238,54 +238,60 @@ fn what_is_no_cache_is_refused_in_plain_words() {
     for (bytes, message) in [
         (&b"This is a letter, not a cache."[..], "This is not a cache."),
         (&[][..], "The file is empty."),
-        (&whole[..1000], "The file breaks off before its first whole frame."),
+        (&whole[..1000], "The file ends before its first complete frame."),
     ] {
         std::fs::write(&path, bytes).unwrap();
-        let seen = look(chromium, &path, "");
-        assert!(seen.page.contains(r#"data-state="error""#), "{message}: {}", seen.page);
-        assert!(seen.page.contains(message), "{message}: {}", seen.page);
+        let shown = look(chromium, &path, "");
+        assert!(shown.page.contains(r#"data-state="error""#), "{message}: {}", shown.page);
+        assert!(shown.page.contains(message), "{message}: {}", shown.page);
     }
 }
 
 #[test]
-fn speed_colours_everything_that_moves_and_has_a_legend() {
+fn speed_colours_moving_objects_and_has_a_legend() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=12&speed=0.5");
-    assert!(seen.page.contains("speed, units a second"), "{}", seen.page);
-    let warm = seen.share(|[red, green, blue]| {
+    let shown = look(chromium, &written(folder.path(), Sample::default()), "frame=12&speed=0.5");
+    assert!(shown.page.contains("speed, units per second"), "{}", shown.page);
+    let warm = shown.share(|[red, green, blue]| {
         *red > 110 && i32::from(*red) > i32::from(*green) + 25 && *green >= *blue
     });
     assert!(warm > 0.01, "the waving end is fast: {warm}");
 }
 
 #[test]
-fn contact_colours_the_points_and_counts_them() {
+fn contact_states_colour_the_points_and_are_counted() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let with = written(folder.path(), Sample { contacts: true, ..Sample::default() });
-    let seen = look(chromium, &with, "frame=12&contacts");
-    let page = seen.page.replace('\n', "");
-    assert!(page.contains(" tangled</dt><dd>1</dd>") && page.contains(" pinched</dt><dd>0</dd>"), "{page}");
-    assert!(page.contains("<dt>Pinched</dt><dd class=\"\">0</dd>"), "the report counts them too: {page}");
-    let blue = seen.share(|[red, _, blue]| *blue > 120 && i32::from(*blue) > 2 * i32::from(*red));
-    assert!(blue > 0.01 && seen.cloth() < 0.01, "{blue} of the screen is blue");
+    let shown = look(chromium, &with, "frame=12&contacts");
+    let page = shown.page.replace('\n', "");
+    assert!(
+        page.contains(" intersecting</dt><dd>1</dd>") && page.contains(" compressed</dt><dd>0</dd>"),
+        "{page}"
+    );
+    assert!(
+        page.contains("<dt>Points compressed</dt><dd class=\"\">0</dd>"),
+        "the report counts them too: {page}"
+    );
+    let blue = shown.share(|[red, _, blue]| *blue > 120 && i32::from(*blue) > 2 * i32::from(*red));
+    assert!(blue > 0.01 && shown.cloth() < 0.01, "{blue} of the screen is blue");
     let without = folder.path().join("without.mcap");
     sample::write(&without, Sample::default());
-    let seen = look(chromium, &without, "frame=12&contacts");
-    assert!(seen.cloth() > 0.03, "where contact was not recorded, colours tell objects apart");
+    let shown = look(chromium, &without, "frame=12&contacts");
+    assert!(shown.cloth() > 0.03, "without recorded contact states, each object keeps its colour");
 }
 
 #[test]
-fn a_mesh_that_changes_on_the_way_is_shown_as_it_is_then() {
+fn a_mesh_that_changes_is_shown_with_the_topology_of_each_frame() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let cache = written(folder.path(), Sample { torn: true, substeps: true, ..Sample::default() });
     let player = serve(&cache, 0).unwrap();
-    // Straight there, and by way of the other frames.
+
     let [before, after, back] = [11, 12, 24].map(|frame| {
-        look_until(&player, chromium, &format!("frame={frame}"), |seen| {
-            seen.page.contains(&format!("data-frame=\"{frame}\""))
+        look_until(&player, chromium, &format!("frame={frame}"), |shown| {
+            shown.page.contains(&format!("data-frame=\"{frame}\""))
         })
     });
     assert!(after.cloth() < 0.7 * before.cloth(), "{} of {}", after.cloth(), before.cloth());
@@ -293,7 +299,7 @@ fn a_mesh_that_changes_on_the_way_is_shown_as_it_is_then() {
 }
 
 #[test]
-fn the_player_looks_through_the_camera_of_the_scene_until_one_looks_about() {
+fn the_player_follows_the_camera_of_the_scene_unless_it_is_switched_off() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = written(folder.path(), Sample { camera: true, ..Sample::default() });
@@ -308,26 +314,26 @@ fn the_player_looks_through_the_camera_of_the_scene_until_one_looks_about() {
 fn the_curve_fills_with_the_reports_of_all_frames() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let seen = look(chromium, &written(folder.path(), Sample::default()), "frame=20");
-    assert!(seen.page.contains(r#"data-known="23""#), "the start has no report: {}", seen.page);
+    let shown = look(chromium, &written(folder.path(), Sample::default()), "frame=20");
+    assert!(shown.page.contains(r#"data-known="23""#), "the start has no report: {}", shown.page);
 }
 
 #[test]
-fn two_runs_are_shown_one_over_the_other_or_side_by_side_with_their_difference() {
+fn two_runs_are_shown_over_each_other_or_side_by_side_with_their_difference() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
     let [one, two] = ["one", "two"].map(|name| folder.path().join(name).with_extension("mcap"));
     sample::write(&one, Sample::default());
     sample::write(&two, Sample { late: true, ..Sample::default() });
     let player = serve_both(&one, &two, 0).unwrap();
-    let net = |seen: &Seen| seen.share(|[red, green, blue]| *blue > 150 && *green > 110 && *red < 150);
-    let over = look_until(&player, chromium, "frame=12&difference=0.05", |seen| net(seen) > 0.005);
+    let net = |shown: &Shown| shown.share(|[red, green, blue]| *blue > 150 && *green > 110 && *red < 150);
+    let over = look_until(&player, chromium, "frame=12&difference=0.05", |shown| net(shown) > 0.005);
     assert!(over.page.contains("distance, units"), "{}", over.page);
-    assert!(net(&over) > 0.005, "the other run is a net over this one: {}", net(&over));
+    assert!(net(&over) > 0.005, "the edges of the other run are drawn over this one: {}", net(&over));
     let indigo =
-        |seen: &Seen| seen.share(|[red, _, blue]| *blue > 90 && i32::from(*blue) > 2 * i32::from(*red));
+        |shown: &Shown| shown.share(|[red, _, blue]| *blue > 90 && i32::from(*blue) > 2 * i32::from(*red));
     let alone = indigo(&look(chromium, &one, "frame=12"));
-    let is_there = |seen: &Seen| indigo(seen) > 0.01 && indigo(seen) > 2.0 * alone;
+    let is_there = |shown: &Shown| indigo(shown) > 0.01 && indigo(shown) > 2.0 * alone;
     let beside = look_until(&player, chromium, "frame=12&twin=beside", is_there);
     assert!(is_there(&beside), "{} of the screen, {alone} without the other run", indigo(&beside));
 }

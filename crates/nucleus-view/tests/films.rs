@@ -1,9 +1,9 @@
-//! A recorded run as pictures.
+//! A cache as pictures and animations.
 
 mod sample;
 
 use nucleus_cache::Playback;
-use nucleus_view::{Camera, Film, GifWriter, Ground, Style, ViewError};
+use nucleus_view::{Bounds, Camera, Film, GifWriter, Ground, Image, Style, ViewError, draw};
 use sample::{FRAMES, Sample};
 
 fn small() -> Style {
@@ -19,7 +19,7 @@ fn recorded(sample: Sample) -> (tempfile::TempDir, Playback) {
 }
 
 #[test]
-fn a_film_has_a_picture_for_each_frame_however_finely_time_was_recorded() {
+fn a_film_has_a_picture_for_each_frame_with_or_without_recorded_substeps() {
     for substeps in [false, true] {
         let (_folder, mut cache) = recorded(Sample { substeps, ..Sample::default() });
         let mut film = Film::of(&mut cache, 1, small()).unwrap();
@@ -38,13 +38,13 @@ fn recording_substeps_changes_no_picture_of_a_frame() {
 }
 
 #[test]
-fn the_floor_stands_still_while_things_move() {
+fn the_floor_is_constant_while_objects_move() {
     let (_folder, mut cache) = recorded(Sample::default());
     let camera =
         Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
     let mut film = Film::of(&mut cache, 1, small()).unwrap().seen_by(camera);
     let [first, last] = [0, 23].map(|place| film.picture(place).unwrap());
-    let row = |image: &nucleus_view::Image| (0..96).map(|x| image.pixel(x, 53)).collect::<Vec<_>>();
+    let row = |image: &Image| (0..96).map(|x| image.pixel(x, 53)).collect::<Vec<_>>();
     assert_eq!(row(&first), row(&last), "in front of everything");
     assert_ne!(first, last);
     let bare = Style { ground: Ground::None, ..small() };
@@ -52,8 +52,39 @@ fn the_floor_stands_still_while_things_move() {
     assert_ne!(row(&without), row(&first));
 }
 
+/// Whether the outermost pixels of a picture all show the background, so that no object is cropped.
+fn has_margin(picture: &Image, background: &Image) -> bool {
+    let [width, height] = picture.size();
+    let is_border = |column: u32, row: u32| {
+        [(column, width - 1), (row, height - 1)].iter().any(|(at, last)| at.is_multiple_of(*last))
+    };
+    (0..width * height)
+        .map(|k| (k % width, k / width))
+        .filter(|&(column, row)| is_border(column, row))
+        .all(|(column, row)| picture.pixel(column, row) == background.pixel(column, row))
+}
+
 #[test]
-fn a_written_film_plays_as_fast_as_the_run() {
+fn the_automatic_camera_crops_neither_the_cloth_nor_the_colliders_near_it() {
+    let (_folder, mut cache) = recorded(Sample::default());
+    let style = Style { ground: Ground::None, ..small() };
+    let background = draw(&[], &Camera::default(), &style);
+    let mut cloth = Bounds::default();
+    cloth.include(&cache.positions(0, 12).unwrap());
+    let mut film = Film::of(&mut cache, 1, style.clone()).unwrap();
+    assert!(has_margin(&film.picture(12).unwrap(), &background), "over the whole run");
+    let still = film.framing(12).unwrap();
+    let mut film = film.seen_by(still);
+    assert!(has_margin(&film.picture(12).unwrap(), &background), "at one time");
+    let mut film = film.seen_by(Camera::framing(&cloth, style.size));
+    assert!(
+        !has_margin(&film.picture(12).unwrap(), &background),
+        "a camera that frames the cloth crops a collider"
+    );
+}
+
+#[test]
+fn an_animation_plays_in_real_time() {
     let (folder, mut cache) = recorded(Sample { broken: true, ..Sample::default() });
     let path = folder.path().join("film.png");
     Film::of(&mut cache, 2, small()).unwrap().write(&path).unwrap();
@@ -66,7 +97,7 @@ fn a_written_film_plays_as_fast_as_the_run() {
 }
 
 #[test]
-fn a_damaged_frame_is_said_to_be_damaged() {
+fn a_damaged_frame_is_an_error() {
     let (folder, _) = recorded(Sample::default());
     let path = folder.path().join("run.mcap");
     let mut bytes = std::fs::read(&path).unwrap();
@@ -78,7 +109,7 @@ fn a_damaged_frame_is_said_to_be_damaged() {
 }
 
 #[test]
-fn a_gif_has_every_frame_and_plays_as_fast_as_the_run() {
+fn a_gif_has_every_frame_and_plays_in_real_time() {
     let (folder, mut cache) = recorded(Sample::default());
     let path = folder.path().join("film.gif");
     let mut film = Film::of(&mut cache, 1, small()).unwrap();
@@ -104,7 +135,7 @@ fn a_gif_has_every_frame_and_plays_as_fast_as_the_run() {
 }
 
 #[test]
-fn the_floor_is_the_plane_that_the_scene_rests_on() {
+fn the_floor_is_the_ground_plane_of_the_scene() {
     let (_folder, mut cache) = recorded(Sample { plane: Some(-1.5), ..Sample::default() });
     let camera =
         Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
@@ -117,10 +148,9 @@ fn the_floor_is_the_plane_that_the_scene_rests_on() {
     assert_ne!(found, at(&mut cache, Ground::At(0.0)));
 }
 
-/// The bytes of a picture are the same on every machine, so they can be held against a sum taken once, of a
-/// picture that was looked at.
+/// The bytes of a picture are the same on every machine, so a hash of an inspected picture identifies it.
 #[test]
-fn a_picture_of_the_sample_is_the_one_that_was_looked_at() {
+fn the_picture_of_the_synthetic_run_is_the_inspected_one() {
     let (_folder, mut cache) = recorded(Sample::default());
     let image =
         Film::of(&mut cache, 1, Style { size: [320, 180], ..Style::default() }).unwrap().picture(12).unwrap();
@@ -130,17 +160,20 @@ fn a_picture_of_the_sample_is_the_one_that_was_looked_at() {
     let sum = image.bytes().iter().fold(0xcbf2_9ce4_8422_2325_u64, |sum, byte| {
         (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
-    assert_eq!(sum, GOLDEN, "{sum:#018x}; if it was meant to change, look at it and write the new sum here");
+    assert_eq!(
+        sum, GOLDEN,
+        "{sum:#018x}; after an intended change, inspect the picture and write the new hash here"
+    );
 }
 
-const GOLDEN: u64 = 0x07e2_645b_9158_7d6b;
+const GOLDEN: u64 = 0x29bb_acd0_8135_8e2c;
 
 #[test]
-fn a_mesh_that_changes_on_the_way_is_drawn_as_it_is_then() {
+fn a_mesh_that_changes_is_drawn_with_the_topology_of_each_frame() {
     let (_a, mut whole) = recorded(Sample::default());
     let (_b, mut torn) = recorded(Sample { torn: true, ..Sample::default() });
     let tear = FRAMES as usize / 2;
-    // The same stage, so that only the mesh tells the two apart.
+    // Both films have the same camera, so only the mesh differs.
     let mut films = [Film::of(&mut whole, 1, small()).unwrap(), Film::of(&mut torn, 1, small()).unwrap()];
     for place in [0, tear - 2, tear - 1, FRAMES as usize - 1, 0] {
         let [whole, torn] = films.each_mut().map(|film| film.picture(place).unwrap());

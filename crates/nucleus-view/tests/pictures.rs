@@ -1,4 +1,4 @@
-//! What a picture must hold, whatever is drawn.
+//! Properties of pictures, for any input.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -16,7 +16,7 @@ fn small() -> Style {
     Style { size: [64, 48], samples: 1, ground: Ground::None, ..Style::default() }
 }
 
-/// A level square at a height, seen from above as its front.
+/// A horizontal square at a height, its front facing up.
 fn square(height: f32, half: f32) -> Vec<[f32; 3]> {
     [[-half, half], [half, half], [half, -half], [-half, -half]].map(|[x, z]| [x, height, z]).to_vec()
 }
@@ -33,8 +33,8 @@ fn brightness(pixel: [u8; 3]) -> u32 {
     pixel.iter().map(|channel| u32::from(*channel)).sum()
 }
 
-/// Any number a broken run might leave behind.
-fn wild() -> impl Strategy<Value = f32> {
+/// Coordinates of a broken run.
+fn extreme() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => -3.0f32..3.0,
         1 => prop::sample::select(vec![f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30, 1e-40, 1e8]),
@@ -49,19 +49,19 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn nothing_that_is_drawn_can_stop_a_picture(
+    fn no_input_makes_drawing_fail(
         kind in kind(),
-        positions in prop::collection::vec(prop::array::uniform3(wild()), 0..12),
-        rest in prop::collection::vec(prop::array::uniform3(wild()), 0..12),
+        positions in prop::collection::vec(prop::array::uniform3(extreme()), 0..12),
+        rest in prop::collection::vec(prop::array::uniform3(extreme()), 0..12),
         faces in prop::collection::vec(prop::collection::vec(0u32..14, 0..6), 0..8),
-        eye in prop::array::uniform3(wild()),
-        target in prop::array::uniform3(wild()),
-        field_of_view in wild(),
-        ground in prop_oneof![Just(Ground::None), Just(Ground::Below), wild().prop_map(Ground::At)],
-        full_scale in wild(),
+        eye in prop::array::uniform3(extreme()),
+        target in prop::array::uniform3(extreme()),
+        field_of_view in extreme(),
+        ground in prop_oneof![Just(Ground::None), Just(Ground::Below), extreme().prop_map(Ground::At)],
+        full_scale in extreme(),
     ) {
         let faces: Faces = faces.iter().map(Vec::as_slice).collect();
-        let object = Object { name: "wild", kind, faces: &faces, positions: &positions, rest: Some(&rest), radius: None };
+        let object = Object { name: "extreme", kind, faces: &faces, positions: &positions, rest: Some(&rest), radius: None };
         let style = Style { colouring: Colouring::Strain { full_scale }, wireframe: true, ground, ..small() };
         for camera in [
             Camera { eye, target, field_of_view, ..Camera::default() },
@@ -73,7 +73,7 @@ proptest! {
 }
 
 #[test]
-fn the_nearer_of_two_objects_is_seen_in_either_order() {
+fn the_nearer_of_two_objects_is_visible_in_either_order() {
     let faces = one_face();
     let (low, high) = (square(0.0, 2.0), square(1.0, 1.0));
     let (cloth, collider) = (object(Kind::Cloth, &faces, &high), object(Kind::Collider, &faces, &low));
@@ -84,7 +84,7 @@ fn the_nearer_of_two_objects_is_seen_in_either_order() {
 }
 
 #[test]
-fn a_lost_point_takes_only_its_own_faces_with_it() {
+fn a_point_that_is_not_finite_removes_only_its_own_faces() {
     let mut positions = square(0.0, 2.0);
     positions.extend(square(0.0, 1.0).iter().map(|[x, y, z]| [x + 1.5, *y, *z]));
     positions[0][1] = f32::NAN;
@@ -96,21 +96,21 @@ fn a_lost_point_takes_only_its_own_faces_with_it() {
 }
 
 #[test]
-fn a_sheet_darkens_the_floor_below_it_and_not_far_from_it() {
+fn a_sheet_casts_a_shadow_on_the_floor_below_it_only() {
     let style = Style { ground: Ground::At(0.0), size: [96, 96], ..small() };
     let faces = one_face();
     let camera = Camera { eye: [0.0, 4.0, 9.0], ..FROM_ABOVE };
     let sheet = square(1.0, 1.0);
     let with = draw(&[object(Kind::Cloth, &faces, &sheet)], &camera, &style);
     let without = draw(&[], &camera, &style);
-    // The key light falls from the left: the shadow lies a little to the right of the sheet.
+    // The key light comes from the left, so the shadow lies to the right of the sheet.
     let darkened = |row: u32| brightness(without.pixel(56, row)).abs_diff(brightness(with.pixel(56, row)));
     assert!(darkened(50) > 100, "under the sheet: {}", darkened(50));
     assert!(darkened(94) < 12, "in front of it: {}", darkened(94));
 }
 
 #[test]
-fn moving_scene_and_camera_together_leaves_the_picture_as_it_was() {
+fn moving_scene_and_camera_together_does_not_change_the_picture() {
     let faces = one_face();
     let far = |by: f32| square(0.5, 1.0).into_iter().map(|[x, y, z]| [x + by, y, z]).collect::<Vec<_>>();
     let picture = |by: f32| {
@@ -126,7 +126,7 @@ fn moving_scene_and_camera_together_leaves_the_picture_as_it_was() {
 }
 
 #[test]
-fn strain_is_shown_only_where_a_rest_shape_is_known() {
+fn strain_is_red_where_longer_and_blue_where_shorter() {
     let faces = one_face();
     let (rest, pulled) = (square(0.0, 1.0), square(0.0, 1.2));
     let style = Style { colouring: Colouring::Strain { full_scale: 0.2 }, ..small() };
@@ -140,7 +140,7 @@ fn strain_is_shown_only_where_a_rest_shape_is_known() {
 }
 
 #[test]
-fn a_png_file_gives_back_every_pixel() {
+fn a_png_file_holds_every_pixel() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("still.png");
     let (faces, positions) = (one_face(), square(0.0, 1.0));
@@ -152,7 +152,7 @@ fn a_png_file_gives_back_every_pixel() {
     assert_eq!(bytes, image.bytes());
 }
 
-/// Plays an animated PNG as a browser does: each part is laid over the frame before.
+/// Plays an animated PNG: each rectangle is drawn over the frame before.
 fn play(path: &std::path::Path) -> Vec<Vec<u8>> {
     let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
     let frames = reader.info().animation_control.unwrap().num_frames;
@@ -174,7 +174,7 @@ fn play(path: &std::path::Path) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn an_animation_plays_every_frame_as_it_was_pushed() {
+fn an_animation_holds_every_frame() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.png");
     let faces = one_face();
@@ -193,7 +193,7 @@ fn an_animation_plays_every_frame_as_it_was_pushed() {
 }
 
 #[test]
-fn an_animation_refuses_frames_of_another_size_and_none_at_all() {
+fn an_animation_refuses_frames_of_another_size_and_needs_a_frame() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.png");
     let image = draw(&[], &FROM_ABOVE, &small());

@@ -1,11 +1,11 @@
-//! The server of the player: what it gives out, and what it keeps to itself.
+//! The server of the player: its responses, and the requests that it refuses.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 
 use nucleus_view::{Player, ViewError, serve};
 
-/// A served file of 1000 bytes, none of which is like its neighbours.
+/// A served file of 1000 bytes that differ from their neighbours.
 fn served() -> (tempfile::TempDir, Player, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let bytes: Vec<u8> = (0..1000u32).map(|k| (k * 7 % 251) as u8).collect();
@@ -15,7 +15,7 @@ fn served() -> (tempfile::TempDir, Player, Vec<u8>) {
     (folder, serve(&path, 0).unwrap(), bytes)
 }
 
-/// Sends a request; gives status, head and body of the answer.
+/// Sends a request; returns status, head and body of the response.
 fn ask(address: SocketAddr, request: &str) -> (u16, String, Vec<u8>) {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.write_all(request.as_bytes()).unwrap();
@@ -44,7 +44,7 @@ fn a_range_gives_just_those_bytes() {
 }
 
 #[test]
-fn bytes_past_the_end_cannot_be_had() {
+fn a_range_beyond_the_end_is_not_satisfiable() {
     let (_folder, player, _) = served();
     let (status, head, body) = get(player.address(), "/cache.mcap", "Range: bytes=1000-\r\n");
     assert_eq!((status, body.len()), (416, 0));
@@ -52,7 +52,7 @@ fn bytes_past_the_end_cannot_be_had() {
 }
 
 #[test]
-fn without_a_range_the_whole_file_comes_and_head_sends_no_body() {
+fn without_a_range_the_whole_file_is_sent_and_head_has_no_body() {
     let (_folder, player, bytes) = served();
     let (status, head, body) = get(player.address(), "/cache.mcap", "");
     assert_eq!((status, &body), (200, &bytes));
@@ -64,7 +64,7 @@ fn without_a_range_the_whole_file_comes_and_head_sends_no_body() {
 }
 
 #[test]
-fn a_file_that_grows_is_served_at_its_present_length() {
+fn a_growing_file_is_served_at_its_current_length() {
     let (folder, player, mut bytes) = served();
     bytes.extend([1, 2, 3]);
     std::fs::write(folder.path().join("späte Fahne.mcap"), &bytes).unwrap();
@@ -73,7 +73,7 @@ fn a_file_that_grows_is_served_at_its_present_length() {
 }
 
 #[test]
-fn the_page_and_all_its_parts_are_there() {
+fn the_page_and_all_its_parts_are_served() {
     let (_folder, player, _) = served();
     let (status, head, body) = get(player.address(), "/?anything", "");
     assert_eq!(status, 200);
@@ -88,7 +88,7 @@ fn the_page_and_all_its_parts_are_there() {
 }
 
 #[test]
-fn no_path_leads_to_another_file() {
+fn no_path_reaches_another_file() {
     let (_folder, player, _) = served();
     for path in
         ["/secret.txt", "/../secret.txt", "/player/../secret.txt", "/%2e%2e/secret.txt", "//etc/passwd", ""]
@@ -99,7 +99,7 @@ fn no_path_leads_to_another_file() {
 }
 
 #[test]
-fn strangers_and_other_methods_are_refused() {
+fn foreign_hosts_and_other_methods_are_refused() {
     let (_folder, player, _) = served();
     let address = player.address();
     assert_eq!(ask(address, "GET /cache.mcap HTTP/1.1\r\nHost: evil.example\r\n\r\n").0, 403);
@@ -109,15 +109,15 @@ fn strangers_and_other_methods_are_refused() {
 }
 
 #[test]
-fn a_silent_visitor_keeps_nobody_waiting() {
+fn a_silent_client_delays_no_other() {
     let (_folder, player, _) = served();
     let _silent = TcpStream::connect(player.address()).unwrap();
     assert_eq!(get(player.address(), "/", "").0, 200);
 }
 
-/// More than there are threads, and more than may wait at one time.
+/// More connections than threads, and more than may be pending.
 #[test]
-fn many_half_open_connections_keep_nobody_waiting() {
+fn many_half_open_connections_delay_no_other() {
     let (_folder, player, _) = served();
     let half = |k: usize| {
         let mut stream = TcpStream::connect(player.address()).unwrap();
@@ -132,10 +132,10 @@ fn many_half_open_connections_keep_nobody_waiting() {
     assert_eq!(get(player.address(), "/", "").0, 200);
 }
 
-/// A thread for each of them would be hundreds; those of other tests that run beside this one are fewer.
+/// The bound allows for the threads of other tests in the same process.
 #[cfg(target_os = "linux")]
 #[test]
-fn connections_do_not_make_threads() {
+fn connections_start_no_threads() {
     let (_folder, player, _) = served();
     let _half_open: Vec<TcpStream> =
         (0..300).map(|_| TcpStream::connect(player.address()).unwrap()).collect();
@@ -144,7 +144,7 @@ fn connections_do_not_make_threads() {
 }
 
 #[test]
-fn a_stopped_player_gives_its_port_back() {
+fn a_stopped_player_releases_its_port() {
     let (folder, player, _) = served();
     let port = player.address().port();
     let path = folder.path().join("späte Fahne.mcap");
@@ -154,7 +154,7 @@ fn a_stopped_player_gives_its_port_back() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_at_once() {
+fn a_path_that_is_not_a_file_is_refused() {
     let (folder, _player, _) = served();
     for path in [folder.path().to_path_buf(), folder.path().join("missing.mcap")] {
         assert!(matches!(serve(path, 0), Err(ViewError::Open { .. })));

@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
+use nucleus_cache::atomic_file::AtomicFile;
 use nucleus_view::{AnimationWriter, Film, GifWriter, Image};
-
-use crate::whole_file;
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,30 +50,35 @@ pub fn write<R: Read + Seek>(
     told: &mut dyn FnMut(f64),
 ) -> Result<PathBuf> {
     match way {
-        Way::Gif => whole_file::write(out, |part| {
-            let mut file = GifWriter::create(part, size, film.fps())?;
+        Way::Gif => {
+            let mut file = GifWriter::create(out, size, film.fps())?;
             each(film, told, |image, _| Ok(file.push(image)?))?;
-            Ok(file.finish()?)
-        })?,
-        Way::Film => whole_file::write(out, |part| encode(film, part, muxer(out), size, told))?,
+            file.finish()?;
+        }
+        Way::Film => {
+            let unwritten = || format!("cannot write `{}`", out.display());
+            let file = AtomicFile::create(out).with_context(unwritten)?;
+            encode(film, file.temporary(), muxer(out), size, told)?;
+            file.commit().with_context(unwritten)?;
+        }
         Way::Sequence => {
             if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
             }
             each(film, told, |image, frame| picture(image, &numbered(out, frame)))?;
         }
-        Way::Still | Way::Png => whole_file::write(out, |part| {
-            let mut file = AnimationWriter::create(part, size, film.fps())?;
+        Way::Still | Way::Png => {
+            let mut file = AnimationWriter::create(out, size, film.fps())?;
             each(film, told, |image, _| Ok(file.push(image)?))?;
-            Ok(file.finish()?)
-        })?,
+            file.finish()?;
+        }
     }
     Ok(out.to_owned())
 }
 
 /// Writes one picture.
 pub fn picture(image: &Image, out: &Path) -> Result<()> {
-    whole_file::write(out, |part| Ok(image.write_png(part)?))
+    Ok(image.write_png(out)?)
 }
 
 fn each<R: Read + Seek>(

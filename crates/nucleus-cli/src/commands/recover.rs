@@ -1,10 +1,10 @@
 //! `nucleus recover`: what survives of a damaged cache.
 
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
+use nucleus_cache::atomic_file::AtomicFile;
 use nucleus_graph::Simulation;
 
 use crate::outcome::Outcome;
@@ -48,21 +48,12 @@ impl Recover {
         if out.exists() && !self.force {
             bail!("`{}` exists; `--force` replaces it, `-o` names another file", out.display());
         }
-        // Written beside its place, so that nothing half-written ever has the final name.
-        let mut beside = out.clone().into_os_string();
-        beside.push(".recovering");
-        let beside = PathBuf::from(beside);
-        let target = File::create(&beside).with_context(|| format!("cannot write `{}`", out.display()))?;
+        let unwritten = || format!("cannot write `{}`", out.display());
+        let mut target = AtomicFile::create(&out).with_context(unwritten)?;
         cache.verify()?;
-        let recovered = match cache.recover(target).map_err(anyhow::Error::from) {
-            Ok(recovered) => recovered,
-            Err(error) => {
-                // What was begun is of no use; if it cannot be removed either, it says so by its name.
-                let _ = fs::remove_file(&beside);
-                return Err(error.context(format!("cannot recover to `{}`", out.display())));
-            }
-        };
-        fs::rename(&beside, &out).with_context(|| format!("cannot write `{}`", out.display()))?;
+        let recovered = cache.recover(&mut target);
+        let recovered = recovered.with_context(|| format!("cannot recover to `{}`", out.display()))?;
+        target.commit().with_context(unwritten)?;
         let frames = figures::count(recovered.frames, "frame");
         let size = figures::bytes(recovered.bytes);
         let loss = cache.corruption();

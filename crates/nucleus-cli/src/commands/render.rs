@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::{ObjectKind, Playback};
-use nucleus_view::{Bounds, Camera, Colouring, Film, Image, Style};
+use nucleus_cache::Playback;
+use nucleus_view::{Camera, Colouring, Film, Image, Style};
 
 use super::film::{self, Way};
 use crate::frame_range::FrameRange;
@@ -18,6 +18,8 @@ use crate::{cache_file, figures, output};
 /// What is written follows from the name: `hang.png` is a still (with --animate an animated PNG), `hang.gif` a
 /// GIF, `hang.mp4`, `.mov` or `.webm` a film if ffmpeg is installed, and `frames/hang.####.png` a picture for each
 /// frame, with its number.
+///
+/// A cache records the ground plane at the start of the run only: a plane that moves is drawn where it starts.
 #[derive(Debug, Args)]
 pub struct Render {
     /// The cache (.mcap).
@@ -81,11 +83,11 @@ impl Render {
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = cache_file::moment(cache, self.frame)?;
         let frame = cache.time_samples()[moment].frame;
-        let camera = self.seen_from(camera(cache, moment, self.size)?);
         // The floor is that of the whole run, found from a few of its frames.
         let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
-        let film = Film::of(cache, every, self.style())?.seen_by(camera);
-        film::picture(&look_through(film, scene_camera).moment(moment)?, out)?;
+        let mut film = Film::of(cache, every, self.style())?;
+        let camera = self.seen_from(film.framing(moment)?);
+        film::picture(&look_through(film.seen_by(camera), scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
     }
 
@@ -161,19 +163,6 @@ where
 /// `` `hang.gif` (1.2 MB) ``.
 fn sized(path: &Path) -> Result<String> {
     Ok(format!("`{}` ({})", path.display(), figures::bytes(std::fs::metadata(path)?.len())))
-}
-
-/// A camera that holds what is simulated as it is at this moment; all objects, if nothing is.
-fn camera(cache: &mut Playback, moment: usize, size: [u32; 2]) -> Result<Camera> {
-    let (mut stage, mut all) = (Bounds::default(), Bounds::default());
-    for object in 0..cache.objects().len() {
-        let positions = cache.positions(object, moment)?;
-        all.include(&positions);
-        if cache.objects()[object].kind != ObjectKind::Collider {
-            stage.include(&positions);
-        }
-    }
-    Ok(Camera::framing(if stage.is_empty() { &all } else { &stage }, size))
 }
 
 fn parse_point(text: &str) -> Result<[f32; 3], String> {

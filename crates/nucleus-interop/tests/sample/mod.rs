@@ -1,6 +1,6 @@
-//! A small run made by a formula.
+//! A small synthetic run, defined by formulas.
 
-#![allow(dead_code)] // each user takes a part of it
+#![allow(dead_code)] // each user needs a part of it
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ const ROLLS: i32 = 7;
 const SHEET: ClothId = ClothId(0);
 const CART: ColliderId = ColliderId(0);
 
-/// The frame from which on a sheet that tears is torn.
+/// The first frame after the tear of a sheet that tears.
 pub const TORN: i32 = 8;
 
 /// Writes the sample as a cache of substeps.
@@ -27,7 +27,7 @@ pub fn write(path: &Path) {
     record(path, false);
 }
 
-/// The same, with a sheet that tears: it gets a point more, and other faces.
+/// The same, with a sheet that tears: it gains a point, and its faces change.
 pub fn write_torn(path: &Path) {
     record(path, true);
 }
@@ -91,12 +91,12 @@ pub fn objects() -> Vec<(Source, ObjectInfo)> {
     ]
 }
 
-/// The faces of the sheet once it is torn: one stands on a point of its own.
+/// The faces of the torn sheet: one face uses the added point.
 pub fn torn_faces() -> &'static [&'static [u32]] {
     &[&[0, 1, 4, 3], &[1, 2, 11], &[1, 5, 4], &[3, 4, 5, 8, 7, 6]]
 }
 
-/// The points of the sheet once it is torn: that at the tear is there twice.
+/// The points of the torn sheet: the point at the tear is duplicated.
 pub fn torn(mut sheet: Vec<[f32; 3]>) -> Vec<[f32; 3]> {
     sheet.push(sheet[5].map(|x| x + 1.0));
     sheet

@@ -1,14 +1,13 @@
-// A run: its objects, its frames, and the state of all objects at any recorded moment.
+// A cache: the objects and frames of a run, and the state of all objects at any recorded time.
 
-import { readChunk } from "./chunk.js";
 import { openIndex } from "./mcap.js";
-import { readContacts, readPoints, readTopology } from "./points.js";
-import { readCameras } from "./track.js";
-import { Damage, Trouble } from "./trouble.js";
+import { readCameras, readContacts, readPoints, readTopology } from "./messages.js";
+import { readChunk } from "./records.js";
+import { DamagedFrame, PlayerError } from "./source.js";
 
-// Unpacked frames are kept up to this many bytes.
-const KEPT_BYTES = 384e6;
-const FRAMES_AHEAD = 6;
+// Memory for unpacked frames, in bytes.
+const MAX_UNPACKED_BYTES = 384e6;
+const PREFETCHED_FRAMES = 6;
 
 export class Cache {
   static async open(source, onProgress) {
@@ -25,29 +24,29 @@ export class Cache {
     this.objects = objectsOf(index.channels);
     this.chunks = index.chunks;
     const points = this.objects.map((object) => object.points);
-    // A frame is a chunk in which something moves; the meshes may lie in a chunk of their own.
+    // A frame is a chunk with positions; meshes may have separate chunks.
     this.frames = index.chunks.filter((chunk) => points.some((id) => chunk.channels.has(id)));
-    this.unpacked = new Map(); // chunk to promise of its moments, the longest unused first
+    this.unpacked = new Map(); // chunk to promise of its content, least recently used first
     this.bytes = 0;
     if (this.objects.length === 0 || this.frames.length === 0) {
       throw this.complete
-        ? new Trouble("There is no Nucleus run in this file.", "It is an MCAP file, but of something else.")
-        : new Trouble("The file breaks off before its first whole frame.", "Was the run stopped at once?");
+        ? new PlayerError("This MCAP file holds no Nucleus run.", "It was written by another program.")
+        : new PlayerError("The file ends before its first complete frame.", "The run was stopped too early.");
     }
   }
 
-  // Frame number of the frame at `index`, from its time.
+  // The number of the frame at `index`.
   frameNumber(index) {
     return this.run.start + Math.round((this.frames[index].end / 1e9) * this.run.fps);
   }
 
-  // The first frame of this number or a later one; the last if there is none.
+  // The index of the first frame with this number or a higher one; of the last frame if there is none.
   indexOf(number) {
     const index = this.frames.findIndex((_, k) => this.frameNumber(k) >= number);
     return index < 0 ? this.frames.length - 1 : index;
   }
 
-  // What the solver said about a frame; null if nothing.
+  // The report of the solver for a frame; null if there is none.
   async report(index) {
     return (await this.unpack(this.frames[index])).report;
   }
@@ -57,27 +56,28 @@ export class Cache {
     return this.frames[index].end / 1e9;
   }
 
-  // The state at a moment of the frame at `index`; its last moment if `moment` is not given.
-  async state(index, moment = Infinity) {
-    const { moments, report } = await this.unpack(this.frames[index]);
-    const last = Math.min(moment, moments.length - 1);
-    if (moments.length === 0) {
-      throw new Damage();
+  // The state at a recorded time of the frame at `index`, by default the end of the frame.
+  async state(index, timeIndex = Infinity) {
+    const { times, report } = await this.unpack(this.frames[index]);
+    const last = Math.min(timeIndex, times.length - 1);
+    if (times.length === 0) {
+      throw new DamagedFrame();
     }
-    const all = this.objects.map((_, k) => this.objectAt(k, index, last, moments[last].nanoseconds));
+    const all = this.objects.map((_, k) => this.objectAt(k, index, last, times[last].nanoseconds));
     const [positions, meshes] = [[], []];
     for (const found of await Promise.all(all)) {
       positions.push(found.positions);
       meshes.push(found.mesh);
     }
-    const { frame, substep, substeps, time } = moments[last];
-    const contacts = this.objects.map((object) => moments[last].contacts.get(object.contacts) ?? null);
-    return { index, moment: last, moments: moments.length, frame, substep, substeps, time, report, positions, meshes, contacts };
+    const { frame, substep, substeps, time } = times[last];
+    const contacts = this.objects.map((object) => times[last].contacts.get(object.contacts) ?? null);
+    const at = { index, timeIndex: last, times: times.length, frame, substep, substeps, time };
+    return { ...at, report, positions, meshes, contacts };
   }
 
-  // Unpacks the frames that playing will need next. A damaged one is told of when it is shown.
+  // Unpacks the next frames. A damaged frame is reported when it is shown.
   async prefetch(index) {
-    for (let ahead = 1; ahead <= FRAMES_AHEAD; ahead += 1) {
+    for (let ahead = 1; ahead <= PREFETCHED_FRAMES; ahead += 1) {
       const chunk = this.frames[(index + ahead) % this.frames.length];
       if (!this.unpacked.has(chunk)) {
         await this.unpack(chunk).catch(() => {});
@@ -85,46 +85,46 @@ export class Cache {
     }
   }
 
-  // The positions of an object at a moment and the mesh that they are of. Each mesh has a number, so that one that is lost
-  // is never taken for another.
-  async objectAt(object, index, moment, nanoseconds) {
-    const { positions, number } = await this.positionsOf(object, index, moment);
+  // The positions of an object at a recorded time, and their mesh. Meshes are numbered, so that positions are never
+  // combined with another mesh if theirs is lost.
+  async objectAt(object, index, timeIndex, nanoseconds) {
+    const { positions, number } = await this.positionsOf(object, index, timeIndex);
     const mesh = await this.meshAt(this.objects[object], nanoseconds);
     if (mesh.number !== number || mesh.points * 3 !== positions.length) {
-      throw new Damage();
+      throw new DamagedFrame();
     }
     return { positions, mesh };
   }
 
-  // A mesh, with the radius of its particles: that is said once for a run.
+  // A mesh, with the radius of its particles, which is constant over a run.
   topologyOf(channel, data) {
     const name = this.objects.find(({ mesh }) => mesh === channel)?.name;
     return { ...readTopology(data), radius: this.run.radii.get(name) ?? null };
   }
 
-  // The mesh of an object at a time: the last that came before. The first is kept, the others with their frames.
+  // The mesh of an object at a time: the last one before it. The first mesh is kept in memory, others with their chunks.
   async meshAt(object, nanoseconds) {
     for (const chunk of object.meshChunks.slice(1).reverse()) {
       const { meshes } = chunk.start <= nanoseconds ? await this.unpack(chunk) : { meshes: [] };
-      const held = meshes.findLast(({ channel, time }) => channel === object.mesh && time <= nanoseconds);
-      if (held) {
-        return held.topology;
+      const found = meshes.findLast(({ channel, time }) => channel === object.mesh && time <= nanoseconds);
+      if (found) {
+        return found.topology;
       }
     }
     return object.topology;
   }
 
-  // An object that did not move has no message: its last one holds.
-  async positionsOf(object, index, moment) {
+  // An object that did not move has no message; its last message remains valid.
+  async positionsOf(object, index, timeIndex) {
     const { points } = this.objects[object];
     for (let k = index; k >= 0; k -= 1) {
       if (!this.frames[k].channels.has(points)) {
         continue;
       }
-      const { moments } = await this.unpack(this.frames[k]);
-      const from = k === index ? moment : moments.length - 1;
-      for (let m = from; m >= 0; m -= 1) {
-        const found = moments[m].positions.get(points);
+      const { times } = await this.unpack(this.frames[k]);
+      const from = k === index ? timeIndex : times.length - 1;
+      for (let t = from; t >= 0; t -= 1) {
+        const found = times[t].positions.get(points);
         if (found) {
           return found;
         }
@@ -136,19 +136,20 @@ export class Cache {
   unpack(chunk) {
     const known = this.unpacked.get(chunk);
     this.unpacked.delete(chunk);
-    const moments = known ?? this.readMoments(chunk);
-    this.unpacked.set(chunk, moments);
-    moments.catch(() => this.unpacked.delete(chunk)); // the next try may go better
-    return moments;
+    const content = known ?? this.readContent(chunk);
+    this.unpacked.set(chunk, content);
+    content.catch(() => this.unpacked.delete(chunk)); // so that it is read again next time
+    return content;
   }
 
-  async readMoments(chunk) {
+  // The recorded times of a chunk, the meshes that begin in it, and the report of its frame.
+  async readContent(chunk) {
     const { messages } = await readChunk(this.source, chunk);
-    const moments = new Map(); // by time
+    const times = new Map(); // by nanoseconds
     const at = (time) => {
-      const moment = moments.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map() };
-      moments.set(time, moment);
-      return moment;
+      const entry = times.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map() };
+      times.set(time, entry);
+      return entry;
     };
     const count = (bytes) => {
       this.bytes += bytes;
@@ -172,13 +173,15 @@ export class Cache {
         report = readReport(data);
       }
     }
-    this.forget();
-    return { moments: [...moments.values()].filter(({ frame }) => frame !== undefined).sort((a, b) => a.time - b.time), meshes, report };
+    this.evict();
+    const recorded = [...times.values()].filter(({ frame }) => frame !== undefined);
+    return { times: recorded.sort((a, b) => a.time - b.time), meshes, report };
   }
 
-  forget() {
+  // Drops the least recently used chunks beyond the memory limit.
+  evict() {
     for (const chunk of this.unpacked.keys()) {
-      if (this.bytes <= KEPT_BYTES || this.unpacked.size <= FRAMES_AHEAD + 2) {
+      if (this.bytes <= MAX_UNPACKED_BYTES || this.unpacked.size <= PREFETCHED_FRAMES + 2) {
         return;
       }
       this.unpacked.delete(chunk);
@@ -194,10 +197,10 @@ export class Cache {
         const { messages } = await readChunk(this.source, object.meshChunks[0]);
         object.topology = this.topologyOf(object.mesh, messages.find(({ channel }) => channel === object.mesh).data);
       } catch (error) {
-        if (error instanceof Trouble && !(error instanceof Damage)) {
+        if (error instanceof PlayerError && !(error instanceof DamagedFrame)) {
           throw error;
         }
-        throw new Trouble(`The mesh of “${object.name}” cannot be read.`, "The file is damaged at its beginning.");
+        throw new PlayerError(`The mesh of “${object.name}” cannot be read.`, "The beginning of the file is damaged; `nucleus recover` may restore it.");
       }
     }
   }
@@ -209,7 +212,7 @@ function objectsOf(channels) {
     .filter(({ encoding }) => encoding === "nucleus.topology.v1")
     .map(({ id, topic }) => {
       const name = topic.replace(/^\//, "").replace(/\/topology$/, "");
-      const channel = (what) => all.find((channel) => channel.topic === `/${name}/${what}`)?.id;
+      const channel = (kind) => all.find((channel) => channel.topic === `/${name}/${kind}`)?.id;
       return { name, mesh: id, points: channel("points"), contacts: channel("contacts") };
     })
     .filter(({ points }) => points !== undefined);
@@ -218,9 +221,9 @@ function objectsOf(channels) {
 function readRun(metadata) {
   const run = metadata.get("nucleus.run") ?? new Map();
   const scene = metadata.get("nucleus.scene") ?? new Map();
-  const number = (key, otherwise) => {
+  const number = (key, fallback) => {
     const value = Number(run.get(key) ?? NaN);
-    return Number.isFinite(value) ? value : otherwise;
+    return Number.isFinite(value) ? value : fallback;
   };
   return {
     start: number("start", 0),
@@ -234,22 +237,26 @@ function readRun(metadata) {
   };
 }
 
-// The radius of the particles of each object that has some, by its name.
+// The radius of the particles of each object with particles, by its name.
 function readRadii(run) {
   const before = "radius of ";
   const found = [...run].filter(([key, text]) => key.startsWith(before) && Number(text) > 0);
   return new Map(found.map(([key, text]) => [key.slice(before.length), Number(text)]));
 }
 
-// The height of a plane given as point and normal, if it is level.
+// The height of a plane, given as point and normal, if it is horizontal; else null.
 function levelPlane(text) {
   const [, y, , a, b, c] = (text ?? "").split(" ").map(Number);
   return Number.isFinite(y) && b > 0.999 * Math.hypot(a, b, c) ? y : null;
 }
 
+// Figures of a report whose names have changed.
+const RENAMED = { pairs: "candidate_pairs", pinched: "compressed", trapped: "depenetrating", tangled: "intersections" };
+
 function readReport(data) {
   try {
-    return JSON.parse(new TextDecoder().decode(data));
+    const figures = Object.entries(JSON.parse(new TextDecoder().decode(data)));
+    return Object.fromEntries(figures.map(([key, value]) => [RENAMED[key] ?? key, value]));
   } catch {
     return null;
   }

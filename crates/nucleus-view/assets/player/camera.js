@@ -1,12 +1,78 @@
-// An eye that goes round a target: drag to orbit, shift or right button to pan, wheel to zoom. Or a camera of the scene,
-// until one of these is done.
+// Vectors, matrices and the camera: it orbits a target (drag to orbit, shift or right button to pan, wheel to zoom), or
+// follows a camera of the scene until it is moved.
 
-import { tangentOf, viewAt } from "./track.js";
-import { add, cross, dot, normalise, perspective, scale, subtract, view } from "./matrix.js";
+// Vectors of three and matrices of four by four, in columns as WebGL reads them.
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
+export const normalise = (a) => scale(a, 1 / (Math.hypot(...a) || 1));
+
+export function multiply(a, b) {
+  const product = new Float32Array(16);
+  for (let column = 0; column < 4; column += 1) {
+    for (let row = 0; row < 4; row += 1) {
+      for (let k = 0; k < 4; k += 1) {
+        product[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+      }
+    }
+  }
+  return product;
+}
+
+// The view matrix of an eye with these axes; `toward` points from the target to the eye.
+export function view(eye, right, up, toward) {
+  const row = (axis) => [...axis, -dot(axis, eye)];
+  const [x, y, z] = [row(right), row(up), row(toward)];
+  return new Float32Array([0, 1, 2, 3].flatMap((k) => [x[k], y[k], z[k], k === 3 ? 1 : 0]));
+}
+
+// `tangent` is the tangent of half the vertical field of view.
+export function perspective(tangent, aspect, near, far) {
+  const depth = 1 / (near - far);
+  return new Float32Array([
+    1 / (tangent * aspect), 0, 0, 0,
+    0, 1 / tangent, 0, 0,
+    0, 0, (near + far) * depth, -1,
+    0, 0, 2 * near * far * depth, 0,
+  ]);
+}
+
+// The orthographic projection of a cube around the origin, with half side `reach`, seen along -z.
+export function orthographic(reach) {
+  const s = 1 / reach;
+  return new Float32Array([s, 0, 0, 0, 0, s, 0, 0, 0, 0, -s, 0, 0, 0, 0, 1]);
+}
+
+const MILLIMETRES = 25.4;
+
+// The view of a camera, a number of frames after the start; interpolated linearly between frames.
+export function viewAt({ views }, frames) {
+  const place = Math.min(Math.max(0, frames), views.length - 1);
+  const [before, after] = [views[Math.floor(place)], views[Math.ceil(place)]];
+  const x = before.map((value, k) => value + (after[k] - value) * (place % 1));
+  return {
+    eye: x.slice(0, 3), forward: x.slice(3, 6), up: x.slice(6, 9),
+    focalLength: x[9], film: x.slice(10, 12), interest: x[12],
+  };
+}
+
+// Tangent of half the vertical field of view, in a picture of this ratio of width to height.
+export function tangentOf({ focalLength, film }, fit, aspect) {
+  const [across, upward] = film.map((side) => (0.5 * MILLIMETRES * side) / focalLength);
+  const isWider = aspect > across / upward;
+  const isByWidth = { horizontal: true, vertical: false, overscan: !isWider }[fit] ?? isWider;
+  return isByWidth ? across / aspect : upward;
+}
 
 const TANGENT = Math.tan((30 * Math.PI) / 360);
-const FILLED = 0.78; // the share of the picture that a framed box may fill; panels lie over the rest
-const STEEPEST = 1.55;
+const FILLED = 0.78; // fraction of the picture that a framed box may fill; panels cover the rest
+const MAX_PITCH = 1.55; // radians
 
 export class Camera {
   constructor(canvas, onChange) {
@@ -14,8 +80,8 @@ export class Camera {
     this.distance = 5;
     this.yaw = 0.57;
     this.pitch = 0.44;
-    this.size = 1; // of what was framed; limits how near and far one may go
-    this.track = null; // the camera of the scene that is looked through
+    this.size = 1; // diagonal of the framed box; limits the zoom
+    this.track = null; // the camera of the scene that is followed, if any
     this.frames = 0; // since the start of the run
     this.canvas = canvas;
     this.onChange = onChange;
@@ -39,36 +105,36 @@ export class Camera {
   }
 
   matrices(aspect) {
-    return this.track ? this.matricesOfTrack(aspect) : this.ownMatrices(aspect);
+    return this.track ? this.trackMatrices(aspect) : this.orbitMatrices(aspect);
   }
 
-  matricesOfTrack(aspect) {
-    const seen = viewAt(this.track, this.frames);
-    const toward = normalise(scale(seen.forward, -1));
-    const right = normalise(cross(seen.up, toward));
-    const far = Math.hypot(...subtract(this.target, seen.eye)) + this.size * 40;
+  trackMatrices(aspect) {
+    const followed = viewAt(this.track, this.frames);
+    const toward = normalise(scale(followed.forward, -1));
+    const right = normalise(cross(followed.up, toward));
+    const far = Math.hypot(...subtract(this.target, followed.eye)) + this.size * 40;
     return {
-      view: view(seen.eye, right, cross(toward, right), toward),
-      projection: perspective(tangentOf(seen, this.track.fit, aspect), aspect, this.size * 5e-3, far),
+      view: view(followed.eye, right, cross(toward, right), toward),
+      projection: perspective(tangentOf(followed, this.track.fit, aspect), aspect, this.size * 5e-3, far),
     };
   }
 
-  // Leaves the camera of the scene and stays where it was, level.
+  // Stops following the camera of the scene, at its position and without roll.
   leave() {
     if (!this.track) {
       return;
     }
     const { eye, forward, interest } = viewAt(this.track, this.frames);
-    const ahead = dot(subtract(this.target, eye), forward);
-    this.distance = ahead > 0 ? ahead : interest;
+    const distance = dot(subtract(this.target, eye), forward);
+    this.distance = distance > 0 ? distance : interest;
     this.target = add(eye, scale(forward, this.distance));
     this.yaw = Math.atan2(-forward[0], -forward[2]);
-    this.pitch = Math.min(STEEPEST, Math.max(-STEEPEST, Math.asin(Math.min(1, Math.max(-1, -forward[1])))));
+    this.pitch = Math.min(MAX_PITCH, Math.max(-MAX_PITCH, Math.asin(Math.min(1, Math.max(-1, -forward[1])))));
     this.track = null;
     this.onChange();
   }
 
-  ownMatrices(aspect) {
+  orbitMatrices(aspect) {
     const up = cross(this.toward, this.right);
     const near = Math.max(this.distance * 0.02, this.size * 1e-3);
     return {
@@ -77,7 +143,7 @@ export class Camera {
     };
   }
 
-  // Moves back or near until the box fills the picture.
+  // Sets target and distance so that the box fills the picture.
   frame({ low, high }, aspect) {
     this.track = null;
     this.target = scale(add(low, high), 0.5);
@@ -95,7 +161,7 @@ export class Camera {
 
   orbit(dx, dy) {
     this.yaw -= dx * 0.008;
-    this.pitch = Math.min(STEEPEST, Math.max(-STEEPEST, this.pitch + dy * 0.008));
+    this.pitch = Math.min(MAX_PITCH, Math.max(-MAX_PITCH, this.pitch + dy * 0.008));
   }
 
   pan(dx, dy) {

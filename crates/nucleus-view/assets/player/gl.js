@@ -1,16 +1,16 @@
-// The few calls of WebGL2 that everything is drawn with.
+// WebGL2: context, programs, vertex arrays, and the depth target of the shadow map.
 
-import { Trouble } from "./trouble.js";
+import { PlayerError } from "./source.js";
 
 export function context(canvas) {
   const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
   if (!gl) {
-    throw new Trouble("This browser offers no WebGL2.", "Try a current browser, or switch on hardware acceleration.");
+    throw new PlayerError("This browser offers no WebGL2.", "Use a current browser, or enable hardware acceleration.");
   }
   return gl;
 }
 
-// A program with its uniforms by name.
+// A program, and its uniforms by name.
 export function program(gl, vertexText, fragmentText) {
   const made = gl.createProgram();
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertexText], [gl.FRAGMENT_SHADER, fragmentText]]) {
@@ -22,7 +22,7 @@ export function program(gl, vertexText, fragmentText) {
   gl.linkProgram(made);
   if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
     const logs = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader));
-    throw new Trouble("The graphics card refuses to draw.", [gl.getProgramInfoLog(made), ...logs].join(" "));
+    throw new PlayerError("The graphics driver rejects a shader.", [gl.getProgramInfoLog(made), ...logs].join(" "));
   }
   const uniforms = {};
   for (let k = 0; k < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); k += 1) {
@@ -32,7 +32,7 @@ export function program(gl, vertexText, fragmentText) {
   return { made, uniforms };
 }
 
-// Vertices with columns of floats: each has a number of components, its place is its attribute.
+// Vertices as columns of floats. `components` has the size of each column; its index is the attribute location.
 export class VertexArray {
   constructor(gl, components) {
     this.gl = gl;
@@ -56,7 +56,7 @@ export class VertexArray {
     gl.bufferData(gl.ARRAY_BUFFER, values, gl.DYNAMIC_DRAW);
   }
 
-  // Draws all lists one after the other from one buffer of indices.
+  // Stores lists of indices one after the other in one buffer.
   setIndices(lists) {
     const { gl } = this;
     this.ranges = [];
@@ -84,7 +84,7 @@ export class VertexArray {
   }
 }
 
-// A square picture of depths as a light sees them.
+// A square depth texture for a shadow map.
 export function depthTarget(gl, side) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);

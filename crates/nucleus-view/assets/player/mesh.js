@@ -1,103 +1,188 @@
-// A mesh at a moment: positions, normals and strain of its vertices, ready for the graphics card.
+// A mesh at one time: topology, positions, normals and scalar values of its vertices, in buffers for the graphics card.
 // The loops are plain, because they run over every vertex in every frame.
 
-import { apart, edgesOf, fans, smoothGroups, soundFaces } from "./topology.js";
+// Cosine of 50 degrees: faces of a collider whose normals differ by more meet in a hard edge.
+const COS_HARD_EDGE = 0.643;
 
-// Numbers beyond this are as lost as those that are not finite.
-const FARTHEST = 1e9;
+// The faces as lists of points, without faces of fewer than three points or with points that do not exist.
+export function validFaces({ starts, corners, points }) {
+  const faces = [];
+  for (let f = 0; f + 1 < starts.length; f += 1) {
+    const face = Array.from(corners.subarray(starts[f], starts[f + 1]));
+    if (face.length >= 3 && face.every((point) => point < points)) {
+      faces.push(face);
+    }
+  }
+  return faces;
+}
+
+// The same faces with a separate vertex for each corner.
+export function separateCorners(faces) {
+  let next = 0;
+  return faces.map((face) => face.map(() => next++));
+}
+
+// Three vertices per triangle: a fan for each face.
+export function triangulate(faces) {
+  const triangles = new Uint32Array(3 * faces.reduce((sum, face) => sum + face.length - 2, 0));
+  let at = 0;
+  for (const face of faces) {
+    for (let k = 2; k < face.length; k += 1) {
+      triangles.set([face[0], face[k - 1], face[k]], at);
+      at += 3;
+    }
+  }
+  return triangles;
+}
+
+// Two vertices per edge, each edge once.
+export function edgesOf(faces) {
+  const known = new Set();
+  const edges = [];
+  for (const face of faces) {
+    for (let k = 0; k < face.length; k += 1) {
+      const [a, b] = [face[k], face[(k + 1) % face.length]];
+      const key = Math.min(a, b) * 2 ** 26 + Math.max(a, b);
+      if (!known.has(key)) {
+        known.add(key);
+        edges.push(a, b);
+      }
+    }
+  }
+  return Uint32Array.from(edges);
+}
+
+// For each corner, the faces of its point that meet its own face smoothly: `starts` into `faces`. They depend on the
+// shape at rest, so that they do not flicker.
+export function smoothGroups(faces, rest) {
+  const normals = faces.map((face) => unit(newell(face, rest)));
+  const around = new Map();
+  faces.forEach((face, f) => face.forEach((point) => {
+    around.has(point) ? around.get(point).push(f) : around.set(point, [f]);
+  }));
+  const groups = [];
+  const starts = [0];
+  faces.forEach((face, f) => face.forEach((point) => {
+    groups.push(...around.get(point).filter((other) => other === f || isSmooth(normals[f], normals[other])));
+    starts.push(groups.length);
+  }));
+  return { starts: Uint32Array.from(starts), faces: Uint32Array.from(groups) };
+}
+
+const isSmooth = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2] >= COS_HARD_EDGE;
+
+function newell(face, points) {
+  const sum = [0, 0, 0];
+  face.forEach((a, k) => {
+    const b = face[(k + 1) % face.length];
+    for (let axis = 0; axis < 3; axis += 1) {
+      const [p, q] = [(axis + 1) % 3, (axis + 2) % 3];
+      sum[axis] += points[3 * a + p] * points[3 * b + q] - points[3 * a + q] * points[3 * b + p];
+    }
+  });
+  return sum;
+}
+
+function unit(vector) {
+  const length = Math.hypot(...vector) || 1;
+  return vector.map((x) => x / length);
+}
+
+// Larger coordinates are treated like those that are not finite.
+const MAX_COORDINATE = 1e9;
 
 export class Mesh {
   constructor(topology) {
     this.kind = topology.kind;
     this.radius = topology.radius ?? null; // of particles, where it is known
-    const faces = soundFaces(topology);
-    // A cloth has a vertex for each point; a collider one for each corner, as sharp edges have two normals.
-    const isSharp = this.kind === "collider";
-    const own = isSharp ? apart(faces) : faces;
-    this.vertexPoint = isSharp
+    const faces = validFaces(topology);
+    // A cloth has a vertex per point; a collider has one per corner, because a hard edge has two normals.
+    const hasHardEdges = this.kind === "collider";
+    const split = hasHardEdges ? separateCorners(faces) : faces;
+    this.vertexPoint = hasHardEdges
       ? Uint32Array.from(faces.flat())
       : Uint32Array.from({ length: topology.points }, (_, point) => point);
-    this.groups = isSharp ? smoothGroups(faces, topology.rest) : null;
-    this.faces = own;
-    this.triangles = fans(own);
-    this.edges = edgesOf(own);
+    this.groups = hasHardEdges ? smoothGroups(faces, topology.rest) : null;
+    this.faces = split;
+    this.triangles = triangulate(split);
+    this.edges = edgesOf(split);
     this.count = this.vertexPoint.length;
     this.positions = new Float32Array(3 * this.count);
     this.normals = new Float32Array(3 * this.count);
-    this.strain = new Float32Array(this.count);
-    this.isLost = new Uint8Array(this.count);
-    this.shift = [0, 0, 0]; // added to all positions: where the twin of another run stands
-    this.take(topology.rest);
+    this.values = new Float32Array(this.count); // strain, distance or contact state
+    this.isInvalid = new Uint8Array(this.count);
+    this.shift = [0, 0, 0]; // added to all positions, to show the other run beside this one
+    this.setPositions(topology.rest);
     this.restLengths = Float32Array.from({ length: this.edges.length / 2 }, (_, e) => this.length(e));
-    this.shown = null; // the positions last taken
+    this.points = null; // the current positions, as recorded
   }
 
-  // Takes the positions of a moment. Says whether they are news.
+  // Sets the positions. Returns whether they have changed.
   update(points) {
-    if (points === this.shown) {
+    if (points === this.points) {
       return false;
     }
-    this.shown = points;
-    this.take(points);
-    this.lost = this.isLost.reduce((sum, lost) => sum + lost, 0);
-    this.drawnTriangles = this.lost ? this.withoutLost(this.triangles, 3) : this.triangles;
-    this.drawnEdges = this.lost ? this.withoutLost(this.edges, 2) : this.edges;
+    this.points = points;
+    this.setPositions(points);
+    this.invalid = this.isInvalid.reduce((sum, invalid) => sum + invalid, 0);
+    this.drawnTriangles = this.invalid ? this.withoutInvalid(this.triangles, 3) : this.triangles;
+    this.drawnEdges = this.invalid ? this.withoutInvalid(this.edges, 2) : this.edges;
     this.updateNormals();
     this.coloured = null;
     return true;
   }
 
-  // Copies positions to vertices, and the box round them. A lost point becomes the origin: it is not drawn.
-  take(points) {
-    const { positions, vertexPoint, isLost, shift } = this;
+  // Copies positions to vertices and computes their bounding box. An invalid point becomes the origin and is not drawn.
+  setPositions(points) {
+    const { positions, vertexPoint, isInvalid, shift } = this;
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (let v = 0; v < this.count; v += 1) {
       const at = 3 * vertexPoint[v];
-      let isFound = true;
+      let isValid = true;
       for (let axis = 0; axis < 3; axis += 1) {
-        isFound = isFound && Math.abs(points[at + axis]) <= FARTHEST; // false for NaN
+        isValid = isValid && Math.abs(points[at + axis]) <= MAX_COORDINATE; // false for NaN
       }
-      isLost[v] = isFound ? 0 : 1;
+      isInvalid[v] = isValid ? 0 : 1;
       for (let axis = 0; axis < 3; axis += 1) {
-        const x = isFound ? points[at + axis] + shift[axis] : 0;
+        const x = isValid ? points[at + axis] + shift[axis] : 0;
         positions[3 * v + axis] = x;
-        low[axis] = isFound && x < low[axis] ? x : low[axis];
-        high[axis] = isFound && x > high[axis] ? x : high[axis];
+        low[axis] = isValid && x < low[axis] ? x : low[axis];
+        high[axis] = isValid && x > high[axis] ? x : high[axis];
       }
     }
     this.bounds = { low, high };
   }
 
-  // Of each vertex, the strain of largest size among its edges.
+  // Per vertex, the strain of largest magnitude among its edges.
   updateStrain() {
-    const { strain, edges, restLengths, isLost } = this;
-    strain.fill(0);
+    const { values, edges, restLengths, isInvalid } = this;
+    values.fill(0);
     for (let e = 0; e < restLengths.length; e += 1) {
       const a = edges[2 * e];
       const b = edges[2 * e + 1];
-      if (restLengths[e] > 0 && !isLost[a] && !isLost[b]) {
+      if (restLengths[e] > 0 && !isInvalid[a] && !isInvalid[b]) {
         const x = this.length(e) / restLengths[e] - 1;
-        strain[a] = Math.abs(x) > Math.abs(strain[a]) ? x : strain[a];
-        strain[b] = Math.abs(x) > Math.abs(strain[b]) ? x : strain[b];
+        values[a] = Math.abs(x) > Math.abs(values[a]) ? x : values[a];
+        values[b] = Math.abs(x) > Math.abs(values[b]) ? x : values[b];
       }
     }
   }
 
-  // Of each vertex, how far its point is from where it is in `others`, times a factor; 0 without others.
+  // Per vertex, the distance of its point from the same point in `others`, times a factor; 0 without others.
   updateDistance(others, factor) {
-    const { strain, vertexPoint, isLost, shown } = this;
-    strain.fill(0);
+    const { values, vertexPoint, isInvalid, points } = this;
+    values.fill(0);
     for (let v = 0; others && v < this.count; v += 1) {
       const at = 3 * vertexPoint[v];
-      const [x, y, z] = [shown[at] - others[at], shown[at + 1] - others[at + 1], shown[at + 2] - others[at + 2]];
-      strain[v] = isLost[v] ? 0 : Math.sqrt(x * x + y * y + z * z) * factor || 0;
+      const [x, y, z] = [points[at] - others[at], points[at + 1] - others[at + 1], points[at + 2] - others[at + 2]];
+      values[v] = isInvalid[v] ? 0 : Math.sqrt(x * x + y * y + z * z) * factor || 0;
     }
   }
 
-  // Of each vertex, the rung of its point.
-  updateRungs(contacts) {
+  // Per vertex, the contact state of its point.
+  updateContactStates(contacts) {
     for (let v = 0; v < this.count; v += 1) {
-      this.strain[v] = contacts?.[this.vertexPoint[v]] ?? 0;
+      this.values[v] = contacts?.[this.vertexPoint[v]] ?? 0;
     }
   }
 
@@ -111,14 +196,14 @@ export class Mesh {
   updateNormals() {
     this.normals.fill(0);
     if (this.groups) {
-      this.addSharpNormals();
+      this.addHardEdgeNormals();
     } else {
       this.addTriangleNormals(this.drawnTriangles, (k) => this.drawnTriangles[k], this.normals);
     }
     normaliseAll(this.normals);
   }
 
-  // Adds the area vector of each triangle to three places of `sums`: those of its corners by default.
+  // Adds the area vector of each triangle to three entries of `sums`; `place` gives the entry of a corner.
   addTriangleNormals(triangles, place, sums) {
     const p = this.positions;
     for (let k = 0; k < triangles.length; k += 3) {
@@ -137,8 +222,8 @@ export class Mesh {
     }
   }
 
-  // A corner takes the normals of the faces that are smooth with its own.
-  addSharpNormals() {
+  // The normal of a corner is the sum over the faces that meet its own face smoothly.
+  addHardEdgeNormals() {
     const { starts, faces } = this.groups;
     const areas = new Float32Array(3 * this.faces.length);
     this.faceOfTriangle ??= Uint32Array.from(this.faces.flatMap((face, f) => Array(face.length - 2).fill(f)));
@@ -152,12 +237,12 @@ export class Mesh {
     }
   }
 
-  withoutLost(list, size) {
+  withoutInvalid(list, size) {
     const kept = [];
     for (let k = 0; k < list.length; k += size) {
       let isWhole = true;
       for (let j = k; j < k + size; j += 1) {
-        isWhole = isWhole && !this.isLost[list[j]];
+        isWhole = isWhole && !this.isInvalid[list[j]];
       }
       for (let j = k; isWhole && j < k + size; j += 1) {
         kept.push(list[j]);

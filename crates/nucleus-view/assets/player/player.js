@@ -1,40 +1,39 @@
-// One open cache at a time: what is shown of it, and how.
+// The player: one open cache, the scene, the camera and the timeline.
 
 import { Cache } from "./cache.js";
 import { Camera } from "./camera.js";
-import { Curve } from "./curve.js";
-import { byId, countPoints, showFigures, showLegend, showRungs, showMoment, showNotice, showObjects, showState } from "./panel.js";
-import { Scene, boxOf } from "./scene.js";
-import { Timeline } from "./timeline.js";
+import { byId, countPoints, showFigures, showLegend, showContactStates, showTime, showNotice, showObjects, showState } from "./panel.js";
+import { Scene, unionOf } from "./scene.js";
+import { Curve, Timeline } from "./timeline.js";
 
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
-const NOWHERE = { low: [-1, -1, -1], high: [1, 1, 1] };
+const DEFAULT_STAGE = { low: [-1, -1, -1], high: [1, 1, 1] };
 
 export class Player {
   constructor(canvas) {
     this.redraw = () => (this.isStale = true);
-    this.isStale = true; // whether the picture has to be drawn anew
+    this.isStale = true; // whether the picture must be drawn again
     this.scene = new Scene(canvas);
     this.camera = new Camera(canvas, this.redraw);
     this.timeline = null; // of the open cache
     this.everyRefresh();
   }
 
-  // Opens a source; resolves when its first picture is there. False if it is no cache.
+  // Opens a source; resolves when its first frame is shown, to false if it is not a cache.
   async open(source, other = null) {
     this.timeline?.pause();
     this.timeline = null;
     showNotice("");
     showState("loading", `Opening ${source.name}`);
-    const tell = (share) => showState("loading", `Searching ${source.name}`, `${Math.round(share * 100)} %`);
+    const onProgress = (share) => showState("loading", `Scanning ${source.name}`, `${Math.round(share * 100)} %`);
     try {
-      const cache = await Cache.open(source, tell);
-      this.other = other && (await Cache.open(other, tell));
+      const cache = await Cache.open(source, onProgress);
+      this.other = other && (await Cache.open(other, onProgress));
       await this.present(cache, source.name);
       showState("ready");
       return true;
     } catch (error) {
-      complain(error);
+      showError(error);
       return false;
     }
   }
@@ -45,59 +44,59 @@ export class Player {
     scene.setObjects(cache.objects, this.other?.objects);
     ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
     byId("contacts").hidden = !cache.objects.some((object) => object.contacts !== undefined);
-    await this.survey(cache, [...new Set([last, last >> 1, 0])]);
+    await this.findStage(cache, [...new Set([last, last >> 1, 0])]);
     document.title = `${name} – Nucleus`;
     byId("name").textContent = cache.run.scene || name;
     byId("name").title = `${name}, written by Nucleus ${cache.run.version}`;
     byId("frames").max = last;
     showObjects(scene, this.redraw);
-    showLoss(cache);
+    showIncomplete(cache);
     byId("camera").hidden = cache.run.cameras.length === 0;
     camera.track = cache.run.cameras[0] ?? null;
-    this.timeline = new Timeline(cache, (index, moment) => this.show(cache, index, moment));
+    this.timeline = new Timeline(cache, (index, timeIndex) => this.show(cache, index, timeIndex));
     await this.timeline.go(0);
     this.curve = new Curve(byId("curve"), cache);
     this.curve.fill();
   }
 
-  // Looks at a few frames to find the room that the run takes up.
-  async survey(cache, frames) {
+  // Finds the bounding box of the run from a few frames, and frames it.
+  async findStage(cache, frames) {
     const { scene, camera } = this;
-    const [moving, all] = [[], []];
+    const [simulated, all] = [[], []];
     for (const frame of frames) {
       const state = await cache.state(frame).catch(() => null);
       if (state) {
         scene.update(state);
-        moving.push(scene.bounds());
-        all.push(...scene.things.map(({ mesh }) => mesh.bounds));
+        simulated.push(scene.bounds());
+        all.push(...scene.objects.map(({ mesh }) => mesh.bounds));
       }
     }
-    const stage = boxOf(moving.filter(Boolean)) ?? NOWHERE;
-    // A collider may be a landscape, which reaches far below what one looks at.
+    const stage = unionOf(simulated.filter(Boolean)) ?? DEFAULT_STAGE;
+    // A collider may be a landscape that reaches far below the cloth.
     const extent = Math.max(...stage.high.map((x, axis) => x - stage.low[axis]));
-    const floor = cache.run.floor ?? Math.max(boxOf(all)?.low[1] ?? 0, stage.low[1] - extent * 1.5);
+    const floor = cache.run.floor ?? Math.max(unionOf(all)?.low[1] ?? 0, stage.low[1] - extent * 1.5);
     scene.setStage({ low: [stage.low[0], Math.min(stage.low[1], floor), stage.low[2]], high: stage.high }, floor);
     camera.frame(stage, scene.aspect);
   }
 
-  async show(cache, index, moment) {
+  async show(cache, index, timeIndex) {
     const { scene } = this;
     try {
-      const state = await cache.state(index, moment);
+      const state = await cache.state(index, timeIndex);
       const twin = await this.twinOf(cache, state);
       await this.findSpeed(cache, state);
-      scene.things.forEach((thing, k) => (thing.contacts = state.contacts[k]));
+      scene.objects.forEach((object, k) => (object.contacts = state.contacts[k]));
       if (cache !== this.timeline?.cache) {
-        return; // another file was opened meanwhile
+        return; // another file has been opened in the meantime
       }
-      this.timeline.moments = state.moments;
+      this.timeline.times = state.times;
       this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
       scene.update(state, twin);
       this.curve?.mark(index);
-      showMoment(cache, state);
+      showTime(cache, state);
       countPoints(scene);
-      showFigures(state.report, scene.lostPoints);
-      showRungs(scene, state.contacts);
+      showFigures(state.report, scene.invalidPoints);
+      showContactStates(scene, state.contacts);
       this.redraw();
       cache.prefetch(index);
     } catch (error) {
@@ -111,20 +110,20 @@ export class Player {
       return undefined;
     }
     const index = this.other.indexOf(frame);
-    const { moments } = await this.other.state(index);
-    // The same share of the frame, however finely each was recorded.
-    const moment = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * moments) - 1);
-    return this.other.state(index, moment);
+    const { times } = await this.other.state(index);
+    // The same fraction of the frame, because the runs may have recorded different numbers of substeps.
+    const timeIndex = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * times) - 1);
+    return this.other.state(index, timeIndex);
   }
 
-  // Where everything was a frame ago, for its speed.
+  // The positions of the frame before, for the speed.
   async findSpeed(cache, state) {
     const before = this.scene.look.colour === "speed" && state.index > 0 ? await cache.state(state.index - 1) : null;
-    this.scene.things.forEach((thing, k) => {
+    this.scene.objects.forEach((object, k) => {
       const isSame = before?.meshes[k].number === state.meshes[k].number;
       const seconds = isSame && state.time - before.time;
-      thing.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
-      thing.mesh.coloured = null;
+      object.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
+      object.mesh.coloured = null;
     });
   }
 
@@ -135,23 +134,23 @@ export class Player {
     this.redraw();
   }
 
-  // Lets colours tell something; asked a second time, they tell objects apart again.
-  colourBy(what) {
+  // Colours the objects by a quantity; a second call returns to a colour per object.
+  colourBy(quantity) {
     const { look } = this.scene;
-    if (byId(what).hidden) {
-      return; // nothing is known of it
+    if (byId(quantity).hidden) {
+      return; // the cache does not hold it
     }
-    look.colour = look.colour === what ? "object" : what;
+    look.colour = look.colour === quantity ? "object" : quantity;
     COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));
     showLegend(look);
-    this.timeline.go(this.timeline.index, this.timeline.moment); // speeds are found when they are wanted
+    this.timeline.go(this.timeline.index, this.timeline.timeIndex); // speeds are computed only when shown
     this.redraw();
   }
 
-  // The value that has the full colour.
-  setFullScale(what, value) {
-    if (value > 0 && what in this.scene.look.scales) {
-      this.scene.look.scales[what] = Math.min(1e6, Math.max(1e-7, value));
+  // Sets the value of full saturation.
+  setFullScale(quantity, value) {
+    if (value > 0 && quantity in this.scene.look.scales) {
+      this.scene.look.scales[quantity] = Math.min(1e6, Math.max(1e-7, value));
     }
     showLegend(this.scene.look);
     this.redraw();
@@ -168,7 +167,7 @@ export class Player {
     this.scene.placeTwins(where);
     byId("twin").textContent = where;
     if (where === "beside") {
-      this.frameAll(); // else the other run stands outside the picture
+      this.frameAll(); // else the other run lies outside the picture
     }
     this.redraw();
   }
@@ -180,7 +179,7 @@ export class Player {
     }
   }
 
-  // The cameras of the scene one after the other, then one's own.
+  // Cycles through the cameras of the scene and the free camera.
   nextCamera() {
     const cameras = this.timeline.cache.run.cameras;
     this.camera.track = cameras[cameras.indexOf(this.camera.track) + 1] ?? null;
@@ -205,7 +204,7 @@ export class Player {
   }
 
   everyRefresh() {
-    // Asked for first, so that a picture that cannot be drawn is not the last.
+    // Requested first, so that an error while drawing does not end the loop.
     requestAnimationFrame(() => this.everyRefresh());
     this.timeline?.tick();
     byId("play").setAttribute("aria-pressed", this.timeline?.isPlaying ?? false);
@@ -217,20 +216,20 @@ export class Player {
   }
 }
 
-function showLoss(cache) {
+function showIncomplete(cache) {
   const [first, last] = [0, cache.frames.length - 1].map((index) => cache.frameNumber(index));
   if (cache.complete) {
     return;
   }
   showNotice(last === cache.run.end
-    ? "The file was never closed, or its index is damaged; its frames are shown all the same."
-    : `The run was cut short: frames ${first} to ${last} are shown.`);
+    ? "The file was never closed, or its index is damaged; its frames can be shown."
+    : `The run is incomplete: frames ${first} to ${last} are shown.`);
 }
 
-export function complain(error) {
+export function showError(error) {
   console.error(error);
   const { message, hint } = error.hint === undefined
-    ? { message: "The file could not be shown.", hint: `It seems to be damaged (${error.message}).` }
+    ? { message: "The file cannot be shown.", hint: `It may be damaged (${error.message}).` }
     : error;
   showState("error", message, hint);
 }

@@ -1,15 +1,16 @@
-// Draws the objects of a run in the state they were last given.
+// The scene: the objects of a run in their current state, drawn with WebGL2.
 
-import { RUNG_COLOURS, STRAIN, objectColours } from "./colours.js";
+import { cross, multiply, normalise, orthographic, scale, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
 import { Mesh } from "./mesh.js";
-import { cross, multiply, normalise, orthographic, scale, view } from "./matrix.js";
-import { DEPTH, FLOOR, LINES, PARTICLES, SURFACE } from "./shaders.js";
+import {
+  CONTACT_STATE_COLOURS, DEPTH, FLOOR, LINES, PARTICLES, STRAIN, SURFACE, objectColours,
+} from "./shading.js";
 
 const BACKGROUND = [0.0075, 0.0085, 0.0105];
 const TWIN = [0.09, 0.27, 0.42];
 const [TRIANGLES, EDGES] = [0, 1];
-const [POSITION, NORMAL, STRAINED] = [0, 1, 2];
+const [POSITION, NORMAL, VALUE] = [0, 1, 2];
 
 export class Scene {
   constructor(canvas) {
@@ -21,66 +22,66 @@ export class Scene {
     };
     this.shadow = depthTarget(this.gl, 2048);
     this.empty = this.gl.createVertexArray();
-    this.things = [];
+    this.objects = [];
     this.twins = [];
-    // What colours tell: "object", "strain", "speed", "difference" or "contacts"; all that is measured has a full scale.
+    // Colour by "object", "strain", "speed", "difference" or "contacts"; a scalar has a value of full saturation.
     this.look = { wireframe: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
 
-  // Replaces the objects; `twins` are those of a run that is compared with, or none.
+  // Replaces the objects. `twins` are the objects of the other run, if one is compared.
   setObjects(objects, twins = []) {
-    this.things.concat(this.twins).forEach(({ vertices }) => vertices.delete());
+    this.objects.concat(this.twins).forEach(({ vertices }) => vertices.delete());
     const colours = objectColours(objects);
-    const thing = ({ name, topology }, colour) => ({
+    const drawable = ({ name, topology }, colour) => ({
       name, topology, mesh: new Mesh(topology), colour, isShown: true,
       vertices: new VertexArray(this.gl, [3, 3, 1]),
     });
-    this.things = objects.map((object, k) => thing(object, colours[k]));
-    this.twins = twins.map((object) => thing(object, TWIN));
-    for (const one of this.things) {
+    this.objects = objects.map((object, k) => drawable(object, colours[k]));
+    this.twins = twins.map((object) => drawable(object, TWIN));
+    for (const one of this.objects) {
       one.twin = this.twins.find(({ name }) => name === one.name);
     }
   }
 
-  // Puts the twins over the objects, beside them or out of sight.
+  // Shows the twins over the objects or beside them, or hides them.
   placeTwins(where) {
     this.look.twin = where;
     const width = this.stage.high[0] - this.stage.low[0];
     for (const twin of this.twins) {
-      const points = twin.mesh.shown;
+      const { points } = twin.mesh;
       twin.mesh.shift = [where === "beside" ? width * 1.15 : 0, 0, 0];
-      twin.mesh.shown = null; // so that the same points are news
-      this.takePoints([twin], [points]);
+      twin.mesh.points = null; // so that the same points count as changed
+      this.setPoints([twin], [points]);
     }
-    this.hasOldShadow = true;
+    this.isShadowStale = true;
   }
 
-  // Those of the other run that are to be seen, once it is known where they are; an object that is hidden hides its twin.
+  // The visible twins. A twin is hidden with its object, and until its positions are known.
   get drawnTwins() {
-    const isShown = ({ name }) => this.things.find((thing) => thing.name === name)?.isShown ?? true;
-    const isKnown = ({ mesh }) => Boolean(mesh.shown);
+    const isShown = ({ name }) => this.objects.find((object) => object.name === name)?.isShown ?? true;
+    const isKnown = ({ mesh }) => Boolean(mesh.points);
     return this.look.twin === "off" ? [] : this.twins.filter((twin) => isKnown(twin) && isShown(twin));
   }
 
-  // `stage` is the box of all that moves, over the run; the floor lies under it.
+  // `stage` is the bounding box of the simulated objects over the run; `floor` is the height of the floor.
   setStage(stage, floor) {
     this.stage = stage;
     this.floor = floor;
-    this.hasOldShadow = true;
+    this.isShadowStale = true;
   }
 
-  // Takes a moment: of each object the positions, and the mesh that they are of.
+  // Sets the state: the positions of each object, and their mesh.
   update({ positions, meshes }, twins = null) {
-    this.things.forEach((thing, k) => takeMesh(thing, meshes[k]));
-    this.takePoints(this.things, positions);
+    this.objects.forEach((object, k) => setMesh(object, meshes[k]));
+    this.setPoints(this.objects, positions);
     if (twins) {
-      this.twins.forEach((twin, k) => takeMesh(twin, twins.meshes[k]));
-      this.takePoints(this.twins, twins.positions);
+      this.twins.forEach((twin, k) => setMesh(twin, twins.meshes[k]));
+      this.setPoints(this.twins, twins.positions);
     }
   }
 
-  takePoints(things, positions) {
-    things.forEach(({ mesh, vertices }, k) => {
+  setPoints(objects, positions) {
+    objects.forEach(({ mesh, vertices }, k) => {
       if (!positions[k]) {
         return;
       }
@@ -91,26 +92,26 @@ export class Scene {
         if (mesh.drawnTriangles !== before) {
           vertices.setIndices([mesh.drawnTriangles, mesh.drawnEdges]);
         }
-        this.hasOldShadow = true;
+        this.isShadowStale = true;
       }
     });
   }
 
   // Shows or hides an object.
-  setShown(thing, isShown) {
-    thing.isShown = isShown;
-    this.hasOldShadow = true;
+  setShown(object, isShown) {
+    object.isShown = isShown;
+    this.isShadowStale = true;
   }
 
-  // The box round all shown objects that move, or round all shown ones; null if nothing is shown.
+  // The box around all visible simulated objects, or around all visible objects; null if none is visible.
   bounds() {
-    const shown = this.things.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.twins : []);
-    const moving = shown.filter(({ mesh }) => mesh.kind !== "collider");
-    return boxOf((moving.length > 0 ? moving : shown).map(({ mesh }) => mesh.bounds));
+    const shown = this.objects.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.twins : []);
+    const simulated = shown.filter(({ mesh }) => mesh.kind !== "collider");
+    return unionOf((simulated.length > 0 ? simulated : shown).map(({ mesh }) => mesh.bounds));
   }
 
-  get lostPoints() {
-    return this.things.reduce((sum, { mesh }) => sum + (mesh.lost ?? 0), 0);
+  get invalidPoints() {
+    return this.objects.reduce((sum, { mesh }) => sum + (mesh.invalid ?? 0), 0);
   }
 
   get aspect() {
@@ -120,9 +121,9 @@ export class Scene {
   draw(camera) {
     const { gl } = this;
     const light = this.light();
-    if (this.hasOldShadow) {
+    if (this.isShadowStale) {
       this.drawShadow(light);
-      this.hasOldShadow = false;
+      this.isShadowStale = false;
     }
     this.fit();
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -131,10 +132,10 @@ export class Scene {
     const eye = { ...camera.matrices(this.aspect), eye: camera.eye, ...light };
     this.drawFloor(eye);
     gl.enable(gl.DEPTH_TEST);
-    this.things.filter(({ isShown }) => isShown).forEach((thing) => this.drawThing(thing, eye));
-    this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawThing(twin, eye));
+    this.objects.filter(({ isShown }) => isShown).forEach((object) => this.drawObject(object, eye));
+    this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawObject(twin, eye));
     gl.bindVertexArray(null);
-    gl.finish(); // so that pictures never queue up behind the page, however slow the graphics are
+    gl.finish(); // so that frames do not queue up on slow graphics
   }
 
   fit() {
@@ -145,7 +146,7 @@ export class Scene {
     }
   }
 
-  // The key light stands still over the stage, so that shadows do not swim.
+  // The key light is fixed relative to the stage, so that shadows do not flicker.
   light() {
     const { low, high } = this.stage;
     const centre = low.map((x, axis) => (x + high[axis]) / 2);
@@ -162,11 +163,11 @@ export class Scene {
     gl.viewport(0, 0, shadow.side, shadow.side);
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    // Surfaces are pushed away from the light, or their own cells would stripe them.
+    // The offset prevents surfaces from shading themselves.
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(2.5, 8);
     this.use(programs.depth, light);
-    for (const { mesh, vertices, isShown } of this.things.concat(this.look.twin === "beside" ? this.drawnTwins : [])) {
+    for (const { mesh, vertices, isShown } of this.objects.concat(this.look.twin === "beside" ? this.drawnTwins : [])) {
       if (isShown && mesh.kind !== "particles") {
         vertices.draw(gl.TRIANGLES, TRIANGLES);
       }
@@ -189,7 +190,7 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  // Finds what the colours of a mesh tell, if that is not known yet.
+  // Computes the scalar that colours a mesh, if it is not current.
   colourMesh({ mesh, vertices, topology, before, twin, contacts }, isColoured) {
     const { colour } = this.look;
     if (isColoured && mesh.coloured !== colour) {
@@ -199,19 +200,19 @@ export class Scene {
       } else if (colour === "speed") {
         mesh.updateDistance(before?.positions, before ? 1 / before.seconds : 0);
       } else if (colour === "contacts") {
-        mesh.updateRungs(contacts);
+        mesh.updateContactStates(contacts);
       } else {
-        // Points can be told apart only where both runs have as many.
-        mesh.updateDistance(twin?.topology.points === topology.points ? twin.mesh.shown : null, 1);
+        // Points correspond only if both runs have the same number.
+        mesh.updateDistance(twin?.topology.points === topology.points ? twin.mesh.points : null, 1);
       }
-      vertices.set(STRAINED, mesh.strain);
-    } else if (!mesh.hasStrain) {
-      vertices.set(STRAINED, mesh.strain); // zeros: an attribute without data cannot be drawn
+      vertices.set(VALUE, mesh.values);
+    } else if (!mesh.hasValues) {
+      vertices.set(VALUE, mesh.values); // zeros, because an attribute needs data
     }
-    mesh.hasStrain = true;
+    mesh.hasValues = true;
   }
 
-  // The other run as a net over this one.
+  // Draws the edges of the other run over this one.
   drawEdges({ mesh, vertices }, eye) {
     if (mesh.kind === "particles") {
       return;
@@ -223,8 +224,8 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  drawThing(thing, eye) {
-    const { mesh, vertices, colour } = thing;
+  drawObject(object, eye) {
+    const { mesh, vertices, colour } = object;
     const { gl, programs, look } = this;
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
@@ -236,11 +237,11 @@ export class Scene {
     }
     const isOfCloth = ["strain", "contacts"].includes(look.colour);
     const isColoured = look.colour !== "object" && (!isOfCloth || mesh.kind === "cloth");
-    this.colourMesh(thing, isColoured);
-    const tellsKinds = isColoured && look.colour === "contacts";
-    const ramp = (tellsKinds ? RUNG_COLOURS : STRAIN).flat();
+    this.colourMesh(object, isColoured);
+    const isCategorical = isColoured && look.colour === "contacts";
+    const ramp = (isCategorical ? CONTACT_STATE_COLOURS : STRAIN).flat();
     const fullScale = (isColoured && look.scales[look.colour]) || 0;
-    this.use(programs.surface, { ...eye, colour, "ramp[0]": ramp, fullScale, kinds: tellsKinds ? 1 : 0 });
+    this.use(programs.surface, { ...eye, colour, "ramp[0]": ramp, fullScale, isCategorical: isCategorical ? 1 : 0 });
     vertices.draw(gl.TRIANGLES, TRIANGLES);
     if (look.wireframe) {
       gl.enable(gl.BLEND);
@@ -250,7 +251,7 @@ export class Scene {
     }
   }
 
-  // Makes a program current and gives it those of the values that it asks for.
+  // Makes a program current and sets its uniforms from the values of the same names.
   use({ made, uniforms }, values) {
     const { gl } = this;
     gl.useProgram(made);
@@ -269,22 +270,22 @@ export class Scene {
   }
 }
 
-// Gives an object another mesh, if it has one now.
-function takeMesh(thing, topology) {
-  if (thing.topology !== topology) {
-    const { shift } = thing.mesh;
-    Object.assign(thing, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
+// Replaces the mesh of an object if its topology has changed.
+function setMesh(object, topology) {
+  if (object.topology !== topology) {
+    const { shift } = object.mesh;
+    Object.assign(object, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
   }
 }
 
-// The box round boxes; null round none. Empty boxes are infinite the wrong way round and add nothing.
-export function boxOf(boxes) {
+// The union of boxes; null if all are empty. The bounds of an empty box are infinite and do not extend the union.
+export function unionOf(boxes) {
   const low = [0, 1, 2].map((axis) => Math.min(...boxes.map((box) => box.low[axis])));
   const high = [0, 1, 2].map((axis) => Math.max(...boxes.map((box) => box.high[axis])));
   return low.every((x, axis) => x <= high[axis]) ? { low, high } : null;
 }
 
-// The nearest of 1, 2, 5, 10 ... that is not below a length.
+// The smallest of 1, 2, 5, 10 ... that is not below a length.
 function roundLength(length) {
   const power = 10 ** Math.floor(Math.log10(length));
   return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= length * 0.999) ?? length;

@@ -1,10 +1,22 @@
-// Where the bytes of a cache come from: the server that served this page, or a file on this machine.
-// A source has a name, a size and `read(offset, length)`.
+// Sources of a cache: the server of this page, or a file on this machine. A source has a name, a size in bytes and
+// `read(offset, length)`. Also the errors that the page shows.
 
-import { Trouble } from "./trouble.js";
+// An error for the user, with a hint at the remedy.
+export class PlayerError extends Error {
+  constructor(message, hint = "") {
+    super(message);
+    this.hint = hint;
+  }
+}
+
+export class DamagedFrame extends PlayerError {
+  constructor() {
+    super("A frame of the file is damaged.", "The other frames can still be shown.");
+  }
+}
 
 export class UrlSource {
-  // The cache that the server has, or null if there is no server or no cache.
+  // The cache of the server, or null if there is no server or no cache.
   static async find(url) {
     try {
       const head = await fetch(url, { method: "HEAD" });
@@ -25,11 +37,11 @@ export class UrlSource {
     const Range = `bytes=${offset}-${offset + length - 1}`;
     const answer = await fetch(this.url, { headers: { Range } }).catch(() => null);
     if (!answer) {
-      throw new Trouble("The server does not answer any more.", "Was the player stopped?");
+      throw new PlayerError("The server no longer responds.", "Start `nucleus play` again.");
     }
     const bytes = new Uint8Array(await answer.arrayBuffer());
     if (answer.status !== 206 || bytes.length !== length) {
-      throw new Trouble("The server did not send what was asked for.", "Did the file change? Load the page again.");
+      throw new PlayerError("The server sent other bytes than requested.", "The file may have changed. Load the page again.");
     }
     return bytes;
   }
@@ -46,7 +58,7 @@ export class FileSource {
     try {
       return new Uint8Array(await this.file.slice(offset, offset + length).arrayBuffer());
     } catch {
-      throw new Trouble("The file cannot be read any more.", "Was it moved or written anew? Open it again.");
+      throw new PlayerError("The file can no longer be read.", "It was moved or replaced. Open it again.");
     }
   }
 }

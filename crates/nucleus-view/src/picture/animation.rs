@@ -1,60 +1,72 @@
-//! Frames as one animated PNG, written as they come.
+//! Animations, written frame by frame: animated PNG and GIF.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use nucleus_cache::atomic_file::AtomicFile;
 
 use super::image::Image;
-use crate::ViewError;
+use crate::error::ViewError;
 
-/// Writes an animated PNG that plays for ever, one frame at a time.
+/// Writes an animated PNG that loops. The file gets its name at [`finish`](Self::finish).
 ///
-/// Only the part of a frame that differs from the one before is stored.
+/// Of each frame only the rectangle that differs from the frame before is stored.
 pub struct AnimationWriter {
-    path: PathBuf,
+    file: AtomicFile,
     size: [u32; 2],
     encoder: png::Writer<BufWriter<File>>,
     last: Option<Image>,
     frames: u32,
 }
 
-/// Stands in the header until the number of frames is known.
-const NOT_YET_KNOWN: u32 = i32::MAX as u32;
+/// Frame count in the header until the number of frames is known.
+const UNKNOWN_COUNT: u32 = i32::MAX as u32;
 
 impl AnimationWriter {
-    /// Starts a file for frames of `size` pixels, shown `fps` times a second.
+    /// Starts a file for frames of `size` pixels, `fps` per second.
+    ///
+    /// # Errors
+    /// If the file cannot be created.
     pub fn create(path: impl AsRef<Path>, size: [u32; 2], fps: f64) -> Result<Self, ViewError> {
-        let path = path.as_ref().to_path_buf();
-        let file = File::create(&path).map_err(|source| ViewError::Create { path: path.clone(), source })?;
-        let encoder = start(BufWriter::new(file), size, fps)
-            .map_err(|source| ViewError::Encode { path: path.clone(), source })?;
-        Ok(Self { path, size, encoder, last: None, frames: 0 })
+        let path = path.as_ref();
+        let (file, handle) = open(path)?;
+        let encoder = start(BufWriter::new(handle), size, fps)
+            .map_err(|source| ViewError::Encode { path: path.into(), source })?;
+        Ok(Self { file, size, encoder, last: None, frames: 0 })
     }
 
-    /// Adds a frame of the size the file was created with.
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// If it has another size than the file, or cannot be written.
     pub fn push(&mut self, image: &Image) -> Result<(), ViewError> {
         if image.size() != self.size {
             let (expected, found) = (self.size, image.size());
-            return Err(ViewError::FrameSize { path: self.path.clone(), expected, found });
+            return Err(ViewError::FrameSize { path: self.file.destination().into(), expected, found });
         }
         let changed =
             self.last.as_ref().map_or([0, 0, self.size[0], self.size[1]], |last| changed(last, image));
         self.write_part(image, changed)
-            .map_err(|source| ViewError::Encode { path: self.path.clone(), source })?;
+            .map_err(|source| ViewError::Encode { path: self.file.destination().into(), source })?;
         self.last = Some(image.clone());
         self.frames += 1;
         Ok(())
     }
 
-    /// Ends the file. Without this it is not a valid picture.
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// If it has no frame, or its end cannot be written.
     pub fn finish(self) -> Result<(), ViewError> {
-        let Self { path, encoder, frames, .. } = self;
+        let Self { file, encoder, frames, .. } = self;
+        let path = file.destination().to_owned();
         if frames == 0 {
             return Err(ViewError::NoFrame { path });
         }
         encoder.finish().map_err(|source| ViewError::Encode { path: path.clone(), source })?;
-        set_frame_count(&path, frames)
-            .map_err(|source| ViewError::Encode { path, source: png::EncodingError::IoError(source) })
+        let counted = file.handle().and_then(|handle| set_frame_count(handle, frames));
+        counted.and_then(|()| file.commit()).map_err(|source| ViewError::Create { path, source })
     }
 
     fn write_part(&mut self, image: &Image, part: [u32; 4]) -> Result<(), png::EncodingError> {
@@ -72,6 +84,16 @@ impl AnimationWriter {
     }
 }
 
+/// Creates a file, with a handle for its encoder.
+fn open(path: &Path) -> Result<(AtomicFile, File), ViewError> {
+    let create = || {
+        let file = AtomicFile::create(path)?;
+        let handle = file.handle()?;
+        Ok((file, handle))
+    };
+    create().map_err(|source| ViewError::Create { path: path.into(), source })
+}
+
 fn start(
     file: BufWriter<File>,
     [width, height]: [u32; 2],
@@ -80,14 +102,14 @@ fn start(
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
-    encoder.set_animated(NOT_YET_KNOWN, 0)?;
-    // The delay is a fraction of two 16-bit numbers: whole frames a second, as near as they go.
+    encoder.set_animated(UNKNOWN_COUNT, 0)?;
+    // The delay is a fraction of two 16-bit numbers, 60 / (frames per minute).
     let per_minute = (fps * 60.0).clamp(60.0, 60_000.0).round() as u16;
     encoder.set_frame_delay(60, per_minute)?;
     encoder.write_header()
 }
 
-/// Left, top, width and height of what differs between two pictures of one size; a single pixel if nothing does.
+/// Left, top, width and height of the rectangle that differs between two pictures of one size; one pixel if none does.
 fn changed(before: &Image, after: &Image) -> [u32; 4] {
     let [width, height] = after.size();
     let differs = |row: u32, column: u32| before.pixel(column, row) != after.pixel(column, row);
@@ -105,10 +127,10 @@ fn changed(before: &Image, after: &Image) -> [u32; 4] {
     [left, top, right.max(left) - left + 1, bottom - top + 1]
 }
 
-/// Puts the true number of frames, and the sum that guards it, into the header's animation chunk.
-fn set_frame_count(path: &Path, frames: u32) -> io::Result<()> {
-    let mut file = File::options().read(true).write(true).open(path)?;
+/// Writes the number of frames and its checksum into the animation chunk of the header.
+fn set_frame_count(mut file: File, frames: u32) -> io::Result<()> {
     let mut head = Vec::new();
+    file.seek(SeekFrom::Start(0))?;
     (&file).take(4096).read_to_end(&mut head)?;
     let missing = || io::Error::other("the animation chunk is missing");
     let name = head.windows(4).position(|name| name == b"acTL").ok_or_else(missing)?;
@@ -120,9 +142,81 @@ fn set_frame_count(path: &Path, frames: u32) -> io::Result<()> {
     file.write_all(&sum.to_be_bytes())
 }
 
-/// The check sum of a PNG chunk (ISO 3309), bit by bit: it runs over twelve bytes.
+/// The checksum of a PNG chunk (ISO 3309), computed bit by bit because it covers twelve bytes only.
 fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |sum, byte| {
         (0..8).fold(sum ^ u32::from(*byte), |sum, _| sum >> 1 ^ if sum & 1 == 1 { 0xEDB8_8320 } else { 0 })
     })
+}
+
+/// Writes a GIF that loops. Each frame has its own 256 colours. The file gets its name at [`finish`](Self::finish).
+pub struct GifWriter {
+    file: AtomicFile,
+    size: [u32; 2],
+    encoder: gif::Encoder<BufWriter<File>>,
+    /// Duration of a frame, in hundredths of a second.
+    delay: f64,
+    /// Rounding error of the durations so far, in hundredths of a second.
+    rounding: f64,
+    frames: u32,
+}
+
+/// Speed of the colour quantisation, 1 to 30; lower is slower and better. At 10 matt surfaces show no bands.
+const QUANTISER_SPEED: i32 = 10;
+
+impl GifWriter {
+    /// Starts a file for frames of `size` pixels, `fps` per second.
+    ///
+    /// # Errors
+    /// If the file cannot be created, or a side exceeds 65,535 pixels.
+    pub fn create(path: impl AsRef<Path>, size: [u32; 2], fps: f64) -> Result<Self, ViewError> {
+        let path = path.as_ref();
+        let failed = |source| ViewError::Gif { path: path.into(), source };
+        let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
+            return Err(failed(io::Error::other("a side exceeds 65,535 pixels").into()));
+        };
+        let (file, handle) = open(path)?;
+        let encoder =
+            gif::Encoder::new(BufWriter::new(handle), width, height, &[]).and_then(|mut encoder| {
+                encoder.set_repeat(gif::Repeat::Infinite)?;
+                Ok(encoder)
+            });
+        let encoder = encoder.map_err(failed)?;
+        Ok(Self { file, size, encoder, delay: 100.0 / fps.max(1e-3), rounding: 0.0, frames: 0 })
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// If it has another size than the file, or cannot be written.
+    pub fn push(&mut self, image: &Image) -> Result<(), ViewError> {
+        if image.size() != self.size {
+            let (expected, found) = (self.size, image.size());
+            return Err(ViewError::FrameSize { path: self.file.destination().into(), expected, found });
+        }
+        let [width, height] = self.size.map(|side| side as u16);
+        let mut frame = gif::Frame::from_rgb_speed(width, height, image.bytes(), QUANTISER_SPEED);
+        // The rounding error is carried to the next frame, so that errors do not add up.
+        let delay = (self.delay + self.rounding).round().clamp(2.0, 65_535.0);
+        self.rounding += self.delay - delay;
+        frame.delay = delay as u16;
+        self.frames += 1;
+        let written = self.encoder.write_frame(&frame);
+        written.map_err(|source| ViewError::Gif { path: self.file.destination().into(), source })
+    }
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// If it has no frame, or its end cannot be written.
+    pub fn finish(self) -> Result<(), ViewError> {
+        let Self { file, encoder, frames, .. } = self;
+        let path = file.destination().to_owned();
+        if frames == 0 {
+            return Err(ViewError::NoFrame { path });
+        }
+        let buffer = encoder.into_inner().map_err(|source| ViewError::Gif { path: path.clone(), source })?;
+        let flushed = buffer.into_inner().map_err(io::IntoInnerError::into_error);
+        flushed.and_then(|_| file.commit()).map_err(|source| ViewError::Create { path, source })
+    }
 }

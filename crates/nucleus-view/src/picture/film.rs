@@ -1,14 +1,21 @@
-//! The pictures of a recorded run.
+//! The pictures of a cache: one camera, one floor, and a picture per recorded frame.
 
 use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::{CameraView, ObjectKind, Playback};
 
-use super::{AnimationWriter, Bounds, Camera, Ground, Image, Kind, Object, Style, draw};
-use crate::ViewError;
+use super::animation::AnimationWriter;
+use super::camera::Camera;
+use super::draw::draw;
+use super::image::Image;
+use super::scene::{Bounds, Ground, Kind, Object, Style};
+use crate::error::ViewError;
 
-/// A run as pictures that all have one camera and one floor, so that nothing but the scene moves.
+/// A run as pictures with one camera and one floor, so that nothing moves but the objects.
+///
+/// The floor is the ground plane of the scene where the cache has a level one. The cache records the plane at the start
+/// frame only, so a plane that moves is drawn where it starts.
 ///
 /// ```no_run
 /// use nucleus_view::{Film, Style};
@@ -21,48 +28,48 @@ use crate::ViewError;
 /// ```
 pub struct Film<'a, R> {
     cache: &'a mut Playback<R>,
-    /// The moments that are shown, by their place in the cache.
+    /// The recorded times that are shown, as indices into the cache.
     moments: Vec<usize>,
     fps: f64,
     camera: Camera,
-    /// A camera of the scene that it is seen through instead.
-    through: Option<nucleus_cache::Camera>,
-    /// The box of what moves over the run.
+    /// A camera of the scene that replaces `camera`.
+    scene_camera: Option<nucleus_cache::Camera>,
+    /// The box around the simulated objects over the run.
     stage: Bounds,
     style: Style,
 }
 
 impl<'a, R: Read + Seek> Film<'a, R> {
-    /// The ends of every `every`th frame of a run, framed so that the cloth is always in the picture.
+    /// The ends of every `every`th frame of a run. The camera frames the cloth, with the colliders near it, over all of them.
     ///
     /// # Errors
-    /// If a frame that is needed to find the camera is damaged, or if there is none.
+    /// If one of these frames is damaged, or the cache has none.
     pub fn of(cache: &'a mut Playback<R>, every: usize, style: Style) -> Result<Self, ViewError> {
         let every = every.max(1);
         let ends =
             (0..cache.time_samples().len()).filter(|moment| cache.time_samples()[*moment].ends_frame());
         let moments: Vec<usize> = ends.step_by(every).collect();
         if moments.is_empty() {
-            return Err(ViewError::NoMoment);
+            return Err(ViewError::NoRecordedFrame);
         }
-        let (stage, floor) = survey(cache, &moments)?;
-        let camera = Camera::framing(&stage, style.size);
-        // A level plane that the scene rests on is the floor; a slanted one cannot be drawn.
+        let Survey { framed, stage, floor } = survey(cache, &moments)?;
+        let camera = Camera::framing(&framed, style.size);
+        // The floor is horizontal, so an inclined plane cannot be drawn.
         let plane = cache.run().ground.filter(|plane| plane.normal[1] > 0.999 * norm(plane.normal));
         let floor = plane.map_or(floor, |plane| Ground::At(plane.origin[1] as f32));
         let ground = if style.ground == Ground::Below { floor } else { style.ground };
         let fps = cache.run().frames_per_second / every as f64;
-        Ok(Self { cache, moments, fps, camera, through: None, stage, style: Style { ground, ..style } })
+        Ok(Self { cache, moments, fps, camera, scene_camera: None, stage, style: Style { ground, ..style } })
     }
 
-    /// The same, of the frames from `first` to `last` only; the framing stays that of the whole run.
+    /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
     ///
     /// # Errors
     /// If none of them was recorded.
     pub fn between(mut self, first: i32, last: i32) -> Result<Self, ViewError> {
         let moments = self.cache.time_samples();
         self.moments.retain(|&moment| (first..=last).contains(&moments[moment].frame));
-        if self.moments.is_empty() { Err(ViewError::NoMoment) } else { Ok(self) }
+        if self.moments.is_empty() { Err(ViewError::NoRecordedFrame) } else { Ok(self) }
     }
 
     /// Pictures per second.
@@ -70,96 +77,117 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         self.fps
     }
 
-    /// The camera that everything is seen by.
+    /// The camera of all pictures, unless a camera of the scene replaces it.
     pub fn camera(&self) -> Camera {
         self.camera
     }
 
-    /// The frame that a picture shows.
-    pub fn frame(&self, place: usize) -> i32 {
-        self.cache.time_samples()[self.moments[place.min(self.moments.len() - 1)]].frame
+    /// A camera that frames the cloth and the colliders near it at one recorded time, by its index in the cache.
+    ///
+    /// # Errors
+    /// If the index is out of range, or the frame is damaged.
+    pub fn framing(&mut self, moment: usize) -> Result<Camera, ViewError> {
+        let positions = positions(self.cache, moment)?;
+        let framed = Bounds::to_frame(&objects(self.cache, moment, &positions)?);
+        Ok(Camera::framing(&framed, self.style.size))
     }
 
-    /// The same, seen by another camera.
+    /// The frame of a picture.
+    pub fn frame(&self, index: usize) -> i32 {
+        self.cache.moments()[self.moments[index.min(self.moments.len() - 1)]].frame
+    }
+
+    /// Replaces the camera.
     pub fn seen_by(self, camera: Camera) -> Self {
         Self { camera, ..self }
     }
 
-    /// The same, seen through a camera of the scene, wherever that is in each frame.
+    /// Replaces the camera by a camera of the scene, which may be animated.
     pub fn seen_through(self, camera: nucleus_cache::Camera) -> Self {
-        Self { through: Some(camera), ..self }
+        Self { scene_camera: Some(camera), ..self }
     }
 
-    /// The camera at a recorded moment. Within a frame, cameras go straight.
+    /// The camera at a recorded time. Within a frame, the pose of a camera of the scene is interpolated linearly.
     fn camera_at(&self, moment: usize) -> Camera {
         let (run, moments) = (self.cache.run(), self.cache.time_samples());
-        let Some((track, moment)) = self.through.as_ref().zip(moments.get(moment)) else {
+        let Some((track, moment)) = self.scene_camera.as_ref().zip(moments.get(moment)) else {
             return self.camera;
         };
-        let share = moment.time * run.frames_per_second - f64::from(moment.frame - run.start);
+        let after_frame = moment.time * run.frames_per_second - f64::from(moment.frame - run.start);
         let at = |frame| track.at(frame, run.start);
         let Some((before, now)) = at(moment.frame - 1).zip(at(moment.frame)) else { return self.camera };
-        let view = match share < -1e-6 {
-            true => CameraView::between(before, now, (1.0 + share) as f32),
+        let view = match after_frame < -1e-6 {
+            true => CameraView::between(before, now, (1.0 + after_frame) as f32),
             false => *now,
         };
         Camera::of_scene(&view, track.fit, self.style.size, &self.stage)
     }
 
     /// The number of pictures, at least one.
-    #[expect(clippy::len_without_is_empty, reason = "it never is")]
+    #[expect(clippy::len_without_is_empty, reason = "a film is never empty")]
     pub fn len(&self) -> usize {
         self.moments.len()
     }
 
-    /// The picture at a place in the film; the last one past its end.
+    /// The picture at an index of the film; the last one beyond its end.
     ///
     /// # Errors
     /// If its frame is damaged.
-    pub fn picture(&mut self, place: usize) -> Result<Image, ViewError> {
-        let moment = self.moments[place.min(self.moments.len() - 1)];
+    pub fn picture(&mut self, index: usize) -> Result<Image, ViewError> {
+        let moment = self.moments[index.min(self.moments.len() - 1)];
         self.moment(moment)
     }
 
-    /// The picture of any recorded moment, by its place in the cache.
+    /// The picture at any recorded time, by its index in the cache.
     ///
     /// # Errors
-    /// If there is no such moment, or its frame is damaged.
+    /// If the index is out of range, or the frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (positions, camera) = (positions(self.cache, moment)?, self.camera_at(moment));
         Ok(draw(&objects(self.cache, moment, &positions)?, &camera, &self.style))
     }
 
-    /// Writes all pictures as one animated PNG that plays as fast as the run was.
+    /// Writes all pictures as one animated PNG that plays in real time.
     ///
     /// # Errors
     /// If a frame is damaged or the file cannot be written.
     pub fn write(&mut self, path: impl AsRef<Path>) -> Result<(), ViewError> {
         let mut file = AnimationWriter::create(path, self.style.size, self.fps)?;
-        for place in 0..self.len() {
-            file.push(&self.picture(place)?)?;
+        for index in 0..self.len() {
+            file.push(&self.picture(index)?)?;
         }
         file.finish()
     }
 }
 
-/// The box of what moves over all these moments, and a floor below everything.
-fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<(Bounds, Ground), ViewError> {
-    let (mut stage, mut all) = (Bounds::default(), Bounds::default());
+/// The space that a run takes up.
+struct Survey {
+    /// The box that a camera frames.
+    framed: Bounds,
+    /// The box around the simulated objects.
+    stage: Bounds,
+    /// A floor below all objects.
+    floor: Ground,
+}
+
+/// Surveys a run at these recorded times.
+fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<Survey, ViewError> {
+    let [mut framed, mut stage, mut all] = [Bounds::default(); 3];
     for moment in moments {
         let positions = positions(cache, *moment)?;
         let objects = objects(cache, *moment, &positions)?;
+        framed.merge(&Bounds::to_frame(&objects));
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include(object.positions));
     }
-    Ok((stage, Ground::At(super::floor_below(&all, &stage))))
+    Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&stage)) })
 }
 
 fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Positions of every object at a moment.
+/// Positions of every object at a recorded time.
 fn positions<R: Read + Seek>(
     cache: &mut Playback<R>,
     moment: usize,
@@ -169,7 +197,7 @@ fn positions<R: Read + Seek>(
     objects.map(read).collect()
 }
 
-/// Every object as it is at a moment.
+/// Every object at a recorded time.
 fn objects<'a, R: Read + Seek>(
     cache: &'a mut Playback<R>,
     moment: usize,

@@ -1,15 +1,16 @@
-//! A picture in memory, and as a PNG file.
+//! A picture in memory, and its encoding as PNG.
 
-use std::fs::File;
 use std::io::BufWriter;
 use std::num::NonZero;
 use std::path::Path;
 use std::thread;
 
-use super::Vec3;
-use crate::ViewError;
+use nucleus_cache::atomic_file::AtomicFile;
 
-/// A picture of 8 bits per colour, row by row from the top left.
+use super::scene::Vec3;
+use crate::error::ViewError;
+
+/// A picture of 8 bits per channel, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     width: u32,
@@ -19,7 +20,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Width and height are never more than this, in pixels.
+    /// Largest width and height, in pixels.
     pub const LARGEST_SIDE: u32 = 8192;
 
     pub(super) fn new(width: u32, height: u32) -> Self {
@@ -45,15 +46,23 @@ impl Image {
         [self.bytes[first], self.bytes[first + 1], self.bytes[first + 2]]
     }
 
-    /// Writes the picture as a PNG file.
+    /// Writes the picture as a PNG file, which gets its name when it is complete.
+    ///
+    /// # Errors
+    /// If the file cannot be created or written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
         let path = path.as_ref();
-        let file = File::create(path).map_err(|source| ViewError::Create { path: path.into(), source })?;
-        let encoded = self.encode(BufWriter::new(file));
-        encoded.map_err(|source| ViewError::Encode { path: path.into(), source })
+        let create = |source| ViewError::Create { path: path.into(), source };
+        let mut file = AtomicFile::create(path).map_err(create)?;
+        let encoded = self.encode(BufWriter::new(&mut file));
+        encoded.map_err(|source| ViewError::Encode { path: path.into(), source })?;
+        file.commit().map_err(create)
     }
 
     /// The picture as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// If the encoder fails.
     pub fn to_png(&self) -> Result<Vec<u8>, ViewError> {
         let mut bytes = Vec::new();
         let encoded = self.encode(&mut bytes);
@@ -76,12 +85,12 @@ impl Image {
         self.bytes[first..first + 3].copy_from_slice(&encoded(linear));
     }
 
-    /// Sets every pixel to what `colour` says of its column and row. Rows are shared among all
-    /// cores; as no pixel knows of another, their number changes nothing.
+    /// Sets every pixel to `colour(column, row)`. Rows are divided among all cores; the result does not depend on their
+    /// number, because pixels are independent.
     pub(super) fn fill_rows(&mut self, colour: impl Fn(u32, u32) -> Vec3 + Sync) {
         let cores = thread::available_parallelism().map_or(1, NonZero::get);
         let row_bytes = 3 * self.width as usize;
-        // More bands than cores: some bands show only the sky and are done at once.
+        // More bands than cores, because bands of background take less time.
         let band_rows = (self.height as usize).div_ceil(4 * cores);
         let colour = &colour;
         thread::scope(|scope| {
@@ -104,8 +113,8 @@ impl Image {
 
 /// A linear colour as bytes.
 ///
-/// A square root stands for the sRGB curve: it is within a few levels of it and, unlike a power,
-/// the same to the last bit on every machine.
+/// A square root replaces the sRGB curve: it differs by a few levels, and unlike a power it has the same bits on every
+/// machine.
 fn encoded(linear: &Vec3) -> [u8; 3] {
     [0, 1, 2].map(|channel| (linear[channel].clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8)
 }

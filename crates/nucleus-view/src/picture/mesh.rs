@@ -1,22 +1,21 @@
-//! All objects as one list of triangles that can be drawn without asking any more questions.
+//! All objects as one mesh of triangles and spheres, with normals and colours.
 
-use super::camera::Lens;
-use super::light::Light;
-use super::object::{Colouring, Kind, Object, Style};
-use super::{Vec3, is_drawable, normals, strain};
+use super::camera::View;
+use super::scene::{Colouring, Kind, Object, Style, Vec3, is_drawable, unit};
+use super::strain;
 
-/// A corner of triangles: where it is and how it looks.
+/// A vertex of triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub position: Vec3,
     pub normal: Vec3,
     /// Linear colour.
     pub colour: Vec3,
-    /// How much of the sky is seen from the front and from the back, 0 to 1.
-    pub open: [f32; 2],
+    /// Visible fraction of the sky from the front and from the back, 0 to 1.
+    pub sky: [f32; 2],
 }
 
-/// Three vertices, and which of the sides (a-b, b-c, c-a) are edges of a face.
+/// A triangle: its vertices, and which of its sides (a-b, b-c, c-a) are edges of a face.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Triangle {
     pub corners: [u32; 3],
@@ -25,29 +24,29 @@ pub(super) struct Triangle {
 
 /// A particle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ball {
+pub(super) struct Sphere {
     pub centre: Vec3,
     /// In scene units.
     pub radius: f32,
     pub colour: Vec3,
 }
 
-/// Radius of particles that have none, as a share of the reach of the picture.
-const SMALLEST: f32 = 0.008;
+/// Radius of particles that have none, relative to the half extent of the view.
+const DEFAULT_RADIUS: f32 = 0.008;
 
-/// Everything that can be drawn.
+/// The drawable parts of all objects.
 #[derive(Debug, Default)]
 pub(super) struct Mesh {
     pub vertices: Vec<Vertex>,
     pub triangles: Vec<Triangle>,
-    pub balls: Vec<Ball>,
+    pub spheres: Vec<Sphere>,
 }
 
 impl Mesh {
-    /// Collects what can be drawn of the objects, in their order.
-    pub fn gather(objects: &[Object], style: &Style, lens: &Lens) -> Self {
+    /// Collects the drawable faces and particles of the objects, in their order.
+    pub fn gather(objects: &[Object], style: &Style, view: &View) -> Self {
         let mut mesh = Self::default();
-        let smallest = lens.reach() * SMALLEST;
+        let default_radius = view.half_extent() * DEFAULT_RADIUS;
         let (mut cloths, mut colliders) = (0, 0);
         for object in objects {
             match object.kind {
@@ -60,7 +59,7 @@ impl Mesh {
                     colliders += 1;
                 }
                 Kind::Particles => {
-                    mesh.add_particles(object, cloth_colour(cloths), smallest);
+                    mesh.add_particles(object, cloth_colour(cloths), default_radius);
                     cloths += 1;
                 }
             }
@@ -68,18 +67,10 @@ impl Mesh {
         mesh
     }
 
-    /// Finds how much of the sky each vertex sees, on both sides.
-    pub fn open_to(&mut self, light: &Light) {
-        for vertex in &mut self.vertices {
-            let (position, normal) = (vertex.position, vertex.normal);
-            vertex.open = [normal, -normal].map(|side| light.openness(&position, &side));
-        }
-    }
-
-    /// A cloth: one vertex per point, smooth everywhere.
+    /// Adds a cloth: one vertex per point, smooth everywhere.
     fn add_cloth(&mut self, object: &Object, colour: Vec3, colouring: Colouring) {
         let first = self.vertices.len() as u32;
-        let normals = normals::of_points(object);
+        let normals = point_normals(object);
         let strain = match colouring {
             Colouring::Objects => None,
             Colouring::Strain { full_scale } => strain::of_points(object).map(|strain| (strain, full_scale)),
@@ -93,7 +84,7 @@ impl Mesh {
                 position: Vec3::from(*position),
                 normal: normals[point],
                 colour,
-                open: [1.0; 2],
+                sky: [1.0; 2],
             });
         }
         for face in drawable_faces(object) {
@@ -101,9 +92,9 @@ impl Mesh {
         }
     }
 
-    /// A collider: one vertex per corner of a face, so that a sharp edge can have two normals.
+    /// Adds a collider: one vertex per corner of a face, because a hard edge has two normals.
     fn add_collider(&mut self, object: &Object, colour: Vec3) {
-        let normals = normals::of_corners(object);
+        let normals = corner_normals(object);
         let mut corner_of_object = 0;
         for face in object.faces.iter() {
             let first = self.vertices.len() as u32;
@@ -113,7 +104,7 @@ impl Mesh {
                         position: Vec3::from(object.positions[*point as usize]),
                         normal: normals[corner_of_object + corner],
                         colour,
-                        open: [1.0; 2],
+                        sky: [1.0; 2],
                     });
                 }
                 self.add_fan(face.len(), |corner| first + corner as u32);
@@ -122,10 +113,10 @@ impl Mesh {
         }
     }
 
-    fn add_particles(&mut self, object: &Object, colour: Vec3, smallest: f32) {
-        let radius = object.radius.filter(|radius| *radius > 0.0).unwrap_or(smallest);
+    fn add_particles(&mut self, object: &Object, colour: Vec3, default_radius: f32) {
+        let radius = object.radius.filter(|radius| *radius > 0.0).unwrap_or(default_radius);
         let drawable = object.positions.iter().filter(|point| is_drawable(point));
-        self.balls.extend(drawable.map(|point| Ball { centre: Vec3::from(*point), radius, colour }));
+        self.spheres.extend(drawable.map(|point| Sphere { centre: Vec3::from(*point), radius, colour }));
     }
 
     fn add_fan(&mut self, corners: usize, vertex: impl Fn(usize) -> u32) {
@@ -136,17 +127,17 @@ impl Mesh {
     }
 }
 
-/// The faces whose points all exist and can be drawn.
-pub(super) fn drawable_faces<'a>(object: &Object<'a>) -> impl Iterator<Item = &'a [u32]> {
+/// The faces of which all points exist and can be drawn.
+fn drawable_faces<'a>(object: &Object<'a>) -> impl Iterator<Item = &'a [u32]> {
     let object = *object;
     object.faces.iter().filter(move |face| is_drawable_face(&object, face))
 }
 
-pub(super) fn is_drawable_face(object: &Object, face: &[u32]) -> bool {
+fn is_drawable_face(object: &Object, face: &[u32]) -> bool {
     face.iter().all(|point| object.positions.get(*point as usize).is_some_and(is_drawable))
 }
 
-/// Matt colours that are told apart at a glance, also by most of the colour-blind.
+/// Colours of cloths and particles, distinguishable with most forms of colour blindness.
 fn cloth_colour(index: usize) -> Vec3 {
     const COLOURS: [[f32; 3]; 6] = [
         [0.50, 0.085, 0.07], // madder
@@ -162,4 +153,58 @@ fn cloth_colour(index: usize) -> Vec3 {
 fn collider_colour(index: usize) -> Vec3 {
     const COLOURS: [[f32; 3]; 3] = [[0.46, 0.46, 0.45], [0.38, 0.41, 0.44], [0.50, 0.46, 0.40]];
     Vec3::from(COLOURS[index % COLOURS.len()])
+}
+
+/// Cosine of 50 degrees: faces whose normals differ by more meet in a hard edge.
+const COS_HARD_EDGE: f32 = 0.643;
+
+/// A unit normal per point, weighted by the areas of its faces; +Y for a point without faces.
+fn point_normals(object: &Object) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::zeros(); object.positions.len()];
+    for face in drawable_faces(object) {
+        let normal = area_vector(object, face);
+        for point in face {
+            sums[*point as usize] += normal;
+        }
+    }
+    sums.iter().map(unit).collect()
+}
+
+/// A unit normal per corner of a face, in order; the faces of a point share one unless they meet in a hard edge.
+fn corner_normals(object: &Object) -> Vec<Vec3> {
+    let areas: Vec<Vec3> = object
+        .faces
+        .iter()
+        .map(|face| if is_drawable_face(object, face) { area_vector(object, face) } else { Vec3::zeros() })
+        .collect();
+    let around = faces_of_points(object);
+    let mut normals = Vec::with_capacity(object.faces.corners().len());
+    for (face, points) in object.faces.iter().enumerate() {
+        let own = unit(&areas[face]);
+        for point in points {
+            let neighbours = around.get(*point as usize).map_or(&[][..], Vec::as_slice);
+            let smooth = neighbours.iter().map(|other| areas[*other as usize]);
+            let smooth = smooth.filter(|area| area.dot(&own) >= COS_HARD_EDGE * area.norm());
+            normals.push(unit(&smooth.fold(Vec3::zeros(), |sum, area| sum + area)));
+        }
+    }
+    normals
+}
+
+fn faces_of_points(object: &Object) -> Vec<Vec<u32>> {
+    let mut around = vec![Vec::new(); object.positions.len()];
+    for (face, points) in object.faces.iter().enumerate() {
+        for point in points {
+            if let Some(faces) = around.get_mut(*point as usize) {
+                faces.push(face as u32);
+            }
+        }
+    }
+    around
+}
+
+/// The normal of a polygon with twice its area as length: Newell's sum, relative to the first point.
+fn area_vector(object: &Object, face: &[u32]) -> Vec3 {
+    let at = |corner: usize| Vec3::from(object.positions[face[corner] as usize]);
+    (2..face.len()).fold(Vec3::zeros(), |sum, k| sum + (at(k - 1) - at(0)).cross(&(at(k) - at(0))))
 }

@@ -1,28 +1,28 @@
-//! Which cells of a grid a triangle covers: the one inner loop of the camera and of all lights.
+//! Triangle rasterisation: the inner loop of the camera and of all shadow maps.
 
-/// How much may be filled, so that a mesh that has blown up cannot take for ever.
+/// A limit on the cells that are filled, which bounds the time for a mesh that has exploded.
 pub(super) struct Budget {
     cells_left: usize,
     small: usize,
 }
 
 impl Budget {
-    /// Enough for any sane picture of this size: every cell covered some hundred times.
+    /// A budget for a grid of this size: each cell may be covered 200 times.
     pub fn of(size: [u32; 2]) -> Self {
         let cells = size[0] as usize * size[1] as usize;
         Self { cells_left: cells.saturating_mul(200), small: cells / 256 }
     }
 
-    /// Takes the cost of a triangle; once all is spent only small triangles may still be drawn.
+    /// Subtracts the cost of a triangle. Once the budget is spent, only small triangles are drawn.
     fn allows(&mut self, cells: usize) -> bool {
         self.cells_left = self.cells_left.saturating_sub(cells);
         self.cells_left > 0 || cells <= self.small
     }
 }
 
-/// Calls `visit` with the index of every cell whose centre is inside the triangle, and the weights
-/// of its three corners there. Triangles without area or with corners that are not finite cover nothing.
-pub(super) fn cover(
+/// Calls `visit` for each cell whose centre is inside the triangle, with its index and the barycentric weights of the
+/// centre. A triangle without area, or with a corner that is not finite, covers no cell.
+pub(super) fn rasterise(
     corners: [[f32; 2]; 3],
     size: [u32; 2],
     budget: &mut Budget,
@@ -34,7 +34,7 @@ pub(super) fn cover(
     if !area.is_finite() || area == 0.0 || !budget.allows(columns.len() * rows.len()) {
         return;
     }
-    // Neighbours share an edge but not its rounding: a hair of overlap closes the gap between them.
+    // Two triangles round a shared edge differently; a small overlap closes the gap.
     const OVERLAP: f32 = -1e-5;
     let (step_b, step_c) = ((c[1] - a[1]) / area, (a[1] - b[1]) / area);
     let first_column = columns.start as f32 + 0.5;
@@ -57,7 +57,7 @@ fn cross(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> f32 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The cells of one axis that the numbers span. Casts saturate, so wild numbers give a valid range.
+/// The range of cells of one axis that the coordinates span. Casts saturate, so any number gives a valid range.
 fn span(at: [f32; 3], size: u32) -> std::ops::Range<u32> {
     let low = at[0].min(at[1]).min(at[2]).floor() as u32;
     let high = at[0].max(at[1]).max(at[2]).ceil() as u32;
@@ -74,13 +74,13 @@ mod tests {
 
     fn covered(corners: [[f32; 2]; 3]) -> Vec<(usize, [f32; 3])> {
         let mut cells = Vec::new();
-        cover(corners, SIZE, &mut Budget::of(SIZE), |cell, weights| cells.push((cell, weights)));
+        rasterise(corners, SIZE, &mut Budget::of(SIZE), |cell, weights| cells.push((cell, weights)));
         cells
     }
 
     proptest! {
         #[test]
-        fn the_weights_give_back_the_centre_of_the_cell(
+        fn the_weights_interpolate_the_centre_of_the_cell(
             corners in prop::array::uniform3(prop::array::uniform2(-10.0f32..40.0)),
         ) {
             prop_assume!(cross(corners[0], corners[1], corners[2]).abs() > 1.0);
@@ -94,7 +94,7 @@ mod tests {
         }
 
         #[test]
-        fn two_triangles_of_a_square_leave_no_cell_between_them(
+        fn the_two_triangles_of_a_square_leave_no_gap(
             x in 0.0f32..8.0, y in 0.0f32..8.0, side in 2.0f32..14.0,
         ) {
             let [a, b, c, d] = [[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
@@ -113,9 +113,9 @@ mod tests {
     }
 
     #[test]
-    fn wild_corners_cover_nothing_outside_the_grid() {
-        for wild in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30] {
-            let cells = covered([[wild, 3.0], [5.0, wild], [20.0, 20.0]]);
+    fn extreme_corners_cover_no_cell_outside_the_grid() {
+        for extreme in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30] {
+            let cells = covered([[extreme, 3.0], [5.0, extreme], [20.0, 20.0]]);
             assert!(cells.iter().all(|(cell, _)| *cell < 32 * 24));
         }
     }

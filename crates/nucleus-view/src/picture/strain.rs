@@ -1,8 +1,9 @@
-//! How far the edges at a point are from their rest length, and the colour of it.
+//! Strain in pictures: its value at each point, its colour, and the legend with its few glyphs.
 
-use super::{Object, Vec3, is_drawable};
+use super::image::Image;
+use super::scene::{Object, Vec3, is_drawable};
 
-/// The strain of largest size among the edges that meet in each point, with its sign; 0 where there is none.
+/// Per point, the strain of largest magnitude among its edges, with its sign; 0 for a point without edges.
 /// `None` if the object has no rest shape of as many points.
 pub(super) fn of_points(object: &Object) -> Option<Vec<f32>> {
     let rest = object.rest.filter(|rest| rest.len() == object.positions.len())?;
@@ -10,11 +11,11 @@ pub(super) fn of_points(object: &Object) -> Option<Vec<f32>> {
     for face in object.faces.iter() {
         for (corner, &a) in face.iter().enumerate() {
             let b = face[(corner + 1) % face.len()];
-            let Some(of_edge) = edge_strain(object.positions, rest, a as usize, b as usize) else { continue };
+            let Some(edge) = edge_strain(object.positions, rest, a as usize, b as usize) else { continue };
             for point in [a, b] {
                 let largest = &mut strain[point as usize];
-                if of_edge.abs() > largest.abs() {
-                    *largest = of_edge;
+                if edge.abs() > largest.abs() {
+                    *largest = edge;
                 }
             }
         }
@@ -22,7 +23,7 @@ pub(super) fn of_points(object: &Object) -> Option<Vec<f32>> {
     Some(strain)
 }
 
-/// (length - rest length) / rest length.
+/// (length - rest length) / rest length; `None` if a point is missing or cannot be drawn.
 fn edge_strain(positions: &[[f32; 3]], rest: &[[f32; 3]], a: usize, b: usize) -> Option<f32> {
     let length = distance(positions.get(a)?, positions.get(b)?)?;
     let rest_length = distance(rest.get(a)?, rest.get(b)?)?;
@@ -34,24 +35,122 @@ fn distance(a: &[f32; 3], b: &[f32; 3]) -> Option<f32> {
 }
 
 /// Linear colour of a strain in units of the full scale: blue at -1, pale at 0, red at +1.
-pub(super) fn colour(share: f32) -> Vec3 {
+pub(super) fn colour(strain: f32) -> Vec3 {
     const SHORTER: [[f32; 3]; 2] = [[0.18, 0.46, 0.66], [0.02, 0.12, 0.42]];
     const LONGER: [[f32; 3]; 2] = [[0.86, 0.42, 0.13], [0.52, 0.02, 0.05]];
     const NONE: [f32; 3] = [0.72, 0.71, 0.67];
-    let [near, far] = if share < 0.0 { SHORTER } else { LONGER }.map(Vec3::from);
-    let size = if share.is_finite() { share.abs().min(1.0) } else { 1.0 };
-    if size < 0.5 { Vec3::from(NONE).lerp(&near, size * 2.0) } else { near.lerp(&far, size * 2.0 - 1.0) }
+    let [near, far] = if strain < 0.0 { SHORTER } else { LONGER }.map(Vec3::from);
+    let magnitude = if strain.is_finite() { strain.abs().min(1.0) } else { 1.0 };
+    match magnitude < 0.5 {
+        true => Vec3::from(NONE).lerp(&near, magnitude * 2.0),
+        false => near.lerp(&far, magnitude * 2.0 - 1.0),
+    }
+}
+
+/// Linear colour of the text.
+const INK: [f32; 3] = [0.05, 0.05, 0.055];
+
+/// Draws the legend, a bar with its figures in the lower left corner, for strains from `-full_scale` to `full_scale`.
+pub(super) fn draw_legend(image: &mut Image, full_scale: f32) {
+    let [width, height] = image.size();
+    let dot = (height / 360).max(1);
+    let bar = [width / 4, 6 * dot];
+    let [left, top] = [14 * dot, height.saturating_sub((14 + 6 + 3 + GLYPH_HEIGHT) * dot)];
+    let ink = Vec3::from(INK);
+    for column in 0..bar[0] {
+        let share = column as f32 / (bar[0] - 1).max(1) as f32 * 2.0 - 1.0;
+        // As bright as a surface that faces the sky, so that the bar matches the cloth.
+        fill(image, [left + column, top], [1, bar[1]], &(colour(share) * 0.9));
+    }
+    let below = top + bar[1] + 3 * dot;
+    let percent = percent(full_scale);
+    let texts = [(format!("-{percent}%"), 0.0), ("0".into(), 0.5), (format!("+{percent}%"), 1.0)];
+    for (text, place) in texts {
+        let room = bar[0].saturating_sub(text_width(&text) * dot);
+        write_text(image, &text, [left + (room as f32 * place) as u32, below], dot, &ink);
+    }
+    let above = top.saturating_sub((3 + GLYPH_HEIGHT) * dot);
+    write_text(image, "strain", [left, above], dot, &ink);
+}
+
+/// A strain in percent, with a decimal only where it is needed.
+fn percent(strain: f32) -> String {
+    let percent = strain * 100.0;
+    if percent < 1.0 || (percent < 10.0 && (percent - percent.round()).abs() > 0.05) {
+        format!("{percent:.1}")
+    } else {
+        format!("{percent:.0}")
+    }
+}
+
+/// Distance from one glyph to the next, in dots.
+const ADVANCE: u32 = 6;
+/// Height of a glyph, in dots.
+const GLYPH_HEIGHT: u32 = 7;
+
+/// Width of a text, in dots.
+fn text_width(text: &str) -> u32 {
+    (text.chars().count() as u32 * ADVANCE).saturating_sub(1)
+}
+
+/// Draws a text with its upper left corner at a pixel; a dot is `dot` pixels wide.
+fn write_text(image: &mut Image, text: &str, [left, top]: [u32; 2], dot: u32, colour: &Vec3) {
+    for (place, letter) in text.chars().enumerate() {
+        for (row, bits) in glyph(letter).into_iter().enumerate() {
+            for column in (0..5).filter(|column| bits >> (4 - column) & 1 == 1) {
+                let x = left + (place as u32 * ADVANCE + column) * dot;
+                fill(image, [x, top + row as u32 * dot], [dot, dot], colour);
+            }
+        }
+    }
+}
+
+/// Fills the part of a rectangle that lies inside the picture.
+fn fill(image: &mut Image, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: &Vec3) {
+    let [right, bottom] = image.size();
+    for row in top..(top + height).min(bottom) {
+        for column in left..(left + width).min(right) {
+            image.set(column, row, colour);
+        }
+    }
+}
+
+/// The five by seven dots of a character, row by row, leftmost in bit 4; empty for characters that the legend lacks.
+fn glyph(letter: char) -> [u8; 7] {
+    match letter {
+        '0' => [0b01110, 0b10001, 0b10011, 0b10101, 0b11001, 0b10001, 0b01110],
+        '1' => [0b00100, 0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110],
+        '2' => [0b01110, 0b10001, 0b00001, 0b00110, 0b01000, 0b10000, 0b11111],
+        '3' => [0b01110, 0b10001, 0b00001, 0b00110, 0b00001, 0b10001, 0b01110],
+        '4' => [0b00010, 0b00110, 0b01010, 0b10010, 0b11111, 0b00010, 0b00010],
+        '5' => [0b11111, 0b10000, 0b11110, 0b00001, 0b00001, 0b10001, 0b01110],
+        '6' => [0b00110, 0b01000, 0b10000, 0b11110, 0b10001, 0b10001, 0b01110],
+        '7' => [0b11111, 0b00001, 0b00010, 0b00100, 0b01000, 0b01000, 0b01000],
+        '8' => [0b01110, 0b10001, 0b10001, 0b01110, 0b10001, 0b10001, 0b01110],
+        '9' => [0b01110, 0b10001, 0b10001, 0b01111, 0b00001, 0b00010, 0b01100],
+        '+' => [0b00000, 0b00100, 0b00100, 0b11111, 0b00100, 0b00100, 0b00000],
+        '-' => [0b00000, 0b00000, 0b00000, 0b11111, 0b00000, 0b00000, 0b00000],
+        '.' => [0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b00100, 0b00100],
+        '%' => [0b11001, 0b11001, 0b00010, 0b00100, 0b01000, 0b10011, 0b10011],
+        's' => [0b00000, 0b00000, 0b01111, 0b10000, 0b01110, 0b00001, 0b11110],
+        't' => [0b00100, 0b00100, 0b01110, 0b00100, 0b00100, 0b00101, 0b00010],
+        'r' => [0b00000, 0b00000, 0b10110, 0b11001, 0b10000, 0b10000, 0b10000],
+        'a' => [0b00000, 0b00000, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111],
+        'i' => [0b00100, 0b00000, 0b01100, 0b00100, 0b00100, 0b00100, 0b01110],
+        'n' => [0b00000, 0b00000, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001],
+        _ => [0; 7],
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use nucleus_core::Faces;
 
-    use super::super::Kind;
+    use super::super::scene::Kind;
     use super::*;
 
     #[test]
-    fn an_edge_pulled_to_twice_its_length_has_a_strain_of_one() {
+    fn an_edge_of_twice_its_rest_length_has_a_strain_of_one() {
         let rest = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let positions = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let faces = Faces::from_iter([&[0u32, 1, 2][..]]);

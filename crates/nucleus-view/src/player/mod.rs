@@ -1,9 +1,6 @@
-//! The player: a page in the browser, and the little server that gives it the page and the cache.
+//! The player: a page in the browser, and the HTTP server of the page and the cache.
 
-mod arriving;
-mod deadline;
-mod page;
-mod range;
+mod connection;
 mod request;
 mod response;
 mod server;

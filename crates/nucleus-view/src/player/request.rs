@@ -1,24 +1,27 @@
-//! The head of an HTTP request, as much of it as this server uses.
+//! The head of an HTTP request (RFC 9110), as far as this server uses it: method, path, host and byte range.
 
 use std::io::{self, BufRead, Read};
+use std::ops::Range;
 
-/// A request longer than this is not from a browser.
-pub(super) const LONGEST: u64 = 16 * 1024;
+/// Longest head that is accepted, in bytes; browsers send shorter ones.
+pub(super) const MAX_LENGTH: u64 = 16 * 1024;
 
 /// A request without its body.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Request {
     pub method: String,
-    /// The path without what follows a question mark, still in its escapes.
+    /// The path without its query, percent-encoded.
     pub path: String,
+    /// The value of the `Range` header.
     pub range: Option<String>,
+    /// The value of the `Host` header.
     pub host: Option<String>,
 }
 
 impl Request {
-    /// Reads a head; `None` if it is not one.
+    /// Reads a head; `None` if the bytes are not one.
     pub fn read(from: &mut impl BufRead) -> io::Result<Option<Self>> {
-        let mut lines = from.take(LONGEST).lines();
+        let mut lines = from.take(MAX_LENGTH).lines();
         let Some(first) = lines.next().transpose()? else { return Ok(None) };
         let mut words = first.split(' ');
         let (Some(method), Some(target), Some(version)) = (words.next(), words.next(), words.next()) else {
@@ -49,13 +52,53 @@ impl Request {
         }
     }
 
-    /// Whether the page that asks was loaded from this machine. A page of a stranger whose name
-    /// was made to lead here still sends that name, and must not read the cache.
+    /// Whether the host is this machine. A foreign page whose name resolves to this machine (DNS rebinding) sends its own
+    /// name, and must not read the cache.
     pub fn is_for_this_machine(&self) -> bool {
         let Some(host) = self.host.as_deref() else { return true };
         let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
         matches!(name, "127.0.0.1" | "localhost")
     }
+}
+
+/// The bytes of a file that a `Range` header requests (RFC 9110, section 14).
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum ByteRange {
+    /// The whole file: no range, or one that a server may ignore.
+    Whole,
+    /// These bytes.
+    Part(Range<u64>),
+    /// Bytes that the file does not have.
+    Unsatisfiable,
+}
+
+impl ByteRange {
+    /// Reads a `Range` header for a file of `length` bytes.
+    pub fn parse(header: Option<&str>, length: u64) -> Self {
+        let Some(header) = header.and_then(|header| header.trim().strip_prefix("bytes=")) else {
+            return Self::Whole;
+        };
+        // Several ranges need a multipart response; a server may always send the whole file instead.
+        let Some((first, last)) = header.trim().split_once('-').filter(|_| !header.contains(',')) else {
+            return Self::Whole;
+        };
+        match (number(first), number(last)) {
+            (Some(first), _) if last.is_empty() => Self::part(first, length, length),
+            (Some(first), Some(last)) if first <= last => Self::part(first, last.saturating_add(1), length),
+            (None, Some(count)) if first.is_empty() => Self::part(length - count.min(length), length, length),
+            _ => Self::Whole,
+        }
+    }
+
+    fn part(first: u64, end: u64, length: u64) -> Self {
+        if first < end.min(length) { Self::Part(first..end.min(length)) } else { Self::Unsatisfiable }
+    }
+}
+
+/// Reads digits only: `parse` would accept a sign. A number too large for 64 bits lies past the end of any file.
+fn number(text: &str) -> Option<u64> {
+    let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    digits.then(|| text.parse().unwrap_or(u64::MAX))
 }
 
 #[cfg(test)]
@@ -77,11 +120,42 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_head_is_refused() {
+    fn bytes_that_are_no_head_are_refused() {
         for text in ["", "GET /\r\n\r\n", "GET / FTP/1\r\n\r\n", "GET / HTTP/1.1\r\nHost: a"] {
             assert_eq!(read(text), None, "{text:?}");
         }
-        let endless = format!("GET / HTTP/1.1\r\nX: {}\r\n\r\n", "x".repeat(LONGEST as usize));
+        let endless = format!("GET / HTTP/1.1\r\nX: {}\r\n\r\n", "x".repeat(MAX_LENGTH as usize));
         assert_eq!(read(&endless), None);
+    }
+
+    #[test]
+    fn ranges_are_read_as_in_the_standard() {
+        for (header, expected) in [
+            ("bytes=0-0", ByteRange::Part(0..1)),
+            ("bytes=2-5", ByteRange::Part(2..6)),
+            ("bytes=2-", ByteRange::Part(2..10)),
+            ("bytes=-3", ByteRange::Part(7..10)),
+            ("bytes=-30", ByteRange::Part(0..10)),
+            ("bytes=8-99", ByteRange::Part(8..10)),
+            ("bytes=0-99999999999999999999", ByteRange::Part(0..10)),
+            ("bytes=10-", ByteRange::Unsatisfiable),
+            ("bytes=-0", ByteRange::Unsatisfiable),
+            ("bytes=99999999999999999999-", ByteRange::Unsatisfiable),
+            ("bytes=5-2", ByteRange::Whole),
+            ("bytes=-", ByteRange::Whole),
+            ("bytes=+1-2", ByteRange::Whole),
+            ("bytes=0-1,4-5", ByteRange::Whole),
+            ("lines=1-2", ByteRange::Whole),
+        ] {
+            assert_eq!(ByteRange::parse(Some(header), 10), expected, "{header}");
+        }
+        assert_eq!(ByteRange::parse(None, 10), ByteRange::Whole);
+    }
+
+    #[test]
+    fn an_empty_file_has_no_part() {
+        for header in ["bytes=0-", "bytes=0-0", "bytes=-1"] {
+            assert_eq!(ByteRange::parse(Some(header), 0), ByteRange::Unsatisfiable, "{header}");
+        }
     }
 }

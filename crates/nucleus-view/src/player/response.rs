@@ -1,21 +1,26 @@
-//! The answers of the server.
+//! The responses of the server: the files of the page, which are part of the binary, and the caches.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::page::{self, Asset};
-use super::range::{Wanted, wanted};
-use super::request::Request;
-use super::server::Caches;
+use super::request::{ByteRange, Request};
 
-/// Where the page finds the cache, whatever its file is called.
+/// The caches that the page can request.
+#[derive(Debug)]
+pub(super) struct Caches {
+    pub shown: PathBuf,
+    /// A second cache, for comparison.
+    pub other: Option<PathBuf>,
+}
+
+/// The path of the cache, whatever the name of its file.
 const CACHE: &str = "/cache.mcap";
-/// Where it finds the one to compare it with, if there is one.
+/// The path of the second cache.
 const OTHER: &str = "/other.mcap";
 
-/// Answers one request. Only the page's own files and the cache exist; no path leads anywhere else.
-pub(super) fn answer(request: &Request, caches: &Caches, to: &mut impl Write) -> io::Result<()> {
+/// Responds to a request. Only the files of the page and the caches have a path.
+pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -> io::Result<()> {
     let with_body = match request.method.as_str() {
         "GET" => true,
         "HEAD" => false,
@@ -29,14 +34,14 @@ pub(super) fn answer(request: &Request, caches: &Caches, to: &mut impl Write) ->
         (OTHER, Some(other)) => return send_cache(request, other, with_body, to),
         _ => {}
     }
-    match page::asset(&request.path) {
+    match asset(&request.path) {
         Some(asset) => send_asset(asset, with_body, to),
         None => refuse(to, "404 Not Found", ""),
     }
 }
 
-/// Answers what is not a request at all.
-pub(super) fn refuse_nonsense(to: &mut impl Write) -> io::Result<()> {
+/// Responds to bytes that are not a request.
+pub(super) fn refuse_malformed(to: &mut impl Write) -> io::Result<()> {
     refuse(to, "400 Bad Request", "")
 }
 
@@ -45,7 +50,7 @@ fn send_asset(asset: &Asset, with_body: bool, to: &mut impl Write) -> io::Result
     if with_body { to.write_all(asset.text.as_bytes()) } else { Ok(()) }
 }
 
-/// The length is taken anew each time: a run that is still going on makes its cache longer.
+/// The length is read at each request, because the cache of a running simulation grows.
 fn send_cache(request: &Request, cache: &Path, with_body: bool, to: &mut impl Write) -> io::Result<()> {
     let Ok(mut file) = File::open(cache) else { return refuse(to, "404 Not Found", "") };
     let length = file.metadata()?.len();
@@ -54,12 +59,12 @@ fn send_cache(request: &Request, cache: &Path, with_body: bool, to: &mut impl Wr
         "Content-Type: application/octet-stream\r\nAccept-Ranges: bytes\r\n\
          Content-Disposition: inline; filename*=UTF-8''{name}\r\n"
     );
-    let (status, part) = match wanted(request.range.as_deref(), length) {
-        Wanted::Whole => ("200 OK", 0..length),
-        Wanted::Unsatisfiable => {
+    let (status, part) = match ByteRange::parse(request.range.as_deref(), length) {
+        ByteRange::Whole => ("200 OK", 0..length),
+        ByteRange::Unsatisfiable => {
             return refuse(to, "416 Range Not Satisfiable", &format!("Content-Range: bytes */{length}\r\n"));
         }
-        Wanted::Part(part) => {
+        ByteRange::Part(part) => {
             headers += &format!("Content-Range: bytes {}-{}/{length}\r\n", part.start, part.end - 1);
             ("206 Partial Content", part)
         }
@@ -84,10 +89,69 @@ fn head(to: &mut impl Write, status: &str, length: u64, headers: &str) -> io::Re
     )
 }
 
-/// A file name as a header can carry it: everything but plain letters and digits as %XX.
+/// A file name percent-encoded for a header: bytes other than ASCII letters, digits and `-._` as %XX.
 fn escaped(name: &str) -> String {
     let plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-._".contains(byte);
     name.bytes()
         .map(|byte| if plain(&byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") })
         .collect()
+}
+
+/// A file of the page.
+struct Asset {
+    path: &'static str,
+    media_type: &'static str,
+    text: &'static str,
+}
+
+/// The file of the page at a path.
+fn asset(path: &str) -> Option<&'static Asset> {
+    let path = if path == "/" { "/player/index.html" } else { path };
+    ASSETS.iter().find(|asset| asset.path == path)
+}
+
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+macro_rules! assets {
+    ($($path:literal as $media_type:expr,)*) => {
+        &[$(Asset { path: $path, media_type: $media_type, text: include_str!(concat!("../../assets", $path)) }),*]
+    };
+}
+
+const ASSETS: &[Asset] = assets![
+    "/player/index.html" as "text/html; charset=utf-8",
+    "/player/style.css" as "text/css; charset=utf-8",
+    "/player/cache.js" as SCRIPT,
+    "/player/camera.js" as SCRIPT,
+    "/player/gl.js" as SCRIPT,
+    "/player/main.js" as SCRIPT,
+    "/player/mcap.js" as SCRIPT,
+    "/player/mesh.js" as SCRIPT,
+    "/player/messages.js" as SCRIPT,
+    "/player/panel.js" as SCRIPT,
+    "/player/player.js" as SCRIPT,
+    "/player/records.js" as SCRIPT,
+    "/player/scene.js" as SCRIPT,
+    "/player/shading.js" as SCRIPT,
+    "/player/source.js" as SCRIPT,
+    "/player/timeline.js" as SCRIPT,
+    "/vendor/fzstd.mjs" as SCRIPT,
+];
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_file_of_the_page_is_served() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/player");
+        let on_disk: BTreeSet<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| format!("/player/{}", entry.unwrap().file_name().display()))
+            .collect();
+        let served = ASSETS.iter().map(|asset| asset.path.to_owned());
+        assert_eq!(on_disk, served.filter(|path| path.starts_with("/player/")).collect());
+    }
 }

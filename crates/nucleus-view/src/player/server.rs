@@ -1,36 +1,26 @@
-//! Serves the player to browsers on this machine, and to no other.
+//! The server of the player. It listens on the loopback address only.
 
 use std::io::{self, BufWriter, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::arriving::{Asked, arrive};
-use super::deadline::Deadline;
-use super::response;
-use crate::ViewError;
+use super::connection::{DeadlineWriter, Incoming, read_requests};
+use super::response::{self, Caches};
+use crate::error::ViewError;
 
-/// A browser that takes longer than this to take an answer has gone away. At a slow 10 MB/s it is 600 MB, and a page asks
-/// for a frame at a time.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// Threads that answer. A browser opens six connections at a time.
+/// Time in which a client must have read a response. At 10 MB/s that is 600 MB, and the page requests single frames.
+const RESPONSE_TIMEOUT: Duration = Duration::from_secs(60);
+/// Threads that respond. A browser opens up to six connections.
 const WORKERS: usize = 8;
-/// Connections, and requests, that may wait their turn.
+/// Length of the queues of connections and of requests.
 const QUEUE: usize = 64;
 
-/// The caches that the page can have.
-#[derive(Debug)]
-pub(super) struct Caches {
-    pub shown: PathBuf,
-    /// One to compare it with.
-    pub other: Option<PathBuf>,
-}
-
-/// A player that is being served. Dropping it stops the server.
+/// A running server of the player. Dropping it stops the server.
 #[derive(Debug)]
 pub struct Player {
     address: SocketAddr,
@@ -41,12 +31,12 @@ pub struct Player {
 /// Serves the player with the cache at `path`, on 127.0.0.1 and the given port, or any free port if it is 0.
 ///
 /// # Errors
-/// If the cache cannot be read or the port is taken. What the file holds is for the page to say.
+/// If the cache cannot be read or the port is taken. The content of the file is checked by the page.
 pub fn serve(path: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
     serve_caches(Caches { shown: path.as_ref().to_path_buf(), other: None }, port)
 }
 
-/// Serves the player with two caches, to be compared; else as [`serve`].
+/// Serves the player with two caches for comparison, otherwise like [`serve`].
 ///
 /// # Errors
 /// As [`serve`].
@@ -68,17 +58,17 @@ fn serve_caches(caches: Caches, port: u16) -> Result<Player, ViewError> {
     Ok(Player { address, stopping, server: Some(server) })
 }
 
-/// Starts all threads that there ever are: one that takes up connections, one that waits for their requests, and those that
-/// answer. Each ends when the one before it has ended.
+/// Starts all threads: one accepts connections, one reads their requests, the workers respond. Each ends after the one
+/// before it.
 fn start(listener: TcpListener, caches: Caches, stopping: Arc<AtomicBool>) -> io::Result<JoinHandle<()>> {
     let named = |name: &str| thread::Builder::new().name(format!("player {name}"));
-    let ((connect, connections), (ask, asked)) = (sync_channel(QUEUE), sync_channel(QUEUE));
-    let (caches, asked) = (Arc::new(caches), Arc::new(Mutex::new(asked)));
+    let ((connect, connections), (send, requests)) = (sync_channel(QUEUE), sync_channel(QUEUE));
+    let (caches, requests) = (Arc::new(caches), Arc::new(Mutex::new(requests)));
     for _ in 0..WORKERS {
-        let (caches, asked) = (Arc::clone(&caches), Arc::clone(&asked));
-        named("answers").spawn(move || work(&asked, &caches))?;
+        let (caches, requests) = (Arc::clone(&caches), Arc::clone(&requests));
+        named("responses").spawn(move || work(&requests, &caches))?;
     }
-    named("requests").spawn(move || arrive(&connections, &ask))?;
+    named("requests").spawn(move || read_requests(&connections, &send))?;
     named("connections").spawn(move || accept(&listener, &connect, &stopping))
 }
 
@@ -88,7 +78,7 @@ impl Player {
         self.address
     }
 
-    /// What to open in a browser.
+    /// The address to open in a browser.
     pub fn url(&self) -> String {
         format!("http://{}/", self.address)
     }
@@ -96,12 +86,12 @@ impl Player {
     /// Serves until the process ends.
     pub fn wait(mut self) {
         if let Some(server) = self.server.take() {
-            // A server that panicked has already said why; there is nothing left to wait for.
+            // A server that panicked has printed its message.
             let _ = server.join();
         }
     }
 
-    /// Stops listening. Answers that are under way are finished.
+    /// Stops listening. Responses in progress are finished.
     pub fn stop(self) {
         drop(self);
     }
@@ -111,7 +101,7 @@ impl Drop for Player {
     fn drop(&mut self) {
         let Some(server) = self.server.take() else { return };
         self.stopping.store(true, Ordering::SeqCst);
-        // The server sleeps in `accept`: a visit wakes it.
+        // The server blocks in `accept`; a connection wakes it.
         if TcpStream::connect(self.address).is_ok() {
             let _ = server.join();
         }
@@ -132,27 +122,27 @@ fn accept(listener: &TcpListener, connect: &SyncSender<TcpStream>, stopping: &At
         }
         match connection {
             Ok(connection) => drop(connect.send(connection)),
-            // Out of file handles, say: wait for some to be given back.
+            // Such as a lack of file handles: wait until some are free.
             Err(_) => thread::sleep(Duration::from_millis(50)),
         }
     }
 }
 
-/// Answers one request after another.
-fn work(asked: &Mutex<Receiver<Asked>>, caches: &Caches) {
+/// Responds to one request after another.
+fn work(requests: &Mutex<Receiver<Incoming>>, caches: &Caches) {
     loop {
-        let next = asked.lock().unwrap_or_else(PoisonError::into_inner).recv();
-        let Ok(asked) = next else { return };
-        // A browser that hangs up early is no trouble of ours.
-        drop(answer(&asked, caches));
+        let next = requests.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        let Ok(incoming) = next else { return };
+        // An error means that the client has closed the connection.
+        drop(respond(&incoming, caches));
     }
 }
 
-fn answer((connection, request): &Asked, caches: &Caches) -> io::Result<()> {
-    let mut to = BufWriter::new(Deadline::new(connection, PATIENCE));
+fn respond((connection, request): &Incoming, caches: &Caches) -> io::Result<()> {
+    let mut to = BufWriter::new(DeadlineWriter::new(connection, RESPONSE_TIMEOUT));
     match request {
-        Some(request) => response::answer(request, caches, &mut to)?,
-        None => response::refuse_nonsense(&mut to)?,
+        Some(request) => response::respond(request, caches, &mut to)?,
+        None => response::refuse_malformed(&mut to)?,
     }
     to.flush()
 }

@@ -1,7 +1,6 @@
-//! A small run made by a formula: a flag of cloth that waves, a ball that starts to roll later, and a
-//! cube that stands still.
+//! A small synthetic run: a waving flag of cloth, a ball that starts to roll later, and a static cube.
 
-#![allow(dead_code)] // each test uses a part of it
+#![allow(dead_code)] // each test needs a part of it
 
 use std::f32::consts::{PI, TAU};
 use std::path::Path;
@@ -22,18 +21,18 @@ const SIDE: u32 = 33;
 const BALL: ColliderId = ColliderId(0);
 const SUBSTEPS: u32 = 4;
 
-/// What makes a sample different from a sound run of frames.
+/// Variants of the run.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sample {
-    /// Record every substep.
+    /// Substeps are recorded.
     pub substeps: bool,
     /// From the middle of the run on, one point in fifty is not a number.
     pub broken: bool,
-    /// The flag waves a frame later than it should.
+    /// The flag is one frame late.
     pub late: bool,
-    /// Contacts are recorded: the hoist of the flag touches, its first corner is tangled.
+    /// Contact states are recorded: the hoist of the flag is touching, its first corner is intersecting.
     pub contacts: bool,
-    /// The scene has a camera that comes near.
+    /// The scene has a camera that approaches.
     pub camera: bool,
     /// In the middle of the run the flag loses the faces of its free half.
     pub torn: bool,
@@ -41,7 +40,7 @@ pub struct Sample {
     pub plane: Option<f64>,
 }
 
-/// Writes a sample. Its last frame is [`FRAMES`], its first 1.
+/// Writes the run as a cache of the frames 1 to [`FRAMES`].
 pub fn write(path: &Path, sample: Sample) -> Recorded {
     let mut recorder = begin(path, sample);
     for frame in 2..=FRAMES {
@@ -66,7 +65,7 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
     recorder
 }
 
-/// A camera that goes up to the flag.
+/// A camera that approaches the flag.
 fn camera() -> Camera {
     let view = |frame: i32| CameraView {
         eye: [1.0, 1.3, 9.0 - 0.3 * frame as f32],

@@ -1,11 +1,11 @@
-// The two messages of an object: its mesh, once and whenever it changes, and its positions, every frame.
+// The messages and metadata of a Nucleus cache: meshes, positions, contact states, cameras.
 
-import { Reader } from "./bytes.js";
+import { Reader } from "./records.js";
 
 export const KINDS = ["cloth", "collider", "particles"];
 
-// A mesh: kind, number of points, faces as `starts` into `corners`, positions at rest, and how many other meshes the object
-// had before.
+// A mesh: kind, number of points, faces as `starts` into `corners`, positions at rest, and its number among the meshes of
+// the object, from 0.
 export function readTopology(data) {
   const reader = new Reader(data);
   const [kind, points, faces, corners] = [reader.u32(), reader.u32(), reader.u32(), reader.u32()];
@@ -19,7 +19,7 @@ export function readTopology(data) {
   };
 }
 
-// Positions at one moment of a frame, and how many meshes the object had before that which they are of.
+// Positions at one recorded time of a frame, and the number of their mesh.
 export function readPoints(data) {
   const reader = new Reader(data);
   const [frame, substep, substeps, count] = [reader.i32(), reader.u32(), reader.u32(), reader.u32()];
@@ -29,7 +29,7 @@ export function readPoints(data) {
   return { frame, substep, substeps, time, number, positions: unshuffle(reader.take(12 * count), 3 * count) };
 }
 
-// How contact stands at each point at one moment of a frame, a byte each: see RUNGS in colours.js.
+// The contact state of each point at one recorded time, as a byte: see CONTACT_STATES in shading.js.
 export function readContacts(data) {
   const reader = new Reader(data);
   reader.take(12); // frame, substep, substeps
@@ -38,7 +38,7 @@ export function readContacts(data) {
   return reader.take(count).slice();
 }
 
-// Four planes of bytes, lowest byte of every float first, back to floats.
+// Reverses the byte shuffle: four planes, the lowest byte of every float first.
 function unshuffle(planes, count) {
   const bits = new Uint32Array(count);
   const [second, third, fourth] = [count, 2 * count, 3 * count];
@@ -48,7 +48,16 @@ function unshuffle(planes, count) {
   return new Float32Array(bits.buffer);
 }
 
-// Messages do not begin at multiples of four, so the words are copied out.
+// Copies the words, because messages are not aligned to four bytes.
 function words(reader, count, Type) {
   return new Type(reader.take(4 * count).slice().buffer);
+}
+
+// The cameras, as { name, fit, views }. A view is 13 numbers: see camera.rs of the cache crate.
+export function readCameras(keys) {
+  const cameras = [...(keys ?? new Map())].filter(([key]) => key.startsWith("camera ")).map(([key, text]) => {
+    const [fit, ...lines] = text.split("\n");
+    return { name: key.slice("camera ".length), fit, views: lines.map((line) => line.split(" ").map(Number)) };
+  });
+  return cameras.filter(({ views }) => views.length > 0 && views.every((view) => view.length === 13 && view.every(Number.isFinite)));
 }

@@ -1,4 +1,38 @@
-// The programs that run on the graphics card: matt surfaces, particles, lines and the floor.
+// Appearance: palettes, and the GLSL programs of diffuse surfaces, particles, lines and the floor.
+
+// Linear colours, the same as in still pictures.
+const CLOTHS = [
+  [0.5, 0.085, 0.07], [0.065, 0.21, 0.38], [0.66, 0.37, 0.07],
+  [0.07, 0.3, 0.22], [0.4, 0.18, 0.42], [0.3, 0.42, 0.12],
+];
+const COLLIDERS = [[0.3, 0.3, 0.295], [0.25, 0.27, 0.29], [0.33, 0.3, 0.26]];
+
+// Strain in units of the full scale: -1 shorter, 0, +1 longer.
+export const STRAIN = [
+  [0.02, 0.12, 0.42], [0.18, 0.46, 0.66], [0.72, 0.71, 0.67], [0.86, 0.42, 0.13], [0.52, 0.02, 0.05],
+];
+
+// Contact states, by the byte of the cache. A higher one is worse.
+export const CONTACT_STATES = ["free", "touching", "compressed", "depenetrating", "intersecting"];
+export const CONTACT_STATE_COLOURS = [
+  [0.45, 0.45, 0.43], [0.07, 0.3, 0.62], [0.9, 0.42, 0.03], [0.5, 0.03, 0.5], [0.7, 0.01, 0.02],
+];
+
+// The colour of each object, by its order among cloths or among colliders.
+export function objectColours(objects) {
+  const counts = { cloth: 0, collider: 0 };
+  return objects.map(({ topology }) => {
+    const group = topology.kind === "collider" ? "collider" : "cloth";
+    const colours = group === "collider" ? COLLIDERS : CLOTHS;
+    counts[group] += 1;
+    return colours[(counts[group] - 1) % colours.length];
+  });
+}
+
+// A linear colour in CSS.
+export function css(colour) {
+  return `rgb(${colour.map((x) => Math.round(255 * Math.sqrt(Math.min(1, x)))).join(" ")})`;
+}
 
 const HEAD = `#version 300 es
 precision highp float;
@@ -7,11 +41,11 @@ uniform mat4 view, projection, light;
 uniform vec3 eye, toKey;
 `;
 
-// The share of the key light that reaches a point, smoothed over a few cells.
+// The fraction of the key light that reaches a point: percentage-closer filtering over 3 x 3 cells.
 const SHADOW = `
 uniform sampler2DShadow depths;
 uniform float cell;
-float keyReaches(vec3 at, vec3 normal) {
+float keyVisibility(vec3 at, vec3 normal) {
   vec3 inLight = (light * vec4(at + normal * cell * 2.5, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(inLight, vec3(0.0))) || any(greaterThan(inLight, vec3(1.0)))) return 1.0;
   vec2 step = 1.5 / vec2(textureSize(depths, 0));
@@ -21,7 +55,7 @@ float keyReaches(vec3 at, vec3 normal) {
       sum += texture(depths, vec3(inLight.xy + vec2(x, y) * step, inLight.z));
   return sum / 9.0;
 }
-vec3 matt(vec3 colour, vec3 normal, float key) {
+vec3 diffuse(vec3 colour, vec3 normal, float key) {
   vec3 sky = vec3(0.29, 0.31, 0.35) * (0.62 + 0.38 * normal.y);
   vec3 below = vec3(0.06, 0.055, 0.05) * (0.5 - 0.5 * normal.y);
   return colour * (vec3(1.04, 1.0, 0.94) * max(dot(normal, toKey), 0.0) * key + sky + below);
@@ -32,23 +66,23 @@ export const SURFACE = {
   vertex: `${HEAD}
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in float strain;
+layout(location = 2) in float value;
 uniform vec3 ramp[5];
 out vec3 at, facing, tint;
-out float strained;
+out float scalar;
 void main() {
-  at = position; facing = normal; strained = strain;
-  tint = ramp[clamp(int(strain + 0.5), 0, 4)]; // of kinds there is no middle: the colours mix
+  at = position; facing = normal; scalar = value;
+  tint = ramp[clamp(int(value + 0.5), 0, 4)]; // categories are not interpolated, only their colours
   gl_Position = projection * view * vec4(position, 1.0);
 }`,
   fragment: `${HEAD}${SHADOW}
 uniform vec3 colour, ramp[5];
-uniform float fullScale, kinds;
+uniform float fullScale, isCategorical;
 in vec3 at, facing, tint;
-in float strained;
+in float scalar;
 out vec4 shown;
-vec3 strainColour() {
-  float place = clamp(strained / fullScale, -1.0, 1.0) * 2.0 + 2.0;
+vec3 scalarColour() {
+  float place = clamp(scalar / fullScale, -1.0, 1.0) * 2.0 + 2.0;
   int low = min(int(place), 3);
   return mix(ramp[low], ramp[low + 1], place - float(low));
 }
@@ -57,12 +91,12 @@ void main() {
   vec3 normal = normalize(facing);
   bool isBack = !gl_FrontFacing;
   if (isBack) normal = -normal;
-  vec3 base = kinds > 0.0 ? tint : fullScale > 0.0 ? strainColour() : colour;
+  vec3 base = isCategorical > 0.0 ? tint : fullScale > 0.0 ? scalarColour() : colour;
   if (isBack) base *= 0.72;
-  float key = keyReaches(at, normal);
+  float key = keyVisibility(at, normal);
   float grazing = 1.0 - min(abs(dot(ray, normal)), 1.0);
   vec3 sheen = (base * 0.5 + 0.03) * grazing * grazing * grazing * (0.25 + 0.75 * key) * 0.5;
-  shown = vec4(sqrt(matt(base, normal, key) + sheen), 1.0);
+  shown = vec4(sqrt(diffuse(base, normal, key) + sheen), 1.0);
 }`,
 };
 
@@ -71,7 +105,7 @@ export const LINES = {
 layout(location = 0) in vec3 position;
 void main() {
   gl_Position = projection * view * vec4(position, 1.0);
-  gl_Position.z -= 2e-4 * gl_Position.w; // in front of the faces they belong to
+  gl_Position.z -= 2e-4 * gl_Position.w; // in front of their faces
 }`,
   fragment: `${HEAD}
 out vec4 shown;
@@ -92,15 +126,15 @@ uniform vec3 colour;
 out vec4 shown;
 void main() {
   vec2 from = gl_PointCoord * 2.0 - 1.0;
-  float bulge = 1.0 - dot(from, from);
-  if (bulge < 0.0) discard;
-  vec3 normal = transpose(mat3(view)) * vec3(from.x, -from.y, sqrt(bulge));
+  float height = 1.0 - dot(from, from);
+  if (height < 0.0) discard;
+  vec3 normal = transpose(mat3(view)) * vec3(from.x, -from.y, sqrt(height));
   float sky = 0.3 * (0.7 + 0.3 * normal.y);
   shown = vec4(sqrt(colour * (max(dot(normal, toKey), 0.0) + sky)), 1.0);
 }`,
 };
 
-// The floor is one large square; it fades into the background, so that it has no horizon.
+// The floor is a large square that fades into the background.
 export const FLOOR = {
   vertex: `${HEAD}
 uniform vec3 centre;
@@ -122,11 +156,11 @@ void main() {
   vec2 off = abs(fract(place - 0.5) - 0.5) / max(width, 0.012);
   float line = max(1.0 - off.x, 1.0 - off.y) * clamp(0.12 / max(width.x, width.y), 0.0, 1.0);
   float far = length(at.xz - centre.xz) / reach;
-  vec3 colour = matt(vec3(0.05, 0.053, 0.058), vec3(0.0, 1.0, 0.0), keyReaches(at, vec3(0.0, 1.0, 0.0)));
+  vec3 colour = diffuse(vec3(0.05, 0.053, 0.058), vec3(0.0, 1.0, 0.0), keyVisibility(at, vec3(0.0, 1.0, 0.0)));
   colour *= 1.0 + 0.6 * clamp(line, 0.0, 1.0);
-  float solid = 1.0 - smoothstep(0.12, 0.9, far);
-  // From below one looks through the floor.
-  shown = vec4(sqrt(mix(background, colour, solid)), eye.y < at.y ? solid * 0.3 : solid);
+  float opacity = 1.0 - smoothstep(0.12, 0.9, far);
+  // From below the floor is transparent.
+  shown = vec4(sqrt(mix(background, colour, opacity)), eye.y < at.y ? opacity * 0.3 : opacity);
 }`,
 };
 

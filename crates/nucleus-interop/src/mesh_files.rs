@@ -1,0 +1,100 @@
+//! Mesh files, one for each object and time sample: Wavefront OBJ as text, PLY as binary.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use nucleus_cache::ObjectInfo;
+
+use crate::clip::{Clip, Sample};
+use crate::error::ExportError;
+use crate::output::{OutFile, Output, file_names};
+
+/// Writes `<object>.<frame>.obj` into a folder.
+pub(crate) fn write_obj<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    folder: &Path,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    each_file(clip, folder, "obj", output, progress, write_obj_mesh)
+}
+
+/// Writes a file per object and sample.
+fn each_file<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    folder: &Path,
+    end: &str,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+    mut write: impl FnMut(&mut OutFile, &ObjectInfo, &[[f32; 3]]),
+) -> Result<(), ExportError> {
+    let names = file_names(clip.objects().map(|object| object.name.as_str()));
+    for sample in 0..clip.samples().len() {
+        let frame = numbered(&clip.samples()[sample]);
+        for (object, name) in names.iter().enumerate() {
+            let positions = clip.positions(object, sample)?;
+            let mut file = output.file(folder.join(format!("{name}.{frame}.{end}")))?;
+            write(&mut file, clip.object_at(object, sample)?, &positions);
+            output.finish(file)?;
+        }
+        progress((sample + 1) as f64 / clip.samples().len() as f64);
+    }
+    Ok(())
+}
+
+/// `0012` for the end of frame 12, `0012_2of4` for a substep after it: file names sort in order of time.
+pub(crate) fn numbered(sample: &Sample) -> String {
+    match sample.ends_frame() {
+        true => format!("{:04}", sample.frame),
+        false => format!("{:04}_{}of{}", sample.frame - 1, sample.substep, sample.substeps),
+    }
+}
+
+/// Writes an object as OBJ with these positions, points without faces included. Blender keeps those when it imports PLY,
+/// and drops them when it imports OBJ.
+pub(crate) fn write_obj_mesh(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]]) {
+    // A line break in the name would begin a statement.
+    let name: String = object.name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
+    file.text(format!("o {name}\n"));
+    for [x, y, z] in positions {
+        file.text(format!("v {x} {y} {z}\n"));
+    }
+    for face in object.faces.iter() {
+        let corners: Vec<String> = face.iter().map(|point| (point + 1).to_string()).collect();
+        file.text(format!("f {}\n", corners.join(" ")));
+    }
+    if object.faces.is_empty() {
+        (1..=positions.len()).for_each(|point| file.text(format!("p {point}\n")));
+    }
+}
+
+/// Writes `<object>.<frame>.ply` into a folder.
+pub(crate) fn write_ply<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    folder: &Path,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    each_file(clip, folder, "ply", output, progress, write_ply_mesh)
+}
+
+fn write_ply_mesh(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]]) {
+    // Nearly all readers expect the corner count of a face as one byte.
+    let is_short = object.faces.iter().all(|face| face.len() <= 255);
+    file.text(format!(
+        "ply\nformat binary_little_endian 1.0\ncomment written by Nucleus\nelement vertex {}\n\
+         property float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list {} uint vertex_indices\nend_header\n",
+        positions.len(),
+        object.faces.len(),
+        if is_short { "uchar" } else { "uint" },
+    ));
+    file.floats_le(positions);
+    for face in object.faces.iter() {
+        match is_short {
+            true => file.bytes(&[face.len() as u8]),
+            false => file.bytes(&(face.len() as u32).to_le_bytes()),
+        }
+        face.iter().for_each(|point| file.bytes(&point.to_le_bytes()));
+    }
+}

@@ -1,0 +1,197 @@
+//! The stages of one picture: geometry, lights, visibility, shading, legend.
+
+use super::camera::{Camera, View};
+use super::floor::Floor;
+use super::image::Image;
+use super::light::{Light, diffuse, smoothstep};
+use super::mesh::Mesh;
+use super::scene::{Bounds, Colouring, Ground, Object, Style, Vec3, is_drawable, unit};
+use super::strain;
+use super::visibility::{self, Fragment};
+
+/// Draws objects as one picture of `style.size` pixels.
+///
+/// Points that are not finite are left out, and so are faces with such points or with points that do not exist. No input
+/// makes it fail.
+pub fn draw(objects: &[Object], camera: &Camera, style: &Style) -> Image {
+    let size = style.size.map(|side| side.clamp(1, Image::LARGEST_SIDE));
+    let samples = style.samples.clamp(1, 4);
+    let view = View::new(camera, size.map(|side| side * samples));
+    let mut mesh = Mesh::gather(objects, style, &view);
+    let light = Light::of(&mesh, &view);
+    light.find_sky_visibility(&mut mesh);
+    let fragments = visibility::draw(&mesh, &view);
+    let floor = floor_height(objects, style.ground);
+    let options = Options { floor, wireframe: style.wireframe, samples };
+    let mut image = shade(&mesh, &fragments, &view, &light, options);
+    if let Colouring::Strain { full_scale } = style.colouring {
+        strain::draw_legend(&mut image, full_scale);
+    }
+    image
+}
+
+/// The height of the floor in scene units, if there is one.
+fn floor_height(objects: &[Object], ground: Ground) -> Option<f32> {
+    let height = match ground {
+        Ground::None => return None,
+        Ground::At(height) => height,
+        Ground::Below => {
+            let mut all = Bounds::default();
+            objects.iter().for_each(|object| all.include(object.positions));
+            all.floor_below(&Bounds::of_interest(objects))
+        }
+    };
+    is_drawable(&[height; 3]).then_some(height)
+}
+
+const BACKGROUND_TOP: [f32; 3] = [0.80, 0.82, 0.84];
+const BACKGROUND_BOTTOM: [f32; 3] = [0.66, 0.665, 0.67];
+
+/// Factor on the colour of the back of a cloth, which distinguishes folds from creases.
+const BACK: f32 = 0.72;
+
+/// Options of the shading.
+#[derive(Debug, Clone, Copy)]
+struct Options {
+    /// Height of the floor, in scene units.
+    floor: Option<f32>,
+    wireframe: bool,
+    /// Samples along each side of a pixel.
+    samples: u32,
+}
+
+/// Shades every sample and averages the samples of each pixel.
+fn shade(mesh: &Mesh, fragments: &[Fragment], view: &View, light: &Light, options: Options) -> Image {
+    let samples = options.samples;
+    let shader = Shader {
+        mesh,
+        view,
+        light,
+        key: Light::key_direction(view),
+        floor: options.floor.map(|height| Floor::new(height, view, light)),
+        // A line has the same width in pixels for any number of samples.
+        line_width: if options.wireframe { 0.55 * samples as f32 } else { 0.0 },
+    };
+    let [width, height] = view.size.map(|side| side / samples);
+    let mut image = Image::new(width, height);
+    image.fill_rows(|column, row| {
+        let mut sum = Vec3::zeros();
+        for sample in 0..samples * samples {
+            let x = column * samples + sample % samples;
+            let y = row * samples + sample / samples;
+            sum += shader.colour(&fragments[(y * view.size[0] + x) as usize], [x, y]);
+        }
+        sum / (samples * samples) as f32
+    });
+    image
+}
+
+struct Shader<'a> {
+    mesh: &'a Mesh,
+    view: &'a View,
+    light: &'a Light,
+    /// Direction to the key light.
+    key: Vec3,
+    floor: Option<Floor>,
+    /// Width of a wireframe line on each side of an edge, in samples.
+    line_width: f32,
+}
+
+/// A point of a surface, on the side that faces the eye.
+struct SurfacePoint {
+    position: Vec3,
+    normal: Vec3,
+    colour: Vec3,
+    /// Visible fraction of the sky.
+    sky: f32,
+}
+
+impl Shader<'_> {
+    fn colour(&self, fragment: &Fragment, [x, y]: [u32; 2]) -> Vec3 {
+        let ray = self.view.ray([x as f32 + 0.5, y as f32 + 0.5]);
+        let surface = if fragment.inverse_depth > 0.0 {
+            self.view.eye + ray / fragment.inverse_depth
+        } else {
+            self.view.eye
+        };
+        if fragment.inverse_depth > 0.0 && !self.is_under_floor(&surface) {
+            return self.shade_surface(&self.surface_point(fragment, &surface, &ray), &ray);
+        }
+        let background = self.background(y);
+        let floor = self.floor.as_ref().and_then(|floor| floor.shade(self.view, &ray, self.light));
+        floor.map_or(background, |(colour, opacity)| background.lerp(&colour, opacity))
+    }
+
+    /// Whether the floor hides a point from the eye.
+    fn is_under_floor(&self, point: &Vec3) -> bool {
+        let slack = self.view.distance * 1e-3;
+        self.floor.as_ref().is_some_and(|floor| floor.hides(self.view, point, slack))
+    }
+
+    fn background(&self, row: u32) -> Vec3 {
+        let down = row as f32 / self.view.size[1] as f32;
+        Vec3::from(BACKGROUND_TOP).lerp(&Vec3::from(BACKGROUND_BOTTOM), smoothstep(0.0, 1.0, down))
+    }
+
+    fn shade_surface(&self, point: &SurfacePoint, ray: &Vec3) -> Vec3 {
+        let key = self.light.key_visibility(&point.position, &point.normal);
+        let colour = diffuse(&point.colour, &point.normal, key, point.sky, &self.key);
+        // Fibres scatter light at grazing angles: the sheen of woven cloth.
+        let grazing = 1.0 - unit(ray).dot(&point.normal).abs().min(1.0);
+        let sheen = grazing * grazing * grazing * (0.25 + 0.75 * key) * point.sky;
+        colour + (point.colour * 0.5 + Vec3::repeat(0.05)) * sheen * 0.5
+    }
+
+    fn surface_point(&self, fragment: &Fragment, position: &Vec3, ray: &Vec3) -> SurfacePoint {
+        match self.mesh.triangles.get(fragment.primitive as usize) {
+            Some(_) => self.triangle_point(fragment, position, ray),
+            None => self.sphere_point(fragment, position),
+        }
+    }
+
+    fn triangle_point(&self, fragment: &Fragment, position: &Vec3, ray: &Vec3) -> SurfacePoint {
+        let triangle = &self.mesh.triangles[fragment.primitive as usize];
+        let [a, b, c] = triangle.corners.map(|corner| &self.mesh.vertices[corner as usize]);
+        let [wb, wc] = fragment.local;
+        let wa = 1.0 - wb - wc;
+        let normal = unit(&(a.normal * wa + b.normal * wb + c.normal * wc));
+        // The flat triangle decides the side: near a silhouette the smooth normal may face away.
+        let flat = (b.position - a.position).cross(&(c.position - a.position));
+        let side = if flat.dot(ray) > 0.0 { 1 } else { 0 };
+        let colour = a.colour * wa + b.colour * wb + c.colour * wc;
+        let tone =
+            [1.0, BACK][side] * self.line_tone(fragment, triangle.edges, [a, b, c].map(|v| &v.position));
+        SurfacePoint {
+            position: *position,
+            normal: normal * [1.0, -1.0][side],
+            colour: colour * tone,
+            sky: a.sky[side] * wa + b.sky[side] * wb + c.sky[side] * wc,
+        }
+    }
+
+    /// The factor on the colour near an edge of a face: below 1 if edges are drawn.
+    fn line_tone(&self, fragment: &Fragment, edges: [bool; 3], corners: [&Vec3; 3]) -> f32 {
+        if self.line_width == 0.0 {
+            return 1.0;
+        }
+        let [wb, wc] = fragment.local;
+        let weights = [wc, 1.0 - wb - wc, wb]; // of the corner opposite to each side
+        let samples_per_length = self.view.scale * fragment.inverse_depth;
+        let double_area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm();
+        let nearest = (0..3).filter(|side| edges[*side]).fold(f32::INFINITY, |nearest, side| {
+            let length = (corners[(side + 1) % 3] - corners[side]).norm();
+            nearest.min(weights[side] * double_area / length * samples_per_length)
+        });
+        0.45 + 0.55 * smoothstep(0.5, 1.5, nearest / self.line_width)
+    }
+
+    fn sphere_point(&self, fragment: &Fragment, position: &Vec3) -> SurfacePoint {
+        let [across, upward] = fragment.local;
+        let toward = (1.0 - across * across - upward * upward).max(0.0).sqrt();
+        let view = self.view;
+        let normal = view.right * across + view.up * upward - view.forward * toward;
+        let first_sphere = self.mesh.triangles.len();
+        let colour = self.mesh.spheres[fragment.primitive as usize - first_sphere].colour;
+        SurfacePoint { position: *position, normal, colour, sky: 0.5 + 0.5 * normal.y }
+    }
+}

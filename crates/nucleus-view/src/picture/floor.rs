@@ -1,0 +1,123 @@
+//! The floor: a horizontal plane with a grid, which receives shadows and fades into the background.
+
+use super::camera::View;
+use super::light::{Light, diffuse, smoothstep};
+use super::scene::Vec3;
+
+/// Points along a side of the grid on which the visible fraction of the sky is sampled; it varies slowly between them.
+const SIDE: usize = 128;
+
+/// Linear colour.
+const FLOOR: [f32; 3] = [0.545, 0.54, 0.53];
+/// Factor on the colour of grid lines.
+const LINE_DARKER: f32 = 0.86;
+
+/// A floor, prepared for one view.
+pub(super) struct Floor {
+    height: f32,
+    centre: Vec3,
+    half_extent: f32,
+    /// Distance between grid lines, in scene units.
+    spacing: f32,
+    /// Visible fraction of the sky at the sampled points.
+    sky: Vec<f32>,
+    /// Direction to the key light.
+    key: Vec3,
+}
+
+impl Floor {
+    /// A floor at `height` in scene units, shaded by the objects around the target of the camera.
+    pub fn new(height: f32, view: &View, light: &Light) -> Self {
+        let half_extent = view.half_extent() * 1.3;
+        let centre = Vec3::new(view.target.x, height, view.target.z);
+        let at = |cell: usize| (cell as f32 / (SIDE - 1) as f32 * 2.0 - 1.0) * half_extent;
+        let sky = (0..SIDE * SIDE)
+            .map(|k| light.sky_visibility(&(centre + Vec3::new(at(k % SIDE), 0.0, at(k / SIDE))), &Vec3::y()))
+            .collect();
+        Self {
+            height,
+            centre,
+            half_extent,
+            spacing: round_length(view.half_extent() / 6.0),
+            sky,
+            key: Light::key_direction(view),
+        }
+    }
+
+    /// Whether the floor hides a point that is more than `slack` behind it.
+    pub fn hides(&self, view: &View, point: &Vec3, slack: f32) -> bool {
+        if view.eye.y >= self.height { point.y < self.height - slack } else { point.y > self.height + slack }
+    }
+
+    /// The linear colour of the floor along a ray from the eye, and its opacity, 0 to 1; `None` where the ray misses it.
+    pub fn shade(&self, view: &View, ray: &Vec3, light: &Light) -> Option<(Vec3, f32)> {
+        let depth = (self.height - view.eye.y) / ray.y;
+        if !depth.is_finite() || depth <= 0.0 {
+            return None;
+        }
+        let point = view.eye + ray * depth;
+        let far = (point - self.centre).norm() / self.half_extent;
+        let opacity = 1.0 - smoothstep(0.7, 3.2, far);
+        if opacity <= 0.0 {
+            return None;
+        }
+        let near = 1.0 - smoothstep(0.75, 1.0, far); // shading fades out before the shadow maps end
+        let key = 1.0 - near * (1.0 - light.key_visibility(&point, &Vec3::y()));
+        let sky = 1.0 - near * (1.0 - self.sky_visibility(&point));
+        let length = ray.norm();
+        let width = depth / view.scale * length / (ray.y.abs() / length).max(0.05);
+        let lines = self.lines(&point, width) * (1.0 - smoothstep(0.4, 1.6, far));
+        let colour = Vec3::from(FLOOR) * (1.0 - lines * (1.0 - LINE_DARKER));
+        Some((diffuse(&colour, &Vec3::y(), key, sky, &self.key), opacity))
+    }
+
+    fn sky_visibility(&self, point: &Vec3) -> f32 {
+        let at = |x: f32| (x / self.half_extent * 0.5 + 0.5).clamp(0.0, 1.0) * (SIDE - 1) as f32;
+        let offset = point - self.centre;
+        let (x, z) = (at(offset.x), at(offset.z));
+        let (column, row) = ((x as usize).min(SIDE - 2), (z as usize).min(SIDE - 2));
+        let (right, down) = (x - column as f32, z - row as f32);
+        let cell = |across: usize, below: usize| self.sky[(row + below) * SIDE + column + across];
+        let above = cell(0, 0) * (1.0 - right) + cell(1, 0) * right;
+        let below = cell(0, 1) * (1.0 - right) + cell(1, 1) * right;
+        above * (1.0 - down) + below * down
+    }
+
+    /// The fraction of a sample that grid lines cover; the sample is `width` scene units wide on the floor.
+    fn lines(&self, point: &Vec3, width: f32) -> f32 {
+        let thick = (self.spacing * 0.012).max(width);
+        let cover = |x: f32| {
+            let from_line = (x / self.spacing - (x / self.spacing).round()).abs() * self.spacing;
+            (1.0 - from_line / thick).clamp(0.0, 1.0)
+        };
+        cover(point.x).max(cover(point.z)) * (self.spacing / (width * 12.0)).min(1.0)
+    }
+}
+
+/// The smallest of 1, 2, 5, 10 ... that is not below a length.
+fn round_length(length: f32) -> f32 {
+    if !(1e-9..1e9).contains(&length) {
+        return 1.0;
+    }
+    let mut power = 1.0f32;
+    while power > length {
+        power /= 10.0;
+    }
+    while power * 10.0 < length {
+        power *= 10.0;
+    }
+    [1.0, 2.0, 5.0, 10.0].map(|step| step * power).into_iter().find(|step| *step >= length).unwrap_or(power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grid_lines_have_round_distances() {
+        for (length, expected) in [(0.7, 1.0), (1.4, 2.0), (23.0, 50.0), (0.06, 0.1), (0.013, 0.02)] {
+            assert!((round_length(length) / expected - 1.0).abs() < 1e-5, "{length}");
+        }
+        assert_eq!(round_length(f32::NAN), 1.0);
+    }
+}
