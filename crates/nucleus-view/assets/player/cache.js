@@ -247,9 +247,20 @@ function levelPlane(text) {
   return Number.isFinite(y) && b > 0.999 * Math.hypot(a, b, c) ? y : null;
 }
 
+// Figures that older caches hold under another name: former name to present name.
+const RENAMED_FIGURES = {
+  caught: "pairs_reverted",
+  crossed: "pairs_unresolved",
+  pairs: "candidate_pairs",
+  trapped: "depenetrating",
+  tangled: "intersections",
+  refused: "sanitized",
+};
+
 function readReport(data) {
   try {
-    return JSON.parse(new TextDecoder().decode(data));
+    const report = JSON.parse(new TextDecoder().decode(data));
+    return Object.fromEntries(Object.entries(report ?? {}).map(([key, value]) => [RENAMED_FIGURES[key] ?? key, value]));
   } catch {
     return null;
   }

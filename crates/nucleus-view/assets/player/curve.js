@@ -7,8 +7,8 @@ const MOST = 240;
 const TROUBLES = [
   { key: "pinched", name: "pinched", colour: "#e6761c60" },
   { key: "pairs_reverted", name: "pairs reverted", colour: "#c9a22750" },
-  { key: "trapped", name: "trapped", colour: "#b455c870" },
-  { key: "tangled", name: "tangled", colour: "#ff6a5a80" },
+  { key: "depenetrating", name: "depenetrating", colour: "#b455c870" },
+  { key: "intersections", name: "intersections", colour: "#ff6a5a80" },
   { key: "pairs_unresolved", name: "pairs unresolved", colour: "#ff2020c0" },
 ];
 const LINES = [

@@ -12,17 +12,17 @@ const FIGURES = {
   min_gap: ["Smallest gap / thickness", (x) => x.toFixed(3), (x) => x < 0],
   min_cloth_gap: ["Smallest gap among cloths", (x) => x.toFixed(3), (x) => x < 0],
   contacts: ["Contacts", plain],
-  pairs: ["Pairs tested", plain],
+  candidate_pairs: ["Candidate pairs", plain],
   touching: ["Points that touch", plain],
   pinched: ["Pinched", plain, (x) => x > 0],
   pairs_reverted: ["Pairs reverted", plain, (x) => x > 0],
   pairs_unresolved: ["Pairs unresolved", plain, (x) => x > 0],
-  trapped: ["Trapped in colliders", plain, (x) => x > 0],
-  tangled: ["Tangled edges", plain, (x) => x > 0],
+  depenetrating: ["Points in colliders", plain, (x) => x > 0],
+  intersections: ["Intersections", plain, (x) => x > 0],
   kinetic_energy: ["Kinetic energy, J", plain],
 };
 // Told elsewhere, or of interest to the solver's makers only.
-const UNTOLD = ["frame", "broad_phases", "refused"];
+const UNTOLD = ["frame", "broad_phases", "sanitized"];
 
 export const byId = (id) => document.getElementById(id);
 
