@@ -37,7 +37,7 @@ impl ResumedRun {
         let cannot = || format!("cannot resume `{}`", file.display());
         let opened = Playback::open_to_resume(&file).map_err(|error| match error {
             OpenError::TooShort | OpenError::Empty => anyhow!(error).context(
-                "the run ended before its first frame was recorded: start it again with `nucleus run`",
+                "the run ended before its first frame was recorded: start the run again with `nucleus run`",
             ),
             other => anyhow!(other),
         });

@@ -45,7 +45,7 @@ fn a_run_from_a_frame_of_a_cache_continues_its_motion() {
             assert!(farthest(&again(3).0, &at(3).0) < 1e-5);
             assert!(farthest(&at(3).0, &at(2).0) > 1e-2);
         } else {
-            // The sheet lies on the ball. A run from a cache has no friction anchors, so it settles slightly differently.
+            // The sheet lies on the ball. A run from a cache finds its contacts anew, so it settles slightly differently.
             let apart = farthest(&again(9).0, &at(9).0);
             assert!(apart < 0.1 * farthest(&at(9).0, &at(5).0), "{apart}");
         }
