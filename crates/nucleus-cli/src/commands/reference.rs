@@ -11,7 +11,7 @@ use nucleus_graph::scene::{Preset, presets};
 use crate::process::Outcome;
 use crate::{figures, output};
 
-/// Lists the attributes of a type of node.
+/// Lists the attributes of a node type.
 #[derive(Debug, Args)]
 pub struct Attrs {
     /// The node type, such as `nCloth`; default: list all types.
