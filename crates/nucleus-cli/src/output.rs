@@ -51,7 +51,7 @@ pub fn report_error() -> Option<&'static io::Error> {
     REPORT_ERROR.get()
 }
 
-/// Handles the outcome of a [`write`]: as [`print()`] if the text is the result of the command, else as [`report`].
+/// Handles the outcome of a [`write()`]: as [`print()`] if the text is the result of the command, else as [`report`].
 ///
 /// # Errors
 /// As [`print()`].
