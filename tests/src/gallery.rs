@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Scene, read_scene_text};
 
-/// The repository.
+/// The root of the repository.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this crate is in a folder of the repository")
 }
 
-/// The files of all scenes, in order of their paths.
+/// The scene files of the gallery, sorted by path.
 pub fn scenes() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join("scenes")];
@@ -29,29 +29,35 @@ pub fn scenes() -> Vec<PathBuf> {
     found
 }
 
-/// A scene from its text, which must be without mistakes and without warnings.
+/// Reads a scene.
+///
+/// # Panics
+/// If there is an error or a warning.
 pub fn scene(text: &str, file: &Path) -> Scene {
     match read_scene_text(text, file) {
         Ok((scene, warnings)) => {
             assert!(warnings.is_empty(), "{}: {warnings:#?}", file.display());
             scene
         }
-        Err(mistakes) => panic!("{}: {mistakes:#?}", file.display()),
+        Err(errors) => panic!("{}: {errors:#?}", file.display()),
     }
 }
 
-/// A compiled scene, likewise.
+/// Compiles a scene.
+///
+/// # Panics
+/// If there is an error or a warning.
 pub fn program(scene: &Scene) -> Program {
     match compile(scene) {
         Ok(program) => {
             assert!(program.warnings().is_empty(), "{:#?}", program.warnings());
             program
         }
-        Err(mistakes) => panic!("{mistakes:#?}"),
+        Err(errors) => panic!("{errors:#?}"),
     }
 }
 
-/// The program of a scene that is given as its nodes, in 24 frames of 1/24 s.
+/// The program of a scene with these nodes and 24 frames of 1/24 s.
 pub fn program_of(nodes: &str) -> Program {
     let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
     program(&scene(&text, Path::new("test.ron")))

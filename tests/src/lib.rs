@@ -1,4 +1,4 @@
-//! What the tests over the whole pipeline stand on; they themselves are in `tests/tests/`.
+//! Shared code of the tests over the whole pipeline. The tests themselves are in `tests/tests/`.
 //!
 //! | You want to know…                         | Read             |
 //! |-------------------------------------------|------------------|
@@ -6,7 +6,7 @@
 //! | how a run is audited in a test            | [`audited`]      |
 //! | how a test runs and records a scene       | [`record`]       |
 //!
-//! **Invariant:** nothing here is used by the program.
+//! **Invariant:** no other crate depends on this one.
 
 mod audit;
 pub mod gallery;

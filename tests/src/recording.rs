@@ -1,4 +1,4 @@
-//! A run that is recorded into memory.
+//! Runs that are recorded into memory.
 
 use std::io::Cursor;
 
@@ -7,9 +7,9 @@ use nucleus_core::StepReport;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
 
-/// A run and what was recorded of it.
+/// A run and its cache.
 pub struct Recording {
-    /// The run, at the last frame that was recorded.
+    /// The simulation at the last recorded frame.
     pub simulation: Simulation,
     /// The bytes of the cache.
     pub cache: Vec<u8>,
@@ -20,11 +20,11 @@ pub struct Recording {
 impl Recording {
     /// Opens the cache.
     pub fn play(&self) -> Playback<Cursor<&[u8]>> {
-        Playback::read(Cursor::new(self.cache.as_slice())).expect("what was recorded can be played")
+        Playback::read(Cursor::new(self.cache.as_slice())).expect("the cache can be opened")
     }
 }
 
-/// Runs a program for so many frames after its first, on so many threads.
+/// Runs a program for `frames` frames after its first.
 pub fn record(program: &Program, frames: i32, threads: usize, detail: Detail) -> Recording {
     let mut simulation = Simulation::new(program, threads);
     let start = program.time().start as i32;

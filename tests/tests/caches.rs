@@ -1,4 +1,4 @@
-//! What is recorded is what was solved, on any number of threads.
+//! A cache holds the states of the solver, with equal bytes on any number of threads.
 
 use nucleus_cache::Detail;
 use nucleus_core::{ClothId, ColliderId};
@@ -6,7 +6,7 @@ use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::program_of;
 use nucleus_tests::record;
 
-/// A sheet on four substeps that falls on a ball that rises; 2 601 points, so that threads share them.
+/// A sheet of 2 601 points that falls on a rising ball, with four substeps. Threads share the points.
 fn drape() -> Program {
     program_of(
         r#""nucleus1": nucleus(spaceScale: 0.01, subSteps: 4, windSpeed: 2, usePlane: true),
@@ -25,11 +25,11 @@ fn the_same_scene_gives_the_same_bytes_every_time() {
 }
 
 #[test]
-fn one_thread_and_two_and_three_give_the_same_bytes() {
+fn one_two_and_three_threads_give_the_same_bytes() {
     let program = drape();
     let recordings = [1, 2, 3].map(|threads| record(&program, 12, threads, Detail::Frames));
     let contacts: u64 = recordings[0].reports.iter().map(|report| report.contacts).sum();
-    assert!(contacts > 0, "nothing has touched, so little has been shown");
+    assert!(contacts > 0, "there were no contacts, so the test shows little");
     assert!(recordings.iter().all(|recording| recording.cache == recordings[0].cache));
 }
 
@@ -51,7 +51,7 @@ fn the_positions_in_the_cache_are_those_of_the_solver() {
 }
 
 #[test]
-fn recording_substeps_gives_every_substep() {
+fn a_cache_of_substeps_holds_every_substep() {
     let recording = record(&drape(), 3, 1, Detail::Substeps);
     let cache = recording.play();
     let moments: Vec<_> = cache.time_samples().iter().map(|moment| (moment.frame, moment.substep)).collect();
@@ -59,9 +59,9 @@ fn recording_substeps_gives_every_substep() {
     assert_eq!(moments, [(1, 0)].into_iter().chain(expected).collect::<Vec<_>>());
 }
 
-// EVIDENCE: N2.4-6, N2.4-7  what turns by 90 degrees in a frame takes the chord of that turn, not the arc
+// EVIDENCE: N2.4-6, N2.4-7  a collider that turns by 90 degrees in a frame moves along the chord, not the arc
 #[test]
-fn inside_a_frame_a_collider_moves_along_straight_lines() {
+fn within_a_frame_a_collider_moves_along_straight_lines() {
     let program = program_of(
         r#""nucleus1": nucleus(subSteps: 2),
            "cube": polyCube(rotateY: keys([(1, 0), (2, 90)])), "wall": nRigid(inputMesh: "cube"),
@@ -78,5 +78,5 @@ fn inside_a_frame_a_collider_moves_along_straight_lines() {
         }
     }
     let radius = |point: &[f32; 3]| point[0].hypot(point[2]);
-    assert!(radius(&middle[0]) < 0.75 * radius(&start[0]), "the arc would keep its distance from the axis");
+    assert!(radius(&middle[0]) < 0.75 * radius(&start[0]), "an arc would keep the distance from the axis");
 }

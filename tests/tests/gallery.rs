@@ -1,4 +1,4 @@
-//! Every scene of the gallery, as far as that can be told without running it to its end; `cargo xtask ci` does that.
+//! Every scene of the gallery, without running it to its end, which `cargo xtask ci` does.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use nucleus_graph::compile::Program;
 use nucleus_graph::scene::write_scene;
 use nucleus_tests::gallery::{program, scene, scenes};
 
-/// The state after a few frames, in every bit.
+/// A hash of all bits of the state after three frames.
 fn hash(program: &Program) -> u64 {
     let mut run = Simulation::<f32>::new(program, 1);
     for _ in 0..3 {
@@ -26,7 +26,7 @@ fn every_scene_reads_and_compiles_without_a_warning() {
 }
 
 #[test]
-fn every_scene_says_what_must_hold() {
+fn every_scene_has_checks() {
     for file in scenes() {
         let scene = scene(&fs::read_to_string(&file).expect("it is text"), &file);
         let names: Vec<&str> = scene.checks.iter().map(|check| check.form().name).collect();

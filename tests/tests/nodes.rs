@@ -1,4 +1,4 @@
-//! Nodes and solver: the one is an interface to the other, and no more.
+//! Nodes are only an interface to the solver.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use nucleus_graph::Simulation;
 use nucleus_graph::mesh::{poly_plane, poly_sphere};
 use nucleus_tests::gallery::{program_of, root};
 
-/// The crates of this workspace that a crate needs to be built.
+/// The dependencies of a crate in this workspace.
 fn needs(manifest: &Path) -> Vec<String> {
     let text = fs::read_to_string(manifest).expect("every crate has a manifest");
     let (_, after) = text.split_once("[dependencies]").expect("every crate needs something");
@@ -21,9 +21,9 @@ fn needs(manifest: &Path) -> Vec<String> {
     names.filter(|name| name.starts_with("nucleus-")).map(str::to_owned).collect()
 }
 
-// EVIDENCE: N1.1-2  the solver needs no other crate of this workspace
+// EVIDENCE: N1.1-2  the solver depends on no other crate of this workspace
 #[test]
-fn the_crates_point_one_way_and_the_solver_at_none() {
+fn crate_dependencies_have_one_direction_and_the_solver_has_none() {
     let manifest = |name: &str| needs(&root().join("crates").join(name).join("Cargo.toml"));
     assert_eq!(manifest("nucleus-core"), [""; 0]);
     assert_eq!(manifest("nucleus-graph"), ["nucleus-audit", "nucleus-core"]);
@@ -31,7 +31,7 @@ fn the_crates_point_one_way_and_the_solver_at_none() {
     assert!(!manifest("nucleus-view").contains(&"nucleus-graph".to_owned()));
 }
 
-/// A sheet pinned at a corner over a sphere, made of nodes.
+/// A sheet over a sphere, pinned at a corner, as nodes.
 const NODES: &str = r#"
     "nucleus1": nucleus(subSteps: 2, evaluations: 24, gravity: 9.8, airDensity: 0),
     "sheet": polyPlane(width: 2, height: 2, subdivisions: (12, 12), translate: (0, 0.6, 0)),
@@ -41,7 +41,7 @@ const NODES: &str = r#"
     "sphere": polySphere(radius: 0.5),
     "ball": nRigid(inputMesh: "sphere", thickness: 0.01, friction: 0.2)"#;
 
-/// The same without a node.
+/// The same model, built without nodes.
 fn by_hand(frames: u32) -> u64 {
     let mut sheet = poly_plane(2.0, 2.0, (12, 12)).expect("it has a size");
     sheet.positions.iter_mut().for_each(|position| position.y += 0.6);
@@ -88,9 +88,9 @@ fn by_hand(frames: u32) -> u64 {
     solver.state_hash()
 }
 
-// EVIDENCE: N1.1-2, N1.1-3  nodes set up relations and carry data; whoever does that by hand gets the same bits
+// EVIDENCE: N1.1-2, N1.1-3  nodes set up relations and carry data; doing so without nodes gives the same bits
 #[test]
-fn a_scene_and_the_same_thing_built_by_hand_give_the_same_bits() {
+fn a_scene_and_the_same_model_built_without_nodes_give_the_same_bits() {
     let program = program_of(NODES);
     let mut run = Simulation::<f32>::new(&program, 1);
     for _ in 0..20 {

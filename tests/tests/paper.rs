@@ -6,7 +6,7 @@ use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::program_of;
 
-/// Where a point of the only cloth is after so many frames, in metres.
+/// Position of a point of the only cloth after `frames` frames, in metres.
 fn point_after(program: &Program, frames: usize, point: usize) -> Vector3<f64> {
     let mut run = Simulation::<f32>::new(program, 1);
     for _ in 0..frames {
@@ -15,7 +15,7 @@ fn point_after(program: &Program, frames: usize, point: usize) -> Vector3<f64> {
     run.state().point(ClothId(0), point)
 }
 
-/// A flag in the wind with much lift. `unit` scene units are a metre.
+/// A flag with high lift in a wind. One metre is `unit` scene units.
 fn flag(unit: f64) -> Program {
     program_of(&format!(
         r#""nucleus1": nucleus(spaceScale: {}, windSpeed: 6, windDirection: (1, 0, 0.5)),
@@ -26,16 +26,16 @@ fn flag(unit: f64) -> Program {
     ))
 }
 
-// EVIDENCE: N1.3-4  with the same lift, a flag in centimetres flies as one in metres does; nothing is scaled by hand
+// EVIDENCE: N1.3-4  with the same lift, a flag in centimetres moves as one in metres; no attribute is scaled by hand
 #[test]
-fn lift_is_right_in_any_unit() {
+fn lift_does_not_depend_on_the_scene_unit() {
     let [metres, centimetres] = [1.0, 100.0].map(|unit| point_after(&flag(unit), 12, 80));
     assert!((metres - centimetres).norm() < 1e-3, "{metres:?} {centimetres:?}");
     let start = point_after(&flag(1.0), 0, 80);
-    assert!((metres - start).norm() > 0.1, "it has not flown at all");
+    assert!((metres - start).norm() > 0.1, "the flag has not moved");
 }
 
-/// The worst strain of a sheet in the Classic reading that is held by its corners while a ball is pushed into it.
+/// The largest strain of a sheet that is held by its corners while a ball is pushed into it, with the Classic model.
 fn strain_beside_a_ball(sub_steps: u32, collision_iterations: u32) -> f64 {
     let program = program_of(&format!(
         r#""nucleus1": nucleus(resistanceModel: classic, subSteps: {sub_steps},
@@ -51,32 +51,32 @@ fn strain_beside_a_ball(sub_steps: u32, collision_iterations: u32) -> f64 {
     (0..20).map(|_| run.advance(&mut ()).report.max_strain).fold(0.0, f64::max)
 }
 
-// EVIDENCE: N2.2-3  collision passes between those of stretch take stretch out of a contact: 956 % becomes 159 %
+// EVIDENCE: N2.2-3  contact passes between stretch passes reduce stretch at a contact: from 956 % to 159 %
 #[test]
-fn collision_passes_among_stretch_passes_lessen_stretch_at_a_contact() {
+fn contact_passes_among_stretch_passes_reduce_stretch_at_a_contact() {
     for sub_steps in [1, 2] {
         let [few, many] = [1, 16].map(|passes| strain_beside_a_ball(sub_steps, passes));
         assert!(many < 0.75 * few, "{sub_steps} substeps: {few} with 1 pass, {many} with 16");
     }
 }
 
-// EVIDENCE: N1.3-3, N2.2-5  at the same counts more substeps leave less stretch beside a contact: 159 % becomes 49 %
+// EVIDENCE: N1.3-3, N2.2-5  at the same iteration counts, more substeps reduce stretch at a contact: from 159 % to 49 %
 #[test]
-fn substeps_lessen_stretch_at_a_contact() {
+fn substeps_reduce_stretch_at_a_contact() {
     let strains = [1, 4, 16].map(|sub_steps| strain_beside_a_ball(sub_steps, 16));
     assert!(strains.is_sorted_by(|more, less| *less < 0.75 * more), "{strains:?}");
 }
 
-// EVIDENCE: N2.4-5  a constraint whose `enable` is keyed on takes hold of things where they are on that frame
+// EVIDENCE: N2.4-5  a constraint whose `enable` is keyed on attaches to points at their positions in that frame
 #[test]
-fn a_constraint_that_is_switched_on_catches_what_is_falling() {
+fn a_constraint_that_is_enabled_attaches_to_falling_points() {
     let program = program_of(
         r#""nucleus1": nucleus(airDensity: 0),
            "plane": polyPlane(subdivisions: (2, 2)), "sheet": nCloth(inputMesh: "plane"),
            "hand": dynamicConstraint(constraintType: transform, components: ["sheet.vtx[*]"],
                enable: keys([(1, false), (13, true)]), translateX: keys([(12, 0), (24, 2)]))"#,
     );
-    let [caught, later] = [11, 23].map(|frames| point_after(&program, frames, 4));
-    assert!(caught.y < -0.9, "it has fallen for 11 frames: {caught:?}");
-    assert!((later - caught - Vector3::new(2.0, 0.0, 0.0)).norm() < 1e-5, "{caught:?} {later:?}");
+    let [attached, later] = [11, 23].map(|frames| point_after(&program, frames, 4));
+    assert!(attached.y < -0.9, "it has fallen for 11 frames: {attached:?}");
+    assert!((later - attached - Vector3::new(2.0, 0.0, 0.0)).norm() < 1e-5, "{attached:?} {later:?}");
 }

@@ -1,18 +1,18 @@
-//! A run that is saved at any frame and gone on with has the same bits as one that never stopped.
+//! A run that is saved at any frame and resumed has the same bits as a run that never stopped.
 
 use nucleus_core::{Real, RestoreError, StepReport};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::program_of;
 
-/// What a run comes to, frame by frame.
+/// The results of a run, frame by frame.
 struct Run {
     hashes: Vec<Vec<u64>>,
     reports: Vec<StepReport>,
     saved: Vec<Vec<u8>>,
 }
 
-/// Runs on for so many frames.
+/// Advances by `frames` frames.
 fn run<R: Real>(simulation: &mut Simulation<R>, frames: usize) -> Run {
     let mut run = Run { hashes: Vec::new(), reports: Vec::new(), saved: vec![simulation.save()] };
     for _ in 0..frames {
@@ -23,7 +23,7 @@ fn run<R: Real>(simulation: &mut Simulation<R>, frames: usize) -> Run {
     run
 }
 
-/// Stops at every so manieth frame, and goes on from there on another number of threads. Gives the whole run.
+/// Stops at every `every`th frame and resumes on another number of threads. Returns the whole run.
 fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: usize) -> Run {
     let whole = run::<R>(&mut Simulation::new(program, 1), frames);
     for stop in (0..frames).step_by(every) {
@@ -32,9 +32,9 @@ fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: 
             .unwrap_or_else(|error| panic!("{name}, frame {stop}: {error}"));
         assert!(
             simulation.save() == whole.saved[stop],
-            "{name}: what is restored at {stop} is what was saved"
+            "{name}: a restored checkpoint of frame {stop} saves to the same bytes"
         );
-        // A few frames show what is missing; the last stops go on to the end.
+        // Three frames suffice to show a missing field.
         let further = (frames - stop).min(3);
         let rest = run(&mut simulation, further);
         assert_eq!(rest.hashes, whole.hashes[stop..stop + further], "{name}, stopped after {stop} frames");
@@ -44,7 +44,7 @@ fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: 
     whole
 }
 
-/// In both precisions and both readings of resistance.
+/// With both precisions and both resistance models.
 fn assert_resumes_always(name: &str, nodes: &str, frames: usize) -> Run {
     let classic = nodes.replacen("nucleus(", "nucleus(resistanceModel: classic, ", 1);
     assert_resumes::<f32>(&format!("{name}, classic"), &program_of(&classic), frames, 3);
@@ -52,13 +52,13 @@ fn assert_resumes_always(name: &str, nodes: &str, frames: usize) -> Run {
     assert_resumes::<f32>(name, &program_of(nodes), frames, 1)
 }
 
-/// Whether a figure is above nought in some frame.
+/// Whether a figure is above zero in some frame.
 fn ever(run: &Run, figure: impl Fn(&StepReport) -> u64) -> bool {
     run.reports.iter().any(|report| figure(report) > 0)
 }
 
 #[test]
-fn a_cloth_in_the_wind_goes_on_as_if_it_had_not_stopped() {
+fn a_cloth_in_the_wind_resumes_with_the_same_bits() {
     let nodes = r#""n": nucleus(subSteps: 2, windSpeed: 3),
         "p": polyPlane(width: 2, height: 1, subdivisions: (9, 5), ty: 5, rx: 30),
         "c": nCloth(inputMesh: "p", thickness: 0.01, drag: 0.1, lift: 0.1, damp: 0.2),
@@ -68,9 +68,9 @@ fn a_cloth_in_the_wind_goes_on_as_if_it_had_not_stopped() {
 }
 
 #[test]
-fn cloth_that_meets_a_moving_collider_goes_on_in_the_midst_of_it() {
-    // The ball comes, stops while the cloth lies on it and on the ground, and goes on: pairs are found anew, carried
-    // over, and found anew.
+fn cloth_in_contact_with_a_moving_collider_resumes_with_the_same_bits() {
+    // The ball moves, rests while the cloth lies on it and on the ground, and moves on. Candidate pairs are searched,
+    // reused, and searched again.
     let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
         "p": polyPlane(width: 60, height: 60, subdivisions: (9, 9), ty: 26),
         "c": nCloth(inputMesh: "p", thickness: 1, friction: 0.3, bounce: 0.3, bendResistance: 0.1),
@@ -81,7 +81,7 @@ fn cloth_that_meets_a_moving_collider_goes_on_in_the_midst_of_it() {
     assert!(ever(&run, |report| report.contacts));
 }
 
-/// A sheet that falls on its edge and folds up on the floor.
+/// A sheet that falls on its edge and folds on the floor.
 fn folded(more: &str) -> String {
     format!(
         r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
@@ -92,20 +92,20 @@ fn folded(more: &str) -> String {
 }
 
 #[test]
-fn cloth_that_lies_on_itself_in_folds_goes_on_as_if_it_had_not_stopped() {
+fn cloth_in_self_contact_resumes_with_the_same_bits() {
     let run = assert_resumes_always("fold", &folded(""), 30);
-    assert!(run.reports.iter().any(|report| report.min_cloth_gap.is_finite()), "it lies on itself");
+    assert!(run.reports.iter().any(|report| report.min_cloth_gap.is_finite()), "there is self-contact");
 }
 
 #[test]
-fn contact_that_is_keyed_off_and_on_goes_on_as_if_it_had_not_stopped() {
+fn self_contact_that_is_keyed_off_and_on_resumes_with_the_same_bits() {
     let keyed =
         folded("").replace("selfCollide: true", "selfCollide: keys([(1, true), (18, false), (24, true)])");
     assert_resumes_always("keyed fold", &keyed, 28);
 }
 
 #[test]
-fn cloth_that_is_pinched_and_let_go_of_goes_on_as_if_it_had_not_stopped() {
+fn cloth_that_is_compressed_and_released_resumes_with_the_same_bits() {
     let nodes = r#""n": nucleus(spaceScale: 0.01, evaluations: 48),
         "p": polyPlane(width: 30, height: 30, subdivisions: (6, 6), ty: 50, rx: 90),
         "c": nCloth(inputMesh: "p", thickness: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface"),
@@ -114,25 +114,25 @@ fn cloth_that_is_pinched_and_let_go_of_goes_on_as_if_it_had_not_stopped() {
         "ra": nRigid(inputMesh: "a", thickness: 0.3),
         "b": polyCube(width: 16, height: 12, depth: 8, subdivisions: (3, 3, 2), ty: 45, tx: 1, tz: keys([(1, -12), (6, -3), (9, -3), (12, -14)])),
         "rb": nRigid(inputMesh: "b", thickness: 0.3)"#;
-    // They close on each other, and leave no room.
+    // The boxes leave no room for the cloth.
     let run = assert_resumes_always("pinch", nodes, 15);
-    assert!(ever(&run, |report| report.depenetrating), "points are inside");
-    assert!(ever(&run, |report| report.pairs_unresolved), "pairs are let go");
+    assert!(ever(&run, |report| report.depenetrating), "points are inside a collider");
+    assert!(ever(&run, |report| report.pairs_unresolved), "pairs stay unresolved");
 }
 
 #[test]
-fn sheets_that_begin_inside_each_other_go_on_being_worked_apart() {
+fn sheets_that_are_being_untangled_resume_with_the_same_bits() {
     let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
         "p": polyPlane(width: 40, height: 40, subdivisions: (9, 9), ty: 30),
         "c": nCloth(inputMesh: "p", thickness: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface"),
         "q": polyPlane(width: 40, height: 40, subdivisions: (9, 9), ty: 31, rx: 8, ry: 20),
         "d": nCloth(inputMesh: "q", thickness: 0.5, collisionLayer: 0.5, selfCollide: true, selfCollisionFlag: "Full Surface")"#;
     let run = assert_resumes_always("tangle", nodes, 24);
-    assert!(ever(&run, |report| report.intersections), "they are inside each other");
+    assert!(ever(&run, |report| report.intersections), "the sheets intersect");
 }
 
 #[test]
-fn several_nuclei_go_on_together() {
+fn several_nuclei_resume_with_the_same_bits() {
     let nodes = r#""n": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 48),
         "m": nucleus(subSteps: 2, startFrame: 4, enable: keys([(1, true), (8, false), (10, true)])),
         "p": polyPlane(width: 40, height: 40, subdivisions: (6, 6), ty: 10),
@@ -146,7 +146,7 @@ fn several_nuclei_go_on_together() {
 }
 
 #[test]
-fn particles_go_on_as_if_they_had_not_stopped() {
+fn vertex_and_edge_contact_resumes_with_the_same_bits() {
     let nodes = r#""n": nucleus(usePlane: true, evaluations: 48),
         "p": polyPlane(width: 2, height: 2, subdivisions: (5, 5), ty: 0.4),
         "c": nCloth(inputMesh: "p", thickness: 0.1, collisionFlag: "Vertex", selfCollide: true, selfCollisionFlag: "Vertex"),

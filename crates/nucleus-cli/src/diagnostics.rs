@@ -1,4 +1,4 @@
-//! What is said about a scene, shown at its place in the file, on standard error.
+//! Errors and warnings of a scene, printed on standard error with an excerpt of the file.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::ops::Range;
@@ -11,26 +11,26 @@ use nucleus_graph::scene::{Diagnostic, Severity};
 
 use crate::figures;
 
-/// Lines that are longer are cut around the places that are shown.
-const LONGEST_LINE: usize = 400;
-/// Characters that are left on each side of a place.
-const AROUND: usize = 100;
-/// Diagnostics after these are counted alone.
-const MOST: usize = 100;
+/// Longest line, in bytes, that is shown whole. Longer lines are cut around the marked place.
+const MAX_LINE: usize = 400;
+/// Bytes that a cut line keeps on each side of the marked place.
+const CONTEXT: usize = 100;
+/// Diagnostics that are printed; any further ones are only counted.
+const MAX_PRINTED: usize = 100;
 
-/// Prints them all, each with its place in `text`, and a count.
+/// Prints each diagnostic with its place in `text`, and their count.
 pub fn print(diagnostics: &[Diagnostic], text: &str) -> anyhow::Result<()> {
     if diagnostics.is_empty() {
         return Ok(());
     }
-    // `Auto` heeds NO_COLOR, but not where the output goes.
+    // `Auto` respects NO_COLOR but does not detect a terminal.
     let choice = if stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let writer = BufferWriter::stderr(choice);
     let mut buffer = writer.buffer();
-    for diagnostic in diagnostics.iter().take(MOST) {
+    for diagnostic in diagnostics.iter().take(MAX_PRINTED) {
         show(diagnostic, text, &mut buffer)?;
     }
-    if let Some(more) = diagnostics.len().checked_sub(MOST).filter(|more| *more > 0) {
+    if let Some(more) = diagnostics.len().checked_sub(MAX_PRINTED).filter(|more| *more > 0) {
         writeln!(buffer, "... and {more} more")?;
     }
     writeln!(buffer, "{}", count(diagnostics))?;
@@ -58,27 +58,27 @@ fn show(diagnostic: &Diagnostic, text: &str, buffer: &mut Buffer) -> anyhow::Res
     }
 }
 
-/// A diagnostic whose place is in a line too long to be shown: its place in a part of that line.
+/// A cut line, and the diagnostic with its place in it.
 struct Excerpt<'a> {
     text: &'a str,
     diagnostic: Diagnostic,
-    /// Lines before it, and characters before it in its line.
+    /// Lines before the excerpt, and characters before it in its line.
     before: [usize; 2],
 }
 
 impl<'a> Excerpt<'a> {
-    /// Nothing where all lines that are shown are short.
+    /// `None` if every line of the diagnostic is short.
     fn of(diagnostic: &Diagnostic, text: &'a str) -> Option<Self> {
         let span = place(&diagnostic.span, text)?;
         let start = text[..span.start].rfind('\n').map_or(0, |end| end + 1);
         let end = text[span.end..].find('\n').map_or(text.len(), |end| span.end + end);
-        if text[start..end].lines().all(|line| line.len() <= LONGEST_LINE) {
+        if text[start..end].lines().all(|line| line.len() <= MAX_LINE) {
             return None;
         }
-        let from = boundary(text, span.start.saturating_sub(AROUND).max(start));
+        let from = boundary(text, span.start.saturating_sub(CONTEXT).max(start));
         let first_line = text[span.start..span.end].find('\n').map_or(span.end, |end| span.start + end);
-        let shown_end = boundary(text, first_line.min(span.start + AROUND));
-        let to = boundary(text, (shown_end + AROUND).min(end));
+        let shown_end = boundary(text, first_line.min(span.start + CONTEXT));
+        let to = boundary(text, (shown_end + CONTEXT).min(end));
         let cut = text[from..to].lines().next().unwrap_or_default();
         let mut own = diagnostic.clone();
         own.span = span.start - from..(shown_end - from).min(cut.len());
@@ -88,12 +88,12 @@ impl<'a> Excerpt<'a> {
     }
 }
 
-/// The nearest place at or before a byte at which a character begins.
+/// The nearest character boundary at or before a byte.
 fn boundary(text: &str, at: usize) -> usize {
     (0..=at).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// A part of a file, with the lines and columns of the whole.
+/// An excerpt that reports the lines and columns of the whole file.
 struct Part<'a> {
     file: SimpleFile<&'a str, &'a str>,
     before: [usize; 2],
@@ -160,7 +160,7 @@ fn show_in(
     Ok(())
 }
 
-/// A span that can be shown: not that of the file as a whole, and not beyond the text.
+/// A span that can be shown. `0..0` stands for the whole file; a span may exceed a text that has changed.
 fn place(span: &Range<usize>, text: &str) -> Option<Range<usize>> {
     (*span != (0..0) && span.start <= span.end && span.end <= text.len()).then(|| span.clone())
 }
@@ -178,15 +178,15 @@ mod tests {
     }
 
     #[test]
-    fn a_long_line_is_cut_around_the_place() {
+    fn a_long_line_is_cut_around_the_marked_place() {
         let text = format!("first\n{}HERE{}\nlast", "ä".repeat(100_000), "b".repeat(100_000));
         let at = text.find("HERE").unwrap();
         let (shown, marked, before) = excerpt(&text, at..at + 4).unwrap();
-        assert!(shown.len() <= LONGEST_LINE && marked == "HERE", "{shown}");
-        assert_eq!(before, [1, 100_000 - AROUND / 2]);
-        // A place that is itself too long.
+        assert!(shown.len() <= MAX_LINE && marked == "HERE", "{shown}");
+        assert_eq!(before, [1, 100_000 - CONTEXT / 2]);
+        // A marked place that is itself too long is cut too.
         let (shown, marked, _) = excerpt(&text, at..text.len() - 5).unwrap();
-        assert!(shown.len() <= LONGEST_LINE && marked.starts_with("HEREbb"), "{shown}");
+        assert!(shown.len() <= MAX_LINE && marked.starts_with("HEREbb"), "{shown}");
         assert_eq!(excerpt(&text, 0..5), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers, written for people.
+//! Numbers in messages and reports.
 
 /// `812 bytes`, `3.4 kB`, `12.0 MB`.
 pub fn bytes(bytes: u64) -> String {
@@ -20,7 +20,7 @@ pub fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Up to four digits that matter, without zeros at the end: `0.0125`, `24`, `1.5`.
+/// Up to four significant digits, without trailing zeros: `0.0125`, `24`, `1.5`.
 pub fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
@@ -33,7 +33,7 @@ pub fn number(x: f64) -> String {
     }
 }
 
-/// A share in percent: `1.25 %`.
+/// A share as a percentage: `1.25 %`.
 pub fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share))
 }
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_scaled_to_one_to_a_thousand() {
+    fn bytes_are_scaled_to_a_unit_below_a_thousand() {
         assert_eq!(bytes(1), "1 byte");
         assert_eq!(bytes(999), "999 bytes");
         assert_eq!(bytes(1000), "1.0 kB");
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_show_four_digits_that_matter() {
+    fn numbers_show_four_significant_digits() {
         assert_eq!(number(0.012_345_6), "0.01235");
         assert_eq!(number(24.0), "24");
         assert_eq!(number(-1.5), "-1.5");

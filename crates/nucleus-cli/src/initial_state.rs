@@ -1,5 +1,6 @@
-//! `--from drape.mcap@80`: cloth that starts as a cache has it at a frame. The graph knows no caches: it is given
-//! `startPositions` and `startVelocities`, as a scene could give them.
+//! `--from drape.mcap@80`: initial positions and velocities of cloth from a frame of a cache.
+//!
+//! The graph crate knows no caches: this module sets `startPositions` and `startVelocities`, as a scene could.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,14 +13,14 @@ use nucleus_graph::compile::{self, Object, Program, compile};
 use nucleus_graph::graph::Setting;
 use nucleus_graph::scene::{Diagnostic, Scene};
 
-use crate::cache_file;
+use crate::files;
 use crate::output::say;
 
 /// A frame of a cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InitialState {
     cache: PathBuf,
-    /// The last one if none is given.
+    /// `None`: the last frame.
     frame: Option<i32>,
 }
 
@@ -31,13 +32,13 @@ impl FromStr for InitialState {
             None => Ok(Self { cache: text.into(), frame: None }),
             Some((cache, frame)) => match frame.parse() {
                 Ok(frame) if !cache.is_empty() => Ok(Self { cache: cache.into(), frame: Some(frame) }),
-                _ => Err("write the cache and a frame of it: `drape.mcap@80`".to_owned()),
+                _ => Err("write a cache and a frame of it as `drape.mcap@80`".to_owned()),
             },
         }
     }
 }
 
-/// The file's name and the frame: what a cache says of where its run began.
+/// The file name and the frame, as a cache states the initial state of its run.
 impl fmt::Display for InitialState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", Path::new(self.cache.file_name().unwrap_or_default()).display())?;
@@ -46,13 +47,13 @@ impl fmt::Display for InitialState {
 }
 
 impl InitialState {
-    /// The scene with all of its cloth started so, and its program.
+    /// The scene with this initial state for all of its cloth, and its program.
     pub fn applied(&self, mut scene: Scene, program: &Program) -> Result<(Scene, Program)> {
         let is_cloth = |object: &&Object| matches!(object.kind, compile::ObjectKind::Cloth(_));
         let cloths: Vec<&Object> = program.objects().iter().filter(is_cloth).collect();
-        ensure!(!cloths.is_empty(), "there is no cloth in the scene that could start from a cache");
-        let mut cache = cache_file::open(&self.cache)?;
-        let moment = cache_file::moment(&cache, self.frame)
+        ensure!(!cloths.is_empty(), "the scene has no cloth that could start from a cache");
+        let mut cache = files::open_cache(&self.cache)?;
+        let moment = files::moment(&cache, self.frame)
             .with_context(|| format!("cannot start from `{}`", self.cache.display()))?;
         let scale = program.units_per_metre() / cache.run().units_per_metre;
         let mut has_velocities = true;
@@ -63,30 +64,34 @@ impl InitialState {
                 Some(velocities) => velocities,
                 None => {
                     has_velocities = false;
-                    guessed(&mut cache, object, moment)?
+                    estimated_velocities(&mut cache, object, moment)?
                 }
             };
             let rows = match cloth.radius {
                 None => [&n_base::START_POSITIONS.row, &n_base::START_VELOCITIES.row],
                 Some(_) => [&n_particle::POSITION0.row, &n_particle::VELOCITY0.row],
             };
-            start(&mut scene, cloth, rows[0], &positions, scale)?;
-            start(&mut scene, cloth, rows[1], &velocities, scale)?;
+            set_column(&mut scene, cloth, rows[0], &positions, scale)?;
+            set_column(&mut scene, cloth, rows[1], &velocities, scale)?;
         }
         if !has_velocities {
             say!(
-                "warning: `{}` has no velocities, so they are taken from the moment before; record them with \
-                 `nucleus run --velocities`",
+                "warning: `{}` has no velocities, so they are estimated from the previous recorded positions; record them \
+                 with `nucleus run --velocities`",
                 self.cache.display()
             );
         }
         let first = |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next();
-        let program = compile(&scene)
-            .map_err(|found| anyhow!("the scene cannot start so: {}", first(found).unwrap_or_default()))?;
+        let program = compile(&scene).map_err(|found| {
+            anyhow!(
+                "the scene does not compile with this initial state: {}",
+                first(found).unwrap_or_default()
+            )
+        })?;
         Ok((scene, program))
     }
 
-    /// The object of the cache that a cloth goes on from: of the same name and the same mesh.
+    /// The object of the cache with the name and the mesh of a cloth.
     fn matching(&self, cache: &mut Playback, moment: usize, cloth: &Object) -> Result<usize> {
         let (name, cache_name) = (&cloth.name, self.cache.display());
         let is_solved = |kind: ObjectKind| kind != ObjectKind::Collider;
@@ -96,7 +101,7 @@ impl InitialState {
             let solved = objects.iter().filter(|object| is_solved(object.kind));
             let names: Vec<String> = solved.map(|object| format!("`{}`", object.name)).collect();
             bail!(
-                "`{cache_name}` is of another scene: it has no cloth `{name}`; its cloth is {}, recorded from `{}`",
+                "`{cache_name}` has no cloth `{name}`: its cloth is {}, recorded from `{}`",
                 if names.is_empty() { "none".to_owned() } else { names.join(", ") },
                 cache.run().scene_path
             );
@@ -105,24 +110,24 @@ impl InitialState {
         let (points, recorded) = (cloth.points, mesh.rest.len());
         ensure!(
             points == recorded,
-            "`{name}` has {points} points, but {recorded} in `{cache_name}`: its mesh has changed"
+            "the mesh of `{name}` has changed: it has {points} points, but {recorded} in `{cache_name}`"
         );
         ensure!(
             cloth.faces == mesh.faces,
-            "`{name}` has other faces than in `{cache_name}`: its mesh has changed"
+            "the mesh of `{name}` has changed: its faces differ from those in `{cache_name}`"
         );
         Ok(found)
     }
 }
 
-/// Velocities from where the points were at the moment before; none where there was none.
-fn guessed(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f32; 3]>> {
+/// Velocities in scene units per second, as backward differences of recorded positions. Zero at the first one.
+fn estimated_velocities(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f32; 3]>> {
     let now = cache.positions(object, moment)?;
     let Some(before) = moment.checked_sub(1) else { return Ok(vec![[0.0; 3]; now.len()]) };
     let passed = cache.time_samples()[moment].time - cache.time_samples()[before].time;
     let earlier = cache.positions(object, before)?;
     if earlier.len() != now.len() {
-        return Ok(vec![[0.0; 3]; now.len()]); // It had another mesh.
+        return Ok(vec![[0.0; 3]; now.len()]); // The mesh has changed.
     }
     let speed = |(now, before): (&f32, &f32)| ((f64::from(*now) - f64::from(*before)) / passed) as f32;
     let each = now
@@ -132,8 +137,8 @@ fn guessed(cache: &mut Playback, object: usize, moment: usize) -> Result<Vec<[f3
     Ok(each.collect())
 }
 
-/// Sets a column of a cloth, in the units of the scene.
-fn start(
+/// Sets an attribute with a vector per point. `scale` converts units of the cache to units of the scene.
+fn set_column(
     scene: &mut Scene,
     cloth: &Object,
     row: &'static Attribute,
@@ -151,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_frame_stands_behind_the_cache() {
+    fn a_frame_follows_the_name_of_the_cache() {
         let read = |text: &str| text.parse::<InitialState>();
         let of = |cache: &str, frame| Ok(InitialState { cache: cache.into(), frame });
         assert_eq!(read("a.mcap@80"), of("a.mcap", Some(80)));

@@ -1,83 +1,77 @@
-//! The `nucleus` command: the only crate that prints or exits.
+//! The `nucleus` command. No other crate prints or exits.
 //!
-//! | You want to know…                          | Read                       |
-//! |--------------------------------------------|----------------------------|
-//! | what a subcommand does                     | `commands/`, a file each   |
-//! | what the exit code means                   | `outcome.rs`               |
-//! | how a run goes, frame by frame             | `simulate.rs`              |
-//! | what its cache says of it                  | `recording.rs`             |
-//! | how it is gone on with                     | `continued.rs`             |
-//! | how a scene is opened, and refused         | `scene_file.rs`            |
-//! | how a cache is opened, and refused         | `cache_file.rs`            |
-//! | how numbers are written for people         | `figures.rs`               |
-//! | how quality is asked for                   | `quality.rs`               |
-//! | where results are kept between commands    | `cache_folder.rs`          |
+//! | You want to know…                                        | Read                     |
+//! |----------------------------------------------------------|--------------------------|
+//! | what a subcommand does                                   | `commands/`              |
+//! | what an option's value means                             | `options.rs`             |
+//! | what the exit code means, and how signals are handled    | `process.rs`             |
+//! | how a run advances, frame by frame                       | `run_loop.rs`            |
+//! | what its cache states about it                           | `recording.rs`           |
+//! | how a run is resumed                                     | `resumed_run.rs`         |
+//! | what a run reports at its end                            | `summary.rs`             |
+//! | when that report is a failure or a warning               | `warnings.rs`            |
+//! | how a scene or a cache is opened, and refused            | `files.rs`               |
+//! | where results are stored between commands                | `quality.rs`             |
 
-mod account;
-mod cache_file;
-mod cache_folder;
 mod commands;
-mod continued;
 mod diagnostics;
 mod figures;
-mod fingerprint;
-mod frame_range;
+mod files;
 mod initial_state;
-mod interrupt;
-mod outcome;
+mod options;
 mod output;
+mod process;
 mod progress;
 mod quality;
-mod record;
 mod recording;
-mod scene_file;
-mod session;
-mod simulate;
+mod resumed_run;
+mod run_loop;
+mod run_statistics;
 mod summary;
-mod threads;
-mod trouble;
+mod warnings;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use nucleus_graph::memory::Memory;
 
-use outcome::Outcome;
 use output::say;
+use process::Outcome;
 
-/// The open Nucleus: cloth and colliders, simulated without Maya.
+/// Nucleus: simulates cloth and colliders without Maya.
 #[derive(Debug, Parser)]
-#[command(name = "nucleus", version, after_help = outcome::EXIT_CODES)]
+#[command(name = "nucleus", version, after_help = process::EXIT_CODES)]
 struct Arguments {
     #[command(subcommand)]
     command: commands::Command,
-    /// The memory that a scene may take by estimate, as `8G`; three quarters of the machine's if nothing is said.
-    #[arg(long, global = true, value_name = "SIZE", value_parser = scene_file::parse_memory)]
+    /// Memory limit: a scene whose estimate is larger is refused. `8G`; default: three quarters of the machine's memory.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = options::memory_size)]
     memory: Option<Memory>,
 }
 
 fn main() -> ExitCode {
-    interrupt::heed_file_size_limit();
-    let Arguments { command, memory } = Arguments::parse();
-    memory.into_iter().for_each(scene_file::set_memory);
+    process::report_file_size_limit_as_error();
+    let arguments = options::with_present_names(std::env::args_os().collect());
+    let Arguments { command, memory } = Arguments::parse_from(arguments);
+    memory.into_iter().for_each(files::set_memory_limit);
     match command.run() {
-        Ok(outcome) => having_told(outcome).into(),
-        // Whoever reads our output has seen enough: `nucleus info x.mcap | head -3`.
-        Err(error) if output::reader_has_gone(&error) => ExitCode::SUCCESS,
-        Err(error) if output::is_lost(&error) => {
+        Ok(outcome) => with_report_error(outcome).into(),
+        // The reader has closed the pipe: `nucleus info x.mcap | head -3`.
+        Err(error) if output::is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if output::is_print_error(&error) => {
             say!("error: {error:#}");
-            Outcome::Trouble.into()
+            Outcome::Problem.into()
         }
         Err(error) => {
             say!("error: {error:#}");
-            outcome::COULD_NOT_START.into()
+            process::COULD_NOT_START.into()
         }
     }
 }
 
-/// The outcome of a command that has done its work: if it could not tell of it, that is trouble too.
-fn having_told(outcome: Outcome) -> Outcome {
-    let Some(error) = output::lost() else { return outcome };
-    say!("warning: standard output cannot be written to, not all was printed: {error}");
-    if outcome == Outcome::Fine { Outcome::Trouble } else { outcome }
+/// The outcome of a command. A success becomes a problem if its report could not be printed.
+fn with_report_error(outcome: Outcome) -> Outcome {
+    let Some(error) = output::report_error() else { return outcome };
+    say!("warning: standard output cannot be written to, the report is incomplete: {error}");
+    if outcome == Outcome::Success { Outcome::Problem } else { outcome }
 }

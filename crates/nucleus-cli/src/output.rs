@@ -1,7 +1,7 @@
 //! Standard output and standard error, which may be closed or full at any time.
 //!
-//! A command whose result is a text [`print()`]s it, and ends where that fails. A command whose result is a file
-//! [`tell`]s of it: it goes on to its end whether anybody reads that or not, and [`lost`] says so then.
+//! A command whose result is text [`print()`]s it and ends if that fails. A command whose result is a file
+//! [`report`]s: it runs to its end even if nobody reads the report, and [`report_error`] returns the failure.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
@@ -9,18 +9,18 @@ use std::sync::OnceLock;
 
 use anyhow::Result;
 
-/// What the system said when a text was not written for the first time.
-static LOST: OnceLock<io::Error> = OnceLock::new();
+/// The first error of a [`report`].
+static REPORT_ERROR: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a text.
+/// Prints a text that is the result of the command.
 ///
 /// # Errors
-/// When nobody takes it; see [`is_lost`].
+/// If standard output cannot be written; see [`is_print_error`].
 pub fn print(text: &str) -> Result<()> {
-    write(text).map_err(|error| NotPrinted(error).into())
+    write(text).map_err(|error| PrintError(error).into())
 }
 
-/// Prints one JSON value on a line of its own.
+/// Prints one JSON value on one line.
 ///
 /// # Errors
 /// As [`print()`].
@@ -28,55 +28,42 @@ pub fn print_json(value: &serde_json::Value) -> Result<()> {
     print(&format!("{value}\n"))
 }
 
-/// Prints a text, if anybody takes it. After the first that nobody took no other is tried.
-pub fn tell(text: &str) {
-    if LOST.get().is_none() {
-        told(write(text));
+/// Prints a text that accompanies the result. After the first failure nothing more is printed.
+pub fn report(text: &str) {
+    if REPORT_ERROR.get().is_none() {
+        keep_error(write(text));
     }
 }
 
-/// Keeps in mind whether something was told.
-fn told(written: io::Result<()>) {
+/// As [`report`], for one JSON value on one line.
+pub fn report_json(value: &serde_json::Value) {
+    report(&format!("{value}\n"));
+}
+
+fn keep_error(written: io::Result<()>) {
     if let Err(error) = written {
-        LOST.get_or_init(|| error);
+        REPORT_ERROR.get_or_init(|| error);
     }
 }
 
-/// What has come of a text that was [`print()`]ed, if it is the result of the command, or else told.
+/// The first error of a [`report`], if there is one.
+pub fn report_error() -> Option<&'static io::Error> {
+    REPORT_ERROR.get()
+}
+
+/// Handles the outcome of a [`write()`]: as [`print()`] if the text is the result of the command, else as [`report`].
 ///
 /// # Errors
 /// As [`print()`].
-pub fn put(written: io::Result<()>, is_result: bool) -> Result<()> {
+pub fn check(written: io::Result<()>, is_result: bool) -> Result<()> {
     match is_result {
-        true => written.map_err(|error| NotPrinted(error).into()),
+        true => written.map_err(|error| PrintError(error).into()),
         false => {
-            told(written);
+            keep_error(written);
             Ok(())
         }
     }
 }
-
-/// The same for one JSON value on a line of its own.
-pub fn tell_json(value: &serde_json::Value) {
-    tell(&format!("{value}\n"));
-}
-
-/// Why something that was told got lost, if so.
-pub fn lost() -> Option<&'static io::Error> {
-    LOST.get()
-}
-
-/// Writes to standard error, if that can be written to: `eprintln!` would end the command if not.
-pub fn write_error(text: fmt::Arguments) {
-    // There is nowhere left to say that this failed.
-    let _ = writeln!(io::stderr(), "{text}");
-}
-
-/// As `eprintln!`, but a closed or full standard error ends nothing.
-macro_rules! say {
-    ($($text:tt)*) => { $crate::output::write_error(format_args!($($text)*)) };
-}
-pub(crate) use say;
 
 /// Writes a text to standard output.
 pub fn write(text: &str) -> io::Result<()> {
@@ -85,28 +72,40 @@ pub fn write(text: &str) -> io::Result<()> {
     out.flush()
 }
 
-/// A text could not be printed.
-#[derive(Debug)]
-struct NotPrinted(io::Error);
+/// Writes a line to standard error if that is possible.
+pub fn write_error(text: fmt::Arguments) {
+    // There is no other stream on which to report this failure.
+    let _ = writeln!(io::stderr(), "{text}");
+}
 
-impl fmt::Display for NotPrinted {
+/// As `eprintln!`, but without a panic where standard error is closed or full.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::output::write_error(format_args!($($text)*)) };
+}
+pub(crate) use say;
+
+/// The result of a command could not be printed.
+#[derive(Debug)]
+struct PrintError(io::Error);
+
+impl fmt::Display for PrintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("standard output cannot be written to")
     }
 }
 
-impl std::error::Error for NotPrinted {
+impl std::error::Error for PrintError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.0)
     }
 }
 
-/// Whether an error only says that a text could not be printed.
-pub fn is_lost(error: &anyhow::Error) -> bool {
-    error.is::<NotPrinted>()
+/// Whether an error is that of [`print()`].
+pub fn is_print_error(error: &anyhow::Error) -> bool {
+    error.is::<PrintError>()
 }
 
-/// Whether it only says that nobody reads our output any more.
-pub fn reader_has_gone(error: &anyhow::Error) -> bool {
-    error.downcast_ref::<NotPrinted>().is_some_and(|NotPrinted(error)| error.kind() == ErrorKind::BrokenPipe)
+/// Whether the reader has closed the pipe.
+pub fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<PrintError>().is_some_and(|PrintError(error)| error.kind() == ErrorKind::BrokenPipe)
 }

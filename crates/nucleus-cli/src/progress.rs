@@ -1,112 +1,159 @@
-//! How far a run is, on standard error: a bar on a terminal, a line now and then anywhere else.
+//! Progress on standard error: a bar on a terminal, otherwise a line every few seconds.
 
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use nucleus_measure::trade;
 
-use crate::account::Account;
 use crate::figures;
 use crate::output::say;
+use crate::run_statistics::RunStatistics;
 
-/// How often a line is printed where there is no terminal.
-const LINE_EVERY: Duration = Duration::from_secs(5);
-
-/// Shows how far a run is.
-pub enum Progress {
-    /// On a terminal.
-    Bar(ProgressBar),
-    /// Into a file or a pipe.
-    Lines {
-        /// Frames in all.
-        frames: u32,
-        /// When the last line was printed.
-        last: Instant,
-    },
+/// A bar, if standard error is a terminal.
+fn bar(length: u64, template: &str) -> Option<ProgressBar> {
+    let bar = stderr().is_terminal().then(|| ProgressBar::new(length))?;
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    Some(bar)
 }
 
-impl Progress {
-    /// Begins, for so many frames to simulate.
+/// Steps of bars that show a share.
+const STEPS: u64 = 1000;
+
+/// Progress of a run.
+pub struct RunProgress {
+    bar: Option<ProgressBar>,
+    frames: u32,
+    last_line: Instant,
+}
+
+impl RunProgress {
+    /// Time between two lines.
+    const LINE_EVERY: Duration = Duration::from_secs(5);
+
+    /// Progress of a run with this many frames to simulate.
     pub fn new(frames: u32) -> Self {
-        if !stderr().is_terminal() {
-            return Self::Lines { frames, last: Instant::now() };
-        }
-        let bar = ProgressBar::new(frames.into());
-        let template = "{wide_bar} frame {pos} of {len}, {eta} left, {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        Self::Bar(bar)
+        let bar = bar(frames.into(), "{wide_bar} frame {pos} of {len}, {eta} left, {msg}");
+        Self { bar, frames, last_line: Instant::now() }
     }
 
-    /// A frame has been simulated.
-    pub fn show(&mut self, account: &Account) {
-        match self {
-            Self::Bar(bar) => {
-                bar.set_message(state(account));
-                bar.set_position(account.frames.into());
+    /// Shows the state after a frame.
+    pub fn show(&mut self, statistics: &RunStatistics) {
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(state(statistics));
+                bar.set_position(statistics.frames.into());
             }
-            Self::Lines { frames, last } if last.elapsed() >= LINE_EVERY => {
-                *last = Instant::now();
-                let left = account.spent / account.frames.max(1) * (*frames - account.frames.min(*frames));
-                let left = left.as_secs();
-                say!("frame {} of {frames}, {left} s left, {}", account.frames, state(account));
+            None if self.last_line.elapsed() >= Self::LINE_EVERY => {
+                self.last_line = Instant::now();
+                let remaining = self.frames.saturating_sub(statistics.frames);
+                let left = (statistics.time / statistics.frames.max(1) * remaining).as_secs();
+                let (frame, frames) = (statistics.frames, self.frames);
+                say!("frame {frame} of {frames}, {left} s left, {}", state(statistics));
             }
-            Self::Lines { .. } => {}
+            None => {}
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn end(self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
-        }
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 }
 
 /// `12.4 ms/frame, strain 1.2 %, gap 0.98, 36 pairs unresolved`.
-fn state(account: &Account) -> String {
-    let mut state = format!("{} ms/frame", figures::number(account.milliseconds()));
-    if let Some((strain, _)) = account.worst_strain {
+fn state(statistics: &RunStatistics) -> String {
+    let mut state = format!("{} ms/frame", figures::number(statistics.milliseconds()));
+    if let Some((strain, _)) = statistics.worst_strain {
         state += &format!(", strain {}", figures::percent(strain));
     }
-    if let Some((gap, _)) = account.smallest_gap {
+    if let Some((gap, _)) = statistics.smallest_gap {
         state += &format!(", gap {}", figures::number(gap));
     }
-    let unresolved = account.pairs_unresolved.total;
+    let unresolved = statistics.pairs_unresolved.total;
     if unresolved > 0 {
         state += &format!(", {} unresolved", figures::count(unresolved as usize, "pair"));
     }
     state
 }
 
-/// Shows how far something other than a run is, on a terminal only: it seldom takes long.
-pub struct Steps(Option<ProgressBar>);
+/// Progress of an export or a film, which seldom take long: on a terminal only.
+pub struct ShareProgress(Option<ProgressBar>);
 
-impl Steps {
-    /// Begins; `what` is being done.
-    pub fn new(what: &'static str) -> Self {
-        let bar = stderr().is_terminal().then(|| ProgressBar::new(1000));
-        if let (Some(bar), Ok(style)) =
-            (&bar, ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} left"))
-        {
-            bar.set_style(style);
-            bar.set_message(what);
-        }
+impl ShareProgress {
+    /// Progress of `activity`, such as "exporting".
+    pub fn new(activity: &'static str) -> Self {
+        let bar = bar(STEPS, "{msg} {wide_bar} {percent} %, {eta} left");
+        bar.iter().for_each(|bar| bar.set_message(activity));
         Self(bar)
     }
 
-    /// So much is done, from 0 to 1.
+    /// Shows the share that is done, from 0 to 1.
     pub fn show(&mut self, share: f64) {
         if let Some(bar) = &self.0 {
-            bar.set_position((1000.0 * share) as u64);
+            bar.set_position((STEPS as f64 * share) as u64);
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn end(self) {
-        if let Some(bar) = self.0 {
-            bar.finish_and_clear();
+        self.0.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+/// Progress of a sweep over settings.
+pub struct SweepProgress {
+    bar: Option<ProgressBar>,
+    begin: Instant,
+    last_line: Instant,
+}
+
+impl SweepProgress {
+    /// Time between two lines.
+    const LINE_EVERY: Duration = Duration::from_secs(10);
+
+    pub fn new() -> Self {
+        Self {
+            bar: bar(STEPS, "{wide_bar} {percent} %, {msg}"),
+            begin: Instant::now(),
+            last_line: Instant::now(),
         }
+    }
+
+    /// Shows how many runs are done.
+    pub fn show(&mut self, progress: &trade::Progress) {
+        let state = self.state(progress);
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((progress.done * STEPS as f64) as u64);
+                bar.set_message(state);
+            }
+            None if self.last_line.elapsed() >= Self::LINE_EVERY => {
+                self.last_line = Instant::now();
+                say!("{:.0} %, {state}", 100.0 * progress.done);
+            }
+            None => {}
+        }
+    }
+
+    /// Removes the bar.
+    pub fn end(self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+
+    /// `7 of 23 runs done (3 stored), 2 minutes left`.
+    fn state(&self, progress: &trade::Progress) -> String {
+        let [finished, all] = progress.runs;
+        let stored = if progress.kept > 0 { format!(" ({} stored)", progress.kept) } else { String::new() };
+        let left = match progress.done {
+            done if done > 0.01 => {
+                let left = self.begin.elapsed().as_secs_f64() * (1.0 - done) / done;
+                format!(", {} left", HumanDuration(Duration::from_secs_f64(left)))
+            }
+            _ => String::new(),
+        };
+        format!("{finished} of {all} runs done{stored}{left}")
     }
 }

@@ -1,4 +1,7 @@
-//! Quality as it is asked for: an error, or a time; and the setting that a scene's stored curve has for it.
+//! `--quality` and the store behind it: the setting that `nucleus trade` recommends for an error or a time.
+
+use std::env;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use nucleus_graph::scene::Scene;
@@ -7,9 +10,7 @@ use nucleus_measure::store::Store;
 use nucleus_measure::trade::recommend::{Choice, for_error};
 use nucleus_measure::trade::{Setting, Subject, Trade};
 
-use crate::cache_folder;
-
-/// `1%`, `0.5 %` or `0.01`, as a share.
+/// An error as a share: `1%`, `0.5 %` or `0.01`.
 pub fn error(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.trim().strip_suffix('%') {
         Some(number) => (number, 0.01),
@@ -17,12 +18,12 @@ pub fn error(text: &str) -> Result<f64, String> {
     };
     match number.trim().parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
-        Ok(_) => Err("an error has to be above 0".to_owned()),
+        Ok(_) => Err("an error must be above 0".to_owned()),
         Err(_) => Err("write an error as `1%` or `0.01`".to_owned()),
     }
 }
 
-/// `30ms`, `30` or `0.03s`, in milliseconds.
+/// A time in milliseconds: `30ms`, `30` or `0.03s`.
 pub fn time(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let (number, scale) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
@@ -32,39 +33,56 @@ pub fn time(text: &str) -> Result<f64, String> {
     };
     match number.trim().parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
-        Ok(_) => Err("a time has to be above 0".to_owned()),
+        Ok(_) => Err("a time must be above 0".to_owned()),
         Err(_) => Err("write a time as `30ms` or `0.03s`".to_owned()),
     }
 }
 
-/// Where the results of a scene are kept.
-pub fn store(subject: &Subject) -> Store {
-    Store::new(&cache_folder::folder().join("trade"), &subject.name())
+/// The folder for results that are expensive to compute: `NUCLEUS_CACHE`, or the cache folder of the system.
+/// It can be deleted at any time.
+fn folder() -> PathBuf {
+    let set = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    if let Some(folder) = set("NUCLEUS_CACHE") {
+        return folder;
+    }
+    let system = if cfg!(windows) {
+        set("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        set("HOME").map(|home| home.join("Library").join("Caches"))
+    } else {
+        set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))
+    };
+    system.map_or_else(|| PathBuf::from(".nucleus-cache"), |system| system.join("nucleus"))
 }
 
-/// The scene at the cheapest setting for an error, by the curve that `nucleus trade` has stored; and which it is.
+/// The stored results of a scene.
+pub fn store(subject: &Subject) -> Store {
+    Store::new(&folder().join("trade"), &subject.name())
+}
+
+/// The scene at the cheapest stored setting with at most the error `wanted`, a description of it, and the setting.
 pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
     let subject = Subject::new(scene)?;
     let trade = Trade::find(&store(&subject))?.with_context(|| {
-        format!("nothing is known of `{name}` and this solver yet: run `nucleus trade {name}` first")
+        format!("there are no stored results for `{name}` and this solver: run `nucleus trade {name}` first")
     })?;
     let point = match for_error(&trade, wanted) {
         Choice::Found(point) => point,
         Choice::Nearest(point) | Choice::Untold(point) => bail!(
-            "no setting of `{name}` reaches {}; the nearest is {} with {}",
+            "no setting of `{name}` reaches {}; the nearest has {}, with {}",
             report::percent(wanted),
             report::percent(point.error.unwrap_or_default()),
             point.setting
         ),
-        Choice::None => bail!("no setting of `{name}` is sound: see what `nucleus trade {name}` says"),
+        Choice::None => bail!("no setting of `{name}` is usable: see the output of `nucleus trade {name}`"),
     };
     let error = report::percent(point.error.unwrap_or_default());
-    let said = format!(
+    let description = format!(
         "{}: error {error}, about {} ms a frame on one core",
         point.setting,
         report::figure(point.ms)
     );
-    Ok((subject.set(&point.setting), said, point.setting))
+    Ok((subject.set(&point.setting), description, point.setting))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
-//! From a program to a recorder: what the cache is to say of the run.
+//! From a simulation to a recorder: what a cache states about its run, and the fingerprint of what the run was made from.
 
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
@@ -9,52 +10,53 @@ use nucleus_cache::{
 };
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
+use nucleus_measure::fingerprint::Fingerprint;
 use nucleus_measure::trade::Setting;
 
-use crate::continued::{PROGRAM, SETTING};
-use crate::fingerprint::fingerprint;
 use crate::initial_state::InitialState;
+use crate::options::{Channels, Moments};
 
-use crate::record::{Channels, Moments};
+/// Key of the [`fingerprint`] in the facts of a cache.
+pub const PROGRAM: &str = "program";
+/// Key of the setting that `--quality` selected.
+pub const SETTING: &str = "setting";
 
-/// How a cache is to be written.
+/// How a cache is written.
 #[derive(Debug, Clone)]
-pub struct Manner {
-    /// Which moments are recorded.
+pub struct RecordOptions {
     pub moments: Moments,
-    /// What is recorded of them.
     pub channels: Channels,
-    /// Whether an older cache may be replaced.
+    /// Whether an existing cache is replaced.
     pub force: bool,
-    /// Whether it is to be as small as can be, at the cost of time.
+    /// Whether the cache is packed harder: smaller, and slower to write.
     pub compact: bool,
     /// Frames from one checkpoint to the next; 0 for none.
     pub checkpoint: u32,
-    /// What else is worth knowing.
+    /// Further facts about the run; see [`facts`].
     pub facts: BTreeMap<String, String>,
 }
 
-/// Begins the cache of a run at its start frame; none if nothing is to be recorded.
+/// Creates the cache of a run and records the start frame. Returns `None` if nothing is recorded.
 pub fn begin(
     simulation: &Simulation,
-    manner: Manner,
+    options: RecordOptions,
     out: &Path,
     scene: (&Path, &str),
 ) -> Result<Option<Recorder>> {
-    let Moments::Of(detail) = manner.moments else { return Ok(None) };
-    let Channels { velocities, contacts, strain } = manner.channels;
+    let Moments::Of(detail) = options.moments else { return Ok(None) };
+    let Channels { velocities, contacts, strain } = options.channels;
     let run = RunInfo {
         detail,
         velocities,
         contacts,
         strain,
-        packing: if manner.compact { Packing::Small } else { Packing::Fast },
-        checkpoint: manner.checkpoint,
-        extra: manner.facts,
+        packing: if options.compact { Packing::Small } else { Packing::Fast },
+        checkpoint: options.checkpoint,
+        extra: options.facts,
         ..of_scene(simulation, scene)?
     };
     let objects = objects(simulation);
-    let recorder = match manner.force {
+    let recorder = match options.force {
         true => Recorder::replace(out, &run, objects),
         false => Recorder::create(out, &run, objects),
     };
@@ -66,7 +68,7 @@ pub fn begin(
     Ok(Some(recorder))
 }
 
-/// What a scene alone tells of its run.
+/// The facts about a run that follow from its scene. `scene` is its path and its text.
 pub fn of_scene(simulation: &Simulation, scene: (&Path, &str)) -> Result<RunInfo> {
     let program = simulation.program();
     let (start, end) = frames(program)?;
@@ -87,7 +89,7 @@ pub fn of_scene(simulation: &Simulation, scene: (&Path, &str)) -> Result<RunInfo
     })
 }
 
-/// A camera as a cache has it.
+/// A compiled camera as a camera of a cache.
 fn camera(camera: compile::Camera) -> Camera {
     let fit = match camera.fit {
         compile::FilmFit::Fill => FilmFit::Fill,
@@ -106,9 +108,9 @@ fn camera(camera: compile::Camera) -> Camera {
     Camera { name: camera.name, fit, views: camera.views.into_iter().map(view).collect() }
 }
 
-/// What else is worth knowing of a run: where it begins, if that is a frame of another cache; the setting that a quality
-/// stands for; a fingerprint of what was `read`. Nothing that may change from one run of a scene to the next, such as the
-/// date or the number of threads: the same run gives the same bytes.
+/// Further facts about a run: its initial state, the setting that `--quality` selected, and the fingerprint of the program
+/// that was `read`. Nothing that differs between two runs of a scene, such as the date or the number of threads, because
+/// equal runs give equal bytes.
 pub fn facts(
     from: Option<&InitialState>,
     setting: Option<Setting>,
@@ -124,7 +126,7 @@ pub fn facts(
     Ok(facts)
 }
 
-/// The same of a run that goes on, perhaps with a scene that has `changed`.
+/// The facts about a resumed run, whose scene may have `changed`.
 pub fn facts_of(run: &RunInfo, changed: Option<&Program>) -> BTreeMap<String, String> {
     let mut facts = run.extra.clone();
     facts.extend(changed.map(|program| (PROGRAM.to_owned(), fingerprint(program))));
@@ -135,17 +137,41 @@ fn machine() -> String {
     format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
 }
 
+/// A hash of a compiled scene: nodes, values, connections, meshes and maps as they were read.
+///
+/// It does not depend on where the files are, on the frame range, the checks or the recorded channels.
+pub fn fingerprint(program: &Program) -> String {
+    let mut hash = Hash(Fingerprint::default());
+    // Every derived field takes part. Writing to a hash cannot fail.
+    let _ = write!(hash, "{:?}{:?}", program.nuclei(), program.graph());
+    hash.0.name()
+}
+
+/// Hashes text as it is written.
+struct Hash(Fingerprint);
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0 = self.0.bytes(text.as_bytes());
+        Ok(())
+    }
+}
+
 /// First and last frame of a program.
 pub fn frames(program: &Program) -> Result<(i32, i32)> {
     let time = program.time();
     if time.end < time.start {
-        bail!("the run ends at frame {}, before it starts at frame {}", time.end, time.start);
+        bail!(
+            "the run ends at frame {} before it starts at frame {}: correct `time` or `--frames`",
+            time.end,
+            time.start
+        );
     }
     let frame = |frame: i64| i32::try_from(frame).with_context(|| format!("frame {frame} is out of range"));
     Ok((frame(time.start)?, frame(time.end)?))
 }
 
-/// What each recorded object is to the solver, for objects of these names.
+/// Recorded objects with the objects of the solver that have their names.
 pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source, ObjectInfo)> {
     let source = |recorded: &ObjectInfo| {
         let object = simulation.objects().iter().find(|object| object.name == recorded.name)?;
@@ -157,7 +183,7 @@ pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source
     objects.into_iter().filter_map(|object| source(&object).map(|source| (source, object))).collect()
 }
 
-/// The objects as they are now, at the start frame.
+/// The objects of a simulation at its start frame, with rest positions in scene units.
 pub fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
     let units = simulation.units_per_metre();
     let state = simulation.state();

@@ -1,4 +1,4 @@
-//! What a run has come to, for people and for machines.
+//! The summary of a run, as text and as JSON.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -9,82 +9,79 @@ use nucleus_graph::checks::{self, Bound};
 use nucleus_graph::compile::{Object, ObjectKind};
 use serde_json::{Value, json};
 
-use crate::account::{Account, Count};
-use crate::figures;
-use crate::outcome::Outcome;
-use crate::simulate::Ending;
-use crate::trouble;
+use crate::process::Outcome;
+use crate::run_statistics::{Count, Ending, RunStatistics};
+use crate::{figures, warnings};
 
 /// A run that has ended.
 pub struct Summary<'a> {
-    pub account: Account,
+    pub statistics: RunStatistics,
     pub ending: Ending,
     pub checks: &'a [checks::Outcome],
-    /// The audit, if one was asked for.
+    /// The audit, if `--audit` requested one.
     pub audit: Option<&'a Audit>,
-    /// The cache and its size in bytes, if one was written to its end.
+    /// The cache and its size in bytes, if it is complete.
     pub recorded: Option<(PathBuf, u64)>,
-    /// The start frame and the last one reached.
+    /// The start frame and the last simulated one.
     pub frames: (i64, i64),
     /// The objects of the run.
     pub objects: &'a [Object],
 }
 
 impl Summary<'_> {
-    /// What the command is to end with.
+    /// The outcome of the command.
     pub fn outcome(&self) -> Outcome {
         match self.ending {
             Ending::Interrupted | Ending::Stopped(_) => Outcome::Interrupted,
-            Ending::Done if self.is_clean() => Outcome::Fine,
-            _ => Outcome::Trouble,
+            Ending::Done if self.is_clean() => Outcome::Success,
+            _ => Outcome::Problem,
         }
     }
 
     fn is_clean(&self) -> bool {
         self.audit.is_none_or(|audit| audit.account().is_clean())
             && self.checks.iter().all(|check| check.passed)
-            && self.unseparated().is_empty()
+            && self.unresolved_contact().is_empty()
     }
 
-    fn unseparated(&self) -> Vec<String> {
-        trouble::unseparated(&self.account, self.checks, self.audit.is_some())
+    fn unresolved_contact(&self) -> Vec<String> {
+        warnings::unresolved_contact(&self.statistics, self.checks, self.audit.is_some())
     }
 
     fn warning(&self) -> Option<String> {
-        trouble::stretched(&self.account, self.checks)
+        warnings::large_strain(&self.statistics, self.checks)
     }
 
-    /// For people.
+    /// The summary as text.
     pub fn as_text(&self) -> Result<String, std::fmt::Error> {
-        let Self { account, frames: (start, last), .. } = self;
+        let Self { statistics, frames: (start, last), .. } = self;
         let mut text = String::new();
-        let seconds = figures::number(account.spent.as_secs_f64());
-        let each = figures::number(account.milliseconds());
+        let seconds = figures::number(statistics.time.as_secs_f64());
+        let each = figures::number(statistics.milliseconds());
         writeln!(text, "frames {start} to {last} in {seconds} s, {each} ms/frame")?;
-        if let Some((strain, frame)) = account.worst_strain {
+        if let Some((strain, frame)) = statistics.worst_strain {
             writeln!(text, "worst strain {} at frame {frame}", figures::percent(strain))?;
         }
-        if let Some((gap, frame)) = account.smallest_gap {
+        if let Some((gap, frame)) = statistics.smallest_gap {
             writeln!(text, "smallest gap {} of the thickness, at frame {frame}", figures::number(gap))?;
         }
-        if let Some((what, frame)) = account.first_refused {
-            let (what, count) =
-                (refused(what, self.objects), figures::count(account.refused as usize, "value"));
-            writeln!(text, "frame {frame}: {what} ({count} in all)")?;
+        if let Some((input, frame)) = statistics.first_sanitized {
+            let count = figures::count(statistics.sanitized as usize, "value");
+            writeln!(text, "frame {frame}: {} ({count} sanitized in all)", sanitized(input, self.objects))?;
         }
         for outcome in self.checks {
             writeln!(text, "{}", check_line(outcome))?;
         }
         self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
-        let tolerated = trouble::tolerated(account, self.checks);
-        for line in tolerated.into_iter().chain(self.unseparated()).chain(self.warning()) {
+        let tolerated = warnings::tolerated(statistics, self.checks);
+        for line in tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warning()) {
             writeln!(text, "{line}")?;
         }
         text += &self.ending_line();
         if let Some((path, bytes)) = &self.recorded {
             let (path, size) = (path.display(), figures::bytes(*bytes));
             writeln!(text, "recorded in `{path}` ({size})")?;
-            writeln!(text, "`nucleus play {path}` shows it, `nucleus render {path}` draws it")?;
+            writeln!(text, "watch it with `nucleus play {path}`, draw it with `nucleus render {path}`")?;
         }
         Ok(text)
     }
@@ -95,11 +92,11 @@ impl Summary<'_> {
             Ending::Done => String::new(),
             Ending::Interrupted => format!("interrupted after frame {last}\n"),
             Ending::Stopped(stopped) if !stopped.is_clean => format!(
-                "interrupted within the frame after frame {last}, of which substeps are recorded: the cache stays a \
-                 `.part`, and `nucleus resume` goes on with it\n"
+                "interrupted within the frame after frame {last}, some substeps of which are recorded: the cache stays a \
+                 `.part` file, which `nucleus resume` continues\n"
             ),
             Ending::Stopped(_) => {
-                format!("interrupted after frame {last}; the frame that was in flight is dropped\n")
+                format!("interrupted after frame {last}; the unfinished frame is dropped\n")
             }
             Ending::NotFinite => {
                 format!("ended at frame {last}: a position or velocity is not a finite number\n")
@@ -108,9 +105,9 @@ impl Summary<'_> {
         }
     }
 
-    /// For machines.
+    /// The summary as JSON.
     pub fn as_json(&self) -> Value {
-        let Self { account, frames: (start, last), .. } = self;
+        let Self { statistics, frames: (start, last), .. } = self;
         let at = |figure: Option<(f64, i32)>| {
             figure.map(|(value, frame)| json!({ "value": value, "frame": frame }))
         };
@@ -124,7 +121,7 @@ impl Summary<'_> {
             .collect();
         let (path, bytes) =
             self.recorded.as_ref().map(|(path, bytes)| (path.display().to_string(), *bytes)).unzip();
-        let (ending, trouble) = match &self.ending {
+        let (ending, error) = match &self.ending {
             Ending::Done => ("done", None),
             Ending::Interrupted | Ending::Stopped(_) => ("interrupted", None),
             Ending::NotFinite => ("not finite", None),
@@ -132,22 +129,22 @@ impl Summary<'_> {
         };
         json!({ "summary": {
             "ending": ending,
-            "trouble": trouble,
+            "error": error,
             "start": start,
             "last": last,
-            "frames": account.frames,
-            "seconds": account.spent.as_secs_f64(),
-            "milliseconds_per_frame": account.milliseconds(),
-            "worst_strain": at(account.worst_strain),
-            "smallest_gap": at(account.smallest_gap),
-            "pairs_unresolved": account.pairs_unresolved.total,
-            "most_unresolved": most(&account.pairs_unresolved),
-            "trapped": lasting(&account.trapped),
-            "tangled": lasting(&account.tangled),
-            "not_separated": self.unseparated(),
+            "frames": statistics.frames,
+            "seconds": statistics.time.as_secs_f64(),
+            "milliseconds_per_frame": statistics.milliseconds(),
+            "worst_strain": at(statistics.worst_strain),
+            "smallest_gap": at(statistics.smallest_gap),
+            "pairs_unresolved": statistics.pairs_unresolved.total,
+            "most_unresolved": most(&statistics.pairs_unresolved),
+            "depenetrating": over_run(&statistics.depenetrating),
+            "intersections": over_run(&statistics.intersections),
+            "unresolved_contact": self.unresolved_contact(),
             "warning": self.warning(),
-            "refused": account.refused,
-            "first_refused": account.first_refused.map(|(what, _)| refused(what, self.objects)),
+            "sanitized": statistics.sanitized,
+            "first_sanitized": statistics.first_sanitized.map(|(input, _)| sanitized(input, self.objects)),
             "checks": checks,
             "audit": self.audit.map(audit_json),
             "cache": path,
@@ -156,39 +153,46 @@ impl Summary<'_> {
     }
 }
 
-/// The worst frame of a count; nothing if it never was more than zero.
+/// The largest count and its frame; `None` if it is zero in every frame.
 fn most(count: &Count) -> Option<Value> {
     (count.most > 0).then(|| json!({ "value": count.most, "frame": count.frame }))
 }
 
-fn lasting(count: &Count) -> Value {
+/// The largest count, its frame, and the count of the last frame.
+fn over_run(count: &Count) -> Value {
     let frame = (count.most > 0).then_some(count.frame);
     json!({ "most": count.most, "frame": frame, "end": count.end })
 }
 
-/// `point 17 of `ball` was no usable position, and was held where it was`.
-fn refused(what: InvalidInput, objects: &[Object]) -> String {
+/// `` point 17 of `ball` had no usable position and kept its last one ``.
+fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
     let name = |kind: ObjectKind| {
         objects.iter().find(|object| object.kind == kind).map_or("an object", |object| object.name.as_str())
     };
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
-    match what {
+    match input {
         InvalidInput::ColliderPoint(id, point) => {
             let (ball, point) = (name(collider(id)), point.0);
-            format!("point {point} of `{ball}` was no usable position, and was held where it was")
+            format!("point {point} of `{ball}` had no usable position and kept its last one")
         }
         InvalidInput::ColliderMotion(id) => {
-            format!("`{}` was given the wrong number of points, and stood still", name(collider(id)))
+            format!("`{}` was given the wrong number of points and did not move", name(collider(id)))
         }
         InvalidInput::Pin(id, point) => {
-            format!("point {} of `{}` was held nowhere, and stayed where it was", point.0, name(cloth(id)))
+            format!(
+                "the constraint of point {} of `{}` had no usable position and kept its last one",
+                point.0,
+                name(cloth(id))
+            )
         }
-        InvalidInput::Cloth(id) => format!("an attribute of `{}` was no usable number", name(cloth(id))),
+        InvalidInput::Cloth(id) => format!("an attribute of `{}` had no usable value", name(cloth(id))),
         InvalidInput::Collider(id) => {
-            format!("an attribute of `{}` was no usable number", name(collider(id)))
+            format!("an attribute of `{}` had no usable value", name(collider(id)))
         }
-        InvalidInput::Duration => "it had no length, and was passed over".to_owned(),
-        _ => "a setting of the solver was no usable number".to_owned(),
+        InvalidInput::Duration => {
+            "the duration of the frame was not above zero; the frame was skipped".to_owned()
+        }
+        _ => "an attribute of the nucleus had no usable value".to_owned(),
     }
 }
 
@@ -201,17 +205,17 @@ fn check_line(outcome: &checks::Outcome) -> String {
         (Bound::AtLeast, limit) => format!("at least {}", figures::number(limit)),
     };
     match outcome.worst {
-        None => format!("check {check}: {verdict}, no frame was looked at"),
+        None => format!("check {check}: {verdict}, no frame was evaluated"),
         Some((figure, frame)) => {
             format!("check {check}: {verdict} with {} at frame {frame} ({side})", figures::number(figure))
         }
     }
 }
 
-/// Findings that are told one by one; the rest is counted.
-const TOLD: usize = 5;
+/// Findings that are listed; any further ones are only counted.
+const MAX_FINDINGS: usize = 5;
 
-/// What an audit has come to, and the first that it found.
+/// The counts of an audit, and its first findings.
 fn audit_lines(audit: &Audit) -> String {
     let account = audit.account();
     let motions = figures::count(account.motions as usize, "step");
@@ -220,28 +224,28 @@ fn audit_lines(audit: &Audit) -> String {
         false => {
             let kinds = [
                 (account.crossings, "passed through each other"),
-                (account.intersections, "were found inside each other"),
+                (account.intersections, "intersected each other"),
                 (account.touches, "touched"),
-                (account.undecided, "could not be told apart"),
+                (account.undecided, "could not be decided"),
             ];
-            let said = kinds.iter().filter(|(count, _)| *count > 0);
-            let mut said: Vec<_> = said
+            let counted = kinds.iter().filter(|(count, _)| *count > 0);
+            let mut counts: Vec<_> = counted
                 .map(|(count, what)| format!("{} {what}", figures::count(*count as usize, "pair")))
                 .collect();
             if account.below_ground > 0 {
                 let points = figures::count(account.below_ground as usize, "point");
-                said.push(format!("{points} went through the ground plane"));
+                counts.push(format!("{points} went through the ground plane"));
             }
-            format!("audit of {motions}: {}\n", said.join(", "))
+            format!("audit of {motions}: {}\n", counts.join(", "))
         }
     };
     if account.initial_intersections > 0 {
         let (start, now) = (account.initial_intersections, account.remaining_initial_intersections);
         let start = figures::count(start as usize, "pair");
-        text += &format!("audit: {start} of edge and face began inside each other, {now} still are\n");
+        text += &format!("audit: {start} of an edge and a face intersected at the start, {now} still do\n");
     }
-    audit.findings().take(TOLD).for_each(|finding| text += &format!("  {finding}\n"));
-    let rest = account.found().saturating_sub(TOLD as u64);
+    audit.findings().take(MAX_FINDINGS).for_each(|finding| text += &format!("  {finding}\n"));
+    let rest = account.found().saturating_sub(MAX_FINDINGS as u64);
     if rest > 0 { text + &format!("  and {rest} more\n") } else { text }
 }
 
@@ -254,8 +258,8 @@ fn audit_json(audit: &Audit) -> Value {
         "touches": account.touches,
         "undecided": account.undecided,
         "below_ground": account.below_ground,
-        "tangled_at_start": account.initial_intersections,
-        "tangled": account.remaining_initial_intersections,
+        "intersections_at_start": account.initial_intersections,
+        "intersections": account.tangled,
         "inside": account.current_intersections,
         "first": audit.findings().next(),
     })
@@ -268,7 +272,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_refused_is_named_as_the_scene_names_it() {
+    fn sanitized_input_is_named_by_its_object_and_point() {
         let object = |name: &str, kind| Object {
             name: name.to_owned(),
             kind,
@@ -280,8 +284,8 @@ mod tests {
             object("silk", ObjectKind::Cloth(ClothId(0))),
             object("ball", ObjectKind::Collider(ColliderId(0))),
         ];
-        let said = refused(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects);
-        assert_eq!(said, "point 17 of `ball` was no usable position, and was held where it was");
-        assert!(refused(InvalidInput::Cloth(ClothId(0)), &objects).contains("`silk`"));
+        let said = sanitized(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects);
+        assert_eq!(said, "point 17 of `ball` had no usable position and kept its last one");
+        assert!(sanitized(InvalidInput::Cloth(ClothId(0)), &objects).contains("`silk`"));
     }
 }

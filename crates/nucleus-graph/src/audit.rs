@@ -76,8 +76,8 @@ impl Audit {
     }
 
     /// The counts of penetrations found so far.
-    pub fn account(&self) -> Account {
-        self.auditor.account()
+    pub fn account(&self) -> AuditCounts {
+        self.auditor.counts()
     }
 
     /// Descriptions of the first findings, in order of time.
@@ -89,24 +89,24 @@ impl Audit {
     fn step(&mut self, share: f64, substep: u32, state: &dyn StateView, planes: &GroundPlanes) {
         if self.closeness == Closeness::Steps {
             self.stepped = true;
-            read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
-            let now = Moment { frame: self.frame, substep };
+            read(&self.objects, self.auditor.collision_mesh(), (state, share), &mut self.positions);
+            let now = StateIndex { frame: self.frame, substep };
             self.audit_ground(now, share, planes);
-            self.auditor.see(now, &self.positions);
+            self.auditor.check_motion(now, &self.positions);
         }
     }
 
-    fn audit_ground(&mut self, now: Moment, share: f64, planes: &GroundPlanes) {
+    fn audit_ground(&mut self, now: StateIndex, share: f64, planes: &GroundPlanes) {
         for (body, object) in self.objects.iter().enumerate() {
             if let ObjectKind::Cloth(cloth) = *object {
-                self.auditor.see_ground(now, body, planes.of(cloth, share), &self.positions);
+                self.auditor.check_ground(now, body, planes.of(cloth, share), &self.positions);
             }
         }
     }
 
     /// Audits the end of a substep.
     fn substep(&mut self, moment: core::SubstepIndex, state: &dyn StateView, planes: &GroundPlanes) {
-        let now = Moment { frame: self.frame, substep: moment.substep };
+        let now = StateIndex { frame: self.frame, substep: moment.substep };
         let share = f64::from(moment.substep) / f64::from(moment.substeps);
         if !std::mem::take(&mut self.stepped) {
             self.step(share, moment.substep, state, planes);
@@ -116,9 +116,9 @@ impl Audit {
             _ if !moment.ends_frame() => {}
             Closeness::Steps => self.auditor.check_intersections(now),
             Closeness::Frames => {
-                read(&self.objects, self.auditor.world(), (state, share), &mut self.positions);
+                read(&self.objects, self.auditor.collision_mesh(), (state, share), &mut self.positions);
                 self.audit_ground(now, share, planes);
-                self.auditor.follow(now, &self.positions);
+                self.auditor.check_state(now, &self.positions);
             }
         }
     }

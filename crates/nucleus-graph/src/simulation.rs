@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use nalgebra::Vector3;
-use nucleus_audit::World;
+use nucleus_audit::CollisionMesh;
 use nucleus_core::{
     ClothId, ColliderId, ContactState, Encode, FrameInput, Pin, PointId, Reader, Real, RestoreError, Solver,
     StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
@@ -46,7 +46,7 @@ impl<R: Real> Simulation<R> {
     /// Audits the run from the current frame on.
     pub fn begin_audit(&mut self, closeness: Closeness) {
         let pins = self.next_pins();
-        let rules = |world: &World| collision_rules(&self.program, self.next_frame(), &pins, world);
+        let rules = |world: &CollisionMesh| collision_rules(&self.program, self.next_frame(), &pins, world);
         self.audit = Some(Audit::new(self.objects(), closeness, self.state(), rules));
     }
 

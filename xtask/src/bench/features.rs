@@ -1,4 +1,4 @@
-//! Only what a scene needs: one feature at a time is added to the same sheet, and its cost is measured.
+//! Cost of each feature: features are added to the same sheet one after the other.
 
 use nalgebra::Vector3;
 use nucleus_core::{
@@ -63,15 +63,15 @@ fn measure(lists: ClothLists, input: &FrameInput, repeat: u32) -> Result<Cost, B
     Ok(Cost { ms: times[times.len() / 2], passes })
 }
 
-/// What the page on this says above its table.
-pub const HEAD: &str = "# Only what a scene needs
+/// The text of the page above its table.
+pub const HEAD: &str = "# Cost of each feature
 
-One feature after the other is added to the same sheet of 65² points that falls, 48 evaluations in 1/24 s.
-**Rows** are what is swept, **passes** what is done in every step; both are those that `nucleus info` shows.
-**More ms** is what the feature adds to a frame.
-**Off** is the same with the feature's list built and its attribute at 0, against the sheet without that list: it has no rows \
-and no passes more; by what its time differs is to be noise.
-`cargo xtask book --only features` makes this page anew.
+Features are added one after the other to the same falling sheet of 65² points with 48 evaluations in 1/24 s.
+**Rows** are constraint rows that a sweep projects, **passes** the passes of each time step; `nucleus info` shows both.
+**More ms** is the time that the feature adds to a frame.
+**Off** compares two sheets without the feature: one with its list built and its attribute at 0, one without the list. \
+There are no additional rows and passes, and the difference in time is noise.
+`cargo xtask book --only features` regenerates this page.
 ";
 
 /// Adds the features one by one.

@@ -1,4 +1,4 @@
-//! `nucleus diff`: where two caches differ first, and by how much.
+//! `nucleus diff`: the first difference between two caches, and its size.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -8,21 +8,20 @@ use clap::Args;
 use nucleus_cache::{Comparison, Difference, PointDifference, compare};
 use serde_json::{Value, json};
 
-use crate::outcome::Outcome;
-use crate::{cache_file, figures, output};
+use crate::process::Outcome;
+use crate::{figures, files, options, output};
 
-/// Compares two caches: names the first frame, substep, object and point that differ, and the largest distance.
+/// Compares two caches: reports the first frame, substep, object and point that differ, and the largest distance.
 ///
-/// Exits with 0 if they show the same and with 1 if they do not. How finely time was recorded makes no difference.
-/// A damaged frame is named and counts as a difference; all others are compared.
+/// Exits with 0 if the caches are equal and with 1 if they differ. Only times that both caches hold are compared.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// A cache (.mcap).
     first: PathBuf,
-    /// Another.
+    /// The other cache (.mcap).
     second: PathBuf,
-    /// Distances up to this, in scene units, are no difference; at 0 every bit counts.
-    #[arg(long, default_value_t = 0.0, value_parser = parse_tolerance)]
+    /// Largest distance, in scene units, that counts as equal; 0 compares bits.
+    #[arg(long, default_value_t = 0.0, value_parser = options::not_negative)]
     tolerance: f64,
     /// Print one JSON object.
     #[arg(long)]
@@ -30,23 +29,23 @@ pub struct Diff {
 }
 
 impl Diff {
-    /// Compares them.
+    /// Compares the caches. A difference is a problem.
     pub fn run(self) -> Result<Outcome> {
-        let mut first = cache_file::open_and_warn(&self.first)?;
-        let mut second = cache_file::open_and_warn(&self.second)?;
+        let mut first = files::open_cache_and_warn(&self.first)?;
+        let mut second = files::open_cache_and_warn(&self.second)?;
         let comparison = compare(&mut first, &mut second, self.tolerance)?;
         match self.json {
             true => output::print_json(&as_json(&comparison))?,
             false => output::print(&self.as_text(&comparison)?)?,
         }
-        Ok(if comparison.differences.is_empty() { Outcome::Fine } else { Outcome::Trouble })
+        Ok(if comparison.differences.is_empty() { Outcome::Success } else { Outcome::Problem })
     }
 
     fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
         let moments = figures::count(comparison.time_samples, "moment");
         if comparison.differences.is_empty() {
             let how = if self.tolerance > 0.0 { "within the tolerance" } else { "in every bit" };
-            return Ok(format!("the same {how}, {moments} compared\n"));
+            return Ok(format!("equal {how}, {moments} compared\n"));
         }
         let mut text = String::new();
         for difference in &comparison.differences {
@@ -74,14 +73,11 @@ impl Diff {
             }
             Difference::Mesh { name, frame, substep } => {
                 format!(
-                    "object `{name}` has other faces or another number of points at frame {frame} substep {substep}"
+                    "the meshes of object `{name}` differ in faces or points at frame {frame} substep {substep}"
                 )
             }
             Difference::TimeSample { frame, in_first, .. } => {
-                format!("from frame {frame} on, there are frames in `{}` only", name(in_first))
-            }
-            Difference::Damaged { frame, in_first } => {
-                format!("frame {frame} of `{}` is damaged and was not compared", name(in_first))
+                format!("frames from {frame} on are in `{}` only", name(in_first))
             }
             Difference::Points(found) => format!(
                 "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
@@ -121,9 +117,6 @@ fn as_json(comparison: &Comparison) -> Value {
         Difference::TimeSample { frame, substep, in_first } => {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
         }
-        Difference::Damaged { frame, in_first } => {
-            json!({ "damaged": { "frame": frame }, "in": 1 + u8::from(!in_first) })
-        }
         Difference::Points(found) => json!({ "points": points(found) }),
         _ => Value::Null,
     });
@@ -134,11 +127,4 @@ fn as_json(comparison: &Comparison) -> Value {
         "rms": comparison.rms,
         "largest": comparison.largest.as_ref().map(points),
     })
-}
-
-fn parse_tolerance(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(tolerance) if f64::is_finite(tolerance) && tolerance >= 0.0 => Ok(tolerance),
-        _ => Err("a tolerance is a number, nought or above".to_owned()),
-    }
 }

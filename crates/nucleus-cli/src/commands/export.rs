@@ -1,4 +1,4 @@
-//! `nucleus export`: a cache as files of other tools.
+//! `nucleus export`: converts a cache to formats of other tools.
 
 use std::path::PathBuf;
 
@@ -7,46 +7,46 @@ use clap::Args;
 use clap::builder::PossibleValue;
 use nucleus_interop::{Format, Request, Selection, export};
 
-use crate::frame_range::FrameRange;
-use crate::outcome::Outcome;
-use crate::progress::Steps;
-use crate::{cache_file, figures, output};
+use crate::options::{self, FrameRange};
+use crate::process::Outcome;
+use crate::progress::ShareProgress;
+use crate::{figures, files, output};
 
-/// Writes a cache as files of other tools.
+/// Converts a cache to formats of other tools.
 ///
-/// Lengths stay in the units of the scene, except in glb and foxglove, which are in metres by their rules; usda
-/// states its units. Blender takes OBJ files for z-up: import them with forward Y and up Z to keep coordinates.
+/// Lengths stay in scene units, except in glb and foxglove, whose specifications demand metres; usda states its units.
+/// Blender assumes z-up OBJ files: import them with forward Y and up Z to keep the coordinates.
 #[derive(Debug, Args)]
 pub struct Export {
     /// The cache (.mcap).
     file: PathBuf,
-    /// The format; taken from the name of the output if not given.
+    /// The format; default: by the extension of the output.
     #[arg(long = "as", value_name = "FORMAT")]
     format: Option<Wanted>,
-    /// The file to write, or the folder for formats of many files; named after the cache if not given.
+    /// The file to write, or the folder for formats of several files; default: the name of the cache.
     #[arg(short, long)]
     out: Option<PathBuf>,
-    /// Frames to export: so many (`48`) or from one to another (`10..58`).
+    /// Frames to export: a count (`48`) or a range (`10..58`); default: all.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
-    /// Export only every so many frames.
+    /// Export every Nth frame.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
-    /// Export substeps too, where they were recorded.
+    /// Export recorded substeps too.
     #[arg(long)]
     substeps: bool,
-    /// Export only this object; can be given several times.
+    /// Export only this object; may be given several times.
     #[arg(long, value_name = "NAME")]
     object: Vec<String>,
-    /// Factor on all lengths.
-    #[arg(long, default_value_t = 1.0, value_parser = parse_scale)]
+    /// Factor for all lengths.
+    #[arg(long, default_value_t = 1.0, value_parser = options::positive)]
     scale: f64,
-    /// Replace files that exist.
+    /// Replace existing files.
     #[arg(long)]
     force: bool,
 }
 
-/// A format, as clap knows it.
+/// A format as an option value.
 #[derive(Debug, Clone, Copy)]
 struct Wanted(Format);
 
@@ -65,7 +65,7 @@ impl clap::ValueEnum for Wanted {
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let what = match self.0 {
+        let help = match self.0 {
             Format::Obj => "Wavefront OBJ, a file per object and frame",
             Format::Ply => "binary PLY, a file per object and frame",
             Format::Pc2 => "point caches of 3ds Max and Blender, with their meshes",
@@ -77,17 +77,19 @@ impl clap::ValueEnum for Wanted {
             Format::Mcx => "Maya nCache, 64 bit",
             Format::Foxglove => "MCAP for Foxglove, Lichtblick and rerun",
         };
-        Some(PossibleValue::new(self.0.name()).help(what))
+        Some(PossibleValue::new(self.0.name()).help(help))
     }
 }
 
 impl Export {
-    /// Writes it.
+    /// Writes the files.
     pub fn run(self) -> Result<Outcome> {
-        let mut cache = cache_file::open_and_warn(&self.file)?;
+        let mut cache = files::open_cache_and_warn(&self.file)?;
         let (format, out) = self.target()?;
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
-        let frames = self.frames.map(|frames| frames.within(start).context("there are not so many frames"));
+        let frames = self.frames.map(|frames| {
+            frames.within(start).context("the frame range exceeds the largest frame number, 2147483647")
+        });
         let selection = Selection {
             objects: self.object.clone(),
             frames: frames.transpose()?,
@@ -96,13 +98,13 @@ impl Export {
             scale: self.scale,
         };
         let request = Request { format, out: out.clone(), selection, force: self.force };
-        let mut steps = Steps::new("exporting");
-        let exported = export(&mut cache, &request, &mut |share| steps.show(share));
-        steps.end();
+        let mut progress = ShareProgress::new("exporting");
+        let exported = export(&mut cache, &request, &mut |share| progress.show(share));
+        progress.end();
         let exported = exported?;
         let sizes = exported.files.iter().map(|file| Ok(std::fs::metadata(file)?.len()));
         let bytes: u64 = sizes.sum::<std::io::Result<u64>>()?;
-        output::tell(&format!(
+        output::report(&format!(
             "{} of {} as {} in `{}` ({}, {})\n",
             figures::count(exported.samples, "sample"),
             figures::count(exported.objects, "object"),
@@ -111,15 +113,15 @@ impl Export {
             figures::count(exported.files.len(), "file"),
             figures::bytes(bytes),
         ));
-        Ok(Outcome::Fine)
+        Ok(Outcome::Success)
     }
 
-    /// The format, and where it goes.
+    /// The format and the path of the output.
     fn target(&self) -> Result<(Format, PathBuf)> {
         let named = self.out.as_deref().and_then(Format::of_path);
         let Some(format) = self.format.map(|wanted| wanted.0).or(named) else {
             let all: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            bail!("which format? give `--as` one of {}", all.join(", "));
+            bail!("the format is unknown; give `--as` one of {}", all.join(", "));
         };
         let out = match &self.out {
             Some(out) => out.clone(),
@@ -129,12 +131,5 @@ impl Export {
             }
         };
         Ok((format, out))
-    }
-}
-
-fn parse_scale(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(scale) if f64::is_finite(scale) && scale > 0.0 => Ok(scale),
-        _ => Err("a scale is a number above zero".to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! `nucleus extremes`: what the solver does where scenes leave the ordinary.
+//! `nucleus extremes`: stress tests of the solver with extreme values, meshes and motions.
 
 use std::fs;
 use std::io::{self, IsTerminal, Write, stdout};
@@ -12,73 +12,73 @@ use nucleus_measure::extremes::{
 };
 use serde_json::{Value, json};
 
-use crate::outcome::Outcome;
-use crate::{figures, output, threads};
+use crate::process::Outcome;
+use crate::{figures, options, output};
 
-/// Runs the table of extremes: scenes that leave the ordinary, each with what has to hold all the same.
+/// Runs the stress tests: scenes with extreme values, meshes and motions, each with the conditions that it must meet.
 ///
-/// Ends with 1 if a row fails. Cost is processor time over that of the same scene without the extreme, so other work
-/// on the machine hardly counts.
+/// Exits with 1 if a row fails. Cost is the ratio of processor time to that of the same scene without the extreme, so other
+/// work on the machine has little influence.
 #[derive(Debug, Args)]
 pub struct Extremes {
-    /// Only this row, or all rows whose names begin like this; may be given more than once.
+    /// Run this row, or all rows whose names start with this; may be given several times.
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
-    /// Only tell which rows there are.
+    /// List the rows and run none.
     #[arg(long, conflicts_with_all = ["write", "save", "json"])]
     list: bool,
-    /// Print a JSON object for each row.
+    /// Print one JSON object per row.
     #[arg(long)]
     json: bool,
-    /// Write the table as a page (.md).
+    /// Write the table as a Markdown page.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Write the scenes of the rows into this folder, and run none.
+    /// Write the scenes of the rows into this folder and run none.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["write", "json"])]
     save: Option<PathBuf>,
-    /// Rows to run side by side; as many as there are cores if none is given.
+    /// Rows to run in parallel; default: one per core.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    jobs: Option<u16>,
 }
 
 impl Extremes {
-    /// Runs the rows and prints what came of each.
+    /// Runs the rows and prints the figures of each.
     pub fn run(self) -> Result<Outcome> {
         let rows = self.rows()?;
         if self.list {
             let lines = rows.iter().map(|row| format!("{:<36} {}\n", row.name, row.what));
             output::print(&lines.collect::<String>())?;
-            return Ok(Outcome::Fine);
+            return Ok(Outcome::Success);
         }
         if let Some(folder) = &self.save {
             return save(&rows, folder);
         }
         let mut outcomes = Vec::new();
-        // Where a page is written, that is the result.
+        // The page is the result if one is written, else the table.
         let is_result = self.write.is_none();
         let mut take = |outcome: Judged| -> Result<()> {
             match self.json {
-                true => output::put(output::write(&format!("{}\n", as_json(&outcome))), is_result)?,
-                false => output::put(print(&outcome, outcomes.last())?, is_result)?,
+                true => output::check(output::write(&format!("{}\n", as_json(&outcome))), is_result)?,
+                false => output::check(print(&outcome, outcomes.last())?, is_result)?,
             }
             outcomes.push(outcome);
             Ok(())
         };
-        judge_all(&rows, threads::count(self.threads), Patience::Long, &mut take)?;
+        judge_all(&rows, options::thread_count(self.jobs), Patience::Long, &mut take)?;
         if !self.json {
-            output::tell(&total(&outcomes));
+            output::report(&total(&outcomes));
         }
         if let Some(file) = &self.write {
             fs::write(file, page(&outcomes)).with_context(|| format!("cannot write `{}`", file.display()))?;
         }
-        Ok(if outcomes.iter().all(Judged::holds) { Outcome::Fine } else { Outcome::Trouble })
+        Ok(if outcomes.iter().all(Judged::holds) { Outcome::Success } else { Outcome::Problem })
     }
 
-    /// The rows that are asked for.
+    /// The requested rows.
     fn rows(&self) -> Result<Vec<&'static Extreme>> {
         let known = |name: &str| rows().any(|row| row.name.starts_with(name));
         if let Some(unknown) = self.only.iter().find(|name| !known(name)) {
-            bail!("there is no row `{unknown}`; `nucleus extremes --list` tells which there are");
+            bail!("there is no row `{unknown}`; `nucleus extremes --list` lists them");
         }
         let wanted = |row: &&Extreme| {
             let asked = |name: &String| match named(name) {
@@ -91,7 +91,7 @@ impl Extremes {
     }
 }
 
-/// Writes each scene with its meshes into a folder of its own.
+/// Writes each scene with its meshes into a folder per row.
 fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
     for row in rows {
         let (Trial::Runs { case, .. } | Trial::InvalidInput { case, .. }) = row.trial;
@@ -100,8 +100,8 @@ fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
         written.with_context(|| format!("cannot write to `{}`", folder.display()))?;
     }
     let scenes = figures::count(rows.len(), "scene");
-    output::tell(&format!("{scenes} in `{}`; `nucleus run` runs them\n", folder.display()));
-    Ok(Outcome::Fine)
+    output::report(&format!("wrote {scenes} to `{}`; run them with `nucleus run`\n", folder.display()));
+    Ok(Outcome::Success)
 }
 
 /// `71 of 80 rows hold, 9 fail`.
@@ -114,7 +114,7 @@ fn total(outcomes: &[Judged]) -> String {
     }
 }
 
-/// A row of the table, under a heading if a new part begins with it.
+/// Prints a row of the table, after a heading if it is the first of its group.
 fn print(outcome: &Judged, before: Option<&Judged>) -> Result<io::Result<()>> {
     let choice = if stdout().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let writer = BufferWriter::stdout(choice);
@@ -154,7 +154,7 @@ fn line(buffer: &mut Buffer, outcome: &Judged) -> Result<()> {
     Ok(writeln!(buffer, "{name:<33} {energy:>8} {speed:>10} {strain:>9} {cost:>6}")?)
 }
 
-/// For machines: figures that are not finite become null.
+/// A row as JSON. Figures that are not finite become null.
 fn as_json(outcome: &Judged) -> Value {
     let figure = |figure: &Figure| {
         json!({

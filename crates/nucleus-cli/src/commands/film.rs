@@ -1,4 +1,4 @@
-//! Many pictures: as a film, or each in a file of its own.
+//! Output of `nucleus render`: a still, an animation, a film by ffmpeg, or a sequence of pictures.
 
 use std::fs;
 use std::io::{ErrorKind, Read, Seek, Write};
@@ -9,67 +9,67 @@ use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::atomic_file::AtomicFile;
 use nucleus_view::{AnimationWriter, Film, GifWriter, Image};
 
-/// What is written.
+/// Kinds of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
-    /// One picture.
+pub enum OutputKind {
     Still,
-    /// An animated PNG.
-    Png,
+    AnimatedPng,
     Gif,
-    /// A film by ffmpeg.
+    /// A film that ffmpeg encodes.
     Film,
-    /// A picture for each frame.
+    /// A PNG per frame.
     Sequence,
 }
 
-impl Way {
-    /// What a name asks for.
+impl OutputKind {
+    /// The kind that a file name implies.
     pub fn of(out: &Path, animate: bool) -> Result<Self> {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let end = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         Ok(match end.as_str() {
             "png" if name.contains('#') => Self::Sequence,
-            "png" if animate => Self::Png,
+            "png" if animate => Self::AnimatedPng,
             "png" => Self::Still,
             "gif" => Self::Gif,
             "mp4" | "mov" | "webm" => Self::Film,
             _ => bail!(
-                "`{name}` is not .png, .gif, .mp4, .mov or .webm; `####` in a .png stands for frame numbers"
+                "`{name}` does not end with .png, .gif, .mp4, .mov or .webm; `####` in the name of a .png stands for the frame number"
             ),
         })
     }
 }
 
-/// Writes a film; gives what was written, as a name. Nothing has its name before it is whole.
+/// Writes the frames of a film and returns the path. `report` receives the share that is done, from 0 to 1.
+///
+/// A file has its final name only when it is complete.
 pub fn write<R: Read + Seek>(
     film: &mut Film<R>,
     out: &Path,
-    way: Way,
+    kind: OutputKind,
     size: [u32; 2],
-    told: &mut dyn FnMut(f64),
+    report: &mut dyn FnMut(f64),
 ) -> Result<PathBuf> {
-    match way {
-        Way::Gif => {
+    match kind {
+        OutputKind::Gif => {
             let mut file = GifWriter::create(out, size, film.fps())?;
-            each(film, told, |image, _| Ok(file.push(image)?))?;
+            each(film, report, |image, _| Ok(file.push(image)?))?;
             file.finish()?;
         }
-        Way::Film => {
+        OutputKind::Film => {
             let unwritten = || format!("cannot write `{}`", out.display());
             let file = AtomicFile::create(out).with_context(unwritten)?;
-            encode(film, file.temporary(), muxer(out), size, told)?;
+            encode(film, file.temporary(), muxer(out), size, report)?;
             file.commit().with_context(unwritten)?;
         }
-        Way::Sequence => {
+        OutputKind::Sequence => {
             if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
             }
-            each(film, told, |image, frame| picture(image, &numbered(out, frame)))?;
+            each(film, report, |image, frame| picture(image, &numbered(out, frame)))?;
         }
-        Way::Still | Way::Png => {
+        OutputKind::Still | OutputKind::AnimatedPng => {
             let mut file = AnimationWriter::create(out, size, film.fps())?;
-            each(film, told, |image, _| Ok(file.push(image)?))?;
+            each(film, report, |image, _| Ok(file.push(image)?))?;
             file.finish()?;
         }
     }
@@ -83,17 +83,17 @@ pub fn picture(image: &Image, out: &Path) -> Result<()> {
 
 fn each<R: Read + Seek>(
     film: &mut Film<R>,
-    told: &mut dyn FnMut(f64),
+    report: &mut dyn FnMut(f64),
     mut take: impl FnMut(&Image, i32) -> Result<()>,
 ) -> Result<()> {
     for place in 0..film.len() {
         take(&film.picture(place)?, film.frame(place))?;
-        told((place + 1) as f64 / film.len() as f64);
+        report((place + 1) as f64 / film.len() as f64);
     }
     Ok(())
 }
 
-/// The name with the first run of `#` exchanged for the number of a frame.
+/// The path with the first run of `#` replaced by a frame number of at least that many digits.
 fn numbered(out: &Path, frame: i32) -> PathBuf {
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let begin = name.find('#').unwrap_or(name.len());
@@ -101,24 +101,25 @@ fn numbered(out: &Path, frame: i32) -> PathBuf {
     out.with_file_name(format!("{}{frame:0width$}{}", &name[..begin], &name[begin + width..]))
 }
 
-/// What ffmpeg calls the format of a film.
+/// The name of the film's format in ffmpeg.
 fn muxer(out: &Path) -> &'static str {
     let end = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     ["mov", "webm"].into_iter().find(|known| *known == end).unwrap_or("mp4")
 }
 
-/// Hands the pictures to ffmpeg.
+/// Pipes the pictures to ffmpeg.
 fn encode<R: Read + Seek>(
     film: &mut Film<R>,
     out: &Path,
     muxer: &str,
     size: [u32; 2],
-    told: &mut dyn FnMut(f64),
+    report: &mut dyn FnMut(f64),
 ) -> Result<()> {
     let mut ffmpeg = start_ffmpeg(out, muxer, size, film.fps())?;
-    let mut pipe = ffmpeg.stdin.take().context("ffmpeg takes no pictures")?;
-    let sent =
-        each(film, told, |image, _| pipe.write_all(image.bytes()).context("ffmpeg takes no more pictures"));
+    let mut pipe = ffmpeg.stdin.take().context("ffmpeg has no standard input")?;
+    let sent = each(film, report, |image, _| {
+        pipe.write_all(image.bytes()).context("ffmpeg stopped before the last picture")
+    });
     drop(pipe);
     let mut said = String::new();
     if let Some(mut stderr) = ffmpeg.stderr.take() {
@@ -129,8 +130,8 @@ fn encode<R: Read + Seek>(
     sent
 }
 
-/// How pictures become a film: sides that are even, as players want them; colours as most of them take them to be,
-/// BT.709 at half the resolution, and told so, for else they are guessed from the size.
+/// Encoding that players support: even sides, and BT.709 colours at half resolution. The colour space is tagged, because
+/// players otherwise guess it from the size.
 const PICTURES: [&str; 10] = [
     "-vf",
     "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
@@ -148,7 +149,7 @@ fn start_ffmpeg(out: &Path, muxer: &str, [width, height]: [u32; 2], fps: f64) ->
     let mut command = Command::new("ffmpeg");
     command.args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
     command.args(["-s", &format!("{width}x{height}"), "-r", &fps.to_string(), "-i", "-"]).args(PICTURES);
-    // Smooth shading in few colours shows bands where bits are spared.
+    // Smooth shading shows bands at lower quality.
     command.args(match muxer {
         "webm" => ["-crf", "24", "-b:v", "0"],
         _ => ["-crf", "16", "-movflags", "+faststart"],
@@ -168,17 +169,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_says_what_is_written() {
-        let way = |name: &str| Way::of(Path::new(name), false).unwrap();
-        assert_eq!(way("a.png"), Way::Still);
-        assert_eq!(way("a.GIF"), Way::Gif);
-        assert_eq!(way("a/b.####.png"), Way::Sequence);
-        assert_eq!(way("a.mp4"), Way::Film);
-        assert!(Way::of(Path::new("a.jpg"), true).is_err());
+    fn the_name_determines_the_kind_of_output() {
+        let kind = |name: &str| OutputKind::of(Path::new(name), false).unwrap();
+        assert_eq!(kind("a.png"), OutputKind::Still);
+        assert_eq!(kind("a.GIF"), OutputKind::Gif);
+        assert_eq!(kind("a/b.####.png"), OutputKind::Sequence);
+        assert_eq!(kind("a.mp4"), OutputKind::Film);
+        assert!(OutputKind::of(Path::new("a.jpg"), true).is_err());
     }
 
     #[test]
-    fn a_run_of_hashes_becomes_the_number_of_the_frame() {
+    fn a_run_of_hashes_becomes_the_frame_number() {
         assert_eq!(numbered(Path::new("f/a.####.png"), 12), Path::new("f/a.0012.png"));
         assert_eq!(numbered(Path::new("#.png"), 123), Path::new("123.png"));
     }

@@ -1,22 +1,17 @@
-//! One file per subcommand.
+//! The subcommands: a file each, or a file for several that share their subject.
 
-mod attrs;
-mod cache_info;
-mod check;
 mod diff;
 mod export;
 mod extremes;
 mod film;
-mod fmt;
-mod graph;
 mod info;
-mod new;
 mod play;
-mod presets;
 mod recover;
+mod reference;
 mod render;
 mod resume;
 mod run;
+mod scene;
 mod scene_info;
 mod trade;
 mod validate;
@@ -24,32 +19,32 @@ mod validate;
 use anyhow::Result;
 use clap::Subcommand;
 
-use crate::outcome::Outcome;
+use crate::process::Outcome;
 
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Run(run::Run),
     Resume(resume::Resume),
-    Check(check::Check),
+    Check(scene::Check),
     Info(info::Info),
     Play(play::Play),
     Render(render::Render),
     Export(export::Export),
     Diff(diff::Diff),
     Recover(recover::Recover),
-    Attrs(attrs::Attrs),
+    Attrs(reference::Attrs),
     Extremes(extremes::Extremes),
     Trade(trade::Trade),
     Validate(validate::Validate),
-    Presets(presets::Presets),
-    Graph(graph::Graph),
-    Fmt(fmt::Fmt),
-    New(new::New),
+    Presets(reference::Presets),
+    Graph(scene::Graph),
+    Fmt(scene::Fmt),
+    New(scene::New),
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the subcommand.
     pub fn run(self) -> Result<Outcome> {
         match self {
             Self::Run(run) => run.run(),

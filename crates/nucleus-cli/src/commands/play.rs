@@ -1,4 +1,4 @@
-//! `nucleus play`: a run in the browser.
+//! `nucleus play`: serves the player and a cache to the browser.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -7,73 +7,73 @@ use anyhow::Result;
 use clap::Args;
 
 use super::run::Run;
-use crate::outcome::Outcome;
-use crate::{cache_file, output};
+use crate::process::Outcome;
+use crate::{files, output};
 
-/// Plays a cache in the browser, until Ctrl-C. A scene is run first.
+/// Plays a cache in the browser until Ctrl-C. Given a scene, runs it first.
 #[derive(Debug, Args)]
 pub struct Play {
     /// The cache (.mcap) or the scene (.ron).
     file: PathBuf,
-    /// Another cache (.mcap) to compare it with.
+    /// A second cache (.mcap) to compare with.
     #[arg(long, value_name = "CACHE")]
-    with: Option<PathBuf>,
-    /// The port to serve on; any free one if it is 0.
+    compare: Option<PathBuf>,
+    /// The port of the server; 0: any free port.
     #[arg(long, default_value_t = 0)]
     port: u16,
-    /// Only print the address.
+    /// Print the address without opening the browser.
     #[arg(long)]
     no_open: bool,
-    /// Replace the cache of a scene that was run before.
+    /// Replace the existing cache of a scene.
     #[arg(long)]
     force: bool,
 }
 
 impl Play {
-    /// Serves until the process is ended.
+    /// Serves until the process ends.
     pub fn run(self) -> Result<Outcome> {
-        let cache = match cache_file::is_cache(&self.file) {
+        let cache = match files::is_cache(&self.file) {
             true => self.file,
             false => {
                 let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
                 match run.run()? {
                     ended @ (Outcome::InvalidInput | Outcome::Interrupted) => return Ok(ended),
-                    // What went wrong is best seen.
-                    Outcome::Fine | Outcome::Trouble => cache,
+                    // A problem is easiest to diagnose in the player.
+                    Outcome::Success | Outcome::Problem => cache,
                 }
             }
         };
-        // A file that cannot be shown is better refused here than by the page.
-        drop(cache_file::open_and_warn(&cache)?);
-        let player = match &self.with {
+        // Refuses an unreadable file here, before the page does.
+        drop(files::open_cache_and_warn(&cache)?);
+        let player = match &self.compare {
             None => nucleus_view::serve(&cache, self.port)?,
             Some(other) => {
-                drop(cache_file::open_and_warn(other)?);
+                drop(files::open_cache_and_warn(other)?);
                 nucleus_view::serve_both(&cache, other, self.port)?
             }
         };
-        output::tell(&format!("playing `{}` at {} (Ctrl-C ends it)\n", cache.display(), player.url()));
+        output::report(&format!("playing `{}` at {} (end with Ctrl-C)\n", cache.display(), player.url()));
         if !self.no_open {
             open_browser(&player.url());
         }
         player.wait();
-        Ok(Outcome::Fine)
+        Ok(Outcome::Success)
     }
 }
 
-/// Shows an address in the browser, if there is one; if not, the address has been printed.
+/// Opens an address in the browser. Failure is ignored, because the address has been printed.
 fn open_browser(url: &str) {
     let opener = match std::env::consts::OS {
         "macos" => "open",
         "windows" => "explorer",
         _ => "xdg-open",
     };
-    let quiet = Command::new(opener)
+    let child = Command::new(opener)
         .arg(url)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn();
-    drop(quiet);
+    drop(child);
 }

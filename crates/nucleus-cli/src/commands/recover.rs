@@ -1,4 +1,4 @@
-//! `nucleus recover`: what survives of a damaged cache.
+//! `nucleus recover`: a complete cache from the intact parts of a damaged one.
 
 use std::path::{Path, PathBuf};
 
@@ -7,33 +7,33 @@ use clap::Args;
 use nucleus_cache::atomic_file::AtomicFile;
 use nucleus_graph::Simulation;
 
-use crate::outcome::Outcome;
-use crate::{cache_file, figures, output, recording, scene_file};
+use crate::process::Outcome;
+use crate::{figures, files, output, recording};
 
-/// Writes what survives of a damaged cache, or of a run that was killed, as a cache that is whole.
+/// Writes the intact parts of a damaged cache, or of a killed run, as a complete cache.
 ///
-/// Every frame whose checksum holds is copied bit for bit; the others are named. The damaged file stays as it is.
+/// Frames with a valid checksum are copied bit for bit; the others are listed. The damaged file is not changed.
 #[derive(Debug, Args)]
 pub struct Recover {
     /// The damaged cache (.mcap, .mcap.part).
     file: PathBuf,
-    /// The cache to write; the name without `.part`, or else with `.recovered.mcap`, if none is given.
+    /// The cache to write; default: the name without `.part`, or with `.recovered.mcap`.
     #[arg(short, long)]
     out: Option<PathBuf>,
-    /// The scene that was recorded (.ron): what is lost of run and meshes is taken from it.
+    /// The recorded scene (.ron), which supplies lost facts about the run and lost meshes.
     #[arg(long)]
     scene: Option<PathBuf>,
-    /// Replace a file that exists.
+    /// Replace an existing file.
     #[arg(long)]
     force: bool,
 }
 
 impl Recover {
-    /// Recovers it. What is lost for good is trouble.
+    /// Recovers the cache. Data that is lost for good is a problem.
     pub fn run(self) -> Result<Outcome> {
-        let mut cache = cache_file::open(&self.file)?;
+        let mut cache = files::open_cache(&self.file)?;
         if let Some(scene) = &self.scene {
-            let Some((_, program, text)) = scene_file::open(scene, None)?.told()? else {
+            let Some((_, program, text)) = files::open_scene(scene, None)?.report()? else {
                 return Ok(Outcome::InvalidInput);
             };
             let simulation = Simulation::new(&program, 1);
@@ -57,15 +57,15 @@ impl Recover {
         let frames = figures::count(recovered.frames, "frame");
         let size = figures::bytes(recovered.bytes);
         let loss = cache.corruption();
-        output::tell(&format!(
+        output::report(&format!(
             "`{}`: {loss}\n{frames} in `{}` ({size})\n",
             self.file.display(),
             out.display()
         ));
         if let Some(gone) = loss.unrecoverable() {
-            output::tell(&format!("lost for good: {gone}\n"));
+            output::report(&format!("lost for good: {gone}\n"));
         }
-        Ok(if loss.unrecoverable().is_some() { Outcome::Trouble } else { Outcome::Fine })
+        Ok(if loss.unrecoverable().is_some() { Outcome::Problem } else { Outcome::Success })
     }
 
     fn out(&self) -> Result<PathBuf> {

@@ -1,113 +1,113 @@
-//! `nucleus render`: a run as a picture, still or moving.
+//! `nucleus render`: draws a cache as a still, an animation, a film or a sequence of pictures.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::Playback;
-use nucleus_view::{Camera, Colouring, Film, Image, Style};
+use nucleus_cache::{ObjectKind, Playback};
+use nucleus_view::{Bounds, Camera, Colouring, Film, Image, Style};
 
-use super::film::{self, Way};
-use crate::frame_range::FrameRange;
-use crate::outcome::Outcome;
-use crate::progress::Steps;
-use crate::{cache_file, figures, output};
+use super::film::{self, OutputKind};
+use crate::options::FrameRange;
+use crate::process::Outcome;
+use crate::progress::ShareProgress;
+use crate::{figures, files, output};
 
-/// Draws a cache: a frame as a PNG, or the run as an animated PNG, a GIF, a film, or a picture for each frame.
+/// Draws a cache: a frame as a PNG, or the run as an animated PNG, a GIF, a film, or a PNG per frame.
 ///
-/// What is written follows from the name: `hang.png` is a still (with --animate an animated PNG), `hang.gif` a
-/// GIF, `hang.mp4`, `.mov` or `.webm` a film if ffmpeg is installed, and `frames/hang.####.png` a picture for each
-/// frame, with its number.
-///
-/// A cache records the ground plane at the start of the run only: a plane that moves is drawn where it starts.
+/// The name of the output determines its kind: `hang.png` is a still, or an animated PNG with --animate; `hang.gif` is a
+/// GIF; `hang.mp4`, `.mov` and `.webm` are films, for which ffmpeg must be installed; `frames/hang.####.png` is a PNG per
+/// frame, with the frame number.
 #[derive(Debug, Args)]
 pub struct Render {
     /// The cache (.mcap).
     file: PathBuf,
-    /// The frame to draw; the last one if none is given.
+    /// The frame to draw; default: the last one.
     #[arg(long, conflicts_with_all = ["animate", "frames"], allow_negative_numbers = true)]
     frame: Option<i32>,
-    /// What to write; the cache's name with `.png` if none is given.
+    /// The file to write; default: the name of the cache with `.png`.
     #[arg(short, long)]
     out: Option<PathBuf>,
     /// Width and height in pixels.
     #[arg(long, default_value = "1280x720", value_parser = parse_size)]
     size: [u32; 2],
-    /// Draw all frames, as an animated PNG.
+    /// Draw all frames as an animated PNG.
     #[arg(long)]
     animate: bool,
-    /// Frames to draw: so many (`48`) or from one to another (`10..58`).
+    /// Frames to draw: a count (`48`) or a range (`10..58`); default: all.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
-    /// Draw only every so many frames.
+    /// Draw every Nth frame.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
-    /// The camera of the scene to look through; `none` frames the run by itself. The first one if none is given.
+    /// The camera of the scene; `none` selects an automatic camera. Default: the first camera of the scene.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
     camera: Option<String>,
-    /// Where the eye is, in scene units: `x,y,z`. The camera frames the run by itself if this is not given.
+    /// Position of the camera in scene units, `x,y,z`; default: automatic.
     #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
     eye: Option<[f32; 3]>,
-    /// The point in the middle of the picture, in scene units; that of the run if not given.
+    /// The point at the centre of the picture in scene units, `x,y,z`; default: the centre of the run.
     #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
     target: Option<[f32; 3]>,
     /// Vertical field of view in degrees.
     #[arg(long, default_value_t = 30.0, value_parser = parse_view)]
     fov: f32,
-    /// Colour cloth by its strain; full colour at this strain (0.05 is 5 %).
+    /// Colour cloth by its strain, with full colour at this strain (0.05 is 5 %).
     #[arg(long, value_name = "FULL_SCALE", num_args = 0..=1, default_missing_value = "0.05")]
     strain: Option<f32>,
-    /// Draw the edges of faces.
+    /// Draw the edges of the faces.
     #[arg(long)]
     wireframe: bool,
 }
 
 impl Render {
-    /// Draws it.
+    /// Draws and writes the output.
     pub fn run(self) -> Result<Outcome> {
-        let mut cache = cache_file::open_and_warn(&self.file)?;
+        let mut cache = files::open_cache_and_warn(&self.file)?;
         let out = match &self.out {
             Some(out) => out.clone(),
             None => {
                 PathBuf::from(self.file.file_stem().context("the cache has no name")?).with_extension("png")
             }
         };
-        let drawn = match Way::of(&out, self.animate)? {
-            Way::Still => self.still(&mut cache, &out)?,
-            way => self.film(&mut cache, &out, way)?,
+        let drawn = match OutputKind::of(&out, self.animate)? {
+            OutputKind::Still => self.still(&mut cache, &out)?,
+            kind => self.film(&mut cache, &out, kind)?,
         };
-        output::tell(&format!("{drawn}\n"));
-        Ok(Outcome::Fine)
+        output::report(&format!("{drawn}\n"));
+        Ok(Outcome::Success)
     }
 
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
-        let moment = cache_file::moment(cache, self.frame)?;
+        let moment = files::moment(cache, self.frame)?;
         let frame = cache.time_samples()[moment].frame;
-        // The floor is that of the whole run, found from a few of its frames.
+        // The height of the floor is that of the whole run, estimated from 24 of its frames.
         let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
         let mut film = Film::of(cache, every, self.style())?;
-        let camera = self.seen_from(film.framing(moment)?);
+        let camera = self.with_options(film.framing(moment)?);
         film::picture(&look_through(film.seen_by(camera), scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
     }
 
-    fn film(&self, cache: &mut Playback, out: &Path, way: Way) -> Result<String> {
+    fn film(&self, cache: &mut Playback, out: &Path, kind: OutputKind) -> Result<String> {
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let scene_camera = self.scene_camera(cache)?;
         let mut film = Film::of(cache, self.every as usize, self.style())?;
         if let Some(frames) = self.frames {
-            let (first, last) = frames.within(start).context("there are not so many frames")?;
+            let (first, last) = frames
+                .within(start)
+                .context("the frame range exceeds the largest frame number, 2147483647")?;
             film = film.between(first, last).context("none of these frames was recorded")?;
         }
-        let camera = self.seen_from(film.camera());
+        let camera = self.with_options(film.camera());
         let mut film = look_through(film.seen_by(camera), scene_camera);
-        let mut steps = Steps::new("drawing");
-        let result = film::write(&mut film, out, way, self.size, &mut |share| steps.show(share));
-        steps.end();
+        let mut progress = ShareProgress::new("drawing");
+        let result = film::write(&mut film, out, kind, self.size, &mut |share| progress.show(share));
+        progress.end();
         let place = result?;
         let count = figures::count(film.len(), "frame");
-        Ok(match way {
-            Way::Sequence => format!("{count} in `{}`", place.display()),
+        Ok(match kind {
+            OutputKind::Sequence => format!("{count} in `{}`", place.display()),
             _ => format!("{count} in {}", sized(out)?),
         })
     }
@@ -120,7 +120,7 @@ impl Render {
         Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
     }
 
-    /// The camera of the scene that is looked through, if any is.
+    /// The requested camera of the scene, else its first one.
     fn scene_camera(&self, cache: &Playback) -> Result<Option<nucleus_cache::Camera>> {
         let cameras = &cache.run().cameras;
         if self.eye.is_some() || self.target.is_some() || self.camera.as_deref() == Some("none") {
@@ -130,14 +130,14 @@ impl Render {
         let found = cameras.iter().find(|camera| camera.name == *wanted);
         let names: Vec<String> = cameras.iter().map(|camera| format!("`{}`", camera.name)).collect();
         let known = || match names.is_empty() {
-            true => "the cache has none; a scene gets one by a node of type `camera`".to_owned(),
+            true => "the cache has none; add a node of type `camera` to the scene".to_owned(),
             false => format!("there is {}", names.join(", ")),
         };
         found.cloned().map(Some).with_context(|| format!("there is no camera `{wanted}`: {}", known()))
     }
 
-    /// The camera as it was asked for; what was not asked for is as in `own`.
-    fn seen_from(&self, own: Camera) -> Camera {
+    /// A camera with `--eye`, `--target` and `--fov` applied.
+    fn with_options(&self, own: Camera) -> Camera {
         let target = self.target.unwrap_or(own.target);
         match (self.eye, self.target) {
             (Some(eye), _) => Camera { eye, target, field_of_view: self.fov, ..own },
@@ -177,7 +177,7 @@ fn parse_point(text: &str) -> Result<[f32; 3], String> {
 fn parse_view(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(angle) if (1.0..=150.0).contains(&angle) => Ok(angle),
-        _ => Err("an angle of 1 to 150 degrees".to_owned()),
+        _ => Err("give an angle from 1 to 150 degrees".to_owned()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! `nucleus run`: simulates a scene and records it.
+//! `nucleus run`: simulates a scene and records a cache.
 
 use std::path::{Path, PathBuf};
 
@@ -11,70 +11,69 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Diagnostic, Scene};
 use nucleus_measure::trade::Setting;
 
-use crate::account::Account;
-use crate::frame_range::FrameRange;
 use crate::initial_state::InitialState;
-use crate::outcome::Outcome;
+use crate::options::{self, Channels, FrameRange, Record};
 use crate::output::say;
-use crate::record::{Channels, Record};
-use crate::recording::{self, Manner};
-use crate::session::Session;
-use crate::{interrupt, quality, scene_file, threads};
+use crate::process::Outcome;
+use crate::recording::{self, RecordOptions};
+use crate::run_loop;
+use crate::run_statistics::RunStatistics;
+use crate::{files, process, quality};
 
-/// Frames from one checkpoint to the next, unless others are asked for: two seconds of film. A checkpoint takes about as
-/// much as twenty frames.
+/// Default number of frames from one checkpoint to the next: two seconds of film. A checkpoint takes about as many bytes
+/// as twenty frames.
 const CHECKPOINT: u32 = 48;
 
 /// Simulates a scene and records it as a cache.
 ///
-/// Ctrl-C drops the frame that is being solved, closes the cache with the frame before, and gives exit code 130. A second
-/// Ctrl-C ends the program at once; the cache then plays to its last whole frame. `nucleus resume` goes on after either.
+/// Ctrl-C drops the unfinished frame, closes the cache after the previous one and exits with 130. A second Ctrl-C ends the
+/// process at once; the unfinished cache then plays to its last complete frame. `nucleus resume` continues after either.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The scene (.ron).
     scene: PathBuf,
-    /// Frames to run: so many (`48`, the start frame among them) or from one to another (`10..58`).
+    /// Frames to run: a count that includes the start frame (`48`) or a range (`10..58`); default: those of the scene.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
-    /// Start all cloth as a frame of a cache has it, `drape.mcap@80`; without a frame, as its last one.
+    /// Initial state of all cloth: a frame of a cache, `drape.mcap@80`, or its last frame, `drape.mcap`.
     #[arg(long, value_name = "CACHE@FRAME")]
     from: Option<InitialState>,
-    /// Cores to use; all if none are given. The result is the same, bit for bit.
+    /// Threads to use; default: one per core. The result does not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// What to record, instead of what the scene says: frames, substeps, every:10 or none; and, behind commas, what of it:
-    /// positions, velocities, contacts, strain. `substeps,contacts,strain`; positions and contacts if nothing is said.
+    /// Times and channels to record, separated by commas: frames, substeps, every:10 or none; positions, velocities,
+    /// contacts, strain. Default: the times of the scene, positions and contacts.
     #[arg(long, value_name = "WHAT")]
     record: Option<Record>,
     /// Record velocities too; the cache becomes twice as large.
     #[arg(long)]
     velocities: bool,
-    /// Pack harder: a cache about a tenth smaller, without loss, a hundred times slower to write.
+    /// Pack harder, without loss: the cache is about a tenth smaller and a hundred times slower to write.
     #[arg(long)]
     compact: bool,
-    /// Frames from one checkpoint to the next, from which `nucleus resume` goes on; the last frame has one too. 0: none.
+    /// Frames from one checkpoint to the next, for `nucleus resume`; the last frame has one too. 0: no checkpoints.
     #[arg(long, value_name = "FRAMES", default_value_t = CHECKPOINT)]
     checkpoint: u32,
-    /// Replace a cache that exists.
+    /// Replace an existing cache.
     #[arg(long)]
     force: bool,
-    /// The cache to write; the scene's name with `.mcap` if none is given.
+    /// The cache to write; default: the name of the scene with `.mcap`.
     #[arg(short, long)]
     out: Option<PathBuf>,
-    /// Look, apart from the solver, whether anything passes through anything on the way from each state that the
-    /// solver shows to the next. Exit code 1 if it does. It takes time, and changes nothing.
+    /// Audit every time step with an independent intersection test, and exit with 1 if anything passes through anything.
+    /// The result of the run does not change; the run takes longer.
     #[arg(long)]
     audit: bool,
-    /// The cheapest setting with at most this error (`1%`), by what `nucleus trade` has found for the scene.
+    /// Use the cheapest setting with at most this error (`1%`) according to `nucleus trade` for this scene.
     #[arg(long, value_name = "ERROR", value_parser = quality::error)]
     quality: Option<f64>,
-    /// Print a JSON object for each frame and one for the run.
+    /// Print one JSON object per frame and one for the run.
     #[arg(long)]
     json: bool,
 }
 
 impl Run {
-    /// A run of a scene with everything else left as it is.
+    /// A run of a scene with default options.
     pub fn of(scene: PathBuf, force: bool) -> Self {
         Self {
             scene,
@@ -93,7 +92,7 @@ impl Run {
         }
     }
 
-    /// The cache that it writes.
+    /// The path of the cache.
     pub fn out(&self) -> Result<PathBuf> {
         match &self.out {
             Some(out) => Ok(out.clone()),
@@ -104,9 +103,9 @@ impl Run {
         }
     }
 
-    /// Runs it.
+    /// Simulates the scene.
     pub fn run(self) -> Result<Outcome> {
-        let Some((scene, program, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
+        let Some((scene, program, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
             return Ok(Outcome::InvalidInput);
         };
         let (read, is_from) = (program.clone(), self.from.is_some());
@@ -120,9 +119,9 @@ impl Run {
                 self.program_of(&scene, wanted).map(|(program, setting)| (program, Some(setting)))?
             }
         };
-        interrupt::listen()?;
+        process::listen_for_signals()?;
         let (start, end) = recording::frames(&program)?;
-        let mut simulation = Simulation::new(&program, threads::count(self.threads));
+        let mut simulation = Simulation::new(&program, options::thread_count(self.threads));
         if self.audit {
             simulation.begin_audit(Closeness::Steps);
         } else if program.checks().iter().any(Check::needs_audit) {
@@ -131,7 +130,7 @@ impl Run {
         let judge = Judge::new(program.checks(), program.mass());
         let record = self.record.unwrap_or_default();
         let channels = record.channels();
-        let manner = Manner {
+        let options = RecordOptions {
             moments: record.moments(&program),
             channels: Channels { velocities: channels.velocities || self.velocities, ..channels },
             force: self.force,
@@ -140,20 +139,21 @@ impl Run {
             facts: recording::facts(self.from.as_ref(), setting, if is_from { &read } else { &program })?,
         };
         let out = self.out()?;
-        let recorder = recording::begin(&simulation, manner, &out, (&self.scene, &text))?;
-        let (account, frames, audit, json) = (Account::default(), end.abs_diff(start), self.audit, self.json);
-        let session = Session { simulation, recorder, out, judge, account, start, frames, audit, json };
-        session.run(|_| false)
+        let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;
+        let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
+        let (audit, json) = (self.audit, self.json);
+        let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };
+        run.finish(|_| false)
     }
 
-    /// The program at the setting that a quality wants, and that setting.
+    /// The program at the setting for an error, and that setting.
     fn program_of(&self, scene: &Scene, wanted: f64) -> Result<(Program, Setting)> {
         let (scene, said, setting) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
         say!("{said}");
         let first =
             |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
-        let program =
-            compile(&scene).map_err(|found| anyhow!("the scene cannot run so: {}", first(found)))?;
+        let program = compile(&scene)
+            .map_err(|found| anyhow!("the scene does not compile at this setting: {}", first(found)))?;
         Ok((program, setting))
     }
 }

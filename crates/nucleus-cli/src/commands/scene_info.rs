@@ -1,4 +1,4 @@
-//! `nucleus info` of a scene: its nodes, and the program it compiles to with its cost.
+//! `nucleus info` of a scene: its nodes, its objects, and the cost of each solver pass in the first frame.
 
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::figures;
 
-/// What there is to say about a scene.
+/// A scene and the program that it compiles to.
 pub struct SceneInfo {
     time: TimeSpan,
     /// Name and type of each node.
@@ -20,7 +20,7 @@ pub struct SceneInfo {
     objects: Vec<ObjectFacts>,
 }
 
-/// A nucleus with objects, which is solved for itself.
+/// A nucleus with its objects and the cost of its passes.
 struct NucleusFacts {
     name: String,
     input: FrameInput,
@@ -33,14 +33,14 @@ struct ObjectFacts {
     points: usize,
     edges: usize,
     faces: usize,
-    /// Of the box round it at the start, in metres.
+    /// Extent of the bounding box at the start, in metres.
     size: [f64; 3],
-    /// What its resistances come to in the first frame; nothing for colliders.
+    /// Stiffness in the first frame; `None` for colliders and particles.
     stiffness: Option<ClothStiffness>,
 }
 
 impl SceneInfo {
-    /// Looks at the first frame of a scene.
+    /// Evaluates the first frame of a scene.
     pub fn of(scene: &Scene, program: &Program) -> Self {
         let simulation: Simulation = Simulation::new(program, 1);
         let nodes =
@@ -60,10 +60,10 @@ impl SceneInfo {
         Self { time: program.time(), nodes, objects: objects.collect(), nuclei }
     }
 
-    /// For people.
+    /// The information as text.
     pub fn as_text(&self, name: &str) -> Result<String, std::fmt::Error> {
         let TimeSpan { start, end, fps } = self.time;
-        let mut text = format!("{name}: frames {start} to {end} at {} a second\n", figures::number(fps));
+        let mut text = format!("{name}: frames {start} to {end} at {} per second\n", figures::number(fps));
         for nucleus in &self.nuclei {
             writeln!(text, "{}{}", self.heading(nucleus), nucleus.line())?;
         }
@@ -82,7 +82,7 @@ impl SceneInfo {
                 let share = figures::percent((100.0 * pass.evaluations() / total).round() / 100.0);
                 writeln!(
                     text,
-                    "{}pass {:<9} {:>8} rows x {sweeps:>5} sweeps = {evaluations:>9} a frame, {share}",
+                    "{}pass {:<9} {:>8} rows x {sweeps:>5} sweeps = {evaluations:>9} per frame, {share}",
                     self.heading(nucleus),
                     pass.name,
                     pass.rows
@@ -92,12 +92,12 @@ impl SceneInfo {
         Ok(text)
     }
 
-    /// The name of a nucleus, where there is more than one.
+    /// The name of a nucleus as a prefix, if there are several.
     fn heading(&self, nucleus: &NucleusFacts) -> String {
         if self.nuclei.len() > 1 { format!("{}: ", nucleus.name) } else { String::new() }
     }
 
-    /// For machines.
+    /// The information as JSON.
     pub fn as_json(&self) -> Value {
         let node = |(name, node_type): &(String, &str)| json!({ "name": name, "type": node_type });
         json!({
@@ -110,15 +110,15 @@ impl SceneInfo {
 }
 
 impl NucleusFacts {
-    /// `3 substeps a frame; physical: 96 evaluations in 1/24 s`.
+    /// `3 substeps per frame; physical: 96 evaluations in 1/24 s`.
     fn line(&self) -> String {
         let reading = match self.input.resistance {
-            ResistanceModel::Classic => "classic: resistances are counts".to_owned(),
+            ResistanceModel::Classic => "classic: resistances are iteration counts".to_owned(),
             ResistanceModel::Physical { evaluations } => {
                 format!("physical: {} evaluations in 1/24 s", figures::number(evaluations))
             }
         };
-        format!("{} a frame; {reading}", figures::count(self.input.substeps as usize, "substep"))
+        format!("{} per frame; {reading}", figures::count(self.input.substeps as usize, "substep"))
     }
 
     fn as_json(&self) -> Value {
@@ -193,16 +193,16 @@ fn facts(
     }
 }
 
-/// What the resistances of a cloth come to, in SI units.
+/// The stiffness of a cloth in SI units.
 enum ClothStiffness {
-    /// N/m, about: a consequence of mesh and substeps.
+    /// Approximate stretch stiffness in N/m; it depends on the mesh and the substeps.
     Classic(f64),
-    /// What they stand for.
+    /// Stiffnesses that mesh and substeps do not change.
     Physical(PhysicalStiffness),
 }
 
 impl ClothStiffness {
-    /// The Classic reading takes the mean mass of all points of the scene.
+    /// Stiffness in the first frame. The classic model uses the mean mass of all points of the scene.
     fn of(id: ClothId, program: &Program, nuclei: &[NucleusFacts]) -> Option<Self> {
         let mut own = program.nuclei().iter().map(|nucleus| nucleus.cloths()).zip(nuclei);
         let (cloths, NucleusFacts { input, .. }) = own.find(|(cloths, _)| cloths.contains(&id.0))?;
@@ -250,7 +250,7 @@ impl ClothStiffness {
     }
 }
 
-/// Edges of the faces, each counted once.
+/// Number of distinct edges of the faces.
 fn edges(object: &Object) -> usize {
     let around = |face: &[u32]| -> Vec<[u32; 2]> {
         let ends = face.iter().zip(face.iter().cycle().skip(1));
@@ -259,7 +259,7 @@ fn edges(object: &Object) -> usize {
     object.faces.iter().flat_map(around).collect::<HashSet<_>>().len()
 }
 
-/// Length along each axis of the box round some points.
+/// Extent of the bounding box of some points along each axis.
 fn size(positions: &[[f32; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|axis| {
         let along = positions.iter().map(|point| f64::from(point[axis]));

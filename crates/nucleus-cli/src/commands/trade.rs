@@ -1,4 +1,4 @@
-//! `nucleus trade`: what a scene's settings cost, and how wrong they are.
+//! `nucleus trade`: error against time of a scene's settings.
 
 use std::path::PathBuf;
 
@@ -11,156 +11,152 @@ use nucleus_measure::trade::plan::Wishes;
 use nucleus_measure::trade::recommend::{Choice, for_error, for_time};
 use nucleus_measure::trade::{Found, Point, Reading, Setting, Subject, TradeError, Watch, measure};
 
-use crate::frame_range::FrameRange;
-use crate::outcome::Outcome;
+use crate::options::{self, FrameRange};
 use crate::output::say;
-use crate::{interrupt, output, quality, scene_file, threads};
+use crate::process::Outcome;
+use crate::progress::SweepProgress;
+use crate::{files, output, process, quality};
 
 mod page;
-mod progress;
 
-use progress::Bar;
+/// Default length of the comparison, in seconds from the start.
+const DEFAULT_SECONDS: f64 = 2.0;
 
-/// Frames that are compared if none are given: so many seconds from the start.
-const SECONDS: f64 = 2.0;
+/// Default error of the recommendation, as a share.
+const DEFAULT_ERROR: f64 = 0.01;
 
-/// The error that is looked for if none is given.
-const ERROR: f64 = 0.01;
-
-/// Measures what a scene's settings cost and how wrong they are, and recommends one.
+/// Measures the error and the time of many settings of a scene, and recommends one.
 ///
-/// Every setting is held against a reference: the same scene in double precision with many more and smaller steps. What
-/// is finished is kept, so that a sweep that was ended goes on where it was. Writes a page with pictures, a table and
-/// JSON.
+/// The error is the distance from a reference: the same scene in double precision with more and smaller time steps.
+/// Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
 #[derive(Debug, Args)]
 pub struct Trade {
     /// The scene (.ron).
     scene: PathBuf,
-    /// Frames to compare: so many (`48`, the start frame among them) or from one to another; 2 seconds if none are given.
+    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 2 seconds.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Recommend the cheapest setting with at most this error (`1%`).
     #[arg(long, value_parser = quality::error)]
     error: Option<f64>,
-    /// Recommend the most exact setting that takes at most this time a frame, on one core (`30ms`).
+    /// Recommend the most accurate setting that takes at most this time per frame on one core (`30ms`).
     #[arg(long, value_parser = quality::time, conflicts_with = "error")]
     time: Option<f64>,
-    /// Write the recommended setting into the scene, or into another file; its comments stay.
+    /// Write the recommended setting into the scene, or into another file. Comments are kept.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     apply: Option<Option<PathBuf>>,
-    /// How resistances are read; as the scene has it if none is given.
-    #[arg(long)]
-    mode: Option<Mode>,
+    /// Resistance models to try; default: that of the scene.
+    #[arg(long, value_name = "MODEL")]
+    resistance_model: Option<ResistanceModels>,
     /// Substeps to try.
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=10_000))]
     substeps: Vec<u32>,
     /// Collision iterations to try.
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=10_000))]
     iterations: Vec<u32>,
-    /// Evaluations to try, read as Physical.
-    #[arg(long, value_delimiter = ',', value_parser = above_nought)]
+    /// Evaluations to try, for the physical model.
+    #[arg(long, value_delimiter = ',', value_parser = options::positive)]
     evaluations: Vec<f64>,
-    /// Factors on stretch, compression and shear resistance to try, read as Classic.
-    #[arg(long, value_delimiter = ',', value_parser = above_nought)]
-    resistances: Vec<f64>,
-    /// Runs side by side; as many as there are cores if none are given.
+    /// Factors for stretch, compression and shear resistance to try, for the classic model.
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',', value_parser = options::positive)]
+    resistance_factors: Vec<f64>,
+    /// Runs in parallel; default: one per core.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Do all runs again, whatever is kept.
+    /// Ignore stored results and do all runs again.
     #[arg(long)]
-    fresh: bool,
-    /// The folder to write the page, the table and JSON into.
+    rerun: bool,
+    /// The folder for the page, the table and JSON.
     #[arg(short, long, default_value = ".")]
     out: PathBuf,
-    /// Print JSON instead of words.
+    /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
 }
 
-/// Which readings of resistances are tried.
+/// Resistance models to try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Mode {
-    /// Counts of iterations.
+enum ResistanceModels {
+    /// Resistances are iteration counts, as in Maya.
     Classic,
-    /// Stiffnesses.
+    /// Resistances are stiffnesses.
     Physical,
-    /// Each.
     Both,
 }
 
 impl Trade {
-    /// Runs what is to be run, and tells what was found.
+    /// Runs the settings that are not stored yet, and reports the recommendation.
     pub fn run(self) -> Result<Outcome> {
-        let Some((mut scene, _, text)) = scene_file::open(&self.scene, self.frames)?.told()? else {
+        let Some((mut scene, _, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
             return Ok(Outcome::InvalidInput);
         };
         if self.frames.is_none() {
-            let frames = (SECONDS * scene.time.fps).ceil() as i64;
+            let frames = (DEFAULT_SECONDS * scene.time.fps).ceil() as i64;
             scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
         }
         let subject = match Subject::new(&scene) {
             Ok(subject) => subject,
-            Err(error) => return trouble(error),
+            Err(error) => return problem(error),
         };
         let store = quality::store(&subject);
-        if self.fresh {
+        if self.rerun {
             store.clear()?;
         }
-        interrupt::listen()?;
+        process::listen_for_signals()?;
         match self.measure(&subject, &store) {
-            Ok(found) => self.tell(&subject, &store, &found, &text),
+            Ok(found) => self.report(&subject, &store, &found, &text),
             Err(TradeError::Interrupted) => {
-                say!("interrupted: what was finished is kept, and the same command goes on from there");
+                say!("interrupted: finished runs are stored; the same command continues the sweep");
                 Ok(Outcome::Interrupted)
             }
             Err(TradeError::Store(error)) => Err(error.into()),
-            Err(error) => trouble(error),
+            Err(error) => problem(error),
         }
     }
 
     fn measure(&self, subject: &Subject, store: &Store) -> Result<Found, TradeError> {
-        let mut bar = Bar::new();
+        let mut progress = SweepProgress::new();
         let found = measure(
             subject,
             &self.wishes(),
             store,
             Watch {
-                side_by_side: threads::count(self.jobs),
-                tell: &mut |progress| bar.show(progress),
-                should_continue: &|| !interrupt::asked(),
+                side_by_side: options::thread_count(self.jobs),
+                tell: &mut |done| progress.show(done),
+                should_continue: &|| !process::is_interrupted(),
             },
         );
-        bar.end();
-        interrupt::run_is_over();
+        progress.end();
+        process::files_are_closed();
         found
     }
 
     fn wishes(&self) -> Wishes {
         Wishes {
-            readings: match self.mode {
+            readings: match self.resistance_model {
                 None => Vec::new(),
-                Some(Mode::Classic) => vec![Reading::Classic],
-                Some(Mode::Physical) => vec![Reading::Physical],
-                Some(Mode::Both) => vec![Reading::Physical, Reading::Classic],
+                Some(ResistanceModels::Classic) => vec![Reading::Classic],
+                Some(ResistanceModels::Physical) => vec![Reading::Physical],
+                Some(ResistanceModels::Both) => vec![Reading::Physical, Reading::Classic],
             },
             substeps: self.substeps.clone(),
             collision_iterations: self.iterations.clone(),
             evaluations: self.evaluations.clone(),
-            resistances: self.resistances.clone(),
+            resistances: self.resistance_factors.clone(),
         }
     }
 
-    fn tell(&self, subject: &Subject, store: &Store, found: &Found, text: &str) -> Result<Outcome> {
+    fn report(&self, subject: &Subject, store: &Store, found: &Found, text: &str) -> Result<Outcome> {
         let trade = &found.trade;
         let choice = match self.time {
             Some(ms) => for_time(trade, ms),
-            None => for_error(trade, self.error.unwrap_or(ERROR)),
+            None => for_error(trade, self.error.unwrap_or(DEFAULT_ERROR)),
         };
         let stem = self.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
-        let wanted = self.error.unwrap_or(ERROR);
+        let wanted = self.error.unwrap_or(DEFAULT_ERROR);
         let html = page::of(&stem, subject, store, found, choice.point(), wanted)?;
         std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot make the folder `{}`", self.out.display()))?;
+            .with_context(|| format!("cannot create the folder `{}`", self.out.display()))?;
         let path = |end: &str| self.out.join(format!("{stem}.trade.{end}"));
         let json = serde_json::to_string_pretty(trade)? + "\n";
         let files = [("html", html), ("csv", report::csv(trade)), ("json", json)];
@@ -168,47 +164,47 @@ impl Trade {
             write_whole(&path(end), content.as_bytes())?;
         }
         if self.json {
-            output::tell_json(&serde_json::to_value(trade)?);
+            output::report_json(&serde_json::to_value(trade)?);
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
             let said = format!("{}\n{}", report::text(trade), self.recommendation(&choice, trade.floor));
-            output::tell(&format!("{said}written to {}\n", names.join(", ")));
+            output::report(&format!("{said}wrote {}\n", names.join(", ")));
         }
         if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
             self.apply(apply.as_ref(), subject, &point.setting, text)?;
         }
-        let asked = self.error.is_some() || self.time.is_some();
+        let is_requested = self.error.is_some() || self.time.is_some();
         Ok(match choice {
-            Choice::Found(_) => Outcome::Fine,
-            Choice::Nearest(_) | Choice::Untold(_) if !asked => Outcome::Fine,
-            _ => Outcome::Trouble,
+            Choice::Found(_) => Outcome::Success,
+            Choice::Nearest(_) | Choice::Untold(_) if !is_requested => Outcome::Success,
+            _ => Outcome::Problem,
         })
     }
 
-    /// What to take, in words.
+    /// The recommendation in words.
     fn recommendation(&self, choice: &Choice, floor: Option<f64>) -> String {
         let costs = |point: &Point| {
             let error = report::percent(point.error.unwrap_or_default());
-            format!("{}, {} ms a frame, error {error}", point.setting, report::figure(point.ms))
+            format!("{}, {} ms per frame, error {error}", point.setting, report::figure(point.ms))
         };
         let wanted = match self.time {
             Some(ms) => format!("a time of {} ms", report::figure(ms)),
-            None => format!("an error of {}", report::percent(self.error.unwrap_or(ERROR))),
+            None => format!("an error of {}", report::percent(self.error.unwrap_or(DEFAULT_ERROR))),
         };
         match choice {
             Choice::Found(point) => format!("recommended for {wanted}: {}\n", costs(point)),
             Choice::Nearest(point) => format!("no setting reaches {wanted}; the nearest: {}\n", costs(point)),
             Choice::Untold(point) => format!(
-                "{wanted} cannot be told from none, since the references themselves differ by {}; the most exact as far as can \
-                 be told: {}\n",
+                "the uncertainty of the reference, {}, is larger than {wanted}; the most accurate setting within that \
+                 uncertainty: {}\n",
                 report::percent(floor.unwrap_or_default()),
                 costs(point)
             ),
-            Choice::None => "no setting is sound: nothing can be recommended\n".to_owned(),
+            Choice::None => "no setting is usable: there is no recommendation\n".to_owned(),
         }
     }
 
-    /// Writes the scene with a setting: the user's text, with nothing changed but the attributes.
+    /// Writes the text of the scene with only the attributes of the setting changed.
     fn apply(&self, to: Option<&PathBuf>, subject: &Subject, setting: &Setting, text: &str) -> Result<()> {
         let edited = edit::edit(text, &subject.edits(setting))?;
         let to = to.unwrap_or(&self.scene);
@@ -218,15 +214,8 @@ impl Trade {
     }
 }
 
-/// Says why there is nothing to find.
-fn trouble(error: TradeError) -> Result<Outcome> {
+/// Reports why a scene has no recommendation.
+fn problem(error: TradeError) -> Result<Outcome> {
     say!("error: {error}");
-    Ok(Outcome::Trouble)
-}
-
-fn above_nought(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("has to be a number above 0".to_owned()),
-    }
+    Ok(Outcome::Problem)
 }

@@ -1,4 +1,4 @@
-//! `nucleus validate`: the solver against exact physics.
+//! `nucleus validate`: compares the solver with analytic solutions.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,42 +9,44 @@ use clap::Args;
 use nucleus_measure::validation::{Case, Finding, cases, page};
 use serde_json::json;
 
-use crate::outcome::Outcome;
 use crate::output::say;
-use crate::{output, threads};
+use crate::process::Outcome;
+use crate::{options, output};
 
-/// Holds the solver against exact physics: strips that bend and buckle, sheets that hang, friction, swings, drape.
+/// Compares the solver with analytic solutions: bending and buckling strips, hanging sheets, friction, pendulums, drape.
+///
+/// Exits with 1 if a figure is outside its tolerance.
 #[derive(Debug, Args)]
 pub struct Validate {
-    /// Cases to run, or the beginnings of their names [default: all].
+    /// Run these cases, or all cases whose names start with these; default: all.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
-    /// List the cases and what they are, without running them.
+    /// List the cases and run none.
     #[arg(long)]
     list: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the page of the book to this file.
+    /// Write the tables as a Markdown page.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Cases to run at a time [default: one per core].
-    #[arg(long)]
-    threads: Option<usize>,
+    /// Cases to run in parallel; default: one per core.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
 }
 
-/// A case with what it found.
+/// A case and its findings.
 type CaseResult = (Case, Vec<Finding>);
 
 impl Validate {
-    /// Runs the cases and prints their tables. A figure outside what is allowed is trouble.
+    /// Runs the cases and prints their tables.
     pub fn run(self) -> Result<Outcome> {
         let cases = self.cases()?;
         if self.list {
             cases
                 .iter()
                 .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.about)))?;
-            return Ok(Outcome::Fine);
+            return Ok(Outcome::Success);
         }
         let results = self.run_all(&cases)?;
         if let Some(path) = &self.write {
@@ -52,11 +54,11 @@ impl Validate {
             std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
         }
         match self.json {
-            true => output::tell_json(&as_json(&results)),
-            false => output::tell(&as_text(&results)),
+            true => output::report_json(&as_json(&results)),
+            false => output::report(&as_text(&results)),
         }
         let right = results.iter().all(|(_, findings)| findings.iter().all(Finding::holds));
-        Ok(if right { Outcome::Fine } else { Outcome::Trouble })
+        Ok(if right { Outcome::Success } else { Outcome::Problem })
     }
 
     fn cases(&self) -> Result<Vec<Case>> {
@@ -66,13 +68,13 @@ impl Validate {
                 bail!("there is no case `{name}`; there are {}", names.join(", "));
             }
         }
-        let asked_for = |case: &Case| self.only.iter().any(|name| case.name.starts_with(name.as_str()));
-        Ok(cases().filter(|case| self.only.is_empty() || asked_for(case)).collect())
+        let is_requested = |case: &Case| self.only.iter().any(|name| case.name.starts_with(name.as_str()));
+        Ok(cases().filter(|case| self.only.is_empty() || is_requested(case)).collect())
     }
 
-    /// Runs the cases, some at a time, and says on standard error when one is done.
+    /// Runs the cases in parallel and reports each on standard error when it is done.
     fn run_all(&self, cases: &[Case]) -> Result<Vec<CaseResult>> {
-        let threads = self.threads.unwrap_or_else(|| threads::count(None)).clamp(1, cases.len().max(1));
+        let jobs = options::thread_count(self.jobs).clamp(1, cases.len().max(1));
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let work = || -> Result<Vec<(usize, CaseResult)>> {
             let mut results = Vec::new();
@@ -91,10 +93,10 @@ impl Validate {
             }
         };
         let parts: Result<Vec<_>> = std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
             workers
                 .into_iter()
-                .map(|worker| worker.join().unwrap_or_else(|_| bail!("a case has panicked")))
+                .map(|worker| worker.join().unwrap_or_else(|_| bail!("a case panicked")))
                 .collect()
         });
         let mut results: Vec<_> = parts?.into_iter().flatten().collect();
@@ -115,7 +117,7 @@ fn as_text(results: &[CaseResult]) -> String {
     }
     let all = results.iter().flat_map(|(_, findings)| findings);
     let right = all.clone().filter(|finding| finding.holds()).count();
-    text + &format!("{right} of {} figures are within what is allowed\n", all.count())
+    text + &format!("{right} of {} figures are within their tolerance\n", all.count())
 }
 
 fn as_json(results: &[CaseResult]) -> serde_json::Value {

@@ -1,4 +1,4 @@
-//! `nucleus attrs`.
+//! `nucleus attrs` and `presets`.
 
 use crate::sample::{assert_refused, folder, nucleus, stdout};
 
@@ -19,7 +19,7 @@ fn hidden_attributes_are_shown_on_request() {
 }
 
 #[test]
-fn what_has_no_effect_yet_is_listed_and_says_so() {
+fn an_attribute_without_effect_is_listed_as_such() {
     let folder = folder();
     let said = stdout(&nucleus(folder.path(), &["attrs", "turbulenceField"]));
     let (_, row) = said.split_once("frequency (frq)").expect("it is listed");
@@ -39,8 +39,20 @@ fn without_a_type_all_types_are_listed() {
 }
 
 #[test]
-fn an_unknown_type_is_refused_with_those_there_are() {
+fn an_unknown_type_is_refused_with_the_known_ones() {
     let folder = folder();
     let output = nucleus(folder.path(), &["attrs", "nHair"]);
     assert_refused(&output, "there is no node type `nHair`; there are `nucleus`");
+}
+
+#[test]
+fn presets_are_listed_with_the_attributes_they_set() {
+    let folder = folder();
+    let all = stdout(&nucleus(folder.path(), &["presets"]));
+    let eight =
+        ["silk", "chiffon", "tShirt", "looseThickKnit", "heavyDenim", "burlap", "thickLeather", "chainmail"];
+    assert!(eight.iter().all(|name| all.contains(name)), "{all}");
+    let silk = stdout(&nucleus(folder.path(), &["presets", "silk"]));
+    assert!(silk.contains("stretchResistance: 60"), "{silk}");
+    assert_refused(&nucleus(folder.path(), &["presets", "silc"]), "there is no preset `silc`");
 }

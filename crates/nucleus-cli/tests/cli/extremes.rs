@@ -1,4 +1,4 @@
-//! `nucleus extremes`: what it prints and how it ends; the table itself has a test of its own.
+//! `nucleus extremes`: its output and exit codes. The measure crate tests the table itself.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::sample::{assert_refused, folder, nucleus, stderr, stdout};
 
 #[test]
-fn a_row_that_holds_ends_well_and_tells_its_figures() {
+fn a_row_that_holds_is_a_success_and_shows_its_figures() {
     let folder = folder();
     let output = nucleus(folder.path(), &["extremes", "--only", "gravity-0", "--only", "no-points"]);
     let said = stdout(&output);
@@ -20,7 +20,7 @@ fn a_row_that_holds_ends_well_and_tells_its_figures() {
 }
 
 #[test]
-fn for_machines_each_row_is_a_line_with_figures_and_bounds() {
+fn json_has_a_line_per_row_with_figures_and_limits() {
     let folder = folder();
     let output = nucleus(folder.path(), &["extremes", "--json", "--only", "nan-in-a-file"]);
     let row: Value = serde_json::from_str(&stdout(&output)).unwrap();
@@ -59,4 +59,12 @@ fn rows_are_listed_and_an_unknown_one_is_refused() {
         &nucleus(folder.path(), &["extremes", "--only", "nothing-like-it"]),
         "there is no row `nothing-like-it`",
     );
+}
+
+#[test]
+fn a_former_option_name_works_with_a_note() {
+    let folder = folder();
+    let output = nucleus(folder.path(), &["extremes", "--list", "--threads", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "note: `--threads` of `nucleus extremes` is now `--jobs`\n");
 }

@@ -5,20 +5,20 @@ use std::fs;
 use crate::sample::{END, assert_refused, cache, folder, nucleus, scene, stderr, stdout};
 
 #[test]
-fn a_cache_tells_its_run_and_its_objects() {
+fn a_cache_shows_its_run_and_its_objects() {
     let folder = folder();
     cache(folder.path());
     let output = nucleus(folder.path(), &["info", "fall.mcap", "--verify"]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(said.contains("a run of fall.ron"), "{said}");
-    assert!(said.contains("1 to 6 at 24 a second"), "{said}");
+    assert!(said.contains("1 to 6 at 24 per second"), "{said}");
     assert!(said.contains("object sheet: cloth, 4 points, 1 face, 1 x 0 x 1 m"), "{said}");
     assert!(said.contains("nothing is lost"), "{said}");
 }
 
 #[test]
-fn json_says_the_same_for_machines() {
+fn json_has_the_same_facts() {
     let folder = folder();
     cache(folder.path());
     let output = nucleus(folder.path(), &["info", "fall.mcap", "--json"]);
@@ -30,7 +30,7 @@ fn json_says_the_same_for_machines() {
 }
 
 #[test]
-fn a_cache_that_has_lost_frames_is_trouble() {
+fn a_cache_that_has_lost_frames_exits_with_1() {
     let folder = folder();
     let path = cache(folder.path());
     let bytes = fs::read(&path).unwrap();
@@ -41,7 +41,7 @@ fn a_cache_that_has_lost_frames_is_trouble() {
 }
 
 #[test]
-fn what_cannot_be_opened_is_named_with_the_reason() {
+fn a_file_that_cannot_be_opened_is_named_with_the_reason() {
     let folder = folder();
     fs::write(folder.path().join("empty.mcap"), "").unwrap();
     fs::write(folder.path().join("text.mcap"), "not a cache at all").unwrap();
@@ -54,7 +54,7 @@ fn what_cannot_be_opened_is_named_with_the_reason() {
 }
 
 #[test]
-fn a_scene_tells_its_nodes_and_what_its_passes_cost() {
+fn a_scene_shows_its_nodes_and_the_cost_of_its_passes() {
     let folder = folder();
     scene(folder.path(), 5, "");
     let said = stdout(&nucleus(folder.path(), &["info", "drape.ron"]));
@@ -70,7 +70,7 @@ fn a_scene_tells_its_nodes_and_what_its_passes_cost() {
 }
 
 #[test]
-fn a_scene_of_two_nuclei_tells_the_cost_and_the_stiffness_of_each() {
+fn a_scene_of_two_nuclei_shows_the_cost_and_the_stiffness_of_each() {
     let folder = folder();
     let text = r#"Scene(
     time: (start: 1, end: 2, fps: 24),
@@ -88,7 +88,7 @@ fn a_scene_of_two_nuclei_tells_the_cost_and_the_stiffness_of_each() {
     let output = nucleus(folder.path(), &["info", "two.ron"]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(said.contains("n1: 2 substeps a frame") && said.contains("n2: 5 substeps a frame"), "{said}");
+    assert!(said.contains("n1: 2 substeps per frame") && said.contains("n2: 5 substeps per frame"), "{said}");
     assert!(said.contains("n1: pass stretch") && said.contains("n2: pass stretch"), "{said}");
     let output = nucleus(folder.path(), &["info", "two.ron", "--json"]);
     let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

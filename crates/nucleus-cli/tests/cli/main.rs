@@ -1,18 +1,17 @@
-//! The built binary, as a shell sees it: what it prints, and the code it ends with.
+//! Tests of the built binary: what it prints, the files it writes, and its exit code.
 
 mod attrs;
-mod caches;
-mod check;
+mod cache;
 mod extremes;
-mod from;
 mod info;
-mod interrupted;
+mod initial_state;
 mod output;
 mod play;
 mod render;
 mod resume;
 mod run;
 mod sample;
-mod scenes;
+mod scene;
+mod signals;
 mod trade;
-mod trouble;
+mod warnings;

@@ -1,4 +1,4 @@
-//! A standard output that is closed or full.
+//! Standard output that is closed or full.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -6,8 +6,7 @@ use std::process::{Command, Stdio};
 
 use crate::sample::{folder, nucleus, scene, stderr};
 
-/// Runs a command whose output is read up to its first line, if any is to be read, and then closed. Gives its exit code
-/// and what it says on standard error.
+/// Runs a command and closes its output, after the first line if `reads_a_line`. Returns the exit code and standard error.
 fn closed(folder: &std::path::Path, arguments: &[&str], reads_a_line: bool) -> (Option<i32>, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_nucleus"))
         .args(arguments)
@@ -26,7 +25,7 @@ fn closed(folder: &std::path::Path, arguments: &[&str], reads_a_line: bool) -> (
 }
 
 #[test]
-fn a_run_whose_output_is_closed_goes_on_to_its_end() {
+fn a_run_whose_output_is_closed_continues_to_its_end() {
     let folder = folder();
     scene(folder.path(), 30, "");
     let whole = nucleus(folder.path(), &["run", "drape.ron", "-o", "whole.mcap"]);
@@ -48,7 +47,7 @@ fn a_run_whose_output_is_closed_goes_on_to_its_end() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_output_ends_no_command_whose_result_is_a_file() {
+fn a_command_whose_result_is_a_file_completes_it_where_the_output_is_full() {
     let folder = folder();
     scene(folder.path(), 5, "");
     let full = |arguments: &[&str]| {
@@ -56,7 +55,7 @@ fn a_full_output_ends_no_command_whose_result_is_a_file() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
         command.args(arguments).current_dir(folder.path()).stdout(out).stderr(err).status().unwrap().code()
     };
-    // A check that fails in the scene itself is said on standard error too, which is as full.
+    // Standard error is full too.
     assert_eq!(full(&["run", "drape.ron", "--json"]), Some(1));
     assert_eq!(full(&["export", "drape.mcap", "-o", "drape.usda"]), Some(1));
     assert_eq!(full(&["render", "drape.mcap", "--size", "64x36"]), Some(1));
@@ -64,8 +63,8 @@ fn a_full_output_ends_no_command_whose_result_is_a_file() {
     for made in ["drape.mcap", "drape.usda", "drape.png", "drape.recovered.mcap"] {
         assert!(folder.path().join(made).exists(), "{made}");
     }
-    // Where the text is the result, that is trouble, not a bad start.
+    // Exit code 1 and not 2: the command has started.
     assert_eq!(full(&["info", "drape.mcap"]), Some(1));
     let (code, said) = closed(folder.path(), &["info", "drape.mcap"], false);
-    assert_eq!((code, said.as_str()), (Some(0), ""), "who closes it has seen enough");
+    assert_eq!((code, said.as_str()), (Some(0), ""), "a closed pipe is no error");
 }

@@ -7,7 +7,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 
 use crate::sample::{assert_refused, cache, folder, nucleus, scene};
 
-/// A player that is ended with the test, and where it listens.
+/// A player that ends with the test, and its address.
 struct Player(Child, String, #[expect(dead_code, reason = "an open pipe")] BufReader<ChildStdout>);
 
 impl Player {
@@ -42,7 +42,7 @@ impl Drop for Player {
 }
 
 #[test]
-fn a_cache_is_served_on_the_address_that_is_printed() {
+fn a_cache_is_served_at_the_printed_address() {
     let folder = folder();
     cache(folder.path());
     let answer = Player::start(folder.path(), "fall.mcap").get("/");
@@ -60,7 +60,7 @@ fn a_scene_is_run_first() {
 }
 
 #[test]
-fn what_cannot_be_played_is_refused() {
+fn a_missing_cache_is_refused() {
     let folder = folder();
     assert_refused(&nucleus(folder.path(), &["play", "none.mcap"]), "cannot read `none.mcap`");
 }

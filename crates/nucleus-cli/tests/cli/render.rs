@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::sample::{assert_refused, cache, folder, nucleus, stderr, stdout};
 
-/// Width and height that a PNG states, and how many frames it has.
+/// Width and height of a PNG, and its number of frames if it is animated.
 fn png(path: &Path) -> ([u32; 2], Option<u32>) {
     let bytes = fs::read(path).unwrap();
     let word = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
@@ -16,7 +16,7 @@ fn png(path: &Path) -> ([u32; 2], Option<u32>) {
 }
 
 #[test]
-fn a_frame_becomes_a_png_of_the_size_asked_for() {
+fn a_frame_becomes_a_png_of_the_requested_size() {
     let folder = folder();
     cache(folder.path());
     let output = nucleus(folder.path(), &["render", "fall.mcap", "--frame", "3", "--size", "64x48"]);
@@ -25,7 +25,7 @@ fn a_frame_becomes_a_png_of_the_size_asked_for() {
 }
 
 #[test]
-fn a_run_becomes_an_animated_png_with_every_so_many_frames() {
+fn a_run_becomes_an_animated_png_of_every_nth_frame() {
     let folder = folder();
     cache(folder.path());
     let arguments = ["render", "fall.mcap", "--animate", "--every", "2", "--size", "64x48", "-o", "a.png"];
@@ -35,7 +35,7 @@ fn a_run_becomes_an_animated_png_with_every_so_many_frames() {
 }
 
 #[test]
-fn a_frame_that_is_not_there_and_a_size_that_is_none_are_refused() {
+fn a_missing_frame_and_an_invalid_size_are_refused() {
     let folder = folder();
     cache(folder.path());
     let output = nucleus(folder.path(), &["render", "fall.mcap", "--frame", "99"]);
@@ -47,7 +47,7 @@ fn a_frame_that_is_not_there_and_a_size_that_is_none_are_refused() {
 }
 
 #[test]
-fn a_camera_that_is_not_in_the_scene_is_refused_and_none_frames_the_run_by_itself() {
+fn an_unknown_camera_is_refused_and_none_selects_the_automatic_camera() {
     let folder = folder();
     cache(folder.path());
     let render =
@@ -57,10 +57,10 @@ fn a_camera_that_is_not_in_the_scene_is_refused_and_none_frames_the_run_by_itsel
 }
 
 #[test]
-fn the_camera_of_a_scene_is_looked_through() {
+fn the_camera_of_the_scene_is_the_default() {
     let folder = folder();
     let shot = r#""shot": camera(translateY: keys([(1, 1), (4, 3)]), translateZ: 4, focalLength: 50),"#;
-    let text = include_str!("../../src/commands/new/drape.ron").replacen(
+    let text = include_str!("../../src/commands/templates/drape.ron").replacen(
         "nodes: {",
         &format!("nodes: {{ {shot}"),
         1,
@@ -80,11 +80,11 @@ fn the_camera_of_a_scene_is_looked_through() {
     assert_ne!(picture(&[]), picture(&["--camera", "none"]));
 }
 
-/// Whether there is an ffmpeg; says so if not.
+/// Whether ffmpeg is installed; prints a note if not.
 fn has_ffmpeg() -> bool {
     let found = Command::new("ffmpeg").arg("-version").output().is_ok();
     if !found {
-        eprintln!("no ffmpeg here: no film was written");
+        eprintln!("ffmpeg is not installed: no film was written");
     }
     found
 }
@@ -103,10 +103,10 @@ fn a_film_has_every_frame_at_its_rate_and_the_colours_of_the_picture() {
         let mut ffmpeg = Command::new("ffmpeg");
         ffmpeg.args(["-i", name, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]).current_dir(folder.path());
         let read = ffmpeg.output().unwrap();
-        let told = String::from_utf8_lossy(&read.stderr);
-        assert!(told.contains("bt709") && told.contains("64x50") && told.contains("24 fps"), "{told}");
+        let said = String::from_utf8_lossy(&read.stderr);
+        assert!(said.contains("bt709") && said.contains("64x50") && said.contains("24 fps"), "{said}");
         assert_eq!(read.stdout.len(), 6 * 64 * 50 * 3, "{name}");
-        // The sky in the upper left corner is nearly white.
+        // The background in the upper left corner is nearly white.
         assert!(read.stdout[..3].iter().all(|&byte| byte > 200), "{:?}", &read.stdout[..3]);
         assert!(!folder.path().join(format!("{name}.part")).exists());
     }

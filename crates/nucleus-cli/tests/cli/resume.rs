@@ -1,4 +1,4 @@
-//! `nucleus resume`: a run that was ended goes on to the bytes of one that never was.
+//! `nucleus resume`: a resumed run gives the bytes of a run that never stopped.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use crate::sample::{assert_refused, cache, folder, nucleus, scene, stderr, stdout};
 
-/// Twelve frames with a checkpoint at every fourth; its bytes.
+/// The bytes of a cache of twelve frames with a checkpoint at every fourth.
 fn whole(folder: &Path) -> Vec<u8> {
     scene(folder, 12, "noPenetration");
     let record = ["--record", "frames,contacts,strain"];
@@ -22,7 +22,7 @@ fn resume(folder: &Path, arguments: &[&str]) -> Output {
     nucleus(folder, &[&["resume", "x.mcap"], arguments].concat())
 }
 
-/// Asserts that it went on, and gives what it wrote.
+/// Resumes and returns the bytes of the cache.
 fn resumed(folder: &Path, arguments: &[&str]) -> Vec<u8> {
     let output = resume(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
@@ -30,11 +30,11 @@ fn resumed(folder: &Path, arguments: &[&str]) -> Vec<u8> {
 }
 
 #[test]
-fn a_cache_that_is_cut_off_anywhere_goes_on_to_the_same_bytes() {
+fn a_cache_that_is_cut_off_anywhere_resumes_to_the_same_bytes() {
     let folder = folder();
     let whole = whole(folder.path());
     let part = folder.path().join("x.mcap.part");
-    // What a run that went on and was killed has left is no hindrance.
+    // The leftover of a resumed run that was killed is replaced.
     fs::write(folder.path().join("x.mcap.resuming"), "half a cache").unwrap();
     for cut in (1..20).map(|k| whole.len() * k / 20) {
         fs::write(&part, &whole[..cut]).unwrap();
@@ -56,20 +56,20 @@ fn a_damaged_checkpoint_or_frame_is_solved_again() {
         let output = resume(folder.path(), &["--at", "11"]);
         match output.status.code() {
             Some(0) => {
-                // A checkpoint that is damaged before the one that is taken stays lost; no frame does.
+                // A damaged checkpoint before the one that is used stays lost; no frame does.
                 let info = nucleus(folder.path(), &["info", "x.mcap", "--verify"]);
                 assert_eq!(info.status.code(), Some(0), "byte {at}: {}", stdout(&info));
                 let diff = nucleus(folder.path(), &["diff", "x.mcap", "whole.mcap"]);
                 assert_eq!(diff.status.code(), Some(0), "byte {at}: {}", stdout(&diff));
             }
-            // The start, the run or its scene: nothing can be gone on from, and it says so.
+            // Without the start, the run or its scene no run can resume.
             _ => assert!(stderr(&output).contains("error: "), "byte {at}: {}", stderr(&output)),
         }
     }
 }
 
 #[test]
-fn a_part_of_a_run_is_solved_again_and_comes_out_the_same() {
+fn a_part_of_a_run_that_is_solved_again_gives_the_same_bytes() {
     let folder = folder();
     let whole = whole(folder.path());
     for at in ["1", "4", "7", "12"] {
@@ -77,12 +77,12 @@ fn a_part_of_a_run_is_solved_again_and_comes_out_the_same() {
         assert!(resumed(folder.path(), &["--at", at]) == whole, "from frame {at}");
     }
     let output = resume(folder.path(), &[]);
-    assert!(stdout(&output).contains("is finished: frame 12 is its last"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("is complete: its last frame is 12"), "{}", stdout(&output));
     assert_eq!(output.status.code(), Some(0));
-    // It goes on past its end, and back to it.
+    // Beyond its end, and back to it.
     assert!(resumed(folder.path(), &["--to", "20"]) != whole);
     assert!(resumed(folder.path(), &["--at", "12", "--to", "12"]) == whole);
-    // Elsewhere, if asked for.
+    // To another file.
     let output = resume(folder.path(), &["--at", "6", "-o", "y.mcap"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(fs::read(folder.path().join("y.mcap")).unwrap() == whole);
@@ -99,12 +99,12 @@ fn a_run_without_checkpoints_is_solved_again_from_its_start() {
     nucleus(folder.path(), &["run", "drape.ron", "--checkpoint", "0", "-o", "x.mcap"]);
     let whole = fs::read(folder.path().join("x.mcap")).unwrap();
     let output = resume(folder.path(), &["--at", "4"]);
-    assert!(stderr(&output).contains("all is solved again from frame 1"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("every frame is solved again from frame 1"), "{}", stderr(&output));
     assert!(fs::read(folder.path().join("x.mcap")).unwrap() == whole);
 }
 
 #[test]
-fn a_run_that_began_from_another_cache_goes_on_without_it() {
+fn a_run_with_an_initial_state_resumes_without_the_cache_of_that_state() {
     let folder = folder();
     scene(folder.path(), 9, "");
     nucleus(folder.path(), &["run", "drape.ron", "-o", "before.mcap", "--velocities"]);
@@ -118,7 +118,7 @@ fn a_run_that_began_from_another_cache_goes_on_without_it() {
 }
 
 #[test]
-fn a_scene_that_has_changed_goes_on_only_from_where_it_is_said_to() {
+fn a_changed_scene_resumes_only_from_a_frame_that_it_reproduces() {
     let folder = folder();
     whole(folder.path());
     fs::copy(folder.path().join("whole.mcap"), folder.path().join("x.mcap")).unwrap();
@@ -126,17 +126,21 @@ fn a_scene_that_has_changed_goes_on_only_from_where_it_is_said_to() {
     let path = folder.path().join("drape.ron");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replace("subSteps: 2", "subSteps: 3")).unwrap();
-    // Frames 10 and 11 are kept, but do not come out as they were.
+    // Frames 10 and 11 are to be kept, but the changed scene does not reproduce them.
     let output = resume(folder.path(), &["--at", "11", "--scene", "drape.ron"]);
     assert_refused(&output, "frame 10 does not come out as it was recorded");
-    assert!(stderr(&output).contains("--scene drape.ron --at 9` solves all"), "{}", stderr(&output));
-    assert!(fs::read(folder.path().join("x.mcap")).unwrap() == before, "nothing is touched");
+    assert!(
+        stderr(&output).contains("--scene drape.ron --at 9` solves the frames after 9"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(fs::read(folder.path().join("x.mcap")).unwrap() == before, "the cache is unchanged");
     assert!(!folder.path().join("x.mcap.resuming").exists());
     assert!(resumed(folder.path(), &["--at", "9", "--scene", "drape.ron"]) != before);
-    // Other objects are another run.
+    // Changed objects are refused.
     fs::write(&path, text.replace("(6, 6)", "(7, 6)")).unwrap();
     let output = resume(folder.path(), &["--at", "9", "--scene", "drape.ron"]);
-    assert_refused(&output, "the mesh of `cloth1` is not that in `x.mcap`");
+    assert_refused(&output, "the mesh of `cloth1` differs from that in `x.mcap`");
     fs::write(&path, text.replace("\"cloth1\"", "\"silk\"")).unwrap();
     assert_refused(
         &resume(folder.path(), &["--at", "9", "--scene", "drape.ron"]),
@@ -145,7 +149,7 @@ fn a_scene_that_has_changed_goes_on_only_from_where_it_is_said_to() {
 }
 
 #[test]
-fn a_mesh_that_has_changed_since_is_noticed() {
+fn a_mesh_file_that_has_changed_is_refused() {
     let folder = folder();
     let mesh = |height: f64| {
         let text = format!("v 0 {height} 0\nv 10 25 0\nv 10 25 10\nv 0 25 10\nf 1 2 3 4\n");
@@ -166,32 +170,32 @@ fn a_mesh_that_has_changed_since_is_noticed() {
 }
 
 #[test]
-fn what_cannot_be_gone_on_with_is_refused_with_a_way_out() {
+fn a_cache_that_cannot_be_resumed_is_refused_with_advice() {
     let folder = folder();
     let path = folder.path();
-    assert_refused(&resume(path, &[]), "cannot go on with `x.mcap`");
+    assert_refused(&resume(path, &[]), "cannot resume `x.mcap`");
     fs::write(path.join("x.mcap"), "").unwrap();
-    assert_refused(&resume(path, &[]), "`nucleus run` begins it again");
+    assert_refused(&resume(path, &[]), "start the run again with `nucleus run`");
     fs::write(path.join("x.mcap"), "my thesis, chapter one").unwrap();
     assert_refused(&resume(path, &[]), "not an MCAP file");
     fs::remove_file(path.join("x.mcap")).unwrap();
     fs::create_dir(path.join("x.mcap")).unwrap();
     assert_refused(&resume(path, &[]), "is a folder, not a cache");
     fs::remove_dir(path.join("x.mcap")).unwrap();
-    // A cache that no scene made.
+    // A cache without a scene.
     fs::rename(cache(path), path.join("x.mcap")).unwrap();
-    assert_refused(&resume(path, &[]), "holds no scene: `--scene` names it");
+    assert_refused(&resume(path, &[]), "holds no scene: name it with `--scene`");
     let whole = whole(path);
     fs::write(path.join("x.mcap"), whole).unwrap();
     assert_refused(
         &resume(path, &["--at", "13"]),
-        "there is no frame 13 to go on from; `x.mcap` has 1 to 12",
+        "there is no frame 13 to resume from; `x.mcap` has 1 to 12",
     );
-    assert_refused(&resume(path, &["--to", "5"]), "`--at` drops what comes after a frame");
+    assert_refused(&resume(path, &["--to", "5"]), "drop the later frames with `--at`");
 }
 
 #[test]
-fn info_says_what_checkpoints_there_are() {
+fn info_lists_the_checkpoints() {
     let folder = folder();
     whole(folder.path());
     let said = stdout(&nucleus(folder.path(), &["info", "whole.mcap"]));
@@ -209,7 +213,7 @@ mod killed {
 
     use super::*;
 
-    /// Starts a command and waits until what it writes has so many frames.
+    /// Starts a command and waits until its cache has this many frames.
     fn until(folder: &Path, arguments: &[&str], frames: usize) -> Child {
         let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
         run.args(arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -218,14 +222,14 @@ mod killed {
         let count =
             || Playback::open(folder.join("x.mcap.part")).map_or(0, |cache| cache.time_samples().len());
         while count() < frames {
-            assert!(begin.elapsed() < Duration::from_secs(60), "the run does not come so far");
+            assert!(begin.elapsed() < Duration::from_secs(60), "the run does not reach {frames} frames");
             sleep(Duration::from_millis(2));
         }
         child
     }
 
     #[test]
-    fn a_run_that_is_killed_again_and_again_loses_nothing_and_ends_in_the_same_bytes() {
+    fn a_run_that_is_killed_repeatedly_loses_nothing_and_ends_with_the_same_bytes() {
         let folder = folder();
         scene(folder.path(), 1_000_000, "");
         let last = || {
@@ -243,7 +247,7 @@ mod killed {
                 child = until(folder.path(), &["resume", "x.mcap"], frames);
                 let busy = resume(folder.path(), &[]);
                 assert_refused(&busy, "is being written by another run");
-                assert!(last() >= reached, "what was there is there");
+                assert!(last() >= reached, "no recorded frame is lost");
             }
         }
         let end = (last() + 7).to_string();

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 
 #[test]
-fn a_run_records_a_cache_and_tells_how_to_watch_it() {
+fn a_run_records_a_cache_and_prints_the_command_that_plays_it() {
     let folder = folder();
     scene(folder.path(), 5, "noPenetration, finite");
     let output = nucleus(folder.path(), &["run", "drape.ron"]);
@@ -33,7 +33,7 @@ fn the_cache_holds_the_scene_it_was_made_from() {
 }
 
 #[test]
-fn a_check_that_fails_is_trouble_and_says_by_how_much() {
+fn a_failed_check_exits_with_1_and_shows_its_figure() {
     let folder = folder();
     scene(folder.path(), 5, "restsBy(frame: 3, speed: 0)");
     let output = nucleus(folder.path(), &["run", "drape.ron"]);
@@ -42,7 +42,7 @@ fn a_check_that_fails_is_trouble_and_says_by_how_much() {
 }
 
 #[test]
-fn json_is_an_object_for_each_frame_and_one_for_the_run() {
+fn json_is_an_object_per_frame_and_one_for_the_run() {
     let folder = folder();
     scene(folder.path(), 5, "finite");
     let output = nucleus(folder.path(), &["run", "drape.ron", "--json"]);
@@ -50,13 +50,16 @@ fn json_is_an_object_for_each_frame_and_one_for_the_run() {
         stdout(&output).lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect();
     let frames: Vec<_> = lines.iter().filter_map(|line| line["frame"].as_i64()).collect();
     assert_eq!(frames, [2, 3, 4, 5]);
+    for key in ["candidate_pairs", "pairs_reverted", "depenetrating", "intersections", "sanitized"] {
+        assert!(lines[0][key].is_u64(), "{key}: {}", lines[0]);
+    }
     let summary = &lines[4]["summary"];
     assert_eq!((&summary["ending"], &summary["last"]), (&Value::from("done"), &Value::from(5)));
     assert_eq!(summary["checks"][0]["passed"], true);
 }
 
 #[test]
-fn frames_and_what_is_recorded_can_be_chosen() {
+fn options_select_the_frames_and_the_recorded_times() {
     let folder = folder();
     scene(folder.path(), 5, "");
     let moments = |arguments: &[&str]| {
@@ -85,14 +88,14 @@ fn an_audit_says_that_nothing_passed_through_anything() {
     assert!(said.contains("check noCrossing: passed"), "{said}");
     let output = nucleus(folder.path(), &["run", "drape.ron", "--force"]);
     assert!(stdout(&output).contains("check noCrossing: passed"), "{}", stdout(&output));
-    assert!(!stdout(&output).contains("audit of"), "nobody asked");
+    assert!(!stdout(&output).contains("audit of"), "`--audit` is not given");
 }
 
 #[test]
-fn what_an_audit_finds_is_trouble_and_is_named() {
+fn a_finding_of_the_audit_exits_with_1_and_is_named() {
     let folder = folder();
     scene(folder.path(), 5, "");
-    // The sheet is held by all its points but one, and the ball is driven through: nobody could prevent it.
+    // All points of the sheet but one are pinned and the ball is driven through it, so penetration cannot be prevented.
     let path = folder.path().join("drape.ron");
     let text = fs::read_to_string(&path).unwrap();
     let text = text.replace("radius: 20", "radius: 20, translateY: keys([(1, 0), (5, 60)])");
@@ -102,8 +105,8 @@ fn what_an_audit_finds_is_trouble_and_is_named() {
     let output = nucleus(folder.path(), &["run", "drape.ron", "--audit", "--json"]);
     let last =
         stdout(&output).lines().last().map(|line| serde_json::from_str::<Value>(line).unwrap()).unwrap();
-    // Every time step of four frames is looked at: 96 evaluations in each, and up to eight parts of those in which the
-    // ball tears at the sheet.
+    // The audit sees each time step of four frames: 96 evaluations per frame, some of which adaptive substepping splits
+    // into up to eight.
     let audit = &last["summary"]["audit"];
     let steps = audit["steps"].as_u64().expect("a count");
     assert!(steps > 384 && steps <= 8 * 384, "{audit}");
@@ -116,7 +119,7 @@ fn what_an_audit_finds_is_trouble_and_is_named() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_file() {
+fn every_number_of_threads_gives_the_same_file() {
     let folder = folder();
     scene(folder.path(), 12, "");
     let file = |threads: &str| {
@@ -137,7 +140,7 @@ fn a_file_that_is_no_cache_is_not_overwritten() {
 }
 
 #[test]
-fn a_cache_that_cannot_be_made_is_refused_with_the_reason_once() {
+fn a_cache_that_cannot_be_created_is_refused_with_one_reason() {
     let folder = folder();
     scene(folder.path(), 5, "");
     let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "no/such/x.mcap"]);
@@ -146,7 +149,7 @@ fn a_cache_that_cannot_be_made_is_refused_with_the_reason_once() {
 }
 
 #[test]
-fn nonsense_on_the_command_line_is_refused() {
+fn invalid_option_values_are_refused() {
     let folder = folder();
     scene(folder.path(), 5, "");
     for arguments in [["--frames", "0"], ["--frames", "9..3"], ["--threads", "0"], ["--record", "all"]] {

@@ -1,4 +1,4 @@
-//! A cache to look at, and the command to look at it with.
+//! The command, a small cache and a small scene.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 pub const END: i32 = 6;
 
-/// A folder that is removed in the end.
+/// A temporary folder that is removed with the test.
 pub fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
@@ -30,14 +30,14 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// Asserts that a command could not start and said this.
+/// Asserts that a command could not start, with these words in its error.
 pub fn assert_refused(output: &Output, words: &str) {
     let said = stderr(output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.starts_with("error: ") && said.contains(words), "{said}");
 }
 
-/// A square of a metre that falls for frames 1 to [`END`], in centimetres.
+/// A cache of a falling square with sides of 1 m, frames 1 to [`END`], in centimetres.
 pub fn cache(folder: &Path) -> PathBuf {
     let path = folder.join("fall.mcap");
     let mut faces = Faces::default();
@@ -81,7 +81,7 @@ fn input() -> FrameInput {
     }
 }
 
-/// A sheet that falls on a ball, written as `drape.ron`. With so many frames, and these checks.
+/// Writes `drape.ron`, a sheet that falls on a ball.
 pub fn scene(folder: &Path, frames: u32, checks: &str) {
     let text = format!(
         r#"Scene(

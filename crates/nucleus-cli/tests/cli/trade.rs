@@ -8,17 +8,17 @@ use std::time::{Duration, Instant};
 
 use crate::sample::{folder, scene, stderr, stdout};
 
-/// `nucleus` with these arguments; what it keeps is kept in the folder too.
+/// `nucleus` with these arguments, which stores results in `folder`.
 fn nucleus(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
     command.env("NUCLEUS_CACHE", folder.join("kept")).args(arguments).current_dir(folder);
     command.output().unwrap()
 }
 
-/// A sweep that takes a moment.
+/// A short sweep.
 const SMALL: [&str; 8] = ["trade", "drape.ron", "--evaluations", "6,12", "--substeps", "1", "--frames", "8"];
 
-/// The runs that are kept so far, a line each.
+/// The stored runs, one per line.
 #[cfg(unix)]
 fn kept_text(folder: &Path) -> String {
     let Ok(all) = fs::read_dir(folder.join("kept").join("trade")) else { return String::new() };
@@ -26,7 +26,7 @@ fn kept_text(folder: &Path) -> String {
         .collect()
 }
 
-/// Lines of a list that is kept, in whichever folder.
+/// Lines of a stored list, over all scenes.
 fn kept_lines(folder: &Path, name: &str) -> usize {
     let all = fs::read_dir(folder.join("kept").join("trade")).unwrap();
     let lines = |folder: fs::DirEntry| fs::read_to_string(folder.path().join(name)).unwrap().lines().count();
@@ -34,7 +34,7 @@ fn kept_lines(folder: &Path, name: &str) -> usize {
 }
 
 #[test]
-fn a_sweep_writes_a_page_with_pictures_a_table_and_json_and_says_what_to_take() {
+fn a_sweep_writes_a_page_a_table_and_json_and_recommends_a_setting() {
     let folder = folder();
     scene(folder.path(), 24, "");
     let output = nucleus(folder.path(), &SMALL);
@@ -46,15 +46,15 @@ fn a_sweep_writes_a_page_with_pictures_a_table_and_json_and_says_what_to_take() 
     let read = |end: &str| fs::read_to_string(folder.path().join(format!("drape.trade.{end}"))).unwrap();
     let html = read("html");
     assert!(html.matches("data:image/png;base64,").count() >= 2 && html.contains("<svg"));
-    assert!(!html.contains("http://") && !html.contains("https://"), "the page needs nothing from elsewhere");
-    // The head, two settings and the scene's own.
+    assert!(!html.contains("http://") && !html.contains("https://"), "the page is self-contained");
+    // The header, two settings and that of the scene.
     assert_eq!(read("csv").lines().count(), 4);
     let json: serde_json::Value = serde_json::from_str(&read("json")).unwrap();
     assert_eq!(json["points"].as_array().unwrap().len(), 3);
 }
 
 #[test]
-fn a_sweep_goes_on_where_it_was() {
+fn a_sweep_uses_the_stored_results_of_an_earlier_one() {
     let folder = folder();
     scene(folder.path(), 24, "");
     let first = nucleus(
@@ -75,10 +75,9 @@ fn a_sweep_goes_on_where_it_was() {
     assert_eq!((again.status.code(), kept_lines(folder.path(), "runs.jsonl")), (Some(0), 3));
 }
 
-/// A sweep that is stopped when its first run has been kept, and done again.
 #[cfg(unix)]
 #[test]
-fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
+fn an_interrupted_sweep_continues_with_its_stored_runs() {
     let folder = folder();
     scene(folder.path(), 48, "");
     let evaluations: Vec<String> = (1..=30).map(|k| (3 * k).to_string()).collect();
@@ -107,21 +106,21 @@ fn a_sweep_that_is_interrupted_says_so_and_goes_on_with_what_it_had() {
     assert!(sent.success());
     let stopped = child.wait_with_output().unwrap();
     assert_eq!(stopped.status.code(), Some(130), "{}", stderr(&stopped));
-    assert!(stderr(&stopped).contains("what was finished is kept"), "{}", stderr(&stopped));
-    assert!(!folder.path().join("drape.trade.html").exists(), "half a sweep is no report");
+    assert!(stderr(&stopped).contains("finished runs are stored"), "{}", stderr(&stopped));
+    assert!(!folder.path().join("drape.trade.html").exists(), "an interrupted sweep writes no page");
 
     let kept = kept_text(folder.path());
-    // 30 that were asked for; the scene's own has 96 evaluations too, but 2 substeps.
-    assert!(kept.lines().count() < 31, "it was stopped before it ended");
+    // 30 requested settings, and that of the scene, which has 2 substeps.
+    assert!(kept.lines().count() < 31, "the sweep was interrupted before its end");
     let again = nucleus(folder.path(), &sweep);
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
     let all = kept_text(folder.path());
-    assert!(all.starts_with(&kept), "what was kept is as it was");
+    assert!(all.starts_with(&kept), "stored runs are unchanged");
     assert_eq!(all.lines().count(), 31);
 }
 
 #[test]
-fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
+fn a_found_setting_serves_run_quality_and_is_written_into_the_scene() {
     let folder = folder();
     scene(folder.path(), 24, "");
     let before = nucleus(folder.path(), &["run", "drape.ron", "--quality", "50%"]);
@@ -137,19 +136,19 @@ fn what_is_found_serves_a_run_of_some_quality_and_is_written_into_the_scene() {
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (scene, other) = (read("drape.ron"), read("other.ron"));
     let changed: Vec<_> = scene.lines().zip(other.lines()).filter(|(a, b)| a != b).collect();
-    // At most the nucleus is another; nothing is where the setting found is the scene's own.
+    // Only the line of the nucleus may change, and only if the found setting differs from that of the scene.
     assert!(changed.len() <= 1, "{other}");
     assert!(changed.iter().all(|(_, line)| line.contains("nucleus(spaceScale: 0.01, subSteps: ")), "{other}");
-    // The scene at its new setting is still the same scene.
+    // The stored results of the scene apply to it at its new setting.
     let other = nucleus(folder.path(), &["run", "other.ron", "--quality", "50%", "--record", "none"]);
     assert_eq!(other.status.code(), Some(0), "{}", stderr(&other));
 }
 
 #[test]
-fn a_run_of_some_quality_goes_on_at_the_setting_it_had_even_where_the_trade_is_forgotten() {
+fn a_run_with_quality_resumes_at_its_setting_without_the_stored_results() {
     let folder = folder();
     scene(folder.path(), 24, "");
-    // The scene's own setting is in every sweep: it is made so dear that another is cheaper, however the clock runs.
+    // The setting of the scene is in every sweep. Many evaluations make it more expensive than the others.
     let path = folder.path().join("drape.ron");
     let dear = fs::read_to_string(&path).unwrap().replace("subSteps: 2", "subSteps: 2, evaluations: 960");
     fs::write(&path, dear).unwrap();
@@ -162,7 +161,7 @@ fn a_run_of_some_quality_goes_on_at_the_setting_it_had_even_where_the_trade_is_f
     let plain = nucleus(folder.path(), &["run", "drape.ron", "-o", "plain.mcap"]);
     assert_eq!(plain.status.code(), Some(0), "{}", stderr(&plain));
     let diff = nucleus(folder.path(), &["diff", "x.mcap", "plain.mcap"]);
-    assert_eq!(diff.status.code(), Some(1), "the setting is another than the scene's: {}", stdout(&diff));
+    assert_eq!(diff.status.code(), Some(1), "the setting differs from that of the scene: {}", stdout(&diff));
 
     fs::remove_dir_all(folder.path().join("kept")).unwrap();
     for at in ["5", "13", "24"] {
@@ -173,12 +172,12 @@ fn a_run_of_some_quality_goes_on_at_the_setting_it_had_even_where_the_trade_is_f
 }
 
 #[test]
-fn what_no_setting_reaches_ends_with_the_nearest_and_exit_code_1() {
+fn an_error_or_time_that_no_setting_reaches_exits_with_1_and_the_nearest() {
     let folder = folder();
     scene(folder.path(), 24, "");
     let wishes = [
         (["--time", "0.00001ms"], "no setting reaches a time of 0.00001 ms; the nearest: "),
-        (["--error", "0.0000001%"], "an error of 0.0000001 % cannot be told from none"),
+        (["--error", "0.0000001%"], "is larger than an error of 0.0000001 %"),
     ];
     for (wish, words) in wishes {
         let output = nucleus(folder.path(), &[&SMALL[..], &wish].concat());
@@ -188,7 +187,7 @@ fn what_no_setting_reaches_ends_with_the_nearest_and_exit_code_1() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_said_with_exit_code_1() {
+fn a_scene_that_cannot_be_compared_exits_with_1_and_a_reason() {
     let folder = folder();
     scene(folder.path(), 24, "");
     let refused = |arguments: &[&str], words: &str| {
@@ -204,7 +203,7 @@ fn what_cannot_be_compared_is_said_with_exit_code_1() {
         "n": nucleus(gravity: 0), "p": polyPlane(), "c": nCloth(inputMesh: "p")})"#;
     fs::write(folder.path().join("still.ron"), still).unwrap();
     refused(&["trade", "still.ron", "--evaluations", "6"], "no cloth moves");
-    // A hundred times its weight on a sheet that is given one sweep a frame: two and four are as far from an end.
+    // A sheet under a hundred times its weight with one evaluation does not converge at two or at four.
     let loose = r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {
         "n": nucleus(gravity: 980, evaluations: 1, subSteps: 1), "p": polyPlane(subdivisions: (8, 8), rotate: (90, 0, 0)),
         "c": nCloth(inputMesh: "p"),

@@ -1,6 +1,6 @@
 //! What an audit checks in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
 
-use nucleus_audit::{Plane, Rules, World};
+use nucleus_audit::{CollisionFilter, CollisionMesh, Plane};
 use nucleus_core::{ClothFrame, ClothId, FrameInput, Pin};
 
 use crate::attributes::{n_base, nucleus};
@@ -79,8 +79,13 @@ impl GroundPlanes {
 
 /// The rules of the frame that ends at `frame`, over all objects in their order. Colliders and pinned points follow the
 /// animation, so the solver cannot keep them apart from each other.
-pub(crate) fn collision_rules(program: &Program, frame: i64, pins: &[Pin], world: &World) -> Rules {
-    let mut rules = Rules::default();
+pub(crate) fn collision_rules(
+    program: &Program,
+    frame: i64,
+    pins: &[Pin],
+    world: &CollisionMesh,
+) -> CollisionFilter {
+    let mut rules = CollisionFilter::default();
     let objects = program.objects();
     let moment = program.graph().at(frame as f64);
     for a in 0..objects.len() {
@@ -90,13 +95,13 @@ pub(crate) fn collision_rules(program: &Program, frame: i64, pins: &[Pin], world
             }
         }
         if let ObjectKind::Collider(_) = objects[a].kind {
-            world.points_of(a).for_each(|point| rules.hold(point));
+            world.points_of(a).for_each(|point| rules.set_kinematic(point));
         }
     }
     for pin in pins {
         let is_pinned = |object: &Object| object.kind == ObjectKind::Cloth(pin.cloth);
         let cloth = objects.iter().position(is_pinned).map(|cloth| world.points_of(cloth));
-        cloth.into_iter().for_each(|points| rules.hold(points.start + pin.point.index()));
+        cloth.into_iter().for_each(|points| rules.set_kinematic(points.start + pin.point.index()));
     }
     rules
 }

@@ -46,10 +46,10 @@ impl StateView for Level<'_> {
 }
 
 /// The audit of a sheet that moves from height to height.
-fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> Account {
+fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> AuditCounts {
     let program = program(nodes);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| collision_rules(&program, 2, &[], world);
+    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &[], world);
     let mut audit = Audit::new(run.objects(), closeness, run.state(), rules);
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
@@ -78,7 +78,7 @@ fn a_sheet_that_ends_inside_a_ball_is_found_in_states_and_in_motions() {
 fn states_within_a_substep_are_audited() {
     let program = program(SHEET_AND_BALL);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &World| collision_rules(&program, 2, &[], world);
+    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &[], world);
     let mut audit = Audit::new(run.objects(), Closeness::Steps, run.state(), rules);
     audit.begin_frame(2, rules);
     let level = |height: f64| Level { start: run.state(), height };
@@ -89,7 +89,7 @@ fn states_within_a_substep_are_audited() {
     audited.step(1.0, &level(1.4));
     audited.substep(core::SubstepIndex { substep: 1, substeps: 1 }, &level(1.4));
     let account = audit.account();
-    assert_eq!((account.motions, account.overlaps), (2, 0), "the end of the substep adds no motion");
+    assert_eq!((account.motions, account.intersections), (2, 0), "the end of the substep adds no motion");
     assert!(account.crossings > 0, "the sheet moved down and up again");
 }
 
@@ -122,8 +122,8 @@ fn cloths_in_distant_collision_layers_are_not_audited() {
                "c": nCloth(inputMesh: "sheet"), "d": nCloth(inputMesh: "other", collisionLayer: {layer})"#
         );
         let program = program(&nodes);
-        let world = World::new(vec![Body::default(), Body::default()]);
-        collision_rules(&program, 2, &[], &world) == Rules::default()
+        let world = CollisionMesh::new(vec![Body::default(), Body::default()]);
+        collision_rules(&program, 2, &[], &world) == CollisionFilter::default()
     };
     assert!(two(0.0) && two(3.9) && !two(4.0), "the range is 4 unless it is set");
 }

@@ -250,13 +250,21 @@ function levelPlane(text) {
   return Number.isFinite(y) && b > 0.999 * Math.hypot(a, b, c) ? y : null;
 }
 
-// Figures of a report whose names have changed.
-const RENAMED = { pairs: "candidate_pairs", pinched: "compressed", trapped: "depenetrating", tangled: "intersections" };
+// Figures that older caches hold under another name: former name to present name.
+const RENAMED_FIGURES = {
+  caught: "pairs_reverted",
+  crossed: "pairs_unresolved",
+  pairs: "candidate_pairs",
+  pinched: "compressed",
+  trapped: "depenetrating",
+  tangled: "intersections",
+  refused: "sanitized",
+};
 
 function readReport(data) {
   try {
-    const figures = Object.entries(JSON.parse(new TextDecoder().decode(data)));
-    return Object.fromEntries(figures.map(([key, value]) => [RENAMED[key] ?? key, value]));
+    const report = JSON.parse(new TextDecoder().decode(data));
+    return Object.fromEntries(Object.entries(report ?? {}).map(([key, value]) => [RENAMED_FIGURES[key] ?? key, value]));
   } catch {
     return null;
   }

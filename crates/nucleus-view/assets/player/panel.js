@@ -23,7 +23,7 @@ const FIGURES = {
   kinetic_energy: ["Kinetic energy, J", plain],
 };
 // Shown elsewhere, or of interest to developers of the solver only.
-const HIDDEN_FIGURES = ["frame", "broad_phases", "refused"];
+const HIDDEN_FIGURES = ["frame", "broad_phases", "sanitized"];
 
 export const byId = (id) => document.getElementById(id);
 

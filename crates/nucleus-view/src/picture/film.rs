@@ -94,7 +94,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
 
     /// The frame of a picture.
     pub fn frame(&self, index: usize) -> i32 {
-        self.cache.moments()[self.moments[index.min(self.moments.len() - 1)]].frame
+        self.cache.time_samples()[self.moments[index.min(self.moments.len() - 1)]].frame
     }
 
     /// Replaces the camera.

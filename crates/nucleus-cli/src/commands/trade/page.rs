@@ -1,4 +1,4 @@
-//! The page of a trade: what it shows, and the pictures in it.
+//! The page of `nucleus trade`: pictures of the last frame at several settings, and the error over time.
 
 use anyhow::Result;
 use nucleus_graph::Simulation;
@@ -9,16 +9,16 @@ use nucleus_measure::trade::run::object_positions;
 use nucleus_measure::trade::{Found, Point, Subject, sweep};
 use nucleus_view::{Bounds, Camera, Colouring, Ground, Kind, Object, Style, draw};
 
-/// Pixels of a picture.
+/// Width and height of a picture in pixels.
 const SIZE: [u32; 2] = [560, 420];
 
-/// The strain that has the full colour.
+/// The strain that is drawn in full colour.
 const FULL_SCALE: f32 = 0.05;
 
-/// All objects at one moment, in scene units.
+/// Positions of all objects at one time, in scene units.
 type State = Vec<Vec<[f32; 3]>>;
 
-/// The page as text.
+/// The page as HTML.
 pub fn of(
     scene: &str,
     subject: &Subject,
@@ -30,9 +30,9 @@ pub fn of(
     let trade = &found.trade;
     let mut shown: Vec<(String, String, State)> = Vec::new();
     let cheapest = trade.points.iter().find(|point| point.error.is_some());
-    let most_exact = trade.frontier().last().filter(|_| found.references.is_none());
-    let asked = [("cheapest", cheapest), ("recommended", recommended), ("most exact", most_exact)];
-    for (title, point) in asked {
+    let most_accurate = trade.frontier().last().filter(|_| found.references.is_none());
+    let selected = [("cheapest", cheapest), ("recommended", recommended), ("most accurate", most_accurate)];
+    for (title, point) in selected {
         let Some(point) = point else { continue };
         if let Some(state) = sweep::end(store, subject, &point.setting)? {
             shown.push((title.to_owned(), caption(point), state));
@@ -40,7 +40,7 @@ pub fn of(
     }
     if let (Some(both), Some(point)) = (&found.references, &trade.reference) {
         let caption =
-            format!("{}, in double precision; {} ms a frame", point.setting, report::figure(point.ms));
+            format!("{}, in double precision; {} ms per frame", point.setting, report::figure(point.ms));
         shown.push(("reference".to_owned(), caption, both.fine.end.clone()));
     }
     let pictures = pictures(subject, shown)?;
@@ -67,10 +67,10 @@ pub fn of(
 fn caption(point: &Point) -> String {
     let error = point.error.map(report::percent).unwrap_or_default();
     let trouble = point.trouble().map(|trouble| format!("; {trouble}")).unwrap_or_default();
-    format!("{}; {} ms a frame, error {error}{trouble}", point.setting, report::figure(point.ms))
+    format!("{}; {} ms per frame, error {error}{trouble}", point.setting, report::figure(point.ms))
 }
 
-/// The last frame of each, all seen by one camera. Colours tell strain, where an error shows best.
+/// Pictures of the last frame by one camera. Colours show strain, which makes errors visible.
 fn pictures(subject: &Subject, shown: Vec<(String, String, State)>) -> Result<Vec<Picture>> {
     let rest = rest(subject);
     let (mut stage, mut all) = (Bounds::default(), Bounds::default());
@@ -90,7 +90,7 @@ fn pictures(subject: &Subject, shown: Vec<(String, String, State)>) -> Result<Ve
     drawn.collect()
 }
 
-/// All objects at the start.
+/// Positions of all objects at the start.
 fn rest(subject: &Subject) -> State {
     let start: Simulation = Simulation::new(subject.program(), 1);
     let mut rest: State = vec![Vec::new(); start.objects().len()];
@@ -102,7 +102,7 @@ fn rest(subject: &Subject) -> State {
 
 fn objects<'a>(subject: &'a Subject, rest: &'a State, state: &'a State) -> Vec<Object<'a>> {
     let all = subject.program().objects().iter().zip(rest).zip(state);
-    // What was kept of another build may not fit; it is not drawn.
+    // A state stored by another build may have other meshes; those objects are not drawn.
     let fitting = all.filter(|((_, rest), positions)| rest.len() == positions.len());
     fitting
         .map(|((object, rest), positions)| Object {

@@ -11,7 +11,7 @@ fn run(folder: &Path, arguments: &[&str]) -> std::process::Output {
     nucleus(folder, &[&["run", "drape.ron", "--threads", "1"], arguments].concat())
 }
 
-/// Where the cloth is at the end of a frame, and how fast.
+/// Positions and velocities of the cloth at the end of a frame.
 fn state(folder: &Path, cache: &str, frame: i32) -> (Vec<[f32; 3]>, Option<Vec<[f32; 3]>>) {
     let mut cache = Playback::open(folder.join(cache)).unwrap();
     let moment = cache.end_of(frame).unwrap();
@@ -24,7 +24,7 @@ fn farthest(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
 }
 
 #[test]
-fn a_run_from_a_frame_of_a_cache_goes_on_from_there() {
+fn a_run_from_a_frame_of_a_cache_continues_its_motion() {
     let folder = folder();
     scene(folder.path(), 9, "");
     assert_eq!(run(folder.path(), &["--velocities", "-o", "whole.mcap"]).status.code(), Some(0));
@@ -41,21 +41,21 @@ fn a_run_from_a_frame_of_a_cache_goes_on_from_there() {
         let again = |frame| state(folder.path(), "rest.mcap", frame);
         assert_eq!(again(start), at(start));
         if start == 2 {
-            // It still falls freely: 25 cm are rounded to 2e-6 cm in a cache, and what it falls is a thousand times that.
+            // The sheet still falls freely. A cache rounds 25 cm to 2e-6 cm; the fall per frame is a thousand times that.
             assert!(farthest(&again(3).0, &at(3).0) < 1e-5);
             assert!(farthest(&at(3).0, &at(2).0) > 1e-2);
         } else {
-            // It lies on the ball: contacts are found anew, and it comes to lie a little otherwise.
+            // The sheet lies on the ball. A run from a cache finds its contacts anew, so it settles slightly differently.
             let apart = farthest(&again(9).0, &at(9).0);
             assert!(apart < 0.1 * farthest(&at(9).0, &at(5).0), "{apart}");
         }
     }
-    let told = Playback::open(folder.path().join("rest.mcap")).unwrap().run().extra["from"].clone();
-    assert_eq!(told, "whole.mcap@5");
+    let stated = Playback::open(folder.path().join("rest.mcap")).unwrap().run().extra["from"].clone();
+    assert_eq!(stated, "whole.mcap@5");
 }
 
 #[test]
-fn without_recorded_velocities_they_are_taken_from_the_moment_before_and_that_is_told() {
+fn velocities_that_were_not_recorded_are_estimated_with_a_warning() {
     let folder = folder();
     scene(folder.path(), 5, "");
     run(folder.path(), &["-o", "whole.mcap"]);
@@ -73,7 +73,7 @@ fn without_recorded_velocities_they_are_taken_from_the_moment_before_and_that_is
 }
 
 #[test]
-fn another_scale_of_space_is_the_same_place_in_metres() {
+fn an_initial_state_is_converted_between_space_scales() {
     let folder = folder();
     scene(folder.path(), 4, "");
     run(folder.path(), &["-o", "whole.mcap"]);
@@ -87,7 +87,7 @@ fn another_scale_of_space_is_the_same_place_in_metres() {
 }
 
 #[test]
-fn a_cache_that_does_not_fit_is_refused_with_the_reason() {
+fn a_cache_that_does_not_match_the_scene_is_refused_with_the_reason() {
     let folder = folder();
     scene(folder.path(), 5, "");
     run(folder.path(), &["-o", "whole.mcap"]);
@@ -98,18 +98,18 @@ fn a_cache_that_does_not_fit_is_refused_with_the_reason() {
     };
     assert_refused(
         &changed("cloth1", "curtain"),
-        "`whole.mcap` is of another scene: it has no cloth `curtain`; its cloth is `cloth1`, recorded from `drape.ron`",
+        "`whole.mcap` has no cloth `curtain`: its cloth is `cloth1`, recorded from `drape.ron`",
     );
     assert_refused(
         &changed("(6, 6)", "(6, 7)"),
-        "`cloth1` has 56 points, but 49 in `whole.mcap`: its mesh has changed",
+        "the mesh of `cloth1` has changed: it has 56 points, but 49 in `whole.mcap`",
     );
     assert_refused(
         &changed(
             "cloth1\": nCloth(inputMesh: \"sheet\", thickness: 1)",
             "cloth1\": nRigid(inputMesh: \"sheet\")",
         ),
-        "there is no cloth in the scene that could start from a cache",
+        "the scene has no cloth that could start from a cache",
     );
     fs::write(folder.path().join("drape.ron"), &text).unwrap();
     assert_refused(
@@ -117,12 +117,12 @@ fn a_cache_that_does_not_fit_is_refused_with_the_reason() {
         "there is no frame 80; the cache has 1 to 5",
     );
     assert_refused(&run(folder.path(), &["--from", "none.mcap@3"]), "none.mcap");
-    assert_refused(&run(folder.path(), &["--from", "whole.mcap@x"]), "write the cache and a frame of it");
+    assert_refused(&run(folder.path(), &["--from", "whole.mcap@x"]), "write a cache and a frame of it");
     assert!(!folder.path().join("drape.mcap").exists(), "nothing is recorded");
 }
 
 #[test]
-fn a_mesh_with_as_many_points_and_other_faces_is_another_mesh() {
+fn a_mesh_with_other_faces_and_equal_points_is_refused() {
     let folder = folder();
     let obj = |name: &str, faces: &str| {
         let points = "v 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\n";
@@ -136,12 +136,12 @@ fn a_mesh_with_as_many_points_and_other_faces_is_another_mesh() {
     obj("m.obj", "f 1 2 3\nf 1 3 4\n");
     assert_refused(
         &run(folder.path(), &["--from", "whole.mcap@2"]),
-        "`c` has other faces than in `whole.mcap`",
+        "the mesh of `c` has changed: its faces differ from those in `whole.mcap`",
     );
 }
 
 #[test]
-fn a_cache_that_is_cut_off_serves_as_far_as_it_is_whole() {
+fn a_cache_that_is_cut_off_serves_up_to_its_last_complete_frame() {
     let folder = folder();
     scene(folder.path(), 12, "");
     run(folder.path(), &["-o", "whole.mcap", "--checkpoint", "0"]);

@@ -1,4 +1,4 @@
-//! A cache whose run is gone on with: where it is, which scene it is of, and whether that still fits.
+//! A resumed run: the cache it continues, the scene of that cache, and whether both still match.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,32 +11,33 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::trade::Subject;
 
-use crate::account::FrameFigures;
+use crate::files;
 use crate::output::say;
-use crate::{fingerprint, scene_file};
+use crate::recording::{PROGRAM, SETTING, fingerprint};
+use crate::run_statistics::FrameStatistics;
 
-/// A cache to go on with.
-pub struct Continued {
+/// A run that is resumed from its cache.
+pub struct ResumedRun {
     /// The file that is read.
     pub file: PathBuf,
-    /// The file that it belongs to, without `.part`.
-    pub whole: PathBuf,
-    /// What it holds; every frame has been looked at.
+    /// The name of the complete cache: `file` without `.part`.
+    pub complete: PathBuf,
+    /// The cache, with every frame verified.
     pub cache: Playback,
 }
 
-impl Continued {
-    /// Opens what a run has left: beside a cache, what a killed run has left of a newer one counts.
+impl ResumedRun {
+    /// Opens a cache. The `.part` file of a killed run has precedence over an older complete cache beside it.
     pub fn open(path: &Path) -> Result<Self> {
         let is_part = path.extension().is_some_and(|end| end == "part");
-        let whole = if is_part { path.with_extension("") } else { path.to_owned() };
-        let part = nucleus_cache::part_path(&whole);
+        let complete = if is_part { path.with_extension("") } else { path.to_owned() };
+        let part = nucleus_cache::part_path(&complete);
         let has_part = fs::metadata(&part).is_ok_and(|found| found.is_file() && found.len() > 0);
         let file = if has_part { part } else { path.to_owned() };
-        let cannot = || format!("cannot go on with `{}`", file.display());
+        let cannot = || format!("cannot resume `{}`", file.display());
         let opened = Playback::open_to_resume(&file).map_err(|error| match error {
             OpenError::TooShort | OpenError::Empty => anyhow!(error).context(
-                "its run was ended before its first frame was recorded: `nucleus run` begins it again",
+                "the run ended before its first frame was recorded: start the run again with `nucleus run`",
             ),
             other => anyhow!(other),
         });
@@ -44,29 +45,30 @@ impl Continued {
         cache.verify().with_context(cannot)?;
         ensure!(
             cache.corruption().can_resume(),
-            "{}: {}; `nucleus recover` saves its frames",
+            "{}: {}; `nucleus recover` saves the frames",
             cannot(),
             cache.corruption()
         );
         ensure!(
             !cache.time_samples().is_empty(),
-            "`{}` holds no frame: `nucleus run` begins it again",
+            "`{}` holds no frame: start the run again with `nucleus run`",
             file.display()
         );
-        Ok(Self { file, whole, cache })
+        Ok(Self { file, complete, cache })
     }
 
-    /// The last frame that was recorded.
+    /// The last recorded frame.
     pub fn last(&self) -> i32 {
         self.cache.time_samples().last().map_or(self.cache.run().start, |moment| moment.frame)
     }
 
-    /// The frames that are lost before the last, in order.
+    /// Lost frames before the last one, in ascending order.
     pub fn lost(&self) -> &[i32] {
         &self.cache.corruption().frames
     }
 
-    /// The scene, up to `end`: as the cache holds it, or as `changed` is now. Nothing if it has mistakes, which are told.
+    /// The program up to frame `end`, the path and the text of its scene. The scene is the text in the cache, or the file
+    /// `changed`. Returns `None` if it has errors, which are reported.
     pub fn scene(
         &self,
         changed: Option<&Path>,
@@ -74,19 +76,19 @@ impl Continued {
     ) -> Result<Option<(Program, PathBuf, String)>> {
         let run = self.cache.run();
         let read = match changed {
-            Some(path) => scene_file::open(path, None)?,
+            Some(path) => files::open_scene(path, None)?,
             None => {
                 let text = &run.scene_text;
-                ensure!(!text.is_empty(), "{} holds no scene: `--scene` names it", self.name());
-                scene_file::of_text(text.clone(), &self.scene_path(), None)?
+                ensure!(!text.is_empty(), "{} holds no scene: name it with `--scene`", self.name());
+                files::scene_from_text(text.clone(), &self.scene_path(), None)?
             }
         };
         let path = changed.map_or_else(|| PathBuf::from(&run.scene_path), Path::to_owned);
-        let Some((mut scene, _, text)) = read.told()? else { return Ok(None) };
+        let Some((mut scene, _, text)) = read.report()? else { return Ok(None) };
         let (first, program) = (i64::from(run.start), self.program(&mut scene, changed.is_some(), end)?);
         ensure!(
             program.time().start == first,
-            "the scene begins at frame {}, {} at frame {first}: `nucleus run` begins it anew",
+            "the scene starts at frame {}, but {} at frame {first}: run it again with `nucleus run`",
             program.time().start,
             self.name()
         );
@@ -97,14 +99,14 @@ impl Continued {
         Ok(Some((program, path, text)))
     }
 
-    /// Compiles the scene for the frames and at the setting of the run.
+    /// Compiles the scene for the frame range and at the setting of the run.
     fn program(&self, scene: &mut Scene, is_changed: bool, end: Option<i32>) -> Result<Program> {
         let run = self.cache.run();
         let own_end = if is_changed { scene.time.end } else { run.end.into() };
         scene.time.end = end.map_or(own_end, i64::from);
         let broken = |found: Vec<nucleus_graph::scene::Diagnostic>| {
             let first = found.into_iter().map(|one| one.message).next().unwrap_or_default();
-            anyhow!("the scene cannot go on: {first}")
+            anyhow!("the scene of the run does not compile: {first}")
         };
         if let Some(setting) = run.extra.get(SETTING) {
             let setting = serde_json::from_str(setting).context("the cache's `setting` cannot be read")?;
@@ -114,25 +116,25 @@ impl Continued {
         if program.time().start == i64::from(run.start) {
             return Ok(program);
         }
-        // The run was of other frames than its scene.
+        // `--frames` of the run replaced the frame range of the scene.
         scene.time.start = run.start.into();
         compile(scene).map_err(broken)
     }
 
-    /// Where the scene was; its folder is where meshes are looked for. Beside the cache, if it is not there any more.
+    /// The path of the scene, beside which meshes are found. If it no longer exists, a scene of that name beside the cache.
     fn scene_path(&self) -> PathBuf {
         let path = PathBuf::from(&self.cache.run().scene_path);
-        let beside = self.whole.with_file_name(path.file_name().unwrap_or_default());
+        let beside = self.complete.with_file_name(path.file_name().unwrap_or_default());
         if !path.exists() && beside.exists() { beside } else { path }
     }
 
-    /// The objects of the scene must be those of the cache.
+    /// The scene must have the objects, the frame rate and the units of the cache.
     fn check_objects(&self, program: &Program) -> Result<()> {
         let run = self.cache.run();
         let units = program.units_per_metre();
         ensure!(
             program.time().fps == run.frames_per_second && units == run.units_per_metre,
-            "the scene has {} frames a second and {units} units to the metre, {} {} and {}: `nucleus run` begins it anew",
+            "the scene has {} frames per second and {units} units per metre, but {} has {} and {}: run it again with `nucleus run`",
             program.time().fps,
             self.name(),
             run.frames_per_second,
@@ -141,11 +143,11 @@ impl Continued {
         let recorded: Vec<&ObjectInfo> = self.cache.objects().iter().collect();
         for object in program.objects() {
             let Some(found) = recorded.iter().find(|recorded| recorded.name == object.name) else {
-                bail!("`{}` is not in {}: a run cannot go on with other objects", object.name, self.name())
+                bail!("`{}` is not in {}: a resumed run needs the same objects", object.name, self.name())
             };
             ensure!(
                 found.rest.len() == object.points && found.faces == object.faces,
-                "the mesh of `{}` is not that in {}: it has {} points and {} faces, there it has {} and {}",
+                "the mesh of `{}` differs from that in {}: {} points and {} faces, but {} and {} in the cache",
                 object.name,
                 self.name(),
                 object.points,
@@ -157,18 +159,18 @@ impl Continued {
         let is_gone =
             |recorded: &&&ObjectInfo| program.objects().iter().all(|object| object.name != recorded.name);
         match recorded.iter().find(is_gone) {
-            Some(gone) => bail!("`{}` is in {} and no more in the scene", gone.name, self.name()),
+            Some(gone) => bail!("`{}` is in {} but no longer in the scene", gone.name, self.name()),
             None => Ok(()),
         }
     }
 
-    /// Meshes and maps must be what they were.
+    /// Meshes and maps must be unchanged.
     fn check_inputs(&self, program: &Program) -> Result<()> {
         let known = self.cache.run().extra.get(PROGRAM);
         ensure!(
-            known.is_none_or(|known| *known == fingerprint::fingerprint(program)),
+            known.is_none_or(|known| *known == fingerprint(program)),
             "a mesh or map that the scene reads, or nucleus itself, has changed since {} was recorded; `nucleus resume {} \
-             --scene {} --at FRAME` keeps what there is up to a frame and goes on with what is there now",
+             --scene {} --at FRAME` keeps the frames up to FRAME and continues with the present files",
             self.name(),
             self.file.display(),
             self.cache.run().scene_path
@@ -176,7 +178,8 @@ impl Continued {
         Ok(())
     }
 
-    /// The run at its last sound checkpoint up to a frame, and that frame; its start where there is none.
+    /// The simulation at the last intact checkpoint up to frame `latest`, and the frame of that checkpoint. Without a
+    /// checkpoint, the simulation at its start.
     pub fn restored(&mut self, program: &Program, threads: usize, latest: i32) -> Result<(Simulation, i32)> {
         let frames = self.cache.checkpoints();
         for frame in frames.into_iter().rev().filter(|&frame| frame <= latest) {
@@ -188,40 +191,35 @@ impl Continued {
             match found {
                 Ok(simulation) => return Ok((simulation, frame)),
                 Err(error @ (RestoreError::Damaged | RestoreError::OtherVersion)) => {
-                    say!("warning: frame {frame}: {error}; the one before it is taken");
+                    say!("warning: checkpoint of frame {frame}: {error}; the previous checkpoint is used");
                 }
-                Err(error) => bail!("{} cannot be gone on with: {error}", self.name()),
+                Err(error) => bail!("{} cannot be resumed: {error}", self.name()),
             }
         }
         let start = self.cache.run().start;
         if let Some(from) = self.cache.run().extra.get("from") {
             bail!(
-                "{} has no sound checkpoint up to frame {latest}, and its start is that of `{from}`: run it again",
+                "{} has no intact checkpoint up to frame {latest}, and its initial state is that of `{from}`: run it again",
                 self.name()
             );
         }
         say!(
-            "{} has no sound checkpoint up to frame {latest}: all is solved again from frame {start}",
+            "{} has no intact checkpoint up to frame {latest}: every frame is solved again from frame {start}",
             self.name()
         );
         Ok((Simulation::new(program, threads), start))
     }
 
-    /// What is known of the frames up to one, in order.
-    pub fn figures(&mut self, last: i32) -> Result<Vec<FrameFigures>> {
+    /// The recorded figures of the frames up to `last`, in order.
+    pub fn figures(&mut self, last: i32) -> Result<Vec<FrameStatistics>> {
         let reports = self.cache.reports()?;
         let figures =
-            reports.into_iter().filter_map(|report| serde_json::from_value::<FrameFigures>(report).ok());
+            reports.into_iter().filter_map(|report| serde_json::from_value::<FrameStatistics>(report).ok());
         Ok(figures.filter(|figures| figures.frame <= last).collect())
     }
 
-    /// Its name, in backquotes.
+    /// The name of the file in backquotes, for messages.
     pub fn name(&self) -> String {
         format!("`{}`", self.file.display())
     }
 }
-
-/// The key under which a cache has the fingerprint of what it was made from.
-pub const PROGRAM: &str = "program";
-/// The key of the setting that a quality stood for.
-pub const SETTING: &str = "setting";

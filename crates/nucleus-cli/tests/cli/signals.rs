@@ -1,4 +1,4 @@
-//! Runs that are ended from outside.
+//! Runs that a signal or a limit of the system ends.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -10,14 +10,14 @@ use nucleus_cache::Playback;
 
 use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 
-/// A run that takes far longer than the test, some frames into it.
+/// A run of a million frames that has recorded at least four.
 fn long_run(folder: &Path) -> Child {
     scene(folder, 1_000_000, "");
     let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
     run.args(["run", "drape.ron", "--threads", "1"]).current_dir(folder);
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let begin = Instant::now();
-    // A cache can be read while it is written.
+    // An unfinished cache can be read.
     let frames =
         || Playback::open(folder.join("drape.mcap.part")).map_or(0, |cache| cache.time_samples().len());
     while frames() < 4 {
@@ -33,7 +33,7 @@ fn signal(child: &Child, name: &str) {
 }
 
 #[test]
-fn a_killed_run_leaves_a_cache_that_plays() {
+fn a_killed_run_leaves_an_unfinished_cache_that_plays() {
     let folder = folder();
     let mut run = long_run(folder.path());
     run.kill().unwrap();
@@ -44,8 +44,8 @@ fn a_killed_run_leaves_a_cache_that_plays() {
     assert!(cache.positions(0, last).unwrap().iter().flatten().all(|x| x.is_finite()));
     assert!(cache.corruption().truncated);
     assert_eq!(nucleus(folder.path(), &["info", "drape.mcap.part"]).status.code(), Some(1));
-    let asked = nucleus(folder.path(), &["info", "drape.mcap"]);
-    assert_refused(&asked, "`nucleus recover drape.mcap.part` makes it whole");
+    let info = nucleus(folder.path(), &["info", "drape.mcap"]);
+    assert_refused(&info, "`nucleus recover drape.mcap.part` writes them as a complete cache");
     let again = nucleus(folder.path(), &["run", "drape.ron"]);
     assert_refused(&again, "is left of a run that was killed");
     let recovered = nucleus(folder.path(), &["recover", "drape.mcap.part"]);
@@ -68,7 +68,7 @@ fn an_interrupted_run_closes_its_cache_and_says_so() {
     }
 }
 
-/// A run of eight frames, of which the sixth takes so many substeps that a signal finds it there.
+/// Writes a scene of eight frames, the sixth of which takes long enough to receive a signal.
 fn slow_frame(folder: &Path, substeps: u32) {
     let text = r#"Scene(
     time: (start: 1, end: 8, fps: 24),
@@ -84,7 +84,7 @@ fn slow_frame(folder: &Path, substeps: u32) {
     std::fs::write(folder.join("slow.ron"), text.replace("SUBSTEPS", &substeps.to_string())).unwrap();
 }
 
-/// Starts it and interrupts it within its sixth frame; gives what it says.
+/// Runs that scene and interrupts it within its sixth frame.
 fn stopped_within_a_frame(folder: &Path, substeps: u32, record: &str) -> Output {
     slow_frame(folder, substeps);
     let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
@@ -104,7 +104,7 @@ fn last_frame(cache: &Playback) -> i32 {
     cache.time_samples().last().map_or(0, |moment| moment.frame)
 }
 
-/// Goes on with what an interrupted run has left, and holds the cache to that of a run that was not.
+/// Resumes an interrupted run and compares its cache with that of an uninterrupted run.
 fn assert_resumes_to_the_same_bytes(folder: &Path, left: &str, record: &str) {
     let resumed = nucleus(folder, &["resume", left]);
     assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
@@ -124,7 +124,7 @@ fn an_interrupt_within_a_frame_drops_it_and_the_resumed_cache_has_the_same_bytes
     assert_resumes_to_the_same_bytes(folder.path(), "slow.mcap", "frames");
 }
 
-/// The substeps of the frame in flight are in the file already, and cannot be taken out of it.
+/// The file already holds substeps of the unfinished frame, and they cannot be removed from it.
 #[test]
 fn an_interrupt_within_a_frame_whose_substeps_are_recorded_leaves_a_part_to_resume() {
     let folder = folder();
@@ -136,7 +136,7 @@ fn an_interrupt_within_a_frame_whose_substeps_are_recorded_leaves_a_part_to_resu
 }
 
 #[test]
-fn a_limit_on_the_size_of_files_ends_a_run_like_a_full_disk() {
+fn the_file_size_limit_ends_a_run_like_a_full_disk() {
     let folder = folder();
     scene(folder.path(), 400, "");
     let mut run = Command::new("sh");

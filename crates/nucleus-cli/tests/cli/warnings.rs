@@ -1,4 +1,4 @@
-//! What a run says at its end without being asked.
+//! Warnings and failures at the end of a run: unresolved contact and large strain.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::sample::{folder, nucleus, stderr, stdout};
 
-/// Two boxes that close on a hanging sheet and end inside each other, so that nothing is left for the cloth.
+/// Two boxes that close on a hanging sheet and end inside each other, which leaves no room for the cloth.
 fn shut(folder: &Path, checks: &str) {
     let text = format!(
         r#"Scene(
@@ -30,7 +30,7 @@ fn shut(folder: &Path, checks: &str) {
     fs::write(folder.join("shut.ron"), text).unwrap();
 }
 
-/// A needle that goes up 100 cm in two frames, under a sheet that is held at two sides.
+/// A needle that rises by 100 cm in two frames below a sheet that is held at two sides.
 fn needle(folder: &Path, checks: &str) {
     let text = format!(
         r#"Scene(
@@ -63,14 +63,14 @@ fn summary(output: &Output) -> Value {
 }
 
 #[test]
-fn colliders_that_leave_cloth_no_room_end_with_trouble_and_say_so() {
+fn colliders_that_leave_cloth_no_room_fail_the_run_with_advice() {
     let folder = folder();
     shut(folder.path(), "finite");
     let output = run(folder.path(), "shut.ron", &[]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{said}{}", stderr(&output));
     assert!(
-        said.contains("NOT SEPARATED: ") && said.contains(" of elements unresolved, worst at frame "),
+        said.contains("UNRESOLVED CONTACT: ") && said.contains(" of elements unresolved, worst at frame "),
         "{said}"
     );
     assert!(said.contains("inside a collider at the last frame"), "{said}");
@@ -78,27 +78,29 @@ fn colliders_that_leave_cloth_no_room_end_with_trouble_and_say_so() {
 }
 
 #[test]
-fn machines_are_told_what_is_not_separated_too() {
+fn unresolved_contact_is_in_the_json_summary() {
     let folder = folder();
     shut(folder.path(), "");
     let output = run(folder.path(), "shut.ron", &["--json"]);
     let summary = summary(&output);
     assert_eq!(output.status.code(), Some(1), "{summary}");
-    let first = summary["not_separated"][0].as_str().expect("there is a first");
+    let first = summary["unresolved_contact"][0].as_str().expect("there is a first");
     assert!(first.contains("of elements unresolved"), "{first}");
-    assert!(summary["pairs_unresolved"].as_u64() > Some(0) && summary["trapped"]["end"].as_u64() > Some(0));
+    assert!(
+        summary["pairs_unresolved"].as_u64() > Some(0) && summary["depenetrating"]["end"].as_u64() > Some(0)
+    );
     assert!(summary["most_unresolved"]["frame"].as_i64().is_some_and(|frame| (2..=10).contains(&frame)));
 }
 
 #[test]
-fn a_scene_that_allows_what_is_not_separated_ends_well() {
+fn unresolved_contact_that_the_scene_allows_is_a_success() {
     let folder = folder();
     shut(folder.path(), "maxUnresolved(100000), maxDepenetrating(25)");
     let output = run(folder.path(), "shut.ron", &[]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(
-        said.contains(" of elements unresolved, worst at frame ") && !said.contains("NOT SEPARATED"),
+        said.contains(" of elements unresolved, worst at frame ") && !said.contains("UNRESOLVED CONTACT"),
         "{said}"
     );
     shut(folder.path(), "maxUnresolved(100000)");
@@ -107,12 +109,13 @@ fn a_scene_that_allows_what_is_not_separated_ends_well() {
 }
 
 #[test]
-fn a_run_that_is_gone_on_with_still_knows_what_was_not_separated() {
+fn a_resumed_run_reports_the_unresolved_contact_of_its_earlier_frames() {
     let folder = folder();
     shut(folder.path(), "maxDepenetrating(25)");
     let first = run(folder.path(), "shut.ron", &["--frames", "8"]);
-    let found =
-        summary(&run(folder.path(), "shut.ron", &["--frames", "8", "--json"]))["not_separated"][0].take();
+    let found = summary(&run(folder.path(), "shut.ron", &["--frames", "8", "--json"]))["unresolved_contact"]
+        [0]
+    .take();
     assert_eq!(first.status.code(), Some(1), "{}", stdout(&first));
     let output = nucleus(folder.path(), &["resume", "shut.mcap", "--to", "10"]);
     let said = stdout(&output);
@@ -121,21 +124,24 @@ fn a_run_that_is_gone_on_with_still_knows_what_was_not_separated() {
 }
 
 #[test]
-fn a_needle_that_stretches_cloth_far_without_passing_it_is_a_warning() {
+fn large_strain_without_penetration_is_a_warning() {
     let folder = folder();
     needle(folder.path(), "finite");
     let output = run(folder.path(), "needle.ron", &["--audit"]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{said}{}", stderr(&output));
-    assert!(said.contains("nothing passed through anything") && !said.contains("NOT SEPARATED"), "{said}");
+    assert!(
+        said.contains("nothing passed through anything") && !said.contains("UNRESOLVED CONTACT"),
+        "{said}"
+    );
     assert!(said.contains("warning: cloth is stretched by ") && said.contains("`nucleus trade`"), "{said}");
     let json = summary(&run(folder.path(), "needle.ron", &["--json"]));
     assert!(json["warning"].as_str().is_some_and(|said| said.contains(" at frame ")), "{json}");
-    assert_eq!(json["not_separated"], Value::Array(vec![]));
+    assert_eq!(json["unresolved_contact"], Value::Array(vec![]));
 }
 
 #[test]
-fn a_scene_that_allows_its_stretch_is_not_warned() {
+fn strain_that_a_check_allows_is_no_warning() {
     let folder = folder();
     needle(folder.path(), "maxStretch(50)");
     let output = run(folder.path(), "needle.ron", &[]);

@@ -1,4 +1,4 @@
-//! `nucleus attrs`: what a type of node holds.
+//! `nucleus attrs` and `presets`: the attributes of node types, and the materials.
 
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -6,22 +6,23 @@ use std::fmt::Write;
 use anyhow::{Result, bail};
 use clap::Args;
 use nucleus_graph::attributes::{Attribute, Effect, Kind, NodeType, Range, Value, node_type, node_types};
+use nucleus_graph::scene::{Preset, presets};
 
-use crate::outcome::Outcome;
+use crate::process::Outcome;
 use crate::{figures, output};
 
-/// Lists the attributes of a type of node.
+/// Lists the attributes of a node type.
 #[derive(Debug, Args)]
 pub struct Attrs {
-    /// The type of node, such as `nCloth`; all types are listed if none is given.
+    /// The node type, such as `nCloth`; default: list all types.
     node: Option<String>,
-    /// Attributes too that are kept from view: what a node inherits and does not use, and inner workings.
+    /// Show hidden attributes too: those inherited but not used, and internal ones.
     #[arg(long)]
     all: bool,
 }
 
 impl Attrs {
-    /// Prints the table.
+    /// Prints the table of a type, or the list of types.
     pub fn run(self) -> Result<Outcome> {
         let text = match &self.node {
             None => list_types()?,
@@ -31,11 +32,11 @@ impl Attrs {
             },
         };
         output::print(&text)?;
-        Ok(Outcome::Fine)
+        Ok(Outcome::Success)
     }
 }
 
-/// The type of this name, whatever the case of its letters.
+/// The type of this name; upper and lower case are the same.
 fn find(name: &str) -> Option<&'static NodeType> {
     let loosely = || node_types().iter().copied().find(|known| known.name.eq_ignore_ascii_case(name));
     node_type(name).or_else(loosely)
@@ -54,13 +55,13 @@ fn list_types() -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// The attributes in groups, each with its default, range and unit, and what it does.
+/// The attributes in groups, each with default, range, unit and documentation.
 fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Error> {
     let shown = |row: &&Attribute| all || !node_type.keeps_from_view(row);
     let rows: Vec<&Attribute> = node_type.attributes().into_iter().filter(shown).collect();
     let left_out = node_type.attributes().len() - rows.len();
     let mut text = format!("{}: {}\n", node_type.name, node_type.doc());
-    // A group may come both from the type itself and from one it inherits from.
+    // The type and its parent may both contribute to a group.
     let mut seen = HashSet::new();
     let groups = rows.iter().map(|row| row.group).filter(|group| seen.insert(*group));
     for group in groups {
@@ -112,7 +113,7 @@ fn kind(row: &Attribute) -> String {
     }
 }
 
-/// The default as a scene would write it; nothing for empty lists and texts.
+/// The default in scene syntax; `None` for empty lists and texts.
 fn default(row: &Attribute, value: &Value) -> Option<String> {
     match value {
         Value::Bool(on) => Some(on.to_string()),
@@ -127,7 +128,7 @@ fn default(row: &Attribute, value: &Value) -> Option<String> {
     }
 }
 
-/// The hard range, and what the slider shows of it.
+/// The hard range, and the range of the slider.
 fn range(Range { min, max, soft }: Range) -> Option<String> {
     let hard = match (min, max) {
         (Some(min), Some(max)) => Some(format!("{} to {}", figures::number(min), figures::number(max))),
@@ -138,4 +139,38 @@ fn range(Range { min, max, soft }: Range) -> Option<String> {
     let soft =
         soft.map(|(low, high)| format!("usually {} to {}", figures::number(low), figures::number(high)));
     hard.into_iter().chain(soft).reduce(|hard, soft| format!("{hard}, {soft}"))
+}
+
+/// Lists the materials for `preset: "silk"`, or the attributes that one of them sets.
+#[derive(Debug, Args)]
+pub struct Presets {
+    /// The material; default: list all.
+    name: Option<String>,
+}
+
+impl Presets {
+    /// Prints the list, or one preset.
+    pub fn run(self) -> Result<Outcome> {
+        let all = presets();
+        let mut text = String::new();
+        match self.name {
+            None => {
+                for Preset { name, doc, node_type, .. } in &all {
+                    writeln!(text, "{name:<16} {:<8} {doc}", node_type.name)?;
+                }
+            }
+            Some(name) => {
+                let Some(preset) = all.iter().find(|preset| preset.name.eq_ignore_ascii_case(&name)) else {
+                    let names: Vec<String> = all.iter().map(|preset| format!("`{}`", preset.name)).collect();
+                    bail!("there is no preset `{name}`; there are {}", names.join(", "));
+                };
+                writeln!(text, "{}: {}", preset.name, preset.doc)?;
+                for line in preset.lines() {
+                    writeln!(text, "  {line}")?;
+                }
+            }
+        }
+        output::print(&text)?;
+        Ok(Outcome::Success)
+    }
 }

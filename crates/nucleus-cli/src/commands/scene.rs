@@ -1,0 +1,175 @@
+//! `nucleus new`, `check`, `fmt` and `graph`: scene files, without a simulation.
+
+use std::fs::{self, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::{Args, ValueEnum};
+use nucleus_graph::scene::{Scene, format_scene, read_scene_text};
+
+use crate::process::Outcome;
+use crate::{diagnostics, files, output};
+
+/// Writes a small scene as a starting point.
+#[derive(Debug, Args)]
+pub struct New {
+    /// The file to write (.ron). An existing file is not replaced.
+    scene: PathBuf,
+    /// The scene to write.
+    #[arg(long, value_enum, default_value_t)]
+    template: Template,
+}
+
+/// Scenes to start from.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+enum Template {
+    /// A cloth that falls on a sphere.
+    #[default]
+    Drape,
+    /// A curtain that hangs by its corners in a wind.
+    Hang,
+}
+
+impl Template {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Drape => include_str!("templates/drape.ron"),
+            Self::Hang => include_str!("templates/hang.ron"),
+        }
+    }
+}
+
+impl New {
+    /// Writes the file and prints the command that runs it.
+    pub fn run(self) -> Result<Outcome> {
+        let path = self.scene.display();
+        let mut file = match OpenOptions::new().write(true).create_new(true).open(&self.scene) {
+            Ok(file) => file,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                bail!("`{path}` exists; give another name")
+            }
+            Err(error) => return Err(error).with_context(|| format!("cannot write `{path}`")),
+        };
+        file.write_all(self.template.text().as_bytes()).with_context(|| format!("cannot write `{path}`"))?;
+        output::report(&format!("wrote `{path}`; run it with `nucleus run {path}`\n"));
+        Ok(Outcome::Success)
+    }
+}
+
+/// Reads and compiles a scene and prints all its errors and warnings.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// The scene (.ron).
+    scene: PathBuf,
+}
+
+impl Check {
+    /// Prints errors and warnings. Warnings alone are a success.
+    pub fn run(self) -> Result<Outcome> {
+        let file = files::open_scene(&self.scene, None)?;
+        let count = diagnostics::count(&file.diagnostics);
+        match file.report()? {
+            None => Ok(Outcome::InvalidInput),
+            Some(_) => {
+                output::print(&format!("`{}` can run: {count}\n", self.scene.display()))?;
+                Ok(Outcome::Success)
+            }
+        }
+    }
+}
+
+/// Reads a scene without its files. Returns its text with it, or `None` if there are errors, which are printed.
+fn read(path: &Path) -> Result<Option<(Scene, String)>> {
+    let text = files::scene_text(path)?;
+    match read_scene_text(&text, path) {
+        Ok((scene, _)) => Ok(Some((scene, text))),
+        Err(errors) => {
+            diagnostics::print(&errors, &text)?;
+            Ok(None)
+        }
+    }
+}
+
+/// Writes scenes in canonical form: nodes by name, attributes in the order of their tables, comments kept.
+#[derive(Debug, Args)]
+pub struct Fmt {
+    /// The scenes (.ron).
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Change nothing; exit with 1 if a scene is not in canonical form.
+    #[arg(long)]
+    check: bool,
+    /// Print instead of writing to the file.
+    #[arg(long, conflicts_with = "check")]
+    stdout: bool,
+}
+
+impl Fmt {
+    /// Formats all scenes. A scene with errors is left unchanged.
+    pub fn run(self) -> Result<Outcome> {
+        let mut worst = Outcome::Success;
+        for path in &self.scenes {
+            let outcome = self.format(path)?;
+            if matches!((worst, outcome), (_, Outcome::InvalidInput) | (Outcome::Success, _)) {
+                worst = outcome;
+            }
+        }
+        Ok(worst)
+    }
+
+    fn format(&self, path: &Path) -> Result<Outcome> {
+        let Some((scene, text)) = read(path)? else { return Ok(Outcome::InvalidInput) };
+        let formatted = format_scene(&scene, &text);
+        // Reading the formatted text back must give an equal scene.
+        let again = read_scene_text(&formatted, path).map(|(scene, _)| scene);
+        ensure!(
+            again.is_ok_and(|again| again == scene),
+            "formatting `{}` would change its meaning; it is left unchanged",
+            path.display()
+        );
+        if self.stdout {
+            output::print(&formatted)?;
+        } else if formatted == text {
+            return Ok(Outcome::Success);
+        } else if self.check {
+            output::print(&format!("`{}` is not in canonical form\n", path.display()))?;
+            return Ok(Outcome::Problem);
+        } else {
+            fs::write(path, formatted).with_context(|| format!("cannot write `{}`", path.display()))?;
+        }
+        Ok(Outcome::Success)
+    }
+}
+
+/// Prints the nodes of a scene and all their connections as a diagram, including those that the short form implies.
+#[derive(Debug, Args)]
+pub struct Graph {
+    /// The scene (.ron).
+    scene: PathBuf,
+    /// The language of the diagram.
+    #[arg(long, value_enum, default_value_t)]
+    format: DiagramFormat,
+}
+
+/// Languages of diagrams.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+enum DiagramFormat {
+    /// For Graphviz: `nucleus graph scene.ron | dot -Tsvg > scene.svg`.
+    #[default]
+    Dot,
+    /// For Markdown pages.
+    Mermaid,
+}
+
+impl Graph {
+    /// Prints the diagram.
+    pub fn run(self) -> Result<Outcome> {
+        let Some((scene, _)) = read(&self.scene)? else { return Ok(Outcome::InvalidInput) };
+        output::print(&match self.format {
+            DiagramFormat::Dot => scene.graph.dot(),
+            DiagramFormat::Mermaid => scene.graph.mermaid(),
+        })?;
+        Ok(Outcome::Success)
+    }
+}

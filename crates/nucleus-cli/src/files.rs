@@ -1,0 +1,132 @@
+//! Scenes and caches named on the command line: reading, compiling and opening them, with errors that name the file.
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use anyhow::{Context, Result, anyhow};
+use nucleus_cache::{OpenError, Playback};
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::memory::Memory;
+use nucleus_graph::scene::{Diagnostic, Scene, read_scene_within, read_text};
+
+use crate::diagnostics;
+use crate::options::FrameRange;
+use crate::output::say;
+
+/// The memory limit of scenes, where `--memory` sets one.
+static MEMORY_LIMIT: OnceLock<Memory> = OnceLock::new();
+
+/// Sets the memory limit of scenes. Called before any scene is opened.
+pub fn set_memory_limit(memory: Memory) {
+    // There is one command per process, so the first value is the only one.
+    let _ = MEMORY_LIMIT.set(memory);
+}
+
+fn memory_limit() -> Memory {
+    *MEMORY_LIMIT.get_or_init(Memory::of_machine)
+}
+
+/// The text of a scene file.
+pub fn scene_text(path: &Path) -> Result<String> {
+    read_text(path, memory_limit()).map_err(|error| anyhow!(error))
+}
+
+/// A scene file after reading and compiling, with or without errors.
+pub struct SceneFile {
+    pub text: String,
+    pub diagnostics: Vec<Diagnostic>,
+    /// The scene and its program; `None` if there are errors.
+    pub compiled: Option<(Scene, Program)>,
+}
+
+/// Reads and compiles a scene. `frames` replaces the frame range of the scene.
+///
+/// # Errors
+/// Only if there is no text to read. Errors in the scene are diagnostics.
+pub fn open_scene(path: &Path, frames: Option<FrameRange>) -> Result<SceneFile> {
+    scene_from_text(scene_text(path)?, path, frames)
+}
+
+/// As [`open_scene`], for a text in memory. Relative file names in it are resolved beside `path`.
+pub fn scene_from_text(text: String, path: &Path, frames: Option<FrameRange>) -> Result<SceneFile> {
+    let (mut scene, mut diagnostics) = match read_scene_within(&text, path, memory_limit()) {
+        Ok(read) => read,
+        Err(diagnostics) => return Ok(SceneFile { text, diagnostics, compiled: None }),
+    };
+    if let Some(frames) = frames {
+        let range = i32::try_from(scene.time.start).ok().and_then(|start| frames.within(start));
+        let (start, end) = range.context("the frame range exceeds the largest frame number, 2147483647")?;
+        (scene.time.start, scene.time.end) = (start.into(), end.into());
+    }
+    match compile(&scene) {
+        Ok(program) => {
+            diagnostics.extend(program.warnings().iter().cloned());
+            Ok(SceneFile { text, diagnostics, compiled: Some((scene, program)) })
+        }
+        Err(found) => {
+            diagnostics.extend(found);
+            Ok(SceneFile { text, diagnostics, compiled: None })
+        }
+    }
+}
+
+impl SceneFile {
+    /// Prints the diagnostics. Returns scene, program and text, or `None` if there are errors.
+    pub fn report(self) -> Result<Option<(Scene, Program, String)>> {
+        diagnostics::print(&self.diagnostics, &self.text)?;
+        Ok(self.compiled.map(|(scene, program)| (scene, program, self.text)))
+    }
+}
+
+/// Opens a cache.
+pub fn open_cache(path: &Path) -> Result<Playback> {
+    Playback::open(path).map_err(|error| match error {
+        OpenError::Io { .. } if nucleus_cache::part_path(path).exists() => {
+            let part = nucleus_cache::part_path(path);
+            let part = part.display();
+            anyhow!(
+                "there is no `{}` yet: its run is still going or was killed; `nucleus play {part}` shows the frames so far, \
+                 `nucleus recover {part}` writes them as a complete cache",
+                path.display()
+            )
+        }
+        OpenError::Io { .. } | OpenError::Folder { .. } => anyhow!(error),
+        other => anyhow!(other).context(format!("cannot open `{}`", path.display())),
+    })
+}
+
+/// Opens a cache and prints a warning if parts of it are lost.
+pub fn open_cache_and_warn(path: &Path) -> Result<Playback> {
+    let cache = open_cache(path)?;
+    if !cache.corruption().is_intact() {
+        say!("warning: `{}`: {}", path.display(), cache.corruption());
+    }
+    Ok(cache)
+}
+
+/// The index of the last recorded state of `frame`, or of the cache.
+pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
+    let moments = cache.time_samples();
+    let (first, last) = moments.first().zip(moments.last()).context("the cache holds no frame")?;
+    match frame {
+        None => Ok(moments.len() - 1),
+        Some(frame) => cache.end_of(frame).with_context(|| {
+            format!("there is no frame {frame}; the cache has {} to {}", first.frame, last.frame)
+        }),
+    }
+}
+
+/// Whether a file is a cache and not a scene, by its name or by its first bytes.
+pub fn is_cache(path: &Path) -> bool {
+    use std::io::Read;
+    let mut head = [0; 5];
+    // Killed and resumed runs leave a further extension.
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let named = [".mcap", ".mcap.part", ".mcap.resuming"].iter().any(|end| name.ends_with(end));
+    // Reading a pipe would block and consume its bytes.
+    if named || !path.is_file() {
+        return named;
+    }
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == *b"\x89MCAP"
+}

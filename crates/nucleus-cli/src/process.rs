@@ -1,0 +1,94 @@
+//! The process: exit codes and signals.
+//!
+//! The first Ctrl-C asks a run to close its cache and end. The second ends the process at once.
+
+use std::io;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result};
+
+/// Shown at the end of `nucleus --help`.
+pub const EXIT_CODES: &str = "\
+Exit codes: 0 success; 1 the command ran and found a problem (a check failed, contact left pairs unresolved, a disk was \
+full, a cache has lost frames); 2 the command could not start; 130 the command was interrupted (Ctrl-C) and has closed its \
+cache.";
+
+/// The exit code of a command that could not start.
+pub const COULD_NOT_START: u8 = 2;
+
+/// The exit code of an interrupted command: 128 + SIGINT, as shells report it.
+const INTERRUPTED: u8 = 130;
+
+/// How a command that started has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    Success,
+    /// The command ran and found a problem.
+    Problem,
+    /// The scene has errors, which have been reported.
+    InvalidInput,
+    /// The command was interrupted and has closed its files.
+    Interrupted,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Success => Self::SUCCESS,
+            Outcome::Problem => Self::from(1),
+            Outcome::InvalidInput => Self::from(COULD_NOT_START),
+            Outcome::Interrupted => Self::from(INTERRUPTED),
+        }
+    }
+}
+
+static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static HAS_OPEN_FILES: AtomicBool = AtomicBool::new(false);
+
+/// Starts to listen for signals. SIGTERM, SIGHUP and SIGQUIT count as Ctrl-C, so that a render farm can end a run cleanly.
+pub fn listen_for_signals() -> Result<()> {
+    HAS_OPEN_FILES.store(true, Ordering::SeqCst);
+    on_signal(|| {
+        if IS_INTERRUPTED.swap(true, Ordering::SeqCst) || !HAS_OPEN_FILES.load(Ordering::SeqCst) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    })
+    .context("cannot listen for Ctrl-C")
+}
+
+/// All files are closed: from now on a single Ctrl-C ends the process.
+pub fn files_are_closed() {
+    HAS_OPEN_FILES.store(false, Ordering::SeqCst);
+}
+
+/// Whether a signal has asked the command to end.
+pub fn is_interrupted() -> bool {
+    IS_INTERRUPTED.load(Ordering::SeqCst)
+}
+
+#[cfg(unix)]
+fn on_signal(handle: impl Fn() + Send + 'static) -> io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+    use signal_hook::iterator::Signals;
+
+    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP, SIGQUIT])?;
+    let listener = std::thread::Builder::new().name("signals".to_owned());
+    listener.spawn(move || signals.forever().for_each(|_| handle())).map(drop)
+}
+
+#[cfg(not(unix))]
+fn on_signal(handle: impl Fn() + Send + 'static) -> io::Result<()> {
+    ctrlc::set_handler(handle).map_err(io::Error::other)
+}
+
+/// Turns a write past the file size limit (`ulimit -f`) into an error. By default SIGXFSZ would kill the process.
+pub fn report_file_size_limit_as_error() {
+    #[cfg(unix)]
+    {
+        use std::sync::Arc;
+        // An installed handler is enough: the write then fails with EFBIG.
+        let handled = Arc::new(AtomicBool::new(false));
+        drop(signal_hook::flag::register(signal_hook::consts::SIGXFSZ, handled));
+    }
+}

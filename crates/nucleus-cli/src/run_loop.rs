@@ -1,0 +1,213 @@
+//! A run from its current frame to its last: simulate, record, evaluate the checks, report, close the cache.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use nucleus_cache::{RecordError, Recorder};
+use nucleus_core::{Stage, StateView, StepObserver, SubstepIndex};
+use nucleus_graph::checks::Judge;
+use nucleus_graph::{FrameReport, Simulation};
+use serde_json::json;
+
+use crate::process::Outcome;
+use crate::progress::RunProgress;
+use crate::run_statistics::{Ending, FrameStatistics, RunStatistics, Stopped};
+use crate::summary::Summary;
+use crate::{output, process};
+
+/// A run that is set up.
+pub struct Run {
+    pub simulation: Simulation,
+    /// `None` if the run is not recorded.
+    pub recorder: Option<Recorder>,
+    /// The file of the cache.
+    pub out: PathBuf,
+    pub judge: Judge,
+    /// The statistics of the frames so far.
+    pub statistics: RunStatistics,
+    /// The start frame.
+    pub start: i32,
+    /// Frames that remain to be simulated.
+    pub frames: u32,
+    /// Whether findings of the audit are part of the outcome.
+    pub audit: bool,
+    /// Whether the report is JSON.
+    pub json: bool,
+}
+
+impl Run {
+    /// Runs to the last frame and prints the summary.
+    ///
+    /// # Errors
+    /// If the run ended with an error of which `is_refusal` is true.
+    pub fn finish(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Outcome> {
+        let Self { mut simulation, mut recorder, out, mut judge, statistics, start, frames, audit, json } =
+            self;
+        let mut progress = RunProgress::new(frames);
+        let mut report = |figures: &FrameStatistics, statistics: &RunStatistics| {
+            progress.show(statistics);
+            if json {
+                report_frame(figures, statistics);
+            }
+        };
+        let (statistics, mut ending) =
+            simulate(&mut simulation, &mut recorder, &mut judge, statistics, &mut report)?;
+        progress.end();
+        let recorded = close(&simulation, recorder, &mut ending).map(|bytes| (out, bytes));
+        process::files_are_closed();
+        match ending {
+            Ending::Lost(error) if is_refusal(&error) => return Err(error),
+            _ => {}
+        }
+        let last = simulation.frame();
+        let audit = simulation.audit().filter(|_| audit);
+        let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
+        let summary = Summary { statistics, ending, checks, audit, recorded, frames, objects };
+        match json {
+            true => output::report_json(&summary.as_json()),
+            false => output::report(&summary.as_text()?),
+        }
+        Ok(summary.outcome())
+    }
+}
+
+/// Advances to the last frame. `report` receives the figures of each frame and the statistics so far.
+fn simulate(
+    simulation: &mut Simulation,
+    recorder: &mut Option<Recorder>,
+    judge: &mut Judge,
+    mut statistics: RunStatistics,
+    report: &mut dyn FnMut(&FrameStatistics, &RunStatistics),
+) -> Result<(RunStatistics, Ending)> {
+    let mut previous = PreviousState::default();
+    while !simulation.is_done() {
+        if process::is_interrupted() {
+            return Ok((statistics, Ending::Interrupted));
+        }
+        if recorder.as_ref().is_some_and(Recorder::records_checkpoints) {
+            previous.save(simulation, statistics.last_frame_time);
+        }
+        let begin = Instant::now();
+        let frame = i32::try_from(simulation.next_frame())
+            .context("the next frame number exceeds the largest, 2147483647")?;
+        let figures = match advance(simulation, frame, recorder, judge) {
+            Ok(Some(figures)) => figures,
+            Ok(None) => {
+                let is_clean = recorder.as_mut().is_none_or(Recorder::discard_frame);
+                let stopped = Stopped { state: previous.state, is_clean };
+                return Ok((statistics, Ending::Stopped(stopped)));
+            }
+            Err(error) => return Ok((statistics, Ending::Lost(error.into()))),
+        };
+        statistics.add(&figures, begin.elapsed());
+        report(&figures, &statistics);
+        if !figures.finite {
+            return Ok((statistics, Ending::NotFinite));
+        }
+    }
+    Ok((statistics, Ending::Done))
+}
+
+/// A checkpoint of the last complete frame, for a run that is stopped within the next one.
+#[derive(Debug, Default)]
+struct PreviousState {
+    state: Option<Vec<u8>>,
+    /// Time that the last save took.
+    cost: Duration,
+}
+
+impl PreviousState {
+    /// A frame shorter than this many saves is cheaper to solve again than to save.
+    const MIN_FRAME_PER_SAVE: u32 = 50;
+
+    fn save(&mut self, simulation: &Simulation, last_frame_time: Duration) {
+        self.state = None;
+        if last_frame_time >= self.cost * Self::MIN_FRAME_PER_SAVE {
+            let begin = Instant::now();
+            self.state = Some(simulation.save());
+            self.cost = begin.elapsed();
+        }
+    }
+}
+
+/// Simulates and records one frame. Returns `None` if it was stopped.
+fn advance(
+    simulation: &mut Simulation,
+    frame: i32,
+    recorder: &mut Option<Recorder>,
+    judge: &mut Judge,
+) -> Result<Option<FrameStatistics>, RecordError> {
+    let evaluate = |report: FrameReport, judge: &mut Judge| {
+        judge.see(&report);
+        FrameStatistics::new(frame, &report.report)
+    };
+    let Some(recorder) = recorder else {
+        let report = simulation.advance(&mut StopOnSignal(&mut ()));
+        return Ok((!report.report.stopped).then(|| evaluate(report, judge)));
+    };
+    let report = simulation.advance(&mut StopOnSignal(&mut recorder.frame(frame)?));
+    if report.report.stopped {
+        return Ok(None);
+    }
+    let figures = evaluate(report, judge);
+    recorder.end_frame(&figures)?;
+    if figures.finite && recorder.checkpoint_due() {
+        recorder.record_checkpoint(&simulation.save())?;
+    }
+    Ok(Some(figures))
+}
+
+/// An observer that stops the frame when a signal has arrived.
+struct StopOnSignal<'a>(&'a mut dyn StepObserver);
+
+impl StepObserver for StopOnSignal<'_> {
+    fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
+        self.0.substep(moment, state);
+    }
+
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        self.0.step(share, state);
+    }
+
+    fn should_continue(&self) -> ControlFlow<()> {
+        if process::is_interrupted() { ControlFlow::Break(()) } else { self.0.should_continue() }
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        self.0.enter(stage);
+    }
+}
+
+/// Closes the cache with a checkpoint of its last frame. Returns its size in bytes, or `None` if it stays unfinished.
+fn close(simulation: &Simulation, recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
+    let can_finish = |ending: &Ending| match ending {
+        Ending::Lost(_) => false,
+        Ending::Stopped(stopped) => stopped.is_clean,
+        _ => true,
+    };
+    let mut recorder = recorder.filter(|_| can_finish(ending))?;
+    let state = match ending {
+        // No run can resume from a state that is not finite.
+        Ending::NotFinite => None,
+        // The simulation is at the dropped frame, so the state of the previous one is written.
+        Ending::Stopped(stopped) => stopped.state.take(),
+        _ => recorder.final_checkpoint_due().then(|| simulation.save()),
+    };
+    let state = state.filter(|_| recorder.final_checkpoint_due());
+    let last = state.map_or(Ok(()), |state| recorder.record_checkpoint(&state));
+    match last.and_then(|()| recorder.finish()) {
+        Ok(recorded) => Some(recorded.bytes),
+        Err(error) => {
+            *ending = Ending::Lost(error.into());
+            None
+        }
+    }
+}
+
+fn report_frame(figures: &FrameStatistics, statistics: &RunStatistics) {
+    let mut line = json!(figures);
+    line["milliseconds"] = json!(statistics.last_frame_time.as_secs_f64() * 1e3);
+    output::report_json(&line);
+}

@@ -1,0 +1,290 @@
+//! Statistics of a run: the figures of each frame, their worst values over the run, and how the run ended.
+
+use std::time::Duration;
+
+use nucleus_core::{InvalidInput, StepReport};
+use nucleus_graph::FrameReport;
+use serde::{Deserialize, Serialize};
+
+/// The figures of one frame, as a cache stores them and `--json` prints them.
+///
+/// Older caches hold them under the names in `alias`.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct FrameStatistics {
+    pub frame: i32,
+    /// See [`StepReport`] for this field and the following ones.
+    pub max_strain: f64,
+    pub strain_99: f64,
+    /// `None` if no contact is near: JSON has no infinity.
+    pub min_gap: Option<f64>,
+    /// The same for cloth-cloth contacts.
+    pub min_cloth_gap: Option<f64>,
+    pub contacts: u64,
+    #[serde(alias = "pairs")]
+    pub candidate_pairs: u64,
+    pub broad_phases: u32,
+    #[serde(alias = "caught")]
+    pub pairs_reverted: u64,
+    #[serde(alias = "crossed")]
+    pub pairs_unresolved: u64,
+    /// Points inside a closed collider.
+    #[serde(alias = "trapped")]
+    pub depenetrating: u64,
+    /// Edges of cloth that intersect faces of cloth.
+    #[serde(alias = "tangled")]
+    pub intersections: u64,
+    /// In joules.
+    pub kinetic_energy: f64,
+    pub finite: bool,
+    /// Input values that were not usable and were replaced.
+    #[serde(alias = "refused")]
+    pub sanitized: u64,
+    #[serde(skip)]
+    pub first_sanitized: Option<InvalidInput>,
+}
+
+impl FrameStatistics {
+    /// The figures of a frame from the solver's report.
+    pub fn new(frame: i32, report: &StepReport) -> Self {
+        let StepReport {
+            max_strain,
+            strain_99,
+            min_gap,
+            min_cloth_gap,
+            contacts,
+            candidate_pairs,
+            broad_phases,
+            pairs_reverted,
+            pairs_unresolved,
+            depenetrating,
+            intersections,
+            kinetic_energy,
+            finite,
+            sanitized,
+            ..
+        } = *report;
+        let [min_gap, min_cloth_gap] = [min_gap, min_cloth_gap].map(|gap| gap.is_finite().then_some(gap));
+        Self {
+            frame,
+            max_strain,
+            strain_99,
+            min_gap,
+            min_cloth_gap,
+            contacts,
+            candidate_pairs,
+            broad_phases,
+            pairs_reverted,
+            pairs_unresolved,
+            depenetrating,
+            intersections,
+            kinetic_energy,
+            finite,
+            sanitized: sanitized.count,
+            first_sanitized: sanitized.first,
+        }
+    }
+
+    /// The solver's report, as far as it was stored. Checks of a resumed run need it.
+    pub fn report(&self) -> FrameReport {
+        let report = StepReport {
+            max_strain: self.max_strain,
+            strain_99: self.strain_99,
+            min_gap: self.min_gap.unwrap_or(f64::INFINITY),
+            contacts: self.contacts,
+            candidate_pairs: self.candidate_pairs,
+            broad_phases: self.broad_phases,
+            pairs_reverted: self.pairs_reverted,
+            pairs_unresolved: self.pairs_unresolved,
+            depenetrating: self.depenetrating,
+            intersections: self.intersections,
+            kinetic_energy: self.kinetic_energy,
+            finite: self.finite,
+            ..StepReport::default()
+        };
+        FrameReport { frame: self.frame.into(), report, passed_through: None }
+    }
+}
+
+/// The worst figures of a run so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RunStatistics {
+    /// Frames that this process has simulated.
+    pub frames: u32,
+    /// Wall-clock time of those frames.
+    pub time: Duration,
+    /// Wall-clock time of the last frame.
+    pub last_frame_time: Duration,
+    /// The largest strain, and its frame.
+    pub worst_strain: Option<(f64, i32)>,
+    /// The smallest gap over thickness, and its frame. `None` if there was no contact.
+    pub smallest_gap: Option<(f64, i32)>,
+    /// Pairs of elements that the safeguard left unresolved, over all time steps.
+    pub pairs_unresolved: Count,
+    /// Points inside colliders.
+    pub depenetrating: Count,
+    /// Edges of cloth that intersect faces of cloth.
+    pub intersections: Count,
+    /// The first frame with a position or velocity that is not finite.
+    pub not_finite: Option<i32>,
+    /// Input values that were replaced, over all frames.
+    pub sanitized: u64,
+    /// The first of them, and its frame.
+    pub first_sanitized: Option<(InvalidInput, i32)>,
+}
+
+/// A count per frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Count {
+    /// Sum over all frames.
+    pub total: u64,
+    /// The largest count of a frame.
+    pub most: u64,
+    /// The first frame with that count.
+    pub frame: i32,
+    /// The count of the last frame.
+    pub end: u64,
+}
+
+impl Count {
+    fn add(&mut self, count: u64, frame: i32) {
+        if count > self.most {
+            (self.most, self.frame) = (count, frame);
+        }
+        self.total += count;
+        self.end = count;
+    }
+}
+
+impl RunStatistics {
+    /// Adds a frame that took `time`.
+    pub fn add(&mut self, figures: &FrameStatistics, time: Duration) {
+        self.frames += 1;
+        self.time += time;
+        self.last_frame_time = time;
+        self.add_recorded(figures);
+    }
+
+    /// Adds a frame that a cache holds; it takes no time.
+    pub fn add_recorded(&mut self, figures: &FrameStatistics) {
+        let frame = figures.frame;
+        if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {
+            self.worst_strain = Some((figures.max_strain, frame));
+        }
+        if let Some(gap) =
+            figures.min_gap.filter(|&gap| self.smallest_gap.is_none_or(|(least, _)| gap < least))
+        {
+            self.smallest_gap = Some((gap, frame));
+        }
+        self.pairs_unresolved.add(figures.pairs_unresolved, frame);
+        self.depenetrating.add(figures.depenetrating, frame);
+        self.intersections.add(figures.intersections, frame);
+        self.sanitized += figures.sanitized;
+        self.first_sanitized = self.first_sanitized.or(figures.first_sanitized.map(|input| (input, frame)));
+        if !figures.finite {
+            self.not_finite = self.not_finite.or(Some(frame));
+        }
+    }
+
+    /// Mean milliseconds per frame.
+    pub fn milliseconds(&self) -> f64 {
+        1e3 * self.time.as_secs_f64() / f64::from(self.frames.max(1))
+    }
+}
+
+/// Why a run ended.
+#[derive(Debug)]
+pub enum Ending {
+    /// All frames are simulated.
+    Done,
+    /// A signal arrived between two frames.
+    Interrupted,
+    /// A signal arrived within a frame, which is dropped.
+    Stopped(Stopped),
+    /// A position or velocity is not a finite number, so further frames mean nothing.
+    NotFinite,
+    /// The cache could not be written.
+    Lost(anyhow::Error),
+}
+
+/// A run that was stopped within a frame.
+#[derive(Debug)]
+pub struct Stopped {
+    /// The checkpoint of the previous frame, if it was kept.
+    pub state: Option<Vec<u8>>,
+    /// Whether the cache holds nothing of the dropped frame.
+    pub is_clean: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn statistics(reports: &[StepReport]) -> RunStatistics {
+        let mut statistics = RunStatistics::default();
+        for (frame, report) in (2..).zip(reports) {
+            statistics.add(&FrameStatistics::new(frame, report), Duration::from_millis(10));
+        }
+        statistics
+    }
+
+    #[test]
+    fn the_worst_value_of_each_figure_is_kept_with_its_frame() {
+        let strain = |max_strain, min_gap| StepReport { max_strain, min_gap, ..StepReport::default() };
+        let statistics = statistics(&[strain(0.1, f64::INFINITY), strain(0.3, 0.9), strain(0.2, 0.5)]);
+        assert_eq!(statistics.worst_strain, Some((0.3, 3)));
+        assert_eq!(statistics.smallest_gap, Some((0.5, 4)));
+        assert_eq!((statistics.frames, statistics.milliseconds()), (3, 10.0));
+    }
+
+    #[test]
+    fn a_frame_without_contacts_has_no_gap() {
+        assert_eq!(statistics(&[StepReport::default()]).smallest_gap, None);
+        let figures = FrameStatistics::new(2, &StepReport::default());
+        assert!(serde_json::to_value(figures).unwrap()["min_gap"].is_null());
+    }
+
+    #[test]
+    fn the_first_frame_that_is_not_finite_is_named() {
+        let bad = StepReport { finite: false, pairs_unresolved: 2, ..StepReport::default() };
+        let statistics = statistics(&[StepReport::default(), bad, bad]);
+        assert_eq!((statistics.not_finite, statistics.pairs_unresolved.total), (Some(3), 4));
+    }
+
+    #[test]
+    fn counts_keep_their_first_worst_frame_and_the_last_one() {
+        let inside = |depenetrating| StepReport { depenetrating, ..StepReport::default() };
+        let statistics = statistics(&[inside(0), inside(4), inside(4), inside(1)]);
+        assert_eq!(statistics.depenetrating, Count { total: 9, most: 4, frame: 3, end: 1 });
+        assert_eq!(statistics.intersections, Count::default());
+    }
+
+    #[test]
+    fn figures_recorded_under_older_names_are_read() {
+        let names = [
+            ("pairs_reverted", "caught"),
+            ("pairs_unresolved", "crossed"),
+            ("candidate_pairs", "pairs"),
+            ("depenetrating", "trapped"),
+            ("intersections", "tangled"),
+            ("sanitized", "refused"),
+        ];
+        let report = StepReport {
+            pairs_reverted: 5,
+            pairs_unresolved: 2,
+            candidate_pairs: 7,
+            depenetrating: 3,
+            intersections: 4,
+            ..StepReport::default()
+        };
+        let now = serde_json::to_string(&FrameStatistics::new(2, &report)).unwrap();
+        let older = names.iter().fold(now, |text, (present, former)| {
+            let [present, former] = [present, former].map(|name| format!("\"{name}\":"));
+            assert!(text.contains(&present), "{present} is not in {text}");
+            text.replace(&present, &former)
+        });
+        let read: FrameStatistics = serde_json::from_str(&older).unwrap();
+        let FrameStatistics { pairs_reverted, pairs_unresolved, candidate_pairs, .. } = read;
+        assert_eq!((pairs_reverted, pairs_unresolved, candidate_pairs), (5, 2, 7));
+        assert_eq!((read.depenetrating, read.intersections, read.sanitized), (3, 4, 0));
+    }
+}

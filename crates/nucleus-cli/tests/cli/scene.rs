@@ -1,0 +1,100 @@
+//! `nucleus new`, `check`, `fmt` and `graph`, and the errors of a scene in every command that reads one.
+
+use std::fs;
+
+use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
+
+#[test]
+fn a_new_scene_can_run_and_replaces_no_file() {
+    let folder = folder();
+    for template in ["drape", "hang"] {
+        let file = format!("{template}.ron");
+        assert!(nucleus(folder.path(), &["new", &file, "--template", template]).status.success());
+        let said = stdout(&nucleus(folder.path(), &["check", &file]));
+        assert!(said.contains("can run"), "{said}");
+        let run = nucleus(folder.path(), &["run", &file, "--frames", "3", "--record", "none"]);
+        assert!(run.status.success(), "{run:?}");
+    }
+    let again = nucleus(folder.path(), &["new", "drape.ron"]);
+    assert_refused(&again, "`drape.ron` exists; give another name");
+}
+
+#[test]
+fn a_formatted_scene_keeps_its_comments_and_is_not_formatted_again() {
+    let folder = folder();
+    nucleus(folder.path(), &["new", "a.ron"]);
+    let before = nucleus(folder.path(), &["fmt", "--check", "a.ron"]);
+    assert_eq!(before.status.code(), Some(1));
+    assert!(nucleus(folder.path(), &["fmt", "a.ron"]).status.success());
+    let text = fs::read_to_string(folder.path().join("a.ron")).expect("it is there");
+    assert!(text.contains("// An attribute set here overrides the preset."), "{text}");
+    assert!(nucleus(folder.path(), &["fmt", "--check", "a.ron"]).status.success());
+}
+
+#[test]
+fn a_scene_with_errors_is_not_formatted() {
+    let folder = folder();
+    fs::write(folder.path().join("a.ron"), "Scene(nodes: {})").expect("written");
+    let output = nucleus(folder.path(), &["fmt", "a.ron"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(fs::read_to_string(folder.path().join("a.ron")).expect("it is there"), "Scene(nodes: {})");
+}
+
+#[test]
+fn a_graph_shows_all_connections() {
+    let folder = folder();
+    nucleus(folder.path(), &["new", "a.ron"]);
+    let dot = stdout(&nucleus(folder.path(), &["graph", "a.ron"]));
+    assert!(dot.starts_with("digraph scene {"), "{dot}");
+    assert!(dot.contains("\"cloth\" -> \"nucleus1\""), "{dot}");
+    assert!(dot.contains("currentState → inputActive[0]"), "{dot}");
+    let mermaid = stdout(&nucleus(folder.path(), &["graph", "a.ron", "--format", "mermaid"]));
+    assert!(mermaid.starts_with("flowchart LR") && mermaid.contains("nCloth"), "{mermaid}");
+}
+
+#[test]
+fn a_scene_without_errors_can_run() {
+    let folder = folder();
+    scene(folder.path(), 3, "finite");
+    let output = nucleus(folder.path(), &["check", "drape.ron"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("`drape.ron` can run"), "{}", stdout(&output));
+}
+
+#[test]
+fn all_errors_are_shown_in_place_and_counted() {
+    let folder = folder();
+    scene(folder.path(), 3, "finit");
+    let path = folder.path().join("drape.ron");
+    fs::write(&path, fs::read_to_string(&path).unwrap().replace("subSteps", "subStebs")).unwrap();
+    for command in ["check", "run", "info", "play"] {
+        let output = nucleus(folder.path(), &[command, "drape.ron"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{command}: {said}");
+        assert!(said.contains("drape.ron:4:") && said.contains("did you mean `subSteps`?"), "{said}");
+        assert!(said.contains("did you mean `finite`?") && said.ends_with("2 errors\n"), "{said}");
+        assert!(!said.contains('\u{1b}'), "no colours where there is no terminal: {said}");
+    }
+}
+
+#[test]
+fn warnings_alone_do_not_fail() {
+    let folder = folder();
+    scene(folder.path(), 3, "finite");
+    let path = folder.path().join("drape.ron");
+    fs::write(&path, fs::read_to_string(&path).unwrap().replace("thickness: 1", "thickness: 1, rigidity: 2"))
+        .unwrap();
+    let output = nucleus(folder.path(), &["check", "drape.ron"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("`rigidity`") && stderr(&output).ends_with("1 warning\n"));
+}
+
+#[test]
+fn a_file_that_is_no_scene_is_refused_by_name() {
+    let folder = folder();
+    fs::write(folder.path().join("bytes.ron"), [0xff, 0xfe, 0x00]).unwrap();
+    let check = |name: &str| nucleus(folder.path(), &["check", name]);
+    assert_refused(&check("none.ron"), "cannot read `none.ron`: No such file");
+    assert_refused(&check("."), "it is a folder, not a file");
+    assert_refused(&check("bytes.ron"), "`bytes.ron` is not text");
+}
