@@ -6,14 +6,14 @@
 //! | how error is measured                            | [`accuracy`]  |
 //! | where the ball is                                | [`ball`]      |
 //! | how time is measured, and stages                 | [`nucleus_measure::clock`] |
-//! | one run                                          | [`trial`]     |
+//! | one run                                          | [`spec`]     |
 //! | which settings are run                           | [`trade`]     |
 //! | what other solvers need                          | [`peers`]     |
-//! | what counts as being ahead of them               | [`contest`]   |
+//! | what counts as being ahead of them               | [`comparison`]   |
 //! | cloth that meets itself, other cloth, a fast ball | [`contact`] |
 //! | scenes of contact as they are                    | [`gallery`]   |
 //! | a scene run on the clock                         | [`timed`]     |
-//! | the cost of a link; a million points; threads    | [`growth`]    |
+//! | the cost of a link; a million points; threads    | [`scaling`]    |
 //! | what each feature costs                          | [`features`]  |
 //! | how fast caches are                              | [`caches`]    |
 //! | what is kept of a run                            | [`report`]    |
@@ -25,22 +25,22 @@ use clap::ValueEnum;
 mod accuracy;
 mod ball;
 pub mod caches;
+mod comparison;
 mod contact;
-mod contest;
 mod csv;
 pub mod features;
 mod gallery;
-mod growth;
 mod memory;
 mod mesh;
 mod page;
 mod peers;
 mod report;
+mod run;
+mod scaling;
 mod stages;
 mod table;
 mod timed;
 mod trade;
-mod trial;
 mod workload;
 
 use report::Report;
@@ -111,14 +111,14 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
     if let Some(path) = &options.csv {
         csv::write(path, &[])?;
     }
-    let mut report = Report::new(nucleus_measure::machine::describe());
+    let mut report = Report::new(nucleus_measure::clock::describe_machine());
     let asked_for = |part: &&Part| options.only.is_empty() || options.only.contains(part);
     for part in Part::value_variants().iter().filter(asked_for) {
         part.run(options, &mut report)?;
         options.keep(&report)?;
     }
-    if !report.verdicts.is_empty() {
-        print!("\n{}", report.verdict_table());
+    if !report.targets.is_empty() {
+        print!("\n{}", report.target_table());
     }
     Ok(())
 }
@@ -135,11 +135,11 @@ impl Part {
             Self::SelfCollision => contact::cost::run(report),
             Self::Scenes => gallery::run(scenes, threads, report),
             Self::Hang => {
-                growth::sag(*repeat, report)?;
-                growth::link_cost(sizes, *repeat, report)
+                scaling::sag(*repeat, report)?;
+                scaling::link_cost(sizes, *repeat, report)
             }
-            Self::Threads => growth::threads(sizes, threads, *repeat, report),
-            Self::Scale => growth::scale(*repeat, report),
+            Self::Threads => scaling::threads(sizes, threads, *repeat, report),
+            Self::Scale => scaling::scale(*repeat, report),
             Self::Features => features::run(*repeat, report),
         }
     }

@@ -20,7 +20,7 @@ use std::{env, fs};
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use nucleus_measure::{advice, experiments, machine, report, store, trade};
+use nucleus_measure::{advice, clock, experiments, report, result_cache, trade};
 
 use crate::bench::{self, caches, features};
 
@@ -102,8 +102,8 @@ fn trades(root: &Path) -> anyhow::Result<()> {
         let json = fs::read(folder.join(format!("{name}.trade.json")))?;
         found.push((name.to_owned(), serde_json::from_slice::<trade::Trade>(&json)?));
     }
-    let index = report::index(&found, &machine::describe().join("\n"));
-    Ok(store::write_whole(&folder.join("README.md"), index.as_bytes())?)
+    let index = report::index(&found, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&folder.join("README.md"), index.as_bytes())?)
 }
 
 /// The command, built as it is to be used.
@@ -128,34 +128,34 @@ fn experiments(root: &Path) -> anyhow::Result<()> {
         eprintln!("{}", experiment.name);
         results.push((experiment, experiment.run()?));
     }
-    let page = experiments::page(&results, &machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("experiments.md"), page.as_bytes())?)
+    let page = experiments::page(&results, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("experiments.md"), page.as_bytes())?)
 }
 
 fn caches(root: &Path) -> anyhow::Result<()> {
-    let machine = machine::describe().join("\n");
+    let machine = clock::describe_machine().join("\n");
     let page = format!("{}\n{machine}\n\n{}", caches::HEAD, caches::tables(root)?);
-    Ok(store::write_whole(&root.join("docs").join("caches.md"), page.as_bytes())?)
+    Ok(result_cache::write_atomic(&root.join("docs").join("caches.md"), page.as_bytes())?)
 }
 
 fn features(root: &Path) -> anyhow::Result<()> {
     let table = features::table(FEATURE_RUNS)?;
-    let page = format!("{}\n{}\n\n{table}", features::HEAD, machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("features.md"), page.as_bytes())?)
+    let page = format!("{}\n{}\n\n{table}", features::HEAD, clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("features.md"), page.as_bytes())?)
 }
 
 fn advices(root: &Path) -> anyhow::Result<()> {
     let mut results = Vec::new();
     for experiment in advice::experiments() {
         eprintln!("{}: {}", experiment.claim, experiment.says);
-        let findings = (experiment.try_it)();
-        for finding in &findings {
-            eprintln!("  {}: {}: {}", finding.reading, finding.verdict.words(), finding.because);
+        let claim_results = (experiment.run)();
+        for result in &claim_results {
+            eprintln!("  {}: {}: {}", result.reading, result.status.words(), result.reason);
         }
-        results.push((experiment, findings));
+        results.push((experiment, claim_results));
     }
-    let page = advice::page(&results, &machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("advice.md"), page.as_bytes())?)
+    let page = advice::page(&results, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("advice.md"), page.as_bytes())?)
 }
 
 #[cfg(test)]

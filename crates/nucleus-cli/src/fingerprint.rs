@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use nucleus_graph::compile::Program;
-use nucleus_measure::fingerprint::Fingerprint;
+use nucleus_measure::result_cache::Fingerprint;
 
 /// Of a program; the same wherever its files are. Frames, checks and what is recorded have no part in it.
 pub fn fingerprint(program: &Program) -> String {

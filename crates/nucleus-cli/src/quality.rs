@@ -3,9 +3,9 @@
 use anyhow::{Context, Result, bail};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
-use nucleus_measure::store::Store;
-use nucleus_measure::trade::recommend::{Choice, for_error};
-use nucleus_measure::trade::{Setting, Subject, Trade};
+use nucleus_measure::result_cache::ResultCache;
+use nucleus_measure::trade::{Benchmark, Setting, Trade};
+use nucleus_measure::trade::{Choice, for_error};
 
 use crate::cache_folder;
 
@@ -38,19 +38,19 @@ pub fn time(text: &str) -> Result<f64, String> {
 }
 
 /// Where the results of a scene are kept.
-pub fn store(subject: &Subject) -> Store {
-    Store::new(&cache_folder::folder().join("trade"), &subject.name())
+pub fn store(subject: &Benchmark) -> ResultCache {
+    ResultCache::new(&cache_folder::folder().join("trade"), &subject.name())
 }
 
 /// The scene at the cheapest setting for an error, by the curve that `nucleus trade` has stored; and which it is.
 pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
-    let subject = Subject::new(scene)?;
-    let trade = Trade::find(&store(&subject))?.with_context(|| {
+    let subject = Benchmark::new(scene)?;
+    let trade = Trade::load(&store(&subject))?.with_context(|| {
         format!("nothing is known of `{name}` and this solver yet: run `nucleus trade {name}` first")
     })?;
     let point = match for_error(&trade, wanted) {
         Choice::Found(point) => point,
-        Choice::Nearest(point) | Choice::Untold(point) => bail!(
+        Choice::Nearest(point) | Choice::Unresolved(point) => bail!(
             "no setting of `{name}` reaches {}; the nearest is {} with {}",
             report::percent(wanted),
             report::percent(point.error.unwrap_or_default()),

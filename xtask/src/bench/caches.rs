@@ -1,8 +1,8 @@
 //! How fast caches are written, read, sought in and played, and what recording and checkpoints cost a run.
 
-mod goal;
 mod player;
 mod recording;
+mod target;
 
 use std::path::Path;
 use std::process::Command;
@@ -11,7 +11,7 @@ use anyhow::{Context, ensure};
 use serde_json::Value;
 
 use super::table::{Table, figure};
-use goal::Goal;
+use target::Target;
 
 /// What stands above the tables.
 pub const HEAD: &str = "# Caches
@@ -40,16 +40,16 @@ pub fn tables(root: &Path) -> anyhow::Result<String> {
     let [costs, checkpoint] = recording::tables()?;
     let (throughput, large) = (throughput(root, &folder)?, large(root, &folder)?);
     let parts = [throughput, large, costs, checkpoint, player::table(root, &folder)?];
-    let goals: Vec<&Goal> = parts.iter().flat_map(|(_, goals)| goals).collect();
-    let tables = std::iter::once(goal::table(&goals)).chain(parts.iter().map(|(table, _)| table.clone()));
+    let targets: Vec<&Target> = parts.iter().flat_map(|(_, targets)| targets).collect();
+    let tables = std::iter::once(target::table(&targets)).chain(parts.iter().map(|(table, _)| table.clone()));
     Ok(tables.map(|table| format!("{table}\n")).collect())
 }
 
-fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
+fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
     let head =
         ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
     let mut table = Table::new("Speed and memory", &head);
-    let mut goals = Vec::new();
+    let mut targets = Vec::new();
     for (side, frames, is_compact) in SHEETS {
         let mut runs = Vec::new();
         for _ in 0..3 {
@@ -65,35 +65,35 @@ fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> 
         let cells = [format!("{side}²"), packing.to_owned()];
         table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
         if !is_compact {
-            goals.push(Goal::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
-            goals.push(Goal::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
+            targets.push(Target::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
+            targets.push(Target::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
         }
     }
     table.note("Memory is what recorder and reader add to the process at the most, meshes among it: a few frames, however long the run.");
     table.note("The sheet's mesh is in the file as well: of 60 frames it is a larger share of what is packed than of 600.");
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
-fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let found = example(root, folder, 129, LARGE, false, None)?;
+fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
+    let value = example(root, folder, 129, LARGE, false, None)?;
     let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
     let mut row = |name: &str, key: &str| {
-        let times = [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
+        let times = [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
         table.row([name.to_owned()].into_iter().chain(times));
     };
     row("seek, the system has forgotten the file", "cold_seek_ms");
     row("seek, it has not", "seek_ms");
-    let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
+    let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
         "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process that grew by {} MB.",
         number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
     ));
-    let cold = |k: usize| found["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
-    let goals = vec![
-        Goal::below("seek in 10 GB that the system has forgotten, median ms", SEEK, cold(0)),
-        Goal::below("the same, 99 of 100", SEEK, cold(1)),
+    let cold = |k: usize| value["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
+    let targets = vec![
+        Target::below("seek in 10 GB that the system has forgotten, median ms", SEEK, cold(0)),
+        Target::below("the same, 99 of 100", SEEK, cold(1)),
     ];
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
 /// Has a sheet written and read; what the example of the cache crate finds.

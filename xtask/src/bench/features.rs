@@ -9,7 +9,7 @@ use super::mesh::{self, Cells};
 use super::report::Report;
 use super::table::{Table, figure};
 use super::workload::{DENSITY, Setting, frame};
-use nucleus_measure::clock::Spent;
+use nucleus_measure::clock::Timing;
 
 /// Points along the side of the sheet.
 const SIZE: u32 = 65;
@@ -52,12 +52,12 @@ fn measure(lists: ClothLists, input: &FrameInput, repeat: u32) -> Result<Cost, B
         let mut solver = Solver::<f32>::new(builder, 1);
         passes = solver.passes(input);
         solver.step(input, &mut ());
-        let (spent, ()) = Spent::on(|| {
+        let (timing, ()) = Timing::of_process(|| {
             (0..FRAMES).for_each(|_| {
                 solver.step(input, &mut ());
             });
         });
-        times.push(1e3 * spent.processor / f64::from(FRAMES));
+        times.push(1e3 * timing.processor / f64::from(FRAMES));
     }
     times.sort_by(f64::total_cmp);
     Ok(Cost { ms: times[times.len() / 2], passes })

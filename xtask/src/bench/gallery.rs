@@ -104,8 +104,8 @@ fn time_table(all: &[Runs]) -> Table {
     let mut table = Table::new("Scenes of contact as they are", &head);
     for Runs { name, runs } in all {
         for run in runs {
-            let gain = runs[0].spent.wall / run.spent.wall;
-            let times = [run.ms(), 1e3 * run.spent.wall, gain, run.searches, run.pairs].map(figure);
+            let gain = runs[0].timing.wall / run.timing.wall;
+            let times = [run.ms(), 1e3 * run.timing.wall, gain, run.queries, run.pairs].map(figure);
             let whole = [run.threads, run.frames].map(|count| count.to_string());
             let rest = [run.most_pairs.to_string(), figure(run.megabytes()), format!("{:016x}", run.hash)];
             table.row([name.clone()].into_iter().chain(whole).chain(times).chain(rest));

@@ -3,7 +3,7 @@
 use std::fs;
 
 /// Has the system forget the most that was held before; where it cannot, figures are of all that was run so far.
-pub fn forget() {
+pub fn reset_peak() {
     // Where there is no such file there is no figure either.
     let _ = fs::write("/proc/self/clear_refs", "5");
 }

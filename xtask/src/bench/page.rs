@@ -30,7 +30,7 @@ pub fn write(path: &Path, report: &Report) -> anyhow::Result<()> {
 /// Targets first, as they are what most readers come for.
 fn figures(report: &Report) -> String {
     let mut text = report.machine.join("\n") + "\n";
-    let targets = report.verdict_table();
+    let targets = report.target_table();
     for table in [&targets].into_iter().filter(|table| !table.rows.is_empty()).chain(&report.tables) {
         text.extend(["\n", &table.to_string()]);
     }
@@ -69,7 +69,7 @@ mod tests {
     fn targets_are_shown_where_there_are_any() {
         let mut report = Report::default();
         assert!(!figures(&report).contains("Targets"));
-        report.judge("more", "less".to_owned(), false);
+        report.check_target("more", "less".to_owned(), false);
         assert!(figures(&report).contains("Targets"));
     }
 

@@ -1,11 +1,11 @@
 //! What is kept of a bench: every run, every table, and which targets were met.
 
+use super::run::RunResult;
 use super::table::Table;
-use super::trial::Outcome;
 
 /// A target, and whether it was met.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verdict {
+pub struct TargetResult {
     /// What was to be shown.
     pub target: String,
     /// The figure.
@@ -14,7 +14,7 @@ pub struct Verdict {
     pub is_met: bool,
 }
 
-impl Verdict {
+impl TargetResult {
     /// `met` or `missed`.
     pub fn word(&self) -> &'static str {
         if self.is_met { "met" } else { "missed" }
@@ -27,11 +27,11 @@ pub struct Report {
     /// The machine, a line a fact.
     pub machine: Vec<String>,
     /// Every run.
-    pub runs: Vec<Outcome>,
+    pub runs: Vec<RunResult>,
     /// Every table that was shown.
     pub tables: Vec<Table>,
     /// Every target that was looked at.
-    pub verdicts: Vec<Verdict>,
+    pub targets: Vec<TargetResult>,
 }
 
 impl Report {
@@ -42,14 +42,14 @@ impl Report {
     }
 
     /// Keeps a run, and says that it is done.
-    pub fn keep(&mut self, run: &Outcome) {
-        let trial = run.trial;
+    pub fn keep(&mut self, run: &RunResult) {
+        let spec = run.spec;
         eprintln!(
             "{} {}², {}, threads {}: {:.3} ms a frame, {:016x}",
-            trial.workload,
-            trial.size,
-            trial.setting,
-            trial.threads,
+            spec.workload,
+            spec.size,
+            spec.setting,
+            spec.threads,
             run.ms(),
             run.hash
         );
@@ -65,15 +65,15 @@ impl Report {
     }
 
     /// Notes whether a target was met.
-    pub fn judge(&mut self, target: impl Into<String>, found: String, is_met: bool) {
-        self.verdicts.push(Verdict { target: target.into(), found, is_met });
+    pub fn check_target(&mut self, target: impl Into<String>, found: String, is_met: bool) {
+        self.targets.push(TargetResult { target: target.into(), found, is_met });
     }
 
     /// Which targets were met.
-    pub fn verdict_table(&self) -> Table {
+    pub fn target_table(&self) -> Table {
         let mut table = Table::new("Targets", &["target", "", "found"]);
-        for verdict in &self.verdicts {
-            table.row([verdict.target.clone(), verdict.word().to_owned(), verdict.found.clone()]);
+        for target in &self.targets {
+            table.row([target.target.clone(), target.word().to_owned(), target.found.clone()]);
         }
         table
     }

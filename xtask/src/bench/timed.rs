@@ -5,7 +5,7 @@ use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
 use super::memory;
-use nucleus_measure::clock::{STAGES, Spent, StageClock};
+use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
 /// What came of it; what is not said to be otherwise is of a frame in the mean.
 #[derive(Debug, Clone)]
@@ -14,11 +14,11 @@ pub struct Timed {
     /// Frames that were run.
     pub frames: u32,
     /// Seconds in the stepping calls.
-    pub spent: Spent,
+    pub timing: Timing,
     /// The share of each of [`STAGES`] in the time.
     pub shares: [f64; STAGES.len()],
     /// Runs of the broad phase.
-    pub searches: f64,
+    pub queries: f64,
     /// Pairs that could touch, over all runs of the broad phase.
     pub pairs: f64,
     /// The same in the frame that had most.
@@ -39,23 +39,23 @@ impl Timed {
         frames: Option<u32>,
         mut seen: impl FnMut(&dyn StateView),
     ) -> Self {
-        memory::forget();
+        memory::reset_peak();
         let mut run = Simulation::<f32>::new(program, threads as usize);
         let mut stages = StageClock::default();
         let mut all = Self::begun(threads);
         while frames.map_or(!run.is_done(), |frames| all.frames < frames) {
-            let (spent, account) = Spent::on(|| {
-                let account = run.advance(&mut stages).report;
+            let (timing, report) = Timing::of_process(|| {
+                let report = run.advance(&mut stages).report;
                 stages.stop();
-                account
+                report
             });
             all.frames += 1;
-            all.spent.wall += spent.wall;
-            all.spent.processor += spent.processor;
-            all.searches += f64::from(account.broad_phases);
-            all.pairs += account.candidate_pairs as f64;
-            all.most_pairs = all.most_pairs.max(account.candidate_pairs);
-            all.contacts += account.contacts as f64;
+            all.timing.wall += timing.wall;
+            all.timing.processor += timing.processor;
+            all.queries += f64::from(report.broad_phases);
+            all.pairs += report.candidate_pairs as f64;
+            all.most_pairs = all.most_pairs.max(report.candidate_pairs);
+            all.contacts += report.contacts as f64;
             seen(run.state());
         }
         let hash = state_hash(&run);
@@ -64,7 +64,7 @@ impl Timed {
 
     /// Milliseconds: of the processor with one thread, on the wall with more.
     pub fn ms(&self) -> f64 {
-        1e3 * if self.threads == 1 { self.spent.processor } else { self.spent.wall }
+        1e3 * if self.threads == 1 { self.timing.processor } else { self.timing.wall }
     }
 
     /// The most memory that the process held, in megabytes.
@@ -77,9 +77,9 @@ impl Timed {
         Self {
             threads,
             frames: 0,
-            spent: Spent::default(),
+            timing: Timing::default(),
             shares: Default::default(),
-            searches: 0.0,
+            queries: 0.0,
             pairs: 0.0,
             most_pairs: 0,
             contacts: 0.0,
@@ -91,8 +91,8 @@ impl Timed {
     fn in_the_mean(self) -> Self {
         let mean = |all: f64| all / f64::from(self.frames.max(1));
         Self {
-            spent: Spent { wall: mean(self.spent.wall), processor: mean(self.spent.processor) },
-            searches: mean(self.searches),
+            timing: Timing { wall: mean(self.timing.wall), processor: mean(self.timing.processor) },
+            queries: mean(self.queries),
             pairs: mean(self.pairs),
             contacts: mean(self.contacts),
             ..self

@@ -6,10 +6,12 @@ use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use nucleus_graph::scene::edit;
 use nucleus_measure::report;
-use nucleus_measure::store::{Store, write_whole};
-use nucleus_measure::trade::plan::Wishes;
-use nucleus_measure::trade::recommend::{Choice, for_error, for_time};
-use nucleus_measure::trade::{Found, Point, Reading, Setting, Subject, TradeError, Watch, measure};
+use nucleus_measure::result_cache::{ResultCache, write_atomic};
+use nucleus_measure::trade::SweepOptions;
+use nucleus_measure::trade::{
+    Benchmark, Point, Reading, Setting, SweepControl, SweepResult, TradeError, run_sweep,
+};
+use nucleus_measure::trade::{Choice, for_error, for_time};
 
 use crate::frame_range::FrameRange;
 use crate::outcome::Outcome;
@@ -98,7 +100,7 @@ impl Trade {
             let frames = (SECONDS * scene.time.fps).ceil() as i64;
             scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
         }
-        let subject = match Subject::new(&scene) {
+        let subject = match Benchmark::new(&scene) {
             Ok(subject) => subject,
             Err(error) => return trouble(error),
         };
@@ -107,26 +109,26 @@ impl Trade {
             store.clear()?;
         }
         interrupt::listen()?;
-        match self.measure(&subject, &store) {
+        match self.run_sweep(&subject, &store) {
             Ok(found) => self.tell(&subject, &store, &found, &text),
             Err(TradeError::Interrupted) => {
                 say!("interrupted: what was finished is kept, and the same command goes on from there");
                 Ok(Outcome::Interrupted)
             }
-            Err(TradeError::Store(error)) => Err(error.into()),
+            Err(TradeError::Cache(error)) => Err(error.into()),
             Err(error) => trouble(error),
         }
     }
 
-    fn measure(&self, subject: &Subject, store: &Store) -> Result<Found, TradeError> {
+    fn run_sweep(&self, subject: &Benchmark, store: &ResultCache) -> Result<SweepResult, TradeError> {
         let mut bar = Bar::new();
-        let found = measure(
+        let found = run_sweep(
             subject,
             &self.wishes(),
             store,
-            Watch {
-                side_by_side: threads::count(self.jobs),
-                tell: &mut |progress| bar.show(progress),
+            SweepControl {
+                workers: threads::count(self.jobs),
+                progress: &mut |progress| bar.show(progress),
                 should_continue: &|| !interrupt::asked(),
             },
         );
@@ -135,8 +137,8 @@ impl Trade {
         found
     }
 
-    fn wishes(&self) -> Wishes {
-        Wishes {
+    fn wishes(&self) -> SweepOptions {
+        SweepOptions {
             readings: match self.mode {
                 None => Vec::new(),
                 Some(Mode::Classic) => vec![Reading::Classic],
@@ -150,7 +152,13 @@ impl Trade {
         }
     }
 
-    fn tell(&self, subject: &Subject, store: &Store, found: &Found, text: &str) -> Result<Outcome> {
+    fn tell(
+        &self,
+        subject: &Benchmark,
+        store: &ResultCache,
+        found: &SweepResult,
+        text: &str,
+    ) -> Result<Outcome> {
         let trade = &found.trade;
         let choice = match self.time {
             Some(ms) => for_time(trade, ms),
@@ -165,7 +173,7 @@ impl Trade {
         let json = serde_json::to_string_pretty(trade)? + "\n";
         let files = [("html", html), ("csv", report::csv(trade)), ("json", json)];
         for (end, content) in &files {
-            write_whole(&path(end), content.as_bytes())?;
+            write_atomic(&path(end), content.as_bytes())?;
         }
         if self.json {
             output::tell_json(&serde_json::to_value(trade)?);
@@ -180,7 +188,7 @@ impl Trade {
         let asked = self.error.is_some() || self.time.is_some();
         Ok(match choice {
             Choice::Found(_) => Outcome::Fine,
-            Choice::Nearest(_) | Choice::Untold(_) if !asked => Outcome::Fine,
+            Choice::Nearest(_) | Choice::Unresolved(_) if !asked => Outcome::Fine,
             _ => Outcome::Trouble,
         })
     }
@@ -198,7 +206,7 @@ impl Trade {
         match choice {
             Choice::Found(point) => format!("recommended for {wanted}: {}\n", costs(point)),
             Choice::Nearest(point) => format!("no setting reaches {wanted}; the nearest: {}\n", costs(point)),
-            Choice::Untold(point) => format!(
+            Choice::Unresolved(point) => format!(
                 "{wanted} cannot be told from none, since the references themselves differ by {}; the most exact as far as can \
                  be told: {}\n",
                 report::percent(floor.unwrap_or_default()),
@@ -209,10 +217,10 @@ impl Trade {
     }
 
     /// Writes the scene with a setting: the user's text, with nothing changed but the attributes.
-    fn apply(&self, to: Option<&PathBuf>, subject: &Subject, setting: &Setting, text: &str) -> Result<()> {
+    fn apply(&self, to: Option<&PathBuf>, subject: &Benchmark, setting: &Setting, text: &str) -> Result<()> {
         let edited = edit::edit(text, &subject.edits(setting))?;
         let to = to.unwrap_or(&self.scene);
-        write_whole(to, edited.as_bytes())?;
+        write_atomic(to, edited.as_bytes())?;
         say!("`{}` now has {setting}", to.display());
         Ok(())
     }

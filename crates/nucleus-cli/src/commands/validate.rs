@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use nucleus_measure::validation::{Case, Finding, cases, page};
+use nucleus_measure::validation::{Case, Comparison, cases, page};
 use serde_json::json;
 
 use crate::outcome::Outcome;
@@ -34,7 +34,7 @@ pub struct Validate {
 }
 
 /// A case with what it found.
-type CaseResult = (Case, Vec<Finding>);
+type CaseResult = (Case, Vec<Comparison>);
 
 impl Validate {
     /// Runs the cases and prints their tables. A figure outside what is allowed is trouble.
@@ -43,7 +43,7 @@ impl Validate {
         if self.list {
             cases
                 .iter()
-                .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.about)))?;
+                .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.description)))?;
             return Ok(Outcome::Fine);
         }
         let results = self.run_all(&cases)?;
@@ -55,7 +55,7 @@ impl Validate {
             true => output::tell_json(&as_json(&results)),
             false => output::tell(&as_text(&results)),
         }
-        let right = results.iter().all(|(_, findings)| findings.iter().all(Finding::holds));
+        let right = results.iter().all(|(_, findings)| findings.iter().all(Comparison::holds));
         Ok(if right { Outcome::Fine } else { Outcome::Trouble })
     }
 
@@ -119,7 +119,7 @@ fn as_text(results: &[CaseResult]) -> String {
 }
 
 fn as_json(results: &[CaseResult]) -> serde_json::Value {
-    let finding = |finding: &Finding| {
+    let finding = |finding: &Comparison| {
         json!({
             "quantity": finding.quantity, "exact": finding.exact, "found": finding.found,
             "error": finding.error(), "holds": finding.holds(),
@@ -127,7 +127,7 @@ fn as_json(results: &[CaseResult]) -> serde_json::Value {
     };
     let case = |(case, findings): &CaseResult| {
         json!({
-            "name": case.name, "about": case.about, "findings": findings.iter().map(finding).collect::<Vec<_>>(),
+            "name": case.name, "about": case.description, "findings": findings.iter().map(finding).collect::<Vec<_>>(),
         })
     };
     json!({ "cases": results.iter().map(case).collect::<Vec<_>>() })

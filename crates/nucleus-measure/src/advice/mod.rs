@@ -24,25 +24,25 @@ pub struct Experiment {
     /// What is run, in words.
     pub scene: &'static str,
     /// Runs it.
-    pub try_it: fn() -> Vec<Finding>,
+    pub run: fn() -> Vec<ClaimResult>,
 }
 
 /// What was found, for one reading of resistances.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct ClaimResult {
     /// `Classic`, `Physical`.
     pub reading: &'static str,
     /// Whether the claim holds.
-    pub verdict: Verdict,
+    pub status: Status,
     /// Why, with the figures that decide.
-    pub because: String,
+    pub reason: String,
     /// Heads of the columns, and the rows.
     pub table: (Vec<&'static str>, Vec<Vec<String>>),
 }
 
 /// Whether a claim holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Status {
     /// It does.
     Holds,
     /// It does not.
@@ -51,7 +51,7 @@ pub enum Verdict {
     DoesNotApply,
 }
 
-impl Verdict {
+impl Status {
     /// From whether it holds.
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }

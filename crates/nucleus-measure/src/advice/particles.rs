@@ -1,7 +1,7 @@
 //! N2.4-17: particles that meet only objects.
 
-use super::scenes::{Knobs, particles};
-use super::{Experiment, Finding, Verdict};
+use super::scenes::{Parameters, particles};
+use super::{ClaimResult, Experiment, Status};
 use crate::report::figure;
 use crate::trade::Reading;
 use crate::trade::run::Run;
@@ -10,17 +10,22 @@ pub const ONE_IS_ENOUGH: Experiment = Experiment {
     claim: "N2.4-17",
     says: "Particles that collide only with objects need 1 substep and 1 collision iteration.",
     scene: "256 points without links (a cloth without resistances) fall on a ball and the ground.",
-    try_it: || [Reading::Classic, Reading::Physical].map(try_it).to_vec(),
+    run: || [Reading::Classic, Reading::Physical].map(run).to_vec(),
 };
 
-fn try_it(reading: Reading) -> Finding {
+fn run(reading: Reading) -> ClaimResult {
     let runs = [(1, 1), (3, 4), (16, 16)].map(|(substeps, collision_iterations)| {
         // A point has nothing to be evaluated: one evaluation is one time step.
         let evaluations = f64::from(substeps);
         (
             substeps,
             collision_iterations,
-            particles(&Knobs { substeps, collision_iterations, evaluations, ..Knobs::new(reading) }),
+            particles(&Parameters {
+                substeps,
+                collision_iterations,
+                evaluations,
+                ..Parameters::new(reading)
+            }),
         )
     });
     let least = |run: &Run| run.contact.least_gap.unwrap_or(f64::INFINITY);
@@ -34,10 +39,10 @@ fn try_it(reading: Reading) -> Finding {
             figure(run.ms()),
         ]
     });
-    Finding {
+    ClaimResult {
         reading: super::page::name(reading),
-        verdict: Verdict::of(one.contact.pairs_unresolved == 0 && least(one) > 0.98 && one.is_finite()),
-        because: format!(
+        status: Status::of(one.contact.pairs_unresolved == 0 && least(one) > 0.98 && one.is_finite()),
+        reason: format!(
             "at one and one, {} pairs are unresolved and the least gap is {} of the thickness",
             one.contact.pairs_unresolved,
             figure(least(one))
@@ -56,8 +61,8 @@ mod tests {
     // EVIDENCE: N2.4-17  points that meet only objects need one substep and one collision iteration
     #[test]
     fn points_without_links_keep_their_distance_at_one_substep_and_one_iteration() {
-        for finding in (ONE_IS_ENOUGH.try_it)() {
-            assert_eq!(finding.verdict, Verdict::Holds, "{}: {}", finding.reading, finding.because);
+        for result in (ONE_IS_ENOUGH.run)() {
+            assert_eq!(result.status, Status::Holds, "{}: {}", result.reading, result.reason);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! N2.4-18: what has to propagate.
 
-use super::scenes::{Knobs, late_strain, strip};
-use super::{Experiment, Finding, Verdict};
+use super::scenes::{Parameters, late_strain, strip};
+use super::{ClaimResult, Experiment, Status};
 use crate::report::{figure, percent};
 use crate::trade::Reading;
 
@@ -9,7 +9,7 @@ pub const STEEP: Experiment = Experiment {
     claim: "N2.4-18",
     says: "Networks through which something must propagate need more iterations, and the need grows steeply.",
     scene: "Strips of 8 to 64 cells hang by one edge: the least count (a power of two) at which they stretch by no more than 5 % in the end.",
-    try_it: || [Reading::Classic, Reading::Physical].map(try_it).to_vec(),
+    run: || [Reading::Classic, Reading::Physical].map(run).to_vec(),
 };
 
 /// Cells of the strips, each twice the one before.
@@ -18,17 +18,17 @@ const CELLS: [u32; 4] = [8, 16, 32, 64];
 /// The stretch that is allowed.
 const ALLOWED: f64 = 0.05;
 
-fn try_it(reading: Reading) -> Finding {
+fn run(reading: Reading) -> ClaimResult {
     let needed = CELLS.map(|cells| need(reading, cells));
     let rows = CELLS
         .iter()
         .zip(&needed)
         .map(|(cells, (count, strain))| vec![cells.to_string(), figure(*count), percent(*strain)]);
     let power = (needed[3].0 / needed[0].0).log2() / 3.0;
-    Finding {
+    ClaimResult {
         reading: super::page::name(reading),
-        verdict: Verdict::of(power > 1.2),
-        because: format!("the need grows with the power {power:.2} of the length"),
+        status: Status::of(power > 1.2),
+        reason: format!("the need grows with the power {power:.2} of the length"),
         table: (vec!["cells", "count needed", "strain, 99 %"], rows.collect()),
     }
 }
@@ -38,13 +38,13 @@ fn need(reading: Reading, cells: u32) -> (f64, f64) {
     let counts = (0..16).map(|k| f64::from(1 << k));
     let mut last = (f64::INFINITY, f64::INFINITY);
     for count in counts {
-        let knobs = match reading {
-            Reading::Classic => Knobs { stretch: count, substeps: 1, ..Knobs::new(reading) },
+        let parameters = match reading {
+            Reading::Classic => Parameters { stretch: count, substeps: 1, ..Parameters::new(reading) },
             Reading::Physical => {
-                Knobs { evaluations: count, stretch: 200.0, substeps: 1, ..Knobs::new(reading) }
+                Parameters { evaluations: count, stretch: 200.0, substeps: 1, ..Parameters::new(reading) }
             }
         };
-        last = (count, late_strain(&strip(&knobs, cells)));
+        last = (count, late_strain(&strip(&parameters, cells)));
         if last.1 <= ALLOWED {
             break;
         }
@@ -59,7 +59,7 @@ mod tests {
     // EVIDENCE: N2.4-18  the iterations that a hanging strip needs grow faster than its length
     #[test]
     fn a_strip_twice_as_long_needs_more_than_twice_the_iterations() {
-        let finding = try_it(Reading::Classic);
-        assert_eq!(finding.verdict, Verdict::Holds, "{}: {:?}", finding.because, finding.table);
+        let result = run(Reading::Classic);
+        assert_eq!(result.status, Status::Holds, "{}: {:?}", result.reason, result.table);
     }
 }

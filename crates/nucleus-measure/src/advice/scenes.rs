@@ -2,12 +2,12 @@
 
 use nucleus_graph::scene::read_scene_text;
 
-use crate::trade::run::{Run, follow};
-use crate::trade::{Reading, Subject};
+use crate::trade::run::{Run, run_setting};
+use crate::trade::{Benchmark, Reading};
 
 /// What is set in an experiment.
 #[derive(Debug, Clone, Copy)]
-pub struct Knobs {
+pub struct Parameters {
     pub reading: Reading,
     pub substeps: u32,
     pub collision_iterations: u32,
@@ -15,7 +15,7 @@ pub struct Knobs {
     pub evaluations: f64,
 }
 
-impl Knobs {
+impl Parameters {
     /// Maya's defaults.
     pub const fn new(reading: Reading) -> Self {
         Self { reading, substeps: 3, collision_iterations: 4, stretch: 20.0, evaluations: 96.0 }
@@ -31,7 +31,7 @@ impl Knobs {
 }
 
 /// A sheet of half a metre that meets a ball at 2.5 m/s and is wrapped round it; a second.
-pub fn drape(knobs: &Knobs) -> Run {
+pub fn drape(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -40,14 +40,14 @@ pub fn drape(knobs: &Knobs) -> Run {
         "sphere": polySphere(radius: 20, subdivisions: (24, 16), translateY: keys([(1, 0), (13, 45), (25, 45)])),
         "ball": nRigid(inputMesh: "sphere", thickness: 0.4, friction: 0.3),
     }})"#,
-        knobs.nucleus(),
-        stretch = knobs.stretch,
-        half = knobs.stretch / 2.0
+        parameters.nucleus(),
+        stretch = parameters.stretch,
+        half = parameters.stretch / 2.0
     ))
 }
 
 /// A strip so many cells long that hangs by its upper edge; a second.
-pub fn strip(knobs: &Knobs, cells: u32) -> Run {
+pub fn strip(parameters: &Parameters, cells: u32) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -55,13 +55,13 @@ pub fn strip(knobs: &Knobs, cells: u32) -> Run {
         "cloth": nCloth(inputMesh: "plane", stretchResistance: {stretch}, compressionResistance: {stretch}, bendResistance: 0, damp: 0.5, selfCollide: false),
         "rail": dynamicConstraint(constraintType: transform, components: ["cloth.vtx[0:4]"]),
     }})"#,
-        knobs.nucleus(),
-        stretch = knobs.stretch,
+        parameters.nucleus(),
+        stretch = parameters.stretch,
     ))
 }
 
 /// Points without any links that fall on a ball and from it to the ground; a second.
-pub fn particles(knobs: &Knobs) -> Run {
+pub fn particles(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -70,7 +70,7 @@ pub fn particles(knobs: &Knobs) -> Run {
         "sphere": polySphere(radius: 20, subdivisions: (24, 16)),
         "ball": nRigid(inputMesh: "sphere", thickness: 0.5),
     }})"#,
-        knobs.nucleus().replace("nucleus(", "nucleus(usePlane: true, planeOrigin: (0, -20, 0), "),
+        parameters.nucleus().replace("nucleus(", "nucleus(usePlane: true, planeOrigin: (0, -20, 0), "),
     ))
 }
 
@@ -78,9 +78,9 @@ pub fn particles(knobs: &Knobs) -> Run {
 fn run(text: &str) -> Run {
     let (scene, _) =
         read_scene_text(text, "experiment.ron".as_ref()).unwrap_or_else(|found| panic!("{found:?}"));
-    let subject = Subject::new(&scene).unwrap_or_else(|error| panic!("{error}"));
-    let setting = subject.own();
-    let followed = follow::<f32>(&subject, &setting, subject.program(), None, &|| true);
+    let benchmark = Benchmark::new(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let setting = benchmark.own();
+    let followed = run_setting::<f32>(&benchmark, &setting, benchmark.program(), None, &|| true);
     let (run, _) = followed.unwrap_or_else(|| panic!("it was never asked to end"));
     run
 }
@@ -97,6 +97,6 @@ pub fn late_strain(run: &Run) -> f64 {
 }
 
 /// Candidate pairs that a run of the broad phase finds, on average.
-pub fn pairs_per_search(run: &Run) -> f64 {
-    run.pairs as f64 / run.searches.max(1) as f64
+pub fn pairs_per_query(run: &Run) -> f64 {
+    run.pairs as f64 / run.queries.max(1) as f64
 }

@@ -19,8 +19,8 @@ mod precision;
 
 use nucleus_core::{BuildError, Real, ResistanceModel, Stiffness};
 
-use crate::clock::{Clock, Spent};
-use crate::rig::{Rig, membrane};
+use crate::clock::{Clock, Timing};
+use crate::fixture::{Fixture, membrane};
 
 pub use page::page;
 
@@ -30,9 +30,9 @@ pub struct Experiment {
     /// A word to ask for it by.
     pub name: &'static str,
     /// What is run.
-    pub about: &'static str,
+    pub description: &'static str,
     /// Where the solver differs from the prototype in what is run, and what that does.
-    pub differs: &'static str,
+    pub differences: &'static str,
     run: fn() -> Result<Vec<Table>, BuildError>,
 }
 
@@ -67,14 +67,14 @@ const STIFFNESS: f64 = 10_000.0;
 
 /// How a budget of evaluations in 1/24 s is spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Spending {
+enum Scheme {
     /// Small steps, each with one sweep.
     SmallSteps,
     /// Passes over so many substeps: Maya's reading.
     Passes(u32),
 }
 
-impl Spending {
+impl Scheme {
     fn words(self) -> String {
         match self {
             Self::SmallSteps => "small steps, one sweep each (Physical)".to_owned(),
@@ -84,31 +84,31 @@ impl Spending {
     }
 
     /// Sets a rig to it. A pass takes the whole error away: links are as stiff as the passes make them.
-    fn set<R: Real>(self, rig: &mut Rig<R>, evaluations: u32) {
+    fn set<R: Real>(self, fixture: &mut Fixture<R>, evaluations: u32) {
         let count = f64::from(evaluations);
         match self {
             Self::SmallSteps => {
-                rig.frame.substeps = 1;
-                rig.frame.resistance = ResistanceModel::Physical { evaluations: count };
-                rig.cloth().stiffness = membrane(STIFFNESS);
+                fixture.frame.substeps = 1;
+                fixture.frame.resistance = ResistanceModel::Physical { evaluations: count };
+                fixture.cloth().stiffness = membrane(STIFFNESS);
             }
             Self::Passes(substeps) => {
-                rig.frame.substeps = substeps;
-                rig.frame.resistance = ResistanceModel::Classic;
-                let cloth = rig.cloth();
+                fixture.frame.substeps = substeps;
+                fixture.frame.resistance = ResistanceModel::Classic;
+                let cloth = fixture.cloth();
                 cloth.stiffness = Stiffness::default();
                 (cloth.stretch_resistance, cloth.compression_resistance) = (count, count);
                 (cloth.shear_resistance, cloth.bend_resistance) = (0.0, 0.0);
             }
         }
-        rig.frame.collision_iterations = count;
+        fixture.frame.collision_iterations = count;
     }
 }
 
 /// Runs frames and gives milliseconds of the processor for each.
 fn timed(frames: u32, mut frame: impl FnMut()) -> f64 {
-    let (spent, ()) = Spent::by(Clock::Thread, || (0..frames).for_each(|_| frame()));
-    1e3 * spent.processor / f64::from(frames)
+    let (timing, ()) = Timing::measure(Clock::Thread, || (0..frames).for_each(|_| frame()));
+    1e3 * timing.processor / f64::from(frames)
 }
 
 /// A figure that the prototype has, or a dash.

@@ -16,8 +16,11 @@ Milliseconds are processor time of one core, of the solver as it is; the prototy
 pub fn page(results: &[(Experiment, Vec<Table>)], machine: &str) -> String {
     let mut text = format!("{HEAD}\n{machine}\n");
     for (experiment, tables) in results {
-        let Experiment { name, about, differs, .. } = experiment;
-        put(&mut text, format_args!("\n## {name}\n\n{about}\n\n**Where the two differ.** {differs}"));
+        let Experiment { name, description, differences, .. } = experiment;
+        put(
+            &mut text,
+            format_args!("\n## {name}\n\n{description}\n\n**Where the two differ.** {differences}"),
+        );
         tables.iter().for_each(|found| table(&mut text, found));
     }
     text
@@ -47,8 +50,11 @@ mod tests {
         let results: Vec<_> = experiments().into_iter().map(|one| (one, vec![table.clone()])).collect();
         let page = page(&results, "a machine");
         for (experiment, _) in &results {
-            assert!(page.contains(&format!("## {}\n\n{}", experiment.name, experiment.about)), "{page}");
-            assert!(page.contains(experiment.differs), "{page}");
+            assert!(
+                page.contains(&format!("## {}\n\n{}", experiment.name, experiment.description)),
+                "{page}"
+            );
+            assert!(page.contains(experiment.differences), "{page}");
         }
         assert_eq!(page.matches("| a | b |\n|---:|---:|\n| 1 | 2 |\n").count(), 4);
     }

@@ -2,17 +2,17 @@
 
 use nucleus_core::{BuildError, COUNT_PERIOD, ClothLists, Real, ResistanceModel};
 
-use super::{Experiment, Spending, Table, or_dash};
-use crate::metrics::distance::distance;
+use super::{Experiment, Scheme, Table, or_dash};
+use crate::fixture::{Fixture, GRAVITY, Vec3, sheet};
+use crate::metrics::deformation::distance;
 use crate::report::figure;
-use crate::rig::{GRAVITY, Rig, Vec3, sheet};
 
 pub const PRECISION: Experiment = Experiment {
     name: "precision",
-    about: "A point falls freely for a second, from so many metres above the origin, with so many substeps in 1/24 s: how far it \
+    description: "A point falls freely for a second, from so many metres above the origin, with so many substeps in 1/24 s: how far it \
         falls in single precision, over the same sum in exact numbers, less one. Then whole sheets, the same run in single and \
         in double precision: how far apart their points are, RMS over all points and all frames, over the size.",
-    differs: "The prototype kept positions in single precision and took velocities from their differences; beside that \
+    differences: "The prototype kept positions in single precision and took velocities from their differences; beside that \
         stands its other form, displacements from an anchor, which is the solver's. The prototype's figures for \
         that form are the most that it found at any height. A sheet that swings is chaotic: what is apart by \
         rounding at first is apart by a fold in the end, and no precision but only time mends that.",
@@ -59,14 +59,14 @@ fn falls() -> Result<Table, BuildError> {
 /// How much too far a point falls in a second.
 fn fall_error<R: Real>(height: f64, substeps: u32) -> Result<f64, BuildError> {
     let square = sheet([2, 2], Vec3::y() * height, Vec3::x(), Vec3::z());
-    let mut rig: Rig<R> = Rig::new(square, ClothLists::NONE, 1.0)?;
-    rig.frame.substeps = substeps;
-    rig.frame.resistance = ResistanceModel::Classic;
-    rig.run(24);
+    let mut fixture: Fixture<R> = Fixture::new(square, ClothLists::NONE, 1.0)?;
+    fixture.frame.substeps = substeps;
+    fixture.frame.resistance = ResistanceModel::Classic;
+    fixture.run(24);
     // n steps of h, each with the velocity at its end, sum to g h² n (n + 1) / 2.
     let (steps, h) = (f64::from(24 * substeps), COUNT_PERIOD / f64::from(substeps));
     let exact = GRAVITY * h * h * steps * (steps + 1.0) / 2.0;
-    Ok((height - rig.point(0).y) / exact - 1.0)
+    Ok((height - fixture.point(0).y) / exact - 1.0)
 }
 
 fn sheets() -> Result<Table, BuildError> {
@@ -91,16 +91,16 @@ fn apart(hangs: bool, evaluations: u32) -> Result<f64, BuildError> {
     Ok(crate::metrics::root_mean_square(frames))
 }
 
-fn hung<R: Real>(hangs: bool, evaluations: u32) -> Result<Rig<R>, BuildError> {
+fn hung<R: Real>(hangs: bool, evaluations: u32) -> Result<Fixture<R>, BuildError> {
     let size = 41u32;
     let across = if hangs { -Vec3::y() } else { Vec3::z() };
     let cloth = sheet([size, size], Vec3::zeros(), Vec3::x(), across);
     let lists = ClothLists { stretch: true, cross_links: true, ..ClothLists::NONE };
-    let mut rig = Rig::new(cloth, lists, 1.0)?;
-    Spending::SmallSteps.set(&mut rig, evaluations);
+    let mut fixture = Fixture::new(cloth, lists, 1.0)?;
+    Scheme::SmallSteps.set(&mut fixture, evaluations);
     let held: Vec<usize> = if hangs { (0..size as usize).collect() } else { vec![0, size as usize - 1] };
-    rig.hold(held);
-    Ok(rig)
+    fixture.pin(held);
+    Ok(fixture)
 }
 
 #[cfg(test)]

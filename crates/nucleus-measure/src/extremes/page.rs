@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::row::{Recovery, Trial};
-use super::verdict::{Figure, Kind, Outcome};
+use super::evaluation::{Evaluation, Kind, Measurement};
+use super::row::{Expectation, Recovery};
 
 const HEAD: &str = "# Extremes
 
@@ -19,35 +19,35 @@ Bounds are set before a row is run, from the scene itself or from what one needs
 ";
 
 /// The page, from the outcomes of all rows.
-pub fn page(outcomes: &[Outcome]) -> String {
+pub fn page(evaluations: &[Evaluation]) -> String {
     let mut text = HEAD.to_owned();
-    let failing = outcomes.iter().filter(|outcome| !outcome.holds()).count();
-    let holding = outcomes.len() - failing;
+    let failing = evaluations.iter().filter(|evaluation| !evaluation.holds()).count();
+    let holding = evaluations.len() - failing;
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{holding} of {} rows hold.", outcomes.len());
+    let _ = writeln!(text, "{holding} of {} rows hold.", evaluations.len());
     if failing > 0 {
         let _ = writeln!(text, "\n## What fails\n");
-        for outcome in outcomes.iter().filter(|outcome| !outcome.holds()) {
-            fails(&mut text, outcome);
+        for evaluation in evaluations.iter().filter(|evaluation| !evaluation.holds()) {
+            known_failure(&mut text, evaluation);
         }
     }
-    for group in outcomes.chunk_by(|a, b| a.extreme.group == b.extreme.group) {
-        let _ = writeln!(text, "\n## {}\n", group[0].extreme.group);
+    for group in evaluations.chunk_by(|a, b| a.stress_case.group == b.stress_case.group) {
+        let _ = writeln!(text, "\n## {}\n", group[0].stress_case.group);
         table(&mut text, group);
         text.push('\n');
-        group.iter().for_each(|outcome| entry(&mut text, outcome));
+        group.iter().for_each(|evaluation| entry(&mut text, evaluation));
     }
     text
 }
 
-fn fails(text: &mut String, outcome: &Outcome) {
-    let misses: Vec<String> = outcome.failures().map(miss).collect();
-    let reason = outcome.extreme.fails.unwrap_or("Not known to fail: something has changed.");
-    let _ = writeln!(text, "- **`{}`**: {}.\n  {reason}", outcome.extreme.name, misses.join("; "));
+fn known_failure(text: &mut String, evaluation: &Evaluation) {
+    let misses: Vec<String> = evaluation.failures().map(failure_text).collect();
+    let reason = evaluation.stress_case.known_failure.unwrap_or("Not known to fail: something has changed.");
+    let _ = writeln!(text, "- **`{}`**: {}.\n  {reason}", evaluation.stress_case.name, misses.join("; "));
 }
 
 /// `speed from frame 72 on (m/s): 5.1, at most 0.5`.
-pub fn miss(figure: &Figure) -> String {
+pub fn failure_text(figure: &Measurement) -> String {
     format!(
         "{}: {}, {} {}",
         figure.what.trim(),
@@ -57,35 +57,37 @@ pub fn miss(figure: &Figure) -> String {
     )
 }
 
-fn table(text: &mut String, outcomes: &[Outcome]) {
+fn table(text: &mut String, evaluations: &[Evaluation]) {
     text.push_str(
         "| Extreme | Energy | Speed, m/s | Strain | Cost | Reported | |\n|---|--:|--:|--:|--:|---|---|\n",
     );
-    for outcome in outcomes {
+    for evaluation in evaluations {
         let cell = |kind: Kind, show: fn(f64) -> String| {
-            outcome.figure(kind).map_or("–".to_owned(), |figure| show(figure.value))
+            evaluation.figure(kind).map_or("–".to_owned(), |figure| show(figure.value))
         };
         let [energy, speed] = [Kind::Energy, Kind::Speed].map(|kind| cell(kind, number));
         let (strain, cost) = (cell(Kind::Strain, percent), cell(Kind::Cost, |cost| format!("{cost:.1}")));
         let reported =
-            if outcome.reported.is_empty() { "–".to_owned() } else { outcome.reported.join("; ") };
-        let verdict = if outcome.holds() { "holds" } else { "**fails**" };
-        let name = outcome.extreme.name;
+            if evaluation.reported.is_empty() { "–".to_owned() } else { evaluation.reported.join("; ") };
+        let status = if evaluation.holds() { "holds" } else { "**fails**" };
+        let name = evaluation.stress_case.name;
         let reported = reported.replace('|', "\\|");
         let _ =
-            writeln!(text, "| `{name}` | {energy} | {speed} | {strain} | {cost} | {reported} | {verdict} |");
+            writeln!(text, "| `{name}` | {energy} | {speed} | {strain} | {cost} | {reported} | {status} |");
     }
 }
 
-fn entry(text: &mut String, outcome: &Outcome) {
-    let extreme = &outcome.extreme;
-    let _ = writeln!(text, "**`{}`**: {}.\n{}", extreme.name, extreme.what, extreme.expect);
-    let own = outcome.figures.iter().filter(|figure| figure.kind == Kind::Own).map(miss);
+fn entry(text: &mut String, evaluation: &Evaluation) {
+    let stress_case = &evaluation.stress_case;
+    let _ = writeln!(text, "**`{}`**: {}.\n{}", stress_case.name, stress_case.what, stress_case.expect);
+    let own = evaluation.figures.iter().filter(|figure| figure.kind == Kind::Own).map(failure_text);
     let own: Vec<String> = own.collect();
     if !own.is_empty() {
         let _ = writeln!(text, "Measured: {}.", own.join("; "));
     }
-    if let Trial::Runs { recovery: Some(Recovery { from, speed, strain }), .. } = extreme.trial {
+    if let Expectation::Runs { recovery: Some(Recovery { from, speed, strain }), .. } =
+        stress_case.expectation
+    {
         let _ = write!(text, "From frame {from} on it has to be slower than {} m/s", number(speed));
         if strain.is_finite() {
             let _ =

@@ -1,12 +1,11 @@
-//! What a row of the table is.
+//! A row of the table.
 
-use super::case::Case;
-use super::course::Course;
-use super::verdict::Side;
+use super::scene::TestScene;
+use super::timeline::Timeline;
 
 /// A named extreme.
 #[derive(Debug, Clone, Copy)]
-pub struct Extreme {
+pub struct StressCase {
     /// Its name, for `--only`.
     pub name: &'static str,
     /// Which part of the table it belongs to.
@@ -16,35 +15,35 @@ pub struct Extreme {
     /// What a user should expect, and what to do where that is not enough.
     pub expect: &'static str,
     /// How it is put to the test.
-    pub trial: Trial,
+    pub expectation: Expectation,
     /// Why it fails, where it is known to.
-    pub fails: Option<&'static str>,
+    pub known_failure: Option<&'static str>,
 }
 
 /// How an extreme is put to the test.
 #[derive(Debug, Clone, Copy)]
-pub enum Trial {
+pub enum Expectation {
     /// It runs, and these things hold.
     Runs {
         /// The scene.
-        case: fn() -> Case,
+        scene: fn() -> TestScene,
         /// The same without the extreme, that it may cost three times as much as.
-        nominal: fn() -> Case,
+        baseline: fn() -> TestScene,
         /// By what the cost is divided.
-        cost: Cost,
+        cost: CostUnit,
         /// What the start holds in joules besides what falls and is stretched.
-        stored: f64,
+        initial_energy: f64,
         /// How it comes to rest when the cause has ended.
         recovery: Option<Recovery>,
         /// What else holds.
-        demands: &'static [Demand],
+        assertions: &'static [Assertion],
         /// What has to be said when it is read; nothing else is.
-        warns: &'static [&'static str],
+        warnings: &'static [&'static str],
     },
     /// It is refused when it is read, in these words.
     InvalidInput {
         /// The scene.
-        case: fn() -> Case,
+        scene: fn() -> TestScene,
         /// What the message has to name.
         names: &'static [&'static str],
     },
@@ -52,7 +51,7 @@ pub enum Trial {
 
 /// What the processor time of a run is divided by, before it is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cost {
+pub enum CostUnit {
     /// Frames.
     Frame,
     /// Time steps: where the extreme is how many there are.
@@ -72,28 +71,47 @@ pub struct Recovery {
     pub strain: f64,
 }
 
+/// On which side of its limit a figure has to stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// It must not be larger.
+    AtMost,
+    /// It must not be smaller.
+    AtLeast,
+}
+
+impl Side {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+        }
+    }
+}
+
 /// Something else that holds: a figure read off the run and its nominal one, and a bound on it.
 #[derive(Debug, Clone, Copy)]
-pub struct Demand {
+pub struct Assertion {
     /// What is measured, with its unit.
     pub what: &'static str,
     /// Reads it off: the run, then the nominal one.
-    pub figure: fn(&Course, &Course) -> f64,
+    pub figure: fn(&Timeline, &Timeline) -> f64,
     /// On which side of the limit it has to stay.
     pub side: Side,
     /// The limit.
     pub limit: f64,
 }
 
-impl Cost {
+impl CostUnit {
     /// What a run took, in seconds per frame, step or evaluation.
-    pub fn of(self, course: &Course) -> f64 {
+    pub fn of(self, timeline: &Timeline) -> f64 {
         let divisor = match self {
-            Self::Frame => course.frames.len() as f64,
-            Self::Step => course.steps,
-            Self::Evaluation => course.evaluations,
+            Self::Frame => timeline.frames.len() as f64,
+            Self::Step => timeline.steps,
+            Self::Evaluation => timeline.evaluations,
         };
-        course.seconds / divisor.max(1.0)
+        timeline.seconds / divisor.max(1.0)
     }
 
     /// What it is per.

@@ -99,7 +99,7 @@ fn cards(trade: &Trade) -> String {
     let mut text = "<div class=\"cards\">\n".to_owned();
     for error in [0.1, 0.01, 0.001] {
         let title = format!("time to {}", percent(error));
-        text += &match trade.cheapest(error).filter(|_| trade.can_tell(error)) {
+        text += &match trade.cheapest(error).filter(|_| trade.resolves(error)) {
             Some(point) => card(title, format!("{} ms", figure(point.ms)), point.setting.to_string()),
             None => {
                 let why = time_to(trade, error);
@@ -195,16 +195,20 @@ fn trade_chart(page: &Page) -> String {
 /// How far runs go apart from the reference, frame by frame.
 fn apart_chart(page: &Page) -> String {
     let trade = page.trade;
-    if trade.apart.is_empty() {
+    if trade.divergence.is_empty() {
         return String::new();
     }
     let start = trade.frames[0] as f64 + 1.0;
-    let places = |apart: &[f64]| -> Vec<[f64; 2]> {
-        apart.iter().enumerate().map(|(k, apart)| [start + k as f64, apart.max(1e-7)]).collect()
+    let places = |divergence: &[f64]| -> Vec<[f64; 2]> {
+        divergence
+            .iter()
+            .enumerate()
+            .map(|(k, divergence)| [start + k as f64, divergence.max(1e-7)])
+            .collect()
     };
-    let mut lines = vec![Line { through: places(&trade.apart), class: "l0" }];
-    for ((_, apart), class) in page.series.iter().zip(["l1", "l2"]) {
-        lines.push(Line { through: places(apart), class });
+    let mut lines = vec![Line { through: places(&trade.divergence), class: "l0" }];
+    for ((_, divergence), class) in page.series.iter().zip(["l1", "l2"]) {
+        lines.push(Line { through: places(divergence), class });
     }
     let values =
         lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
@@ -217,13 +221,13 @@ fn apart_chart(page: &Page) -> String {
         .collect();
     let key = format!("<div class=\"key\">{key}</div>");
     let mark = match trade.measure {
-        crate::trade::Measure::Position { frames } => {
+        crate::trade::ErrorMeasure::Position { frames } => {
             Some((start + frames as f64 - 1.0, "compared to here".to_owned()))
         }
         _ => None,
     };
     let chart = Chart {
-        x: Axis::plain("frame", start, trade.frames[1] as f64),
+        x: Axis::linear("frame", start, trade.frames[1] as f64),
         y: Axis::log("distance from the reference", values).in_percent(),
         dots: Vec::new(),
         lines,

@@ -3,15 +3,15 @@
 
 use nucleus_core::{BuildError, Cloth, Faces, Mass, ModelBuilder, Stiffness, Surface};
 
-use super::{Allowed, Case, Finding, Rig};
-use crate::rig::{STRIP, Vec3, membrane};
+use super::{Case, Comparison, Fixture, Tolerance};
+use crate::fixture::{STRIP, Vec3, membrane};
 
 pub const CASES: &[Case] = &[Case {
     name: "cusick-drape",
-    about: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, beside the band \
+    description: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, beside the band \
         in which such cloths are measured. Bending stiffness and weight are usual ones of such cloths. Refined four \
         times, it changes by less than 2.",
-    fails: Some(
+    known_failure: Some(
         "All cloths come out near 60 %, whatever their stiffness against bending: the sheet is held open in its own \
             plane. Without resistance to compression the same silk drapes to 6 %, with a shear stiffness of 17 N/m to 54 %; \
             squares of 12 mm are probably too coarse for folds of a centimetre.",
@@ -26,22 +26,22 @@ const CLOTHS: [(&str, f64, f64, [f64; 2]); 3] = [
     ("denim", 8e-5, 0.36, [70.0, 90.0]),
 ];
 
-fn cusick() -> Result<Vec<Finding>, BuildError> {
-    let mut findings = Vec::new();
+fn cusick() -> Result<Vec<Comparison>, BuildError> {
+    let mut comparisons = Vec::new();
     for (name, bend, density, [low, high]) in CLOTHS {
         let found = coefficient(24, bend, density)?;
-        let allowed = Allowed::Margin((high - low) / 2.0);
-        findings.push(Finding::new(format!("{name}: drape, %"), (low + high) / 2.0, found, allowed));
+        let tolerance = Tolerance::Absolute((high - low) / 2.0);
+        comparisons.push(Comparison::new(format!("{name}: drape, %"), (low + high) / 2.0, found, tolerance));
     }
     let (_, bend, density, _) = CLOTHS[1];
     let (coarse, fine) = (coefficient(24, bend, density)?, coefficient(48, bend, density)?);
-    findings.push(Finding::new(
+    comparisons.push(Comparison::new(
         "cotton: drape with four times the points, %",
         coarse,
         fine,
-        Allowed::Margin(2.0),
+        Tolerance::Absolute(2.0),
     ));
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Share of the ring in shadow, in %, of a disc of `cells` by `cells` quads.
@@ -51,24 +51,24 @@ fn coefficient(cells: u32, bend: f64, density: f64) -> Result<f64, BuildError> {
     builder.cloth(Cloth::new(surface.clone(), Mass::PerArea(density), STRIP))?;
     let held: Vec<usize> =
         (0..surface.positions.len()).filter(|&point| surface.positions[point].norm() < 0.0901).collect();
-    let mut rig = Rig::of(builder, surface, 12.0 * f64::from(cells));
-    rig.cloth().stiffness = Stiffness { bend: Some(bend), ..membrane(300.0) };
-    rig.cloth().drag = 6.0 * nucleus_core::COUNT_PERIOD * density;
-    rig.cloth().tangential_drag = 1.0;
-    rig.hold(held);
-    rig.settle(1e-4, 144);
-    let shadow = shadow(&rig, &rim);
+    let mut fixture = Fixture::from_builder(builder, surface, 12.0 * f64::from(cells));
+    fixture.cloth().stiffness = Stiffness { bend: Some(bend), ..membrane(300.0) };
+    fixture.cloth().drag = 6.0 * nucleus_core::COUNT_PERIOD * density;
+    fixture.cloth().tangential_drag = 1.0;
+    fixture.pin(held);
+    fixture.run_to_rest(1e-4, 144);
+    let shadow = shadow(&fixture, &rim);
     let circle = |radius: f64| std::f64::consts::PI * radius * radius;
     Ok(100.0 * (shadow - circle(0.09)) / (circle(0.15) - circle(0.09)))
 }
 
 /// The area in shadow: how far out the rim reaches in each direction, and the clamp at least.
-fn shadow(rig: &Rig, rim: &[usize]) -> f64 {
+fn shadow(fixture: &Fixture, rim: &[usize]) -> f64 {
     const BINS: usize = 720;
     let mut reach = [0.09f64; BINS];
     let around = rim.iter().zip(rim.iter().cycle().skip(1));
     for (&a, &b) in around {
-        let (a, b) = (rig.point(a), rig.point(b));
+        let (a, b) = (fixture.point(a), fixture.point(b));
         for k in 0..=20 {
             let p = a + (b - a) * (f64::from(k) / 20.0);
             let turn = p.z.atan2(p.x).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;

@@ -22,7 +22,7 @@ use nucleus_core::BuildError;
 pub use page::page;
 
 /// What is left of an error in double precision is the method's.
-type Rig = crate::rig::Rig<f64>;
+type Fixture = crate::fixture::Fixture<f64>;
 
 /// A body of physics that the solver is held against.
 #[derive(Debug, Clone, Copy)]
@@ -30,15 +30,15 @@ pub struct Case {
     /// A word to ask for it by.
     pub name: &'static str,
     /// What is built, and where the exact figure comes from.
-    pub about: &'static str,
+    pub description: &'static str,
     /// Why figures of it are outside what is allowed, where they are known to be.
-    pub fails: Option<&'static str>,
-    run: fn() -> Result<Vec<Finding>, BuildError>,
+    pub known_failure: Option<&'static str>,
+    run: fn() -> Result<Vec<Comparison>, BuildError>,
 }
 
 /// One figure of a case beside the exact one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct Comparison {
     /// What it is, with its unit.
     pub quantity: String,
     /// What it ought to be.
@@ -46,45 +46,45 @@ pub struct Finding {
     /// What the solver gives.
     pub found: f64,
     /// How the two are held against each other.
-    pub allowed: Allowed,
+    pub tolerance: Tolerance,
 }
 
 /// What counts as right.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Allowed {
+pub enum Tolerance {
     /// The error over the exact figure is at most this.
-    Share(f64),
+    Relative(f64),
     /// The error is at most this, in the unit of the figure.
-    Margin(f64),
+    Absolute(f64),
     /// The figure is at most the exact one.
     AtMost,
     /// The figure is at least the exact one.
     AtLeast,
 }
 
-impl Finding {
-    fn new(quantity: impl Into<String>, exact: f64, found: f64, allowed: Allowed) -> Self {
-        Self { quantity: quantity.into(), exact, found, allowed }
+impl Comparison {
+    fn new(quantity: impl Into<String>, exact: f64, found: f64, tolerance: Tolerance) -> Self {
+        Self { quantity: quantity.into(), exact, found, tolerance }
     }
 
     /// The error: over the exact figure where that is what counts, else in the unit of the figure; nothing for a
     /// bound.
     pub fn error(&self) -> Option<f64> {
-        match self.allowed {
-            Allowed::Share(_) => Some((self.found - self.exact) / self.exact),
-            Allowed::Margin(_) => Some(self.found - self.exact),
-            Allowed::AtMost | Allowed::AtLeast => None,
+        match self.tolerance {
+            Tolerance::Relative(_) => Some((self.found - self.exact) / self.exact),
+            Tolerance::Absolute(_) => Some(self.found - self.exact),
+            Tolerance::AtMost | Tolerance::AtLeast => None,
         }
     }
 
     /// Whether it is right.
     pub fn holds(&self) -> bool {
-        match self.allowed {
-            Allowed::Share(most) | Allowed::Margin(most) => {
+        match self.tolerance {
+            Tolerance::Relative(most) | Tolerance::Absolute(most) => {
                 self.error().is_some_and(|error| error.abs() <= most)
             }
-            Allowed::AtMost => self.found <= self.exact,
-            Allowed::AtLeast => self.found >= self.exact,
+            Tolerance::AtMost => self.found <= self.exact,
+            Tolerance::AtLeast => self.found >= self.exact,
         }
     }
 }
@@ -94,7 +94,7 @@ impl Case {
     ///
     /// # Errors
     /// When the solver refuses what is built.
-    pub fn run(&self) -> Result<Vec<Finding>, BuildError> {
+    pub fn run(&self) -> Result<Vec<Comparison>, BuildError> {
         (self.run)()
     }
 }
@@ -113,12 +113,12 @@ mod tests {
 
     #[test]
     fn a_finding_is_right_within_what_is_allowed_and_wrong_beyond() {
-        let finding = |found, allowed| Finding::new("", 2.0, found, allowed).holds();
-        assert!(finding(2.019, Allowed::Share(0.01)) && !finding(2.03, Allowed::Share(0.01)));
-        assert!(finding(1.9, Allowed::Margin(0.11)) && !finding(1.9, Allowed::Margin(0.09)));
-        assert!(finding(1.0, Allowed::AtMost) && !finding(2.1, Allowed::AtMost));
-        assert!(!finding(1.0, Allowed::AtLeast) && finding(2.1, Allowed::AtLeast));
-        assert!(!finding(f64::NAN, Allowed::Share(1.0)) && !finding(f64::NAN, Allowed::AtMost));
+        let comparison = |found, tolerance| Comparison::new("", 2.0, found, tolerance).holds();
+        assert!(comparison(2.019, Tolerance::Relative(0.01)) && !comparison(2.03, Tolerance::Relative(0.01)));
+        assert!(comparison(1.9, Tolerance::Absolute(0.11)) && !comparison(1.9, Tolerance::Absolute(0.09)));
+        assert!(comparison(1.0, Tolerance::AtMost) && !comparison(2.1, Tolerance::AtMost));
+        assert!(!comparison(1.0, Tolerance::AtLeast) && comparison(2.1, Tolerance::AtLeast));
+        assert!(!comparison(f64::NAN, Tolerance::Relative(1.0)) && !comparison(f64::NAN, Tolerance::AtMost));
     }
 
     #[test]
@@ -126,8 +126,8 @@ mod tests {
         for case in
             cases().filter(|case| ["terminal-velocity", "incline", "restitution"].contains(&case.name))
         {
-            for finding in case.run().expect("sheets of ours") {
-                assert!(finding.holds(), "{}: {finding:?}", case.name);
+            for comparison in case.run().expect("sheets of ours") {
+                assert!(comparison.holds(), "{}: {comparison:?}", case.name);
             }
         }
     }

@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, ensure};
 use serde_json::Value;
 
-use super::goal::Goal;
+use super::target::Target;
 use super::{Table, example, figure};
 
 /// Frames of 129² points in 2 GB.
@@ -23,7 +23,7 @@ const REFRESH: f64 = 1e3 / 60.0;
 const AT_ONCE: f64 = 1e3;
 
 /// The table of the page, which says so where there is no browser; and what was aimed at.
-pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
+pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
     let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median ms", "99 of 100 ms"]);
     let Some(chromium) = PLACES.iter().map(Path::new).find(|path| path.exists()) else {
         table.note("There was no Chromium here.");
@@ -32,9 +32,9 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     let cache = folder.join("player.mcap");
     example(root, folder, 129, FRAMES, false, Some(&cache))?;
     let player = nucleus_view::serve(&cache, 0)?;
-    let found = drive(&install(folder)?, chromium, &player.url())?;
+    let value = drive(&install(folder)?, chromium, &player.url())?;
     fs::remove_file(cache)?;
-    let both = |key: &str| [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
+    let both = |key: &str| [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
     for (name, key) in [
         ("the bytes of a frame anywhere, from the server", "fetch"),
         ("unpack them: zstd, checksum, floats", "unpack"),
@@ -43,20 +43,20 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
     ] {
         table.row([name.to_owned()].into_iter().chain(both(key)));
     }
-    let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
+    let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
         "From the call of the page to the first picture: {} ms. {}, headless; a screen of 60 Hz leaves 16.7 ms.",
         number("opened"),
-        found["browser"].as_str().unwrap_or_default()
+        value["browser"].as_str().unwrap_or_default()
     ));
-    let median = |key: &str| found[key][0].as_f64().unwrap_or(f64::NAN);
+    let median = |key: &str| value[key][0].as_f64().unwrap_or(f64::NAN);
     let frame = median("fetch") + median("unpack") + median("update");
-    let opened = found["opened"].as_f64().unwrap_or(f64::NAN);
-    let goals = vec![
-        Goal::below("a cache of 2 GB opens at once in the player, ms", AT_ONCE, opened),
-        Goal::below("scrubbing 129² at 60 Hz: all but drawing, ms a frame", REFRESH, frame),
+    let opened = value["opened"].as_f64().unwrap_or(f64::NAN);
+    let targets = vec![
+        Target::below("a cache of 2 GB opens at once in the player, ms", AT_ONCE, opened),
+        Target::below("scrubbing 129² at 60 Hz: all but drawing, ms a frame", REFRESH, frame),
     ];
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
 fn install(folder: &Path) -> anyhow::Result<PathBuf> {

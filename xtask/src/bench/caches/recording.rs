@@ -11,7 +11,7 @@ use nucleus_graph::compile::{self, compile};
 use nucleus_graph::scene::read_scene_text;
 use nucleus_measure::clock::Clock;
 
-use super::goal::Goal;
+use super::target::Target;
 use super::{Table, figure};
 
 /// A sheet of 129² points that falls on a ball, slips off and piles up on the floor.
@@ -63,9 +63,9 @@ const MOST: f64 = 10.0;
 const PERIOD: f64 = 48.0;
 
 /// The tables of the page, and what was aimed at. One run is recorded in all ways at once.
-pub fn tables() -> anyhow::Result<[(Table, Vec<Goal>); 2]> {
-    let (scene, _) = read_scene_text(SCENE, "recorded.ron".as_ref()).map_err(|found| anyhow!("{found:?}"))?;
-    let program = compile(&scene).map_err(|found| anyhow!("{found:?}"))?;
+pub fn tables() -> anyhow::Result<[(Table, Vec<Target>); 2]> {
+    let (scene, _) = read_scene_text(SCENE, "recorded.ron".as_ref()).map_err(|value| anyhow!("{value:?}"))?;
+    let program = compile(&scene).map_err(|value| anyhow!("{value:?}"))?;
     let mut simulation = Simulation::new(&program, 1);
     for _ in 0..FRAMES[0] {
         simulation.advance(&mut ());
@@ -105,16 +105,16 @@ fn begin(simulation: &Simulation, folder: &Path) -> anyhow::Result<Vec<Way>> {
     WAYS.into_iter().map(way).collect()
 }
 
-fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
+fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Target>)> {
     let head = ["recorded", "solver, ms a frame", "recorder, ms a frame", "more", "kB a frame"];
     let mut table = Table::new("What recording costs", &head);
-    let mut goals = Vec::new();
+    let mut targets = Vec::new();
     let frames = f64::from(FRAMES[1]);
     for Way { name, detail, recorder, spent } in ways {
         let (spent, bytes) = (spent.as_secs_f64() / frames, recorder.finish()?.bytes as f64 / frames);
         let share = 100.0 * spent / solver;
         if detail == Detail::Substeps {
-            goals.push(Goal::below(&format!("recording {name}, % of a run of 129²"), MOST, share));
+            targets.push(Target::below(&format!("recording {name}, % of a run of 129²"), MOST, share));
         }
         let more = format!("{} %", figure(share));
         let [solver, spent, bytes] = [1e3 * solver, 1e3 * spent, 1e-3 * bytes].map(figure);
@@ -126,18 +126,18 @@ fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
         FRAMES[0] + 2,
         1 + FRAMES[0] + FRAMES[1]
     ));
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
 /// What a checkpoint of the same run costs.
-fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
+fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Vec<Target>)> {
     let start = 1 + FRAMES[0] + FRAMES[1];
     let run = RunInfo { start, end: start + 1, checkpoint: 1, ..RunInfo::default() };
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
     recorder.record_start(simulation.state())?;
-    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|found| found.len());
+    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|value| value.len());
     let (before, begin) = (length()?, now());
     let state = simulation.save();
     let saved = now() - begin;

@@ -1,8 +1,8 @@
 //! What self-collision costs beside the same cloth without it, and how that grows with the number of points.
 
-use super::heap;
-use super::scene::{Place, Setting};
-use super::trial::Trial;
+use super::pile;
+use super::run::RunSpec;
+use super::scene::{MeshFolder, Setting};
 use super::{TYPICAL, Workload};
 use crate::bench::report::Report;
 use crate::bench::stages;
@@ -29,7 +29,7 @@ const CHANCE: f64 = 1.1;
 /// When a scene is refused.
 pub fn run(report: &mut Report) -> anyhow::Result<()> {
     beside_without(report)?;
-    growth(report)
+    scaling(report)
 }
 
 /// W3 with self-collision and without.
@@ -41,7 +41,7 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
     for size in SIZES {
         let run = |self_collide| {
             let setting = Setting { evaluations: TYPICAL, self_collide };
-            let run = Trial { workload: Workload::Folds, size, setting, frames: FRAMES }.timed(1)?.timed;
+            let run = RunSpec { workload: Workload::Folds, size, setting, frames: FRAMES }.timed(1)?.timed;
             eprintln!("W3 {size}², self-collision {self_collide}: {} ms a frame", figure(run.ms()));
             anyhow::Ok(run)
         };
@@ -51,7 +51,7 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
         table.row([format!("{size}²")].into_iter().chain(cells).chain([format!("{:016x}", with.hash)]));
         if size == COST_SIZE {
             let target = format!("self-collision at {size}²: at most {MOST_COST} times the same without");
-            report.judge(target, format!("{} times", figure(times)), times <= MOST_COST);
+            report.check_target(target, format!("{} times", figure(times)), times <= MOST_COST);
         }
     }
     report.show(table);
@@ -59,12 +59,12 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
 }
 
 /// Heaps of the same cloth, more and more of it.
-fn growth(report: &mut Report) -> anyhow::Result<()> {
+fn scaling(report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for n in GROWTH {
-        let points = heap::sheet(n).positions.len() as f64;
+        let points = pile::sheet(n).positions.len() as f64;
         let setting = Setting { evaluations: TYPICAL, self_collide: true };
-        let run = Timed::run(&heap::program(n, setting, &Place::new()?)?, 1, Some(heap::FRAMES), |_| {});
+        let run = Timed::run(&pile::program(n, setting, &MeshFolder::new()?)?, 1, Some(pile::FRAMES), |_| {});
         eprintln!("heap of {points} points: {} ms a frame", figure(run.ms()));
         runs.push((points, run));
     }
@@ -76,7 +76,7 @@ fn growth(report: &mut Report) -> anyhow::Result<()> {
         let ratio = nanoseconds(last) / nanoseconds(first);
         let target =
             format!("self-collision grows no worse than n log n from {} to {} points", first.0, last.0);
-        report.judge(target, format!("{} times n log n", figure(ratio)), ratio <= CHANCE);
+        report.check_target(target, format!("{} times n log n", figure(ratio)), ratio <= CHANCE);
     }
     Ok(())
 }
@@ -108,8 +108,8 @@ fn growth_table(runs: &[(f64, Timed)]) -> Table {
             run.ms(),
             each,
             each / nanoseconds(&runs[0]),
-            run.searches,
-            run.pairs / run.searches / points,
+            run.queries,
+            run.pairs / run.queries / points,
             run.contacts / points,
             run.megabytes(),
         ];
@@ -126,10 +126,10 @@ mod tests {
     #[test]
     fn what_takes_n_log_n_has_the_same_figure_at_every_size() {
         let setting = Setting { evaluations: 1, self_collide: true };
-        let program = heap::program(20, setting, &Place::new().unwrap()).unwrap();
+        let program = pile::program(20, setting, &MeshFolder::new().unwrap()).unwrap();
         let mut run = Timed::run(&program, 1, Some(1), |_| {});
         let mut taking = |points: f64| {
-            run.spent.processor = 1e-9 * points * points.ln();
+            run.timing.processor = 1e-9 * points * points.ln();
             (points, run.clone())
         };
         let table = growth_table(&[taking(1e3), taking(1e5)]);

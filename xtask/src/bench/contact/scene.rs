@@ -31,9 +31,9 @@ impl fmt::Display for Setting {
 }
 
 /// A folder for meshes, removed when it is dropped.
-pub struct Place(PathBuf);
+pub struct MeshFolder(PathBuf);
 
-impl Place {
+impl MeshFolder {
     /// A folder of its own.
     ///
     /// # Errors
@@ -47,7 +47,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for MeshFolder {
     fn drop(&mut self) {
         // What is left in a folder for what may be lost does no harm.
         let _ = fs::remove_dir_all(&self.0);
@@ -76,13 +76,13 @@ fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
 ///
 /// # Errors
 /// When a mesh cannot be written or the scene is refused.
-pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> anyhow::Result<Program> {
+pub fn program(workload: Workload, n: u32, setting: Setting, place: MeshFolder) -> anyhow::Result<Program> {
     let sheets = if workload == Workload::Layers { 5 } else { 1 };
     let draft = Draft {
         frames: workload.frames(),
         plane: workload != Workload::Shot,
         sheets: (0..sheets).map(|k| sheet(workload, n, k)).collect(),
-        others: others(workload, n, &place)?,
+        other_nodes: other_nodes(workload, n, &place)?,
     };
     draft.program(setting, &place)
 }
@@ -95,7 +95,7 @@ pub struct Draft {
     /// The cloths, as they start.
     pub sheets: Vec<Surface>,
     /// What they meet and what holds them, as nodes.
-    pub others: String,
+    pub other_nodes: String,
 }
 
 impl Draft {
@@ -103,7 +103,7 @@ impl Draft {
     ///
     /// # Errors
     /// When a mesh cannot be written or the scene is refused.
-    pub fn program(&self, setting: Setting, place: &Place) -> anyhow::Result<Program> {
+    pub fn program(&self, setting: Setting, place: &MeshFolder) -> anyhow::Result<Program> {
         let Setting { evaluations, self_collide } = setting;
         let mut nodes = String::new();
         for (k, sheet) in self.sheets.iter().enumerate() {
@@ -116,12 +116,12 @@ impl Draft {
                     thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
             )?;
         }
-        let Self { frames, plane, others, .. } = self;
+        let Self { frames, plane, other_nodes, .. } = self;
         let text = format!(
             r#"Scene(time: (start: 1, end: {}, fps: 24), nodes: {{
                 "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
                 {nodes}
-                {others}
+                {other_nodes}
             }})"#,
             frames + 1
         );
@@ -134,7 +134,7 @@ impl Draft {
 }
 
 /// What the sheets meet and what holds them.
-fn others(workload: Workload, n: u32, place: &Place) -> anyhow::Result<String> {
+fn other_nodes(workload: Workload, n: u32, place: &MeshFolder) -> anyhow::Result<String> {
     let ball = workload.ball();
     fs::write(place.0.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
     let way = flight(&ball, workload.frames());
@@ -192,7 +192,7 @@ mod tests {
     fn the_ball_that_errors_are_measured_against_is_the_one_that_flies() {
         for workload in [Workload::Folds, Workload::Shot] {
             let setting = Setting { evaluations: 6, self_collide: false };
-            let program = program(workload, 5, setting, Place::new().unwrap()).unwrap();
+            let program = program(workload, 5, setting, MeshFolder::new().unwrap()).unwrap();
             let mut run = Simulation::<f32>::new(&program, 1);
             for frame in 1..=workload.frames().min(24) {
                 run.advance(&mut ());

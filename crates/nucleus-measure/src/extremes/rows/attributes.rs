@@ -1,6 +1,6 @@
 //! Resistances and lengths: nothing, too much, and both at once.
 
-use super::{Cost, DRAPED, Extreme, RUNS, Recovery, Runs, at_most, banner, drape};
+use super::{CostUnit, DRAPED, RUNS, Recovery, Runs, StressCase, at_most, banner, drape};
 
 /// A second banner beside the first, without any resistance.
 const LIMP: &str = "
@@ -12,148 +12,148 @@ const LIMP: &str = "
 const RIGID: &str =
     "stretchResistance: 1e6, compressionResistance: 1e6, shearResistance: 1e6, bendResistance: 1e6";
 
-pub static ROWS: [Extreme; 9] = [
-    Extreme {
+pub static ROWS: [StressCase; 9] = [
+    StressCase {
         name: "resistance-0-beside-1e6",
         group: "Resistances",
         what: "a banner whose resistances are all 1e6 beside one where they are 0",
         expect: "The stiff one hangs like a plate. The limp one keeps only the points that are held; the others fall.",
-        trial: Runs {
-            case: || banner("", RIGID).with(LIMP).scene(96),
-            cost: Cost::Evaluation,
-            demands: &[at_most("99 % strain at any time", 0.05, |course, _| {
-                course.most(|seen| seen.report.strain_99)
+        expectation: Runs {
+            scene: || banner("", RIGID).with(LIMP).scene(96),
+            cost: CostUnit::Evaluation,
+            assertions: &[at_most("99 % strain at any time", 0.05, |timeline, _| {
+                timeline.most(|record| record.report.strain_99)
             })],
             ..RUNS
         }
-        .trial(),
-        fails: Some(
+        .expectation(),
+        known_failure: Some(
             "The half without resistance falls in a heap on itself, whose contacts are most of the cost.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "resistance-0-beside-1e6-classic",
         group: "Resistances",
         what: "the same with `resistanceModel: Classic`: 10,000 sweeps a substep",
         expect: "As above. Every iteration is paid for: a count of 1e6 is held to 10,000 in a substep.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 banner("resistanceModel: Classic", RIGID).with(LIMP).scene(4).replace("(16, 16)", "(8, 8)").replace("0:16", "0:8")
             },
-            nominal: || {
+            baseline: || {
                 banner("resistanceModel: Classic", "").scene(48).replace("(16, 16)", "(8, 8)").replace("0:16", "0:8")
             },
-            cost: Cost::Evaluation,
-            demands: &[at_most("99 % strain at any time", 0.05, |course, _| {
-                course.most(|seen| seen.report.strain_99)
+            cost: CostUnit::Evaluation,
+            assertions: &[at_most("99 % strain at any time", 0.05, |timeline, _| {
+                timeline.most(|record| record.report.strain_99)
             })],
             ..RUNS
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "rigid-drape",
         group: "Resistances",
         what: "all resistances 1e6 on a sheet that falls on a ball",
         expect: "A plate that tips and slides off the ball, without shaking.",
-        trial: Runs {
-            case: || drape("", RIGID, "").scene(96),
+        expectation: Runs {
+            scene: || drape("", RIGID, "").scene(96),
             recovery: Some(Recovery { from: 90, speed: 2.0, strain: 0.05 }),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "resistance-jumps",
         group: "Resistances",
         what: "resistances are 0 for a second, in which the cloth falls apart, and 20 from then on",
         expect: "The links draw the cloth together, faster than it fell; it comes to rest.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 banner("", "damp: 4, stretchResistance: keys([(0, 0), (24, 0), (25, 20)]), compressionResistance: keys([(0, 0), (24, 0), (25, 10)])")
                     .scene(144)
             },
             recovery: Some(Recovery { from: 120, speed: 0.3, strain: 0.05 }),
             ..RUNS
         }
-        .trial(),
-        fails: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step."),
+        .expectation(),
+        known_failure: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step."),
     },
-    Extreme {
+    StressCase {
         name: "tiny-resistances",
         group: "Resistances",
         what: "resistances keyed down to 1e-30",
         expect: "The cloth falls as if they were 0, and nothing is lost on the way there.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 banner("", "bendResistance: 1e-40, stretchResistance: keys([(0, 20), (24, 1e-30)]), compressionResistance: keys([(0, 10), (24, 1e-30)])")
                     .scene(48)
             },
             ..RUNS
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "rest-length-0",
         group: "Resistances",
         what: "`restLengthScale` goes to 0 for half a second, and back to 1",
         expect: "The cloth shrinks to its rail and folds out again when its length comes back.",
-        trial: Runs {
-            case: || banner("", "damp: 4, restLengthScale: keys([(12, 1), (24, 0), (36, 0), (48, 1)])").scene(120),
+        expectation: Runs {
+            scene: || banner("", "damp: 4, restLengthScale: keys([(12, 1), (24, 0), (36, 0), (48, 1)])").scene(120),
             recovery: Some(Recovery { from: 96, speed: 0.3, strain: 0.05 }),
             ..RUNS
         }
-        .trial(),
-        fails: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step: all of the cloth is in its rail, and the run takes minutes."),
+        .expectation(),
+        known_failure: Some("Cloth that lies in a heap on itself has very many pairs, and every one is looked at in every step: all of the cloth is in its rail, and the run takes minutes."),
     },
-    Extreme {
+    StressCase {
         name: "rest-length-10",
         group: "Resistances",
         what: "`restLengthScale` jumps to 10 within a frame, and back to 1 after a second",
         expect: "The cloth is thrown open and drawn together again. A jump stores much energy: key such a scale over \
             a few frames.",
-        trial: Runs {
-            case: || banner("", "damp: 4, restLengthScale: keys([(12, 1), (13, 10), (36, 10), (37, 1)])").scene(144),
+        expectation: Runs {
+            scene: || banner("", "damp: 4, restLengthScale: keys([(12, 1), (13, 10), (36, 10), (37, 1)])").scene(144),
             recovery: Some(Recovery { from: 120, speed: 0.3, strain: 0.05 }),
             ..RUNS
         }
-        .trial(),
-        fails: Some("As `rest-length-0`, when it is drawn together."),
+        .expectation(),
+        known_failure: Some("As `rest-length-0`, when it is drawn together."),
     },
-    Extreme {
+    StressCase {
         name: "damp-1e6",
         group: "Resistances",
         what: "`damp` and `stretchDamp` 1e6",
         expect: "The cloth moves like one in honey, and never backwards.",
-        trial: Runs {
-            case: || banner("", "damp: 1e6, stretchDamp: 1e6").scene(96),
+        expectation: Runs {
+            scene: || banner("", "damp: 1e6, stretchDamp: 1e6").scene(96),
             recovery: Some(Recovery { from: 48, speed: 0.2, strain: 0.02 }),
             ..RUNS
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "everything-keyed",
         group: "Resistances",
         what: "twenty attributes leap every frame: resistances by a factor of eight, the others from end to end of their sliders",
         expect: "A cloth that twitches and stays whole, and hangs still when the keys end. A resistance that leaps while the \
             cloth is stretched brings energy in, as it would in a spring: key it over some frames.",
-        trial: Runs {
-            case: everything_keyed,
+        expectation: Runs {
+            scene: everything_keyed,
             recovery: Some(Recovery { from: 108, speed: 0.3, strain: 0.02 }),
             ..RUNS
         }
-        .trial(),
-        fails: Some("As `rest-length-0`, where it is crumpled."),
+        .expectation(),
+        known_failure: Some("As `rest-length-0`, where it is crumpled."),
     },
 ];
 
 /// Every attribute leaps, each at a rhythm of its own, until frame 60.
-fn everything_keyed() -> super::Case {
+fn everything_keyed() -> super::TestScene {
     let leaps = |low: &str, high: &str, rhythm: i64, after: &str| {
         let key = |frame: i64| format!("({frame}, {})", if frame % rhythm == 0 { high } else { low });
         let keys: Vec<String> = (0..60).map(key).collect();

@@ -1,9 +1,9 @@
 //! Colliders that leap, fold up, close in, or are where the cloth is.
 
-use super::{Case, DRAPED, Extreme, RUNS, Recovery, Runs, at_least, at_most, drape, nucleus};
+use super::{DRAPED, RUNS, Recovery, Runs, StressCase, TestScene, at_least, at_most, drape, nucleus};
 
 /// A sheet in the air between two plates that close on it and open again. Heights of the plates' middles.
-fn pinch(closed: f64) -> Case {
+fn pinch(closed: f64) -> TestScene {
     let keys = |sign: f64| {
         let at = |height: f64| format!("(0, {}, 0)", sign * height);
         format!(
@@ -32,33 +32,33 @@ fn pinch(closed: f64) -> Case {
 
 const RESTS: Option<Recovery> = Some(Recovery { from: 96, speed: 0.5, strain: 0.05 });
 
-pub static ROWS: [Extreme; 12] = [
-    Extreme {
+pub static ROWS: [StressCase; 12] = [
+    StressCase {
         name: "collider-teleports",
         group: "Colliders",
         what: "a ball that leaps 20 m away and back under the sheet, each time within a frame",
         expect: "The sheet falls when its ball is gone, and is struck by the ball that comes back at 480 m/s. Nothing \
             passes through it; a leap that is not meant as motion wants `collide` keyed off for that frame.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 drape("", "", "translate: keys([(0, (0, 0.3, 0)), (48, (0, 0.3, 0)), (49, (20, 0.3, 0)), (50, (0, 0.3, 0))])")
                     .scene(240)
             },
             recovery: Some(Recovery { from: 216, speed: 0.5, strain: 0.1 }),
             ..DRAPED
         }
-        .trial(),
-        fails: Some(
+        .expectation(),
+        known_failure: Some(
             "Time steps are split, into 256 at most, while the collider leaps past the cloth.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "collider-at-1000-m-s",
         group: "Colliders",
         what: "a ball that goes through a hanging sheet's place at 1,000 m/s",
         expect: "The sheet is struck and stretched; no point goes through the ball.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 drape("gravity: 0", "damp: 4", "translate: keys([(0, (0, -20, 0)), (12, (0, -20, 0)), (13, (0, 21.6, 0))])")
                     .scene(24)
                     .replace("damp: 1, ", "")
@@ -66,133 +66,133 @@ pub static ROWS: [Extreme; 12] = [
             },
             ..DRAPED
         }
-        .trial(),
-        fails: Some(
+        .expectation(),
+        known_failure: Some(
             "Time steps are split, into 256 at most, while the collider is near, and the sheet that it takes along is stretched far.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "collider-spins",
         group: "Colliders",
         what: "a ball under a sheet that turns a thousand times a second",
         expect: "Points of a collider move along straight lines within a frame, so such a spin is not seen as one; the \
             sheet stays outside.",
-        trial: Runs {
-            case: || drape("", "", "rotate: keys([(0, (0, 0, 0)), (96, (0, 1444440, 0), linear)])").scene(96),
+        expectation: Runs {
+            scene: || drape("", "", "rotate: keys([(0, (0, 0, 0)), (96, (0, 1444440, 0), linear)])").scene(96),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "collider-scaled-to-0",
         group: "Colliders",
         what: "a ball under a sheet is scaled to 0 within a second, and back",
         expect: "The sheet sinks with the ball, and is lifted by it again.",
-        trial: Runs {
-            case: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (72, (0, 0, 0)), (84, (0, 0, 0)), (108, (1, 1, 1))])").scene(168),
+        expectation: Runs {
+            scene: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (72, (0, 0, 0)), (84, (0, 0, 0)), (108, (1, 1, 1))])").scene(168),
             recovery: Some(Recovery { from: 156, speed: 0.5, strain: 0.1 }),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "collider-collapses",
         group: "Colliders",
         what: "a ball under a sheet is scaled to 0 within one frame",
         expect: "The sheet falls to the ground.",
-        trial: Runs {
-            case: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (49, (0, 0, 0))])").scene(120),
+        expectation: Runs {
+            scene: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (49, (0, 0, 0))])").scene(120),
             recovery: Some(Recovery { from: 108, speed: 0.5, strain: 0.1 }),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "collider-turned-inside-out",
         group: "Colliders",
         what: "a ball under a sheet goes through scale 0 to -1",
         expect: "The sheet falls when the ball is a point; when it comes back as its mirror image, it pushes like a ball.",
-        trial: Runs {
-            case: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (96, (-1, -1, -1))])").scene(144),
+        expectation: Runs {
+            scene: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (96, (-1, -1, -1))])").scene(144),
             recovery: Some(Recovery { from: 132, speed: 0.5, strain: 0.1 }),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "collider-flattened",
         group: "Colliders",
         what: "a ball under a sheet is pressed flat (`scale: (1, 0, 1)`) and round again",
         expect: "The sheet sinks to the disc, and is lifted again.",
-        trial: Runs {
-            case: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (72, (1, 0, 1)), (84, (1, 0, 1)), (108, (1, 1, 1))])").scene(168),
+        expectation: Runs {
+            scene: || drape("", "", "scale: keys([(0, (1, 1, 1)), (48, (1, 1, 1)), (72, (1, 0, 1)), (84, (1, 0, 1)), (108, (1, 1, 1))])").scene(168),
             recovery: Some(Recovery { from: 156, speed: 0.5, strain: 0.1 }),
             ..DRAPED
         }
-        .trial(),
-        fails: None,
+        .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "pinch",
         group: "Colliders",
         what: "two plates close on a sheet to its thickness, and open again",
         expect: "The sheet is held between the plates and comes free.",
-        trial: Runs { case: || pinch(0.021), nominal: || pinch(0.5), recovery: RESTS, ..DRAPED }
-            .trial(),
-        fails: None,
+        expectation: Runs { scene: || pinch(0.021), baseline: || pinch(0.5), recovery: RESTS, ..DRAPED }
+            .expectation(),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "pinch-to-nothing",
         group: "Colliders",
         what: "two plates close on a sheet with no gap between them, and open again",
         expect: "No place is left for the sheet: it is held on its plane between the two, and comes free on the right side \
             of both.",
-        trial: Runs { case: || pinch(0.0), nominal: || pinch(0.5), recovery: RESTS, ..DRAPED }
-            .trial(),
-        fails: Some(
+        expectation: Runs { scene: || pinch(0.0), baseline: || pinch(0.5), recovery: RESTS, ..DRAPED }
+            .expectation(),
+        known_failure: Some(
             "Two faces push a point in turn, each out of itself, and the pushes count as motion.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "pinch-overlapping",
         group: "Colliders",
         what: "two plates go 5 cm into one another with a sheet between them, and part again",
         expect: "As above: what cannot be right is held as it is, and is right again when it can be.",
-        trial: Runs { case: || pinch(-0.05), nominal: || pinch(0.5), recovery: RESTS, ..RUNS }.trial(),
-        fails: Some(
+        expectation: Runs { scene: || pinch(-0.05), baseline: || pinch(0.5), recovery: RESTS, ..RUNS }.expectation(),
+        known_failure: Some(
             "As above.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "starts-inside",
         group: "Colliders",
         what: "a sheet that starts across the middle of a ball",
         expect: "The part inside is led out slowly, or stays inside and at rest; nothing is thrown.",
-        trial: Runs {
-            case: || drape("", "", "").scene(144).replace("translate: (0, 0.65, 0)", "translate: (0, 0.4, 0)"),
-            stored: 0.2 * 9.8 * 0.3,
+        expectation: Runs {
+            scene: || drape("", "", "").scene(144).replace("translate: (0, 0.65, 0)", "translate: (0, 0.4, 0)"),
+            initial_energy: 0.2 * 9.8 * 0.3,
             recovery: Some(Recovery { from: 132, speed: 0.5, strain: 0.2 }),
             // It begins on both sides.
-            demands: &[],
+            assertions: &[],
             ..DRAPED
         }
-        .trial(),
-        fails: Some(
+        .expectation(),
+        known_failure: Some(
             "Some points stay inside, and the sheet is stretched over the ball between them and those outside.",
         ),
     },
-    Extreme {
+    StressCase {
         name: "sheet-drawn-to-a-point",
         group: "Colliders",
         what: "every point of a sheet is held and drawn together to a thousandth of its size, then let go",
         expect: "It springs open and comes to rest. At a scale of exactly 0 points would be at one place and have no direction \
             to part in: they would fall as one.",
-        trial: Runs {
-            case: || {
+        expectation: Runs {
+            scene: || {
                 nucleus("usePlane: true, planeOrigin: (0, -1, 0)")
                     .with(
                         "\"sheet\": polyPlane(width: 1, height: 1, subdivisions: (16, 16)),
@@ -203,14 +203,14 @@ pub static ROWS: [Extreme; 12] = [
                     .scene(120)
             },
             recovery: Some(Recovery { from: 96, speed: 0.2, strain: 0.02 }),
-            demands: &[
-                at_most("frames not finite ", 0.0, |course, _| f64::from(!course.is_finite())),
-                at_least("lowest point in the end (m)", -1.0, |course, _| course.lowest()),
+            assertions: &[
+                at_most("frames not finite ", 0.0, |timeline, _| f64::from(!timeline.is_finite())),
+                at_least("lowest point in the end (m)", -1.0, |timeline, _| timeline.lowest()),
             ],
             ..RUNS
         }
-        .trial(),
-        fails: Some(
+        .expectation(),
+        known_failure: Some(
             "As `rest-length-0`: all elements are in one place, and each is a pair with each.",
         ),
     },

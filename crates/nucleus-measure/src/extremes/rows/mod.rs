@@ -10,14 +10,13 @@ mod scale;
 mod thickness;
 mod time;
 
-use super::case::Case;
-use super::course::Course;
-use super::row::{Cost, Demand, Extreme, Recovery, Trial};
-use super::verdict::Side;
+use super::row::{Assertion, CostUnit, Expectation, Recovery, Side, StressCase};
+use super::scene::TestScene;
+use super::timeline::Timeline;
 
 /// All rows, in the order of the table.
-pub fn rows() -> impl Iterator<Item = &'static Extreme> {
-    let parts: [&'static [Extreme]; 9] = [
+pub fn rows() -> impl Iterator<Item = &'static StressCase> {
+    let parts: [&'static [StressCase]; 9] = [
         &mass::ROWS,
         &attributes::ROWS,
         &time::ROWS,
@@ -32,55 +31,57 @@ pub fn rows() -> impl Iterator<Item = &'static Extreme> {
 }
 
 /// The row of this name.
-pub fn named(name: &str) -> Option<&'static Extreme> {
+pub fn named(name: &str) -> Option<&'static StressCase> {
     rows().find(|row| row.name == name)
 }
 
 /// A row whose scene runs; the rest is as most rows have it, and each changes what differs.
 const RUNS: Runs = Runs {
-    case: || Case::new(0, ""),
-    nominal: || banner("", "").scene(96),
-    cost: Cost::Frame,
-    stored: 0.0,
+    scene: || TestScene::new(0, ""),
+    baseline: || banner("", "").scene(96),
+    cost: CostUnit::Frame,
+    initial_energy: 0.0,
     recovery: None,
-    demands: &[],
-    warns: &[],
+    assertions: &[],
+    warnings: &[],
 };
 
 /// A row on a sheet that lies on a ball: nothing crosses, and it costs no more than three such sheets.
-const DRAPED: Runs = Runs { nominal: || drape("", "", "").scene(96), demands: &[NOTHING_CROSSES], ..RUNS };
+const DRAPED: Runs =
+    Runs { baseline: || drape("", "", "").scene(96), assertions: &[NO_UNRESOLVED_PAIRS], ..RUNS };
 
-/// What [`Trial::Runs`] is made from, so that a row need only say what is its own.
+/// What [`Expectation::Runs`] is made from, so that a row need only say what is its own.
 struct Runs {
-    case: fn() -> Case,
-    nominal: fn() -> Case,
-    cost: Cost,
-    stored: f64,
+    scene: fn() -> TestScene,
+    baseline: fn() -> TestScene,
+    cost: CostUnit,
+    initial_energy: f64,
     recovery: Option<Recovery>,
-    demands: &'static [Demand],
-    warns: &'static [&'static str],
+    assertions: &'static [Assertion],
+    warnings: &'static [&'static str],
 }
 
 impl Runs {
-    const fn trial(self) -> Trial {
-        let Self { case, nominal, cost, stored, recovery, demands, warns } = self;
-        Trial::Runs { case, nominal, cost, stored, recovery, demands, warns }
+    const fn expectation(self) -> Expectation {
+        let Self { scene, baseline, cost, initial_energy, recovery, assertions, warnings } = self;
+        Expectation::Runs { scene, baseline, cost, initial_energy, recovery, assertions, warnings }
     }
 }
 
 /// A bound that a figure must not be above.
-const fn at_most(what: &'static str, limit: f64, figure: fn(&Course, &Course) -> f64) -> Demand {
-    Demand { what, figure, side: Side::AtMost, limit }
+const fn at_most(what: &'static str, limit: f64, figure: fn(&Timeline, &Timeline) -> f64) -> Assertion {
+    Assertion { what, figure, side: Side::AtMost, limit }
 }
 
 /// A bound that a figure must not be below.
-const fn at_least(what: &'static str, limit: f64, figure: fn(&Course, &Course) -> f64) -> Demand {
-    Demand { what, figure, side: Side::AtLeast, limit }
+const fn at_least(what: &'static str, limit: f64, figure: fn(&Timeline, &Timeline) -> f64) -> Assertion {
+    Assertion { what, figure, side: Side::AtLeast, limit }
 }
 
 /// The safeguard keeps every pair of elements apart.
-const NOTHING_CROSSES: Demand =
-    at_most("pairs unresolved", 0.0, |course, _| course.sum(|seen| seen.report.pairs_unresolved) as f64);
+const NO_UNRESOLVED_PAIRS: Assertion = at_most("pairs unresolved", 0.0, |timeline, _| {
+    timeline.sum(|record| record.report.pairs_unresolved) as f64
+});
 
 /// Nodes of a scene, as text.
 struct Nodes(String);
@@ -97,8 +98,8 @@ impl Nodes {
     }
 
     /// As a scene of so many frames.
-    fn scene(self, frames: i64) -> Case {
-        Case::new(frames, self.0)
+    fn scene(self, frames: i64) -> TestScene {
+        TestScene::new(frames, self.0)
     }
 }
 
@@ -130,7 +131,7 @@ fn from_file(file: &str, held: &str, solver: &str, cloth: &str) -> Nodes {
 }
 
 /// Such a cloth for four seconds, with nothing else set.
-fn hung(file: &'static str, held: &str, mesh: String) -> Case {
+fn hung(file: &'static str, held: &str, mesh: String) -> TestScene {
     from_file(file, held, "", "").scene(96).mesh(file, mesh)
 }
 

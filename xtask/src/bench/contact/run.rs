@@ -6,14 +6,14 @@ use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
 use super::Workload;
-use super::scene::{self, Place, Setting};
+use super::scene::{self, MeshFolder, Setting};
 use crate::bench::accuracy::Meter;
 use crate::bench::table::figure;
 use crate::bench::timed::{Timed, state_hash};
 
 /// What is to be run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trial {
+pub struct RunSpec {
     pub workload: Workload,
     /// Points along each side of a sheet.
     pub size: u32,
@@ -24,8 +24,8 @@ pub struct Trial {
 
 /// What came of it.
 #[derive(Debug, Clone)]
-pub struct Outcome {
-    pub trial: Trial,
+pub struct RunResult {
+    pub spec: RunSpec,
     pub timed: Timed,
     /// RMS stretch of the lowest sheet at the last frame.
     pub stretch: f64,
@@ -37,14 +37,14 @@ pub struct Outcome {
     pub audit: Option<Account>,
 }
 
-impl Outcome {
+impl RunResult {
     /// Milliseconds a frame, as in [`Timed::ms`].
     pub fn ms(&self) -> f64 {
         self.timed.ms()
     }
 }
 
-impl Trial {
+impl RunSpec {
     /// A full run.
     pub fn full(workload: Workload, size: u32, evaluations: u32) -> Self {
         let setting = Setting { evaluations, self_collide: workload != Workload::Shot };
@@ -55,13 +55,13 @@ impl Trial {
     ///
     /// # Errors
     /// When the scene is refused.
-    pub fn timed(&self, threads: u32) -> anyhow::Result<Outcome> {
+    pub fn timed(&self, threads: u32) -> anyhow::Result<RunResult> {
         let Self { workload, size, .. } = *self;
         let mut meter = Meter::new(&scene::lowest_sheet(workload, size), size, Some(workload.ball()));
         let timed = Timed::run(&self.program()?, threads, Some(self.frames), |state| meter.frame(state));
         let found = meter.finish();
-        Ok(Outcome {
-            trial: *self,
+        Ok(RunResult {
+            spec: *self,
             timed,
             stretch: found.stretch,
             largest: [found.max, found.worst_max],
@@ -74,24 +74,24 @@ impl Trial {
     ///
     /// # Errors
     /// When the scene is refused, or the two do not end with the same bits.
-    pub fn timed_and_audited(&self) -> anyhow::Result<Outcome> {
+    pub fn timed_and_audited(&self) -> anyhow::Result<RunResult> {
         let Self { workload, size, setting, frames } = *self;
-        let mut outcome = self.timed(1)?;
+        let mut result = self.timed(1)?;
         let mut run = Simulation::<f32>::new(&self.program()?, 2);
         run.begin_audit(workload.closeness());
         for _ in 0..frames {
             run.advance(&mut ());
         }
-        let (hash, timed) = (state_hash(&run), outcome.timed.hash);
+        let (hash, timed) = (state_hash(&run), result.timed.hash);
         ensure!(hash == timed, "{} {size}²: hash {timed:016x}, under audit {hash:016x}", workload.name());
-        outcome.audit = run.audit().map(|audit| audit.account());
-        let (ms, found) = (figure(outcome.ms()), outcome.audit.map_or(0, |account| account.found()));
+        result.audit = run.audit().map(|audit| audit.account());
+        let (ms, found) = (figure(result.ms()), result.audit.map_or(0, |report| report.found()));
         eprintln!("{} {size}², {setting}: {ms} ms a frame, {found} found by the audit", workload.name());
-        Ok(outcome)
+        Ok(result)
     }
 
     fn program(&self) -> anyhow::Result<Program> {
-        scene::program(self.workload, self.size, self.setting, Place::new()?)
+        scene::program(self.workload, self.size, self.setting, MeshFolder::new()?)
     }
 }
 
@@ -102,13 +102,13 @@ mod tests {
     #[test]
     fn every_workload_is_timed_and_audited_with_the_same_bits() {
         for workload in [Workload::Folds, Workload::Shot, Workload::Layers] {
-            let run = Trial { frames: 3, ..Trial::full(workload, 9, 6) }.timed_and_audited().unwrap();
-            let account = run.audit.expect("it was audited");
+            let run = RunSpec { frames: 3, ..RunSpec::full(workload, 9, 6) }.timed_and_audited().unwrap();
+            let report = run.audit.expect("it was audited");
             assert!(run.ms() > 0.0 && run.stretch.is_finite());
             assert!(run.largest[0] <= run.largest[1] && run.depths[0] <= run.depths[1]);
             // On the way every time step is followed, and a ball that flies fast splits them.
             let steps = if workload == Workload::Shot { 9 } else { 0 };
-            assert!(account.motions >= steps && (steps > 0 || account.motions == 0), "{account:?}");
+            assert!(report.motions >= steps && (steps > 0 || report.motions == 0), "{report:?}");
         }
     }
 }

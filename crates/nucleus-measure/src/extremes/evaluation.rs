@@ -9,9 +9,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use nucleus_core::InvalidInput;
 use nucleus_graph::scene::Severity;
 
-use super::case::Case;
-use super::course::Course;
-use super::row::{Cost, Demand, Extreme, Recovery, Trial};
+use super::row::{Assertion, CostUnit, Expectation, Recovery, Side, StressCase};
+use super::scene::TestScene;
+use super::timeline::Timeline;
 
 /// An extreme may cost this many times what the ordinary scene costs.
 pub const MOST_COST: f64 = 3.0;
@@ -21,14 +21,14 @@ const ENERGY: f64 = 1.01;
 
 /// How long a run may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Patience {
+pub enum TimeBudget {
     /// To its end; one that is too dear is given up after 20 s of the processor.
     Long,
     /// 2 s of the processor, after which it is judged by what it has shown.
     Short,
 }
 
-impl Patience {
+impl TimeBudget {
     fn seconds(self) -> f64 {
         match self {
             Self::Long => 20.0,
@@ -39,25 +39,6 @@ impl Patience {
 
 /// How often a run that is a little too dear is run again.
 const RERUNS: usize = 3;
-
-/// On which side of its limit a figure has to stay.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// It must not be larger.
-    AtMost,
-    /// It must not be smaller.
-    AtLeast,
-}
-
-impl Side {
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::AtMost => "at most",
-            Self::AtLeast => "at least",
-        }
-    }
-}
 
 /// What a figure is about: the columns of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +61,7 @@ pub enum Kind {
 
 /// A figure and its bound.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
+pub struct Measurement {
     /// What it is about.
     pub kind: Kind,
     /// What is measured, with its unit.
@@ -95,20 +76,20 @@ pub struct Figure {
 
 /// What came of a row.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct Evaluation {
     /// The row.
-    pub extreme: Extreme,
+    pub stress_case: StressCase,
     /// All figures, in the order of the table's columns.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<Measurement>,
     /// What was said about the scene, and counted by the solver.
     pub reported: Vec<String>,
 }
 
 /// Nominal runs, each made once.
 #[derive(Debug, Default)]
-pub struct Nominals(Mutex<HashMap<String, Arc<OnceLock<Course>>>>);
+pub struct Baselines(Mutex<HashMap<String, Arc<OnceLock<Timeline>>>>);
 
-impl Figure {
+impl Measurement {
     fn at_most(kind: Kind, what: impl Into<String>, value: f64, limit: f64) -> Self {
         Self { kind, what: what.into(), value, side: Side::AtMost, limit }
     }
@@ -122,24 +103,24 @@ impl Figure {
     }
 }
 
-impl Outcome {
+impl Evaluation {
     /// Whether everything holds.
     pub fn holds(&self) -> bool {
-        self.figures.iter().all(Figure::holds)
+        self.figures.iter().all(Measurement::holds)
     }
 
     /// Whether everything holds but what it costs, which is a matter of the machine too.
     pub fn holds_at_any_cost(&self) -> bool {
-        self.figures.iter().filter(|figure| figure.kind != Kind::Cost).all(Figure::holds)
+        self.figures.iter().filter(|figure| figure.kind != Kind::Cost).all(Measurement::holds)
     }
 
     /// The figure of a column, if the row has it.
-    pub fn figure(&self, kind: Kind) -> Option<&Figure> {
+    pub fn figure(&self, kind: Kind) -> Option<&Measurement> {
         self.figures.iter().find(|figure| figure.kind == kind)
     }
 
     /// The figures that do not hold.
-    pub fn failures(&self) -> impl Iterator<Item = &Figure> {
+    pub fn failures(&self) -> impl Iterator<Item = &Measurement> {
         self.figures.iter().filter(|figure| !figure.holds())
     }
 }
@@ -148,40 +129,44 @@ impl Outcome {
 ///
 /// # Errors
 /// When a mesh cannot be written to a folder of its own.
-pub fn judge(extreme: &Extreme, nominals: &Nominals, patience: Patience) -> io::Result<Outcome> {
-    let mut outcome = Outcome { extreme: *extreme, figures: Vec::new(), reported: Vec::new() };
+pub fn evaluate(
+    stress_case: &StressCase,
+    baselines: &Baselines,
+    budget: TimeBudget,
+) -> io::Result<Evaluation> {
+    let mut evaluation = Evaluation { stress_case: *stress_case, figures: Vec::new(), reported: Vec::new() };
     // A solver that panics has failed its row, not the table.
-    let judged = catch_unwind(AssertUnwindSafe(|| match &extreme.trial {
-        Trial::InvalidInput { case, names } => outcome.refused(&case(), names),
-        Trial::Runs { .. } => outcome.runs(nominals, patience),
+    let result = catch_unwind(AssertUnwindSafe(|| match &stress_case.expectation {
+        Expectation::InvalidInput { scene, names } => evaluation.refused(&scene(), names),
+        Expectation::Runs { .. } => evaluation.runs(baselines, budget),
     }));
-    match judged {
+    match result {
         Ok(result) => result?,
-        Err(_) => outcome.figures.push(Figure::at_most(Kind::Runs, "panics", 1.0, 0.0)),
+        Err(_) => evaluation.figures.push(Measurement::at_most(Kind::Runs, "panics", 1.0, 0.0)),
     }
-    Ok(outcome)
+    Ok(evaluation)
 }
 
 /// Puts all these to the test, on so many threads, and tells each outcome in the order of the rows.
 ///
 /// # Errors
 /// When a mesh cannot be written to a folder of its own, or `tell` fails.
-pub fn judge_all<E: From<io::Error>>(
-    rows: &[&Extreme],
+pub fn evaluate_all<E: From<io::Error>>(
+    rows: &[&StressCase],
     threads: usize,
-    patience: Patience,
-    tell: &mut dyn FnMut(Outcome) -> Result<(), E>,
+    budget: TimeBudget,
+    tell: &mut dyn FnMut(Evaluation) -> Result<(), E>,
 ) -> Result<(), E> {
-    let nominals = Nominals::default();
+    let baselines = Baselines::default();
     let next = AtomicUsize::new(0);
-    let (done, outcomes) = mpsc::channel();
+    let (done, evaluations) = mpsc::channel();
     std::thread::scope(|scope| {
         for _ in 0..threads.clamp(1, rows.len().max(1)) {
             let done = done.clone();
             scope.spawn(|| {
                 let done = done;
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if done.send((row.name, judge(row, &nominals, patience))).is_err() {
+                    if done.send((row.name, evaluate(row, &baselines, budget))).is_err() {
                         return; // nobody wants to know any more
                     }
                 }
@@ -190,94 +175,101 @@ pub fn judge_all<E: From<io::Error>>(
         drop(done);
         let mut waiting = HashMap::new();
         for row in rows {
-            let outcome = loop {
-                if let Some(outcome) = waiting.remove(row.name) {
-                    break outcome;
+            let evaluation = loop {
+                if let Some(evaluation) = waiting.remove(row.name) {
+                    break evaluation;
                 }
-                let Ok((name, outcome)) = outcomes.recv() else { return Ok(()) };
-                waiting.insert(name, outcome);
+                let Ok((name, evaluation)) = evaluations.recv() else { return Ok(()) };
+                waiting.insert(name, evaluation);
             };
-            tell(outcome?)?;
+            tell(evaluation?)?;
         }
         Ok(())
     })
 }
 
-impl Outcome {
+impl Evaluation {
     /// A scene that cannot run says so, and names what is wrong.
-    fn refused(&mut self, case: &Case, names: &[&str]) -> io::Result<()> {
-        let compiled = case.compile()?;
+    fn refused(&mut self, scene: &TestScene, names: &[&str]) -> io::Result<()> {
+        let compiled = scene.compile()?;
         self.reported = compiled.words(Severity::Error);
         // Folders of this run mean nothing to anyone.
         self.reported.iter_mut().for_each(|said| *said = without_folder(said));
         let said = self.reported.join("\n");
         let missing = names.iter().filter(|name| !said.contains(**name)).count();
         let runs = usize::from(compiled.program.is_some());
-        self.figures.push(Figure::at_most(Kind::Runs, "runs after all", runs as f64, 0.0));
-        self.figures.push(Figure::at_most(Kind::Words, "not named in the error", missing as f64, 0.0));
+        self.figures.push(Measurement::at_most(Kind::Runs, "runs after all", runs as f64, 0.0));
+        self.figures.push(Measurement::at_most(Kind::Words, "not named in the error", missing as f64, 0.0));
         Ok(())
     }
 
-    fn runs(&mut self, nominals: &Nominals, patience: Patience) -> io::Result<()> {
-        let Trial::Runs { case, nominal, cost, stored, recovery, demands, warns } = self.extreme.trial else {
+    fn runs(&mut self, baselines: &Baselines, budget: TimeBudget) -> io::Result<()> {
+        let Expectation::Runs { scene, baseline, cost, initial_energy, recovery, assertions, warnings } =
+            self.stress_case.expectation
+        else {
             return Ok(());
         };
-        let case = case();
-        let compiled = case.compile()?;
+        let scene = scene();
+        let compiled = scene.compile()?;
         self.reported = compiled.words(Severity::Warning);
         let Some(program) = &compiled.program else {
             self.reported.extend(compiled.words(Severity::Error));
-            self.figures.push(Figure::at_most(Kind::Runs, "does not run", 1.0, 0.0));
+            self.figures.push(Measurement::at_most(Kind::Runs, "does not run", 1.0, 0.0));
             return Ok(());
         };
-        let nominal = nominals.of(&nominal())?;
-        let is_cheap = |course: &Course| cost.of(course) / cost.of(&nominal) <= MOST_COST;
-        let should_continue = |course: &Course| {
-            course.seconds < patience.seconds() || (patience == Patience::Long && is_cheap(course))
+        let baseline = baselines.of(&baseline())?;
+        let is_cheap = |timeline: &Timeline| cost.of(timeline) / cost.of(&baseline) <= MOST_COST;
+        let should_continue = |timeline: &Timeline| {
+            timeline.seconds < budget.seconds() || (budget == TimeBudget::Long && is_cheap(timeline))
         };
-        let run = || Course::of::<f32>(program, case.tamper, stored, &should_continue);
-        let mut course = run();
+        let run = || Timeline::of::<f32>(program, scene.inject, initial_energy, &should_continue);
+        let mut timeline = run();
         // A busy machine makes a run dear, though never cheap: what is a little too dear is run again.
-        let by_far = cost.of(&course) / cost.of(&nominal) > 2.0 * MOST_COST;
+        let by_far = cost.of(&timeline) / cost.of(&baseline) > 2.0 * MOST_COST;
         for _ in 0..RERUNS {
-            if by_far || is_cheap(&course) || patience == Patience::Short {
+            if by_far || is_cheap(&timeline) || budget == TimeBudget::Short {
                 break;
             }
-            course.seconds = course.seconds.min(run().seconds);
+            timeline.seconds = timeline.seconds.min(run().seconds);
         }
-        self.basics(&course);
+        self.basics(&timeline);
         // What has to hold in the end says nothing of a run that has not got there.
-        if course.given_up.is_none() {
-            self.recovers(&course, recovery);
-            self.demands(&course, &nominal, demands);
+        if timeline.aborted_after.is_none() {
+            self.recovers(&timeline, recovery);
+            self.assertions(&timeline, &baseline, assertions);
         }
-        self.costs(&course, &nominal, cost);
-        self.warns(warns);
-        self.counts(&course);
-        if let Some(frame) = course.given_up {
+        self.costs(&timeline, &baseline, cost);
+        self.warnings(warnings);
+        self.counts(&timeline);
+        if let Some(frame) = timeline.aborted_after {
             self.reported.push(format!("given up after frame {frame}"));
         }
         Ok(())
     }
 
-    fn basics(&mut self, course: &Course) {
-        let bad = course.frames.iter().filter(|seen| !seen.report.finite).count();
-        self.figures.push(Figure::at_most(Kind::Runs, "frames not finite", bad as f64, 0.0));
-        let energy = course.most(|seen| seen.energy.share);
-        self.figures.push(Figure::at_most(Kind::Energy, "energy over what was brought in", energy, ENERGY));
+    fn basics(&mut self, timeline: &Timeline) {
+        let bad = timeline.frames.iter().filter(|record| !record.report.finite).count();
+        self.figures.push(Measurement::at_most(Kind::Runs, "frames not finite", bad as f64, 0.0));
+        let energy = timeline.most(|record| record.energy.share);
+        self.figures.push(Measurement::at_most(
+            Kind::Energy,
+            "energy over what was brought in",
+            energy,
+            ENERGY,
+        ));
     }
 
-    fn recovers(&mut self, course: &Course, recovery: Option<Recovery>) {
+    fn recovers(&mut self, timeline: &Timeline, recovery: Option<Recovery>) {
         let Some(Recovery { from, speed, strain }) = recovery else { return };
-        let fastest = course.most_from(from, |seen| seen.energy.speed);
-        let longest = course.most_from(from, |seen| seen.report.strain_99);
-        self.figures.push(Figure::at_most(
+        let fastest = timeline.most_from(from, |record| record.energy.speed);
+        let longest = timeline.most_from(from, |record| record.report.strain_99);
+        self.figures.push(Measurement::at_most(
             Kind::Speed,
             format!("speed from frame {from} on (m/s)"),
             fastest,
             speed,
         ));
-        self.figures.push(Figure::at_most(
+        self.figures.push(Measurement::at_most(
             Kind::Strain,
             format!("99 % strain from frame {from} on"),
             longest,
@@ -285,16 +277,16 @@ impl Outcome {
         ));
     }
 
-    fn demands(&mut self, course: &Course, nominal: &Course, demands: &[Demand]) {
-        for &Demand { what, figure, side, limit } in demands {
-            let value = figure(course, nominal);
-            self.figures.push(Figure { kind: Kind::Own, what: what.to_owned(), value, side, limit });
+    fn assertions(&mut self, timeline: &Timeline, baseline: &Timeline, assertions: &[Assertion]) {
+        for &Assertion { what, figure, side, limit } in assertions {
+            let value = figure(timeline, baseline);
+            self.figures.push(Measurement { kind: Kind::Own, what: what.to_owned(), value, side, limit });
         }
     }
 
-    fn costs(&mut self, course: &Course, nominal: &Course, cost: Cost) {
-        let ratio = cost.of(course) / cost.of(nominal);
-        self.figures.push(Figure::at_most(
+    fn costs(&mut self, timeline: &Timeline, baseline: &Timeline, cost: CostUnit) {
+        let ratio = cost.of(timeline) / cost.of(baseline);
+        self.figures.push(Measurement::at_most(
             Kind::Cost,
             format!("cost per {} over nominal", cost.per()),
             ratio,
@@ -303,13 +295,13 @@ impl Outcome {
     }
 
     /// Everything that has to be said is said, and nothing else.
-    fn warns(&mut self, warns: &[&str]) {
+    fn warnings(&mut self, warnings: &[&str]) {
         let said = &self.reported;
         let missing =
-            warns.iter().filter(|warning| !said.iter().any(|said| said.contains(**warning))).count();
-        let expected = |said: &&String| warns.iter().any(|warning| said.contains(warning));
+            warnings.iter().filter(|warning| !said.iter().any(|said| said.contains(**warning))).count();
+        let expected = |said: &&String| warnings.iter().any(|warning| said.contains(warning));
         let idle = said.iter().filter(|said| !expected(said)).count();
-        self.figures.push(Figure::at_most(
+        self.figures.push(Measurement::at_most(
             Kind::Words,
             "warnings missing or idle",
             (missing + idle) as f64,
@@ -318,15 +310,16 @@ impl Outcome {
     }
 
     /// What the solver counted, in words.
-    fn counts(&mut self, course: &Course) {
+    fn counts(&mut self, timeline: &Timeline) {
         let counts = [
-            (course.sum(|seen| seen.report.sanitized.count), "inputs refused"),
-            (course.sum(|seen| seen.report.pairs_reverted), "pairs reverted"),
-            (course.sum(|seen| seen.report.pairs_unresolved), "pairs unresolved"),
+            (timeline.sum(|record| record.report.sanitized.count), "inputs refused"),
+            (timeline.sum(|record| record.report.pairs_reverted), "pairs reverted"),
+            (timeline.sum(|record| record.report.pairs_unresolved), "pairs unresolved"),
         ];
         let words = counts.iter().filter(|(count, _)| *count > 0);
         self.reported.extend(words.map(|(count, what)| format!("{count} {what}")));
-        let first = course.frames.iter().find_map(|seen| Some((seen.frame, seen.report.sanitized.first?)));
+        let first =
+            timeline.frames.iter().find_map(|record| Some((record.frame, record.report.sanitized.first?)));
         if let Some((frame, what)) = first {
             self.reported.push(format!("frame {frame}: {}", named(what)));
         }
@@ -355,22 +348,22 @@ fn named(what: InvalidInput) -> String {
     }
 }
 
-impl Nominals {
+impl Baselines {
     /// The run of an ordinary scene: the cheaper of two.
-    fn of(&self, case: &Case) -> io::Result<Course> {
+    fn of(&self, scene: &TestScene) -> io::Result<Timeline> {
         let mut runs = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = Arc::clone(runs.entry(case.text()).or_default());
+        let slot = Arc::clone(runs.entry(scene.text()).or_default());
         drop(runs);
-        let compiled = case.compile()?;
-        let course = slot.get_or_init(|| match &compiled.program {
-            None => Course::default(),
+        let compiled = scene.compile()?;
+        let timeline = slot.get_or_init(|| match &compiled.program {
+            None => Timeline::default(),
             Some(program) => {
-                let run = || Course::of::<f32>(program, None, 0.0, &|_| true);
-                let mut course = run();
-                course.seconds = course.seconds.min(run().seconds);
-                course
+                let run = || Timeline::of::<f32>(program, None, 0.0, &|_| true);
+                let mut timeline = run();
+                timeline.seconds = timeline.seconds.min(run().seconds);
+                timeline
             }
         });
-        Ok(course.clone())
+        Ok(timeline.clone())
     }
 }

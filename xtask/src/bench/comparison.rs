@@ -1,7 +1,7 @@
 //! What we need for no more error than a peer.
 
 use super::peers::Peer;
-use super::trial::Outcome;
+use super::run::RunResult;
 use super::workload::Workload;
 
 /// A sheet that swings to less than this many metres is locked or damped, whatever its strain.
@@ -12,21 +12,21 @@ const MOST_ERROR: f64 = 100.0;
 
 /// A peer and our answer to it.
 #[derive(Debug, Clone, Copy)]
-pub struct Contest<'a> {
+pub struct Comparison<'a> {
     /// The peer's figures.
     pub peer: &'a Peer,
     /// Our fastest run of no more error; nothing where no run of ours gets there.
-    pub answer: Option<&'a Outcome>,
+    pub answer: Option<&'a RunResult>,
     /// Our run of least error.
-    pub best: &'a Outcome,
+    pub best: &'a RunResult,
 }
 
-impl<'a> Contest<'a> {
+impl<'a> Comparison<'a> {
     /// Answers a peer with the runs of the same workload and size on one thread; nothing where there are none.
-    pub fn new(peer: &'a Peer, runs: &'a [Outcome]) -> Option<Self> {
-        let same = |run: &&Outcome| {
-            let trial = run.trial;
-            (trial.workload, trial.size, trial.threads) == (peer.workload, peer.size, 1)
+    pub fn new(peer: &'a Peer, runs: &'a [RunResult]) -> Option<Self> {
+        let same = |run: &&RunResult| {
+            let spec = run.spec;
+            (spec.workload, spec.size, spec.threads) == (peer.workload, peer.size, 1)
         };
         let ours = || runs.iter().filter(same);
         let enough = ours().filter(|run| no_worse(run, peer));
@@ -36,32 +36,32 @@ impl<'a> Contest<'a> {
     }
 
     /// How many times as long the peer takes; nothing where we do not get there.
-    pub fn lead(&self) -> Option<f64> {
+    pub fn speedup(&self) -> Option<f64> {
         self.answer.map(|answer| self.peer.ms / answer.ms())
     }
 
     /// Whether we get there, and sooner.
-    pub fn is_won(&self) -> bool {
-        self.lead().is_some_and(|lead| lead > 1.0)
+    pub fn is_ahead(&self) -> bool {
+        self.speedup().is_some_and(|speedup| speedup > 1.0)
     }
 }
 
 /// The error that a workload is judged by, in percent.
-pub fn error(run: &Outcome) -> f64 {
+pub fn error(run: &RunResult) -> f64 {
     100.0
-        * match run.trial.workload {
+        * match run.spec.workload {
             Workload::Swing | Workload::Hang => run.accuracy.strain,
             Workload::Drape => run.accuracy.stretch,
         }
 }
 
-fn no_worse(run: &Outcome, peer: &Peer) -> bool {
+fn no_worse(run: &RunResult, peer: &Peer) -> bool {
     let accuracy = &run.accuracy;
-    let swings = run.trial.workload != Workload::Swing || accuracy.sag >= LEAST_SAG;
+    let swings = run.spec.workload != Workload::Swing || accuracy.sag >= LEAST_SAG;
     let depths = [accuracy.depth, accuracy.worst_depth].map(|depth| 1e3 * depth);
     // Where the peer's was not noted, ours has to be nil.
     let allowed = peer.depth.unwrap_or_default();
-    let is_drape = run.trial.workload == Workload::Drape;
+    let is_drape = run.spec.workload == Workload::Drape;
     let shallow = !is_drape || (0..2).all(|k| depths[k] <= allowed[k]);
     error(run) <= peer.error.min(MOST_ERROR) && swings && shallow
 }
@@ -70,9 +70,9 @@ fn no_worse(run: &Outcome, peer: &Peer) -> bool {
 mod tests {
     use super::*;
     use crate::bench::accuracy::Accuracy;
-    use crate::bench::trial::Trial;
+    use crate::bench::run::RunSpec;
     use crate::bench::workload::Setting;
-    use nucleus_measure::clock::Spent;
+    use nucleus_measure::clock::Timing;
 
     const PEER: Peer = Peer {
         name: "peer",
@@ -86,7 +86,7 @@ mod tests {
     };
 
     /// A run of so many milliseconds, so much error in percent, and so deep in millimetres.
-    fn run(ms: f64, percent: f64, depth: f64) -> Outcome {
+    fn run(ms: f64, percent: f64, depth: f64) -> RunResult {
         let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24 };
         let accuracy = Accuracy {
             strain: percent / 100.0,
@@ -99,15 +99,15 @@ mod tests {
             worst_depth: depth / 1e3,
             lower_edge: 0.0,
         };
-        let spent = Spent { wall: ms / 1e3, processor: ms / 1e3 };
-        Outcome {
-            trial: Trial { workload: Workload::Drape, size: 9, setting, threads: 1, frames: 1 },
-            spent,
-            median_frame: spent,
+        let timing = Timing { wall: ms / 1e3, processor: ms / 1e3 };
+        RunResult {
+            spec: RunSpec { workload: Workload::Drape, size: 9, setting, threads: 1, frames: 1 },
+            timing,
+            median_frame: timing,
             build: 0.0,
             shares: Default::default(),
             evaluations: 1.0,
-            searches: 1.0,
+            queries: 1.0,
             pairs_unresolved: 0,
             accuracy,
             hash: 0,
@@ -117,41 +117,41 @@ mod tests {
     #[test]
     fn the_fastest_run_of_no_more_error_answers() {
         let runs = [run(1.0, 3.0, 0.0), run(2.0, 0.9, 0.0), run(3.0, 0.5, 0.0), run(1.5, 0.5, 4.0)];
-        let contest = Contest::new(&PEER, &runs).unwrap();
-        assert_eq!((contest.lead(), contest.is_won()), (Some(4.0), true));
-        assert_eq!(error(contest.best), 0.5);
+        let comparison = Comparison::new(&PEER, &runs).unwrap();
+        assert_eq!((comparison.speedup(), comparison.is_ahead()), (Some(4.0), true));
+        assert_eq!(error(comparison.best), 0.5);
     }
 
     #[test]
     fn being_slower_or_less_exact_is_no_win() {
-        assert!(!Contest::new(&PEER, &[run(9.0, 0.5, 0.0)]).unwrap().is_won());
+        assert!(!Comparison::new(&PEER, &[run(9.0, 0.5, 0.0)]).unwrap().is_ahead());
         let inexact = [run(1.0, 3.0, 0.0)];
-        let contest = Contest::new(&PEER, &inexact).unwrap();
-        assert_eq!((contest.lead(), contest.is_won()), (None, false));
+        let comparison = Comparison::new(&PEER, &inexact).unwrap();
+        assert_eq!((comparison.speedup(), comparison.is_ahead()), (None, false));
     }
 
     #[test]
     fn a_peer_that_blew_up_is_not_answered_by_a_run_that_nearly_did() {
         let peer = Peer { error: f64::INFINITY, ..PEER };
         let runs = [run(1.0, 300.0, 0.0), run(1.0, f64::INFINITY, 0.0), run(2.0, 50.0, 0.0)];
-        assert_eq!(Contest::new(&peer, &runs).unwrap().lead(), Some(4.0));
-        assert!(!Contest::new(&peer, &runs[..2]).unwrap().is_won());
+        assert_eq!(Comparison::new(&peer, &runs).unwrap().speedup(), Some(4.0));
+        assert!(!Comparison::new(&peer, &runs[..2]).unwrap().is_ahead());
     }
 
     #[test]
     fn a_locked_sheet_answers_nobody() {
         let swing = |sag: f64| {
             let mut run = run(1.0, 0.1, 0.0);
-            (run.trial.workload, run.accuracy.sag) = (Workload::Swing, sag);
+            (run.spec.workload, run.accuracy.sag) = (Workload::Swing, sag);
             run
         };
         let peer = Peer { workload: Workload::Swing, ..PEER };
-        assert!(Contest::new(&peer, &[swing(1.0)]).unwrap().is_won());
-        assert!(!Contest::new(&peer, &[swing(0.6)]).unwrap().is_won());
+        assert!(Comparison::new(&peer, &[swing(1.0)]).unwrap().is_ahead());
+        assert!(!Comparison::new(&peer, &[swing(0.6)]).unwrap().is_ahead());
     }
 
     #[test]
     fn runs_of_another_size_answer_nobody() {
-        assert!(Contest::new(&Peer { size: 10, ..PEER }, &[run(1.0, 0.1, 0.0)]).is_none());
+        assert!(Comparison::new(&Peer { size: 10, ..PEER }, &[run(1.0, 0.1, 0.0)]).is_none());
     }
 }

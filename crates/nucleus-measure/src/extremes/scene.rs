@@ -9,11 +9,11 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Diagnostic, Severity, read_scene_text};
 
 /// What a scene cannot say: a change to what the frame of this number brings.
-pub type Tamper = fn(frame: i64, input: &mut FrameInput);
+pub type FaultInjection = fn(frame: i64, input: &mut FrameInput);
 
 /// A scene of the table.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct TestScene {
     /// Its nodes, as RON.
     pub nodes: String,
     /// Frames that are solved; the run begins at frame 0.
@@ -23,21 +23,21 @@ pub struct Case {
     /// OBJ files by name.
     pub meshes: Vec<(&'static str, String)>,
     /// What the text cannot say.
-    pub tamper: Option<Tamper>,
+    pub inject: Option<FaultInjection>,
 }
 
 /// What became of a scene.
-pub struct Compiled {
+pub struct CompiledScene {
     /// The program, if there is no error.
     pub program: Option<Program>,
     /// Everything that was said, in order.
     pub said: Vec<Diagnostic>,
 }
 
-impl Case {
+impl TestScene {
     /// A scene of these nodes that runs for so many frames of 1/24 s.
     pub fn new(frames: i64, nodes: impl Into<String>) -> Self {
-        Self { nodes: nodes.into(), frames, fps: 24.0, meshes: Vec::new(), tamper: None }
+        Self { nodes: nodes.into(), frames, fps: 24.0, meshes: Vec::new(), inject: None }
     }
 
     /// With an OBJ file beside it.
@@ -53,8 +53,8 @@ impl Case {
     }
 
     /// With something that no text can say.
-    pub fn tamper(mut self, tamper: Tamper) -> Self {
-        self.tamper = Some(tamper);
+    pub fn inject(mut self, inject: FaultInjection) -> Self {
+        self.inject = Some(inject);
         self
     }
 
@@ -86,27 +86,27 @@ impl Case {
     ///
     /// # Errors
     /// When its meshes cannot be written to a folder of their own.
-    pub fn compile(&self) -> io::Result<Compiled> {
+    pub fn compile(&self) -> io::Result<CompiledScene> {
         let folder = tempfile::tempdir()?;
         self.write(folder.path(), "scene")?;
         let (scene, mut said) = match read_scene_text(&self.text(), &folder.path().join("scene.ron")) {
             Ok(read) => read,
-            Err(said) => return Ok(Compiled { program: None, said }),
+            Err(said) => return Ok(CompiledScene { program: None, said }),
         };
         Ok(match compile(&scene) {
             Ok(program) => {
                 said.extend(program.warnings().iter().cloned());
-                Compiled { program: Some(program), said }
+                CompiledScene { program: Some(program), said }
             }
             Err(found) => {
                 said.extend(found);
-                Compiled { program: None, said }
+                CompiledScene { program: None, said }
             }
         })
     }
 }
 
-impl Compiled {
+impl CompiledScene {
     /// Everything of a kind that was said, help and notes too, a line each.
     pub fn words(&self, severity: Severity) -> Vec<String> {
         let said = self.said.iter().filter(|diagnostic| diagnostic.severity == severity);

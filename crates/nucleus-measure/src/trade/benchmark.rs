@@ -1,69 +1,67 @@
-//! The scene that is looked at.
+//! The scene of a sweep, its facts before a run, and the scene at another setting.
 
 use nalgebra::Vector3;
-use nucleus_core::{Mass, ResistanceModel};
+use nucleus_core::{Mass, Real, ResistanceModel};
 use nucleus_graph::Simulation;
 use nucleus_graph::animation::Curve;
 use nucleus_graph::attributes::{Attribute, Choice, Key, Value, n_base, n_cloth, nucleus};
-use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::compile::{Object, ObjectKind, Program, compile};
 use nucleus_graph::graph::{Graph, NodeId, Setting as Held};
 use nucleus_graph::scene::edit::{Edit, NewValue};
 use nucleus_graph::scene::{Record, Scene, write_scene};
 
 use super::setting::{Reading, Setting};
-use crate::fingerprint::Fingerprint;
-use crate::metrics::distance;
-use crate::metrics::strain::Edges;
-use crate::store::StoreError;
+use crate::metrics::deformation::{Edges, size};
+use crate::result_cache::{Fingerprint, ResultCacheError};
 
-/// Fewest frames, the start among them, that say anything.
+/// Minimum number of frames, the start included.
 const FEWEST_FRAMES: i64 = 3;
 
-/// The resistances of cloth in its own plane.
+/// In-plane resistances of cloth.
 static PLANE_RESISTANCES: [&Key<f64>; 3] =
     [&n_cloth::STRETCH_RESISTANCE, &n_cloth::COMPRESSION_RESISTANCE, &n_cloth::SHEAR_RESISTANCE];
 
-/// References are of no use if not even an error of this size can be told.
-pub(super) const MOST_APART: f64 = 0.1;
+/// References that do not resolve an error of this size are rejected.
+pub(super) const MAX_REFERENCE_UNCERTAINTY: f64 = 0.1;
 
-/// Why a scene cannot be compared, or a comparison not be made.
+/// Why a sweep cannot be done.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TradeError {
     /// The scene does not compile.
     #[error("the scene cannot run: {message}")]
     CannotRun {
-        /// The first reason.
+        /// The first error.
         message: String,
     },
-    /// Nothing is simulated.
+    /// The scene has no cloth.
     #[error("there is nothing to compare: the scene has no cloth")]
     NothingDynamic,
-    /// Too few frames to speak of.
+    /// Fewer frames than [`FEWEST_FRAMES`].
     #[error("there is nothing to compare in {frames} frame(s): at least {FEWEST_FRAMES} are needed")]
     TooFewFrames {
-        /// How many there are, the start frame among them.
+        /// Number of frames, the start included.
         frames: i64,
     },
-    /// The reference was not finite.
-    #[error("the reference is no longer finite at frame {frame}: nothing can be held against it")]
+    /// A reference diverged.
+    #[error("the reference is not finite from frame {frame} on, so errors cannot be measured against it")]
     ReferenceLost {
-        /// The frame.
+        /// The first frame that is not finite.
         frame: i64,
     },
-    /// The two references have not come together.
+    /// The two references differ too much.
     #[error(
-        "the reference does not converge: with {} and with {} evaluations its strain differs by {:.1} %, so that an error of \
-         {:.0} % could not be told from none; more `--evaluations` make finer references",
-        evaluations[0], evaluations[1], 100.0 * apart, 100.0 * MOST_APART
+        "the reference does not converge: with {} and with {} evaluations its strain differs by {:.1} %, \
+         which does not resolve an error of {:.0} %; more `--evaluations` make finer references",
+        evaluations[0], evaluations[1], 100.0 * uncertainty, 100.0 * MAX_REFERENCE_UNCERTAINTY
     )]
     ReferenceDoesNotConverge {
-        /// Evaluations of the two.
+        /// Evaluations of both.
         evaluations: [f64; 2],
-        /// How much they differ in the strain that 99 % of the edges stay below, RMS over frames.
-        apart: f64,
+        /// Difference in the 99th percentile of strain, RMS over frames.
+        uncertainty: f64,
     },
-    /// Nothing moves.
+    /// No cloth moves.
     #[error("there is nothing to compare: in frames {start} to {end} no cloth moves")]
     NothingMoves {
         /// The first frame.
@@ -71,44 +69,44 @@ pub enum TradeError {
         /// The last frame.
         end: i64,
     },
-    /// It was asked to end; what is finished is kept.
+    /// Cancelled; finished runs are saved.
     #[error("interrupted")]
     Interrupted,
-    /// Results could not be kept.
+    /// Results cannot be saved.
     #[error(transparent)]
-    Store(#[from] StoreError),
+    Cache(#[from] ResultCacheError),
 }
 
-/// A scene, and what is known of it before anything is run.
-pub struct Subject {
+/// A scene, and its facts before a run.
+pub struct Benchmark {
     scene: Scene,
     own: Setting,
     program: Program,
     cloths: Vec<ClothFacts>,
-    /// Diagonal of the box round all cloth at the start, in metres.
+    /// Diagonal of the bounding box of all cloth at the start, in metres.
     pub size: f64,
-    /// Of each point, cloth after cloth, in kilograms.
+    /// Mass of each point, cloth after cloth, in kilograms.
     pub masses: Vec<f64>,
-    /// In m/s²; of the first frame.
+    /// Gravity in the first frame, in m/s².
     pub gravity: Vector3<f64>,
-    /// Whether nothing puts energy in: neither wind nor anything that moves as it is told.
+    /// Whether no wind and no animation adds energy.
     pub is_closed: bool,
 }
 
-/// A cloth as it starts.
+/// Facts of a cloth at the start.
 struct ClothFacts {
     node: NodeId,
     edges: Edges,
     points: usize,
-    /// In m².
+    /// Area in m².
     area: f64,
 }
 
-impl Subject {
-    /// Looks at a scene.
+impl Benchmark {
+    /// Compiles a scene and collects its facts.
     ///
     /// # Errors
-    /// When it does not compile, or there is nothing in it to compare.
+    /// When it does not compile, or has nothing to compare.
     pub fn new(scene: &Scene) -> Result<Self, TradeError> {
         let program = compiled(scene)?;
         let span = program.time();
@@ -121,7 +119,7 @@ impl Subject {
             return Err(TradeError::NothingDynamic);
         }
         let cloth = program.model().cloths();
-        let size = distance::size(cloth.iter().flat_map(|cloth| &cloth.surface.positions));
+        let size = size(cloth.iter().flat_map(|cloth| &cloth.surface.positions));
         let masses = cloth.iter().flat_map(|cloth| cloth.point_masses()).collect();
         let input = program.first_input();
         let own = own_setting(scene, input.resistance);
@@ -129,12 +127,12 @@ impl Subject {
         Ok(Self { scene: scene.clone(), own, program, cloths, size, masses, gravity, is_closed })
     }
 
-    /// The setting that the scene has.
+    /// The scene's own setting.
     pub fn own(&self) -> Setting {
         self.own
     }
 
-    /// The scene as it is.
+    /// The unchanged scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -144,23 +142,23 @@ impl Subject {
         &self.program
     }
 
-    /// Frames that are solved: all but the first.
+    /// Number of solved frames: all but the first.
     pub fn frames(&self) -> usize {
         let span = self.program.time();
         usize::try_from(span.end - span.start).unwrap_or(0)
     }
 
-    /// The scene at another setting.
+    /// The program of the scene at another setting.
     ///
     /// # Errors
-    /// When it does not compile so.
+    /// When the scene does not compile at this setting.
     pub fn at(&self, setting: &Setting) -> Result<Program, TradeError> {
         compiled(&self.set(setting))
     }
 
     /// The scene at another setting, before it is compiled.
     ///
-    /// What is only read otherwise keeps its weight: the mass that Physical reads per area is Classic's per point.
+    /// The total mass stays the same: Physical reads `pointMass` per area, Classic per point.
     pub fn set(&self, setting: &Setting) -> Scene {
         let mut scene = self.scene.clone();
         set_quality(&mut scene.graph, setting);
@@ -180,7 +178,7 @@ impl Subject {
         scene
     }
 
-    /// What has to change in the scene's text for it to have a setting; nothing for its own.
+    /// Edits of the scene file that apply a setting; none for its own.
     pub fn edits(&self, setting: &Setting) -> Vec<Edit> {
         let Some(id) = nucleus_of(&self.scene.graph) else { return Vec::new() };
         let of = |node: NodeId, attribute: &'static str, to: NewValue| {
@@ -223,7 +221,7 @@ impl Subject {
         NewValue::Scaled { factor, least: 0.0, default: self.scene.graph.node(node).get(key) }
     }
 
-    /// What the mass of a cloth is to be multiplied by, so that it weighs the same at a setting.
+    /// Factor on `pointMass` that keeps the total mass of a cloth at a setting.
     fn mass_factor(&self, cloth: &ClothFacts, setting: &Setting) -> f64 {
         let points = cloth.points as f64;
         match (self.own.reading, setting.reading) {
@@ -233,21 +231,21 @@ impl Subject {
         }
     }
 
-    /// The strain of all cloth in a state, cloth after cloth: the worst of each figure over the cloths.
-    pub fn strain(&self, points: &[Vector3<f64>]) -> crate::metrics::strain::Strain {
-        let mut worst = crate::metrics::strain::Strain::default();
+    /// Strain of all cloth in a state: the maximum of each figure over the cloths.
+    pub fn strain(&self, points: &[Vector3<f64>]) -> crate::metrics::deformation::Strain {
+        let mut all = crate::metrics::deformation::Strain::default();
         let mut first = 0;
         for cloth in &self.cloths {
-            let found = cloth.edges.strain(&points[first..first + cloth.points]);
+            let strain = cloth.edges.strain(&points[first..first + cloth.points]);
             first += cloth.points;
-            worst.rms = crate::metrics::worse(worst.rms, found.rms);
-            worst.most = crate::metrics::worse(worst.most, found.most);
-            worst.max = crate::metrics::worse(worst.max, found.max);
+            all.rms = crate::metrics::max_or_nan(all.rms, strain.rms);
+            all.p99 = crate::metrics::max_or_nan(all.p99, strain.p99);
+            all.max = crate::metrics::max_or_nan(all.max, strain.max);
         }
-        worst
+        all
     }
 
-    /// What results belong to: the scene, whatever its quality settings and its last frame, and the solver.
+    /// Fingerprints of the scene, without its quality settings, end frame and checks, and of the solver.
     pub fn name(&self) -> String {
         let mut scene = self.scene.clone();
         let neutral = Setting {
@@ -264,15 +262,24 @@ impl Subject {
         let text = write_scene(&scene);
         let state: Simulation = Simulation::new(&self.program, 1);
         let mut print = Fingerprint::default().bytes(text.as_bytes());
-        // Meshes may come from other files, which can change while the scene does not.
+        // Mesh files can change while the scene text does not.
         for object in state.objects() {
             let mut positions = Vec::new();
-            super::run::object_positions(&state, object, &mut positions);
+            object_positions(&state, object, &mut positions);
             let corners = object.faces.corners().iter().flat_map(|corner| corner.to_le_bytes());
             let points = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
             print = print.bytes(&corners.chain(points).collect::<Vec<u8>>());
         }
-        format!("{}-{}", print.name(), crate::fingerprint::solver().name())
+        format!("{}-{}", print.name(), crate::result_cache::solver_fingerprint().name())
+    }
+}
+
+/// Replaces `out` by the positions of an object in scene units.
+pub fn object_positions<R: Real>(simulation: &Simulation<R>, object: &Object, out: &mut Vec<[f32; 3]>) {
+    let (state, units) = (simulation.state(), simulation.units_per_metre());
+    match object.kind {
+        ObjectKind::Cloth(id) => state.positions(id, units, out),
+        ObjectKind::Collider(id) => state.collider_positions(id, units, out),
     }
 }
 
@@ -284,11 +291,9 @@ fn compiled(scene: &Scene) -> Result<Program, TradeError> {
 }
 
 fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
-    let is_cloth = |object: &&nucleus_graph::compile::Object| {
-        matches!(object.kind, nucleus_graph::compile::ObjectKind::Cloth(_))
-    };
+    let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
     let cloths = program.objects().iter().filter(is_cloth).zip(program.model().cloths());
-    let facts = |(object, cloth): (&nucleus_graph::compile::Object, &nucleus_core::Cloth)| {
+    let facts = |(object, cloth): (&Object, &nucleus_core::Cloth)| {
         let even = |mass: Mass| -> f64 {
             let even = nucleus_core::Cloth::new(cloth.surface.clone(), mass, cloth.lists);
             even.point_masses().iter().sum()
@@ -307,7 +312,7 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
     cloths.filter_map(facts).collect()
 }
 
-/// The nucleus that is solved.
+/// The solved nucleus.
 fn nucleus_of(graph: &Graph) -> Option<NodeId> {
     graph.of_type(&nucleus::NUCLEUS).next().map(|(id, _)| id)
 }
@@ -333,7 +338,7 @@ fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
     }
 }
 
-/// Whether nothing can put energy in: what is left out here is not said to make energy.
+/// Whether no animation, wind or force adds energy. Conservative: false if in doubt.
 fn is_closed(scene: &Scene) -> bool {
     let blows =
         |key: &Key<f64>| scene.graph.of_type(&nucleus::NUCLEUS).any(|(_, node)| node.is_ever_nonzero(key));
@@ -350,7 +355,7 @@ fn is_closed(scene: &Scene) -> bool {
     !(moves || pushed || blows(&nucleus::WIND_SPEED) && blows(&nucleus::AIR_DENSITY))
 }
 
-/// Sets what a setting sets on the nucleus.
+/// Applies a setting to the nucleus.
 fn set_quality(graph: &mut Graph, setting: &Setting) {
     let Some(id) = nucleus_of(graph) else { return };
     let choice = Choice(match setting.reading {
@@ -378,19 +383,19 @@ fn scale_resistances(graph: &mut Graph, cloth: NodeId, factor: f64) {
     }
 }
 
-/// A curve with all its values times a factor, none below `least`.
+/// A curve with all values multiplied by a factor, none below `least`.
 fn scaled(curve: &Curve, factor: f64, least: f64) -> Held {
     let keys = curve.keys().iter();
     let keys =
         keys.map(|key| nucleus_graph::animation::Key { value: (key.value * factor).max(least), ..*key });
     match Curve::new(keys.collect()) {
         Ok(curve) => Held::Keyed(curve),
-        // Only values beyond all reason are refused; those stay as they were.
+        // Only absurd values are rejected; those keep the curve unchanged.
         Err(_) => Held::Keyed(curve.clone()),
     }
 }
 
-/// Sets an attribute. One that refuses a value keeps what it had: a setting never makes a scene that cannot run.
+/// Sets an attribute. A rejected value leaves the attribute unchanged, so that the scene still compiles.
 fn put(graph: &mut Graph, node: NodeId, attribute: &'static Attribute, held: Held) {
     let _ = graph.set(node, attribute, held);
 }

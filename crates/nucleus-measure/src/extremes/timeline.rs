@@ -5,13 +5,14 @@ use nucleus_core::{ClothId, Real, StepReport};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{ObjectKind, Program};
 
-use super::case::Tamper;
-use super::cost::Clock;
-use super::energy::{Energy, EnergyBook};
+use super::energy_budget::{Energy, EnergyBudget};
+use super::scene::FaultInjection;
+use crate::clock::{Clock, Stopwatch};
+use crate::metrics::max_or_nan;
 
 /// What was seen at the end of a frame.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen {
+pub struct FrameRecord {
     /// The frame.
     pub frame: i64,
     /// What the solver said.
@@ -22,9 +23,9 @@ pub struct Seen {
 
 /// A run, measured.
 #[derive(Debug, Clone, Default)]
-pub struct Course {
+pub struct Timeline {
     /// Every frame that was solved.
-    pub frames: Vec<Seen>,
+    pub frames: Vec<FrameRecord>,
     /// Where the points of all cloths were when it began, in metres.
     pub start: Vec<Vec<Vector3<f64>>>,
     /// Where they are in the end.
@@ -36,51 +37,52 @@ pub struct Course {
     /// Rows evaluated in all frames.
     pub evaluations: f64,
     /// The frame after which it was given up, if it was.
-    pub given_up: Option<i64>,
+    pub aborted_after: Option<i64>,
 }
 
-impl Course {
-    /// Runs a program on one thread. `tamper` changes what frames bring; `stored` is what the start holds in joules,
+impl Timeline {
+    /// Runs a program on one thread. `inject` changes what frames bring; `initial_energy` is what the start holds in joules,
     /// besides what falls and is stretched. After each frame `should_continue` says whether there is to be another.
     pub fn of<R: Real>(
         program: &Program,
-        tamper: Option<Tamper>,
-        stored: f64,
+        inject: Option<FaultInjection>,
+        initial_energy: f64,
         should_continue: &dyn Fn(&Self) -> bool,
     ) -> Self {
         let mut simulation = Simulation::<R>::new(program, 1);
         let points = cloths(program);
-        let mut book = EnergyBook::new(simulation.solver(), &points, stored);
-        let mut course = Course { start: places(&simulation, &points), ..Course::default() };
+        let mut book = EnergyBudget::new(simulation.solver(), &points, initial_energy);
+        let mut timeline = Timeline { start: places(&simulation, &points), ..Timeline::default() };
         while !simulation.is_done() {
             let frame = simulation.frame() + 1;
             let (mut steps, mut evaluations) = (0.0, 0.0);
-            let clock = std::cell::OnceCell::new();
-            let seen = simulation.advance_with(
+            let start = || Stopwatch::start(Clock::Thread);
+            let watch = std::cell::OnceCell::new();
+            let record = simulation.advance_with(
                 &mut |solver, input| {
-                    if let Some(tamper) = tamper {
-                        tamper(frame, input);
+                    if let Some(inject) = inject {
+                        inject(frame, input);
                     }
                     book.begin(solver, input);
                     let passes = solver.passes(input);
                     steps = passes.iter().find(|pass| pass.name == "predict").map_or(0.0, |pass| pass.sweeps);
                     evaluations = passes.iter().map(nucleus_core::PassCost::evaluations).sum();
-                    clock.get_or_init(Clock::start);
+                    watch.get_or_init(start);
                 },
                 &mut (),
             );
-            course.seconds += clock.get_or_init(Clock::start).seconds();
-            course.steps += steps;
-            course.evaluations += evaluations;
+            timeline.seconds += watch.get_or_init(start).elapsed().processor;
+            timeline.steps += steps;
+            timeline.evaluations += evaluations;
             let energy = book.end(simulation.solver());
-            course.frames.push(Seen { frame, report: seen.report, energy });
-            if !should_continue(&course) {
-                course.given_up = Some(frame);
+            timeline.frames.push(FrameRecord { frame, report: record.report, energy });
+            if !should_continue(&timeline) {
+                timeline.aborted_after = Some(frame);
                 break;
             }
         }
-        course.end = places(&simulation, &points);
-        course
+        timeline.end = places(&simulation, &points);
+        timeline
     }
 }
 
@@ -97,25 +99,25 @@ fn places<R: Real>(simulation: &Simulation<R>, points: &[usize]) -> Vec<Vec<Vect
     points.iter().enumerate().map(of).collect()
 }
 
-impl Course {
+impl Timeline {
     /// The worst of a figure over all frames.
-    pub fn most(&self, figure: impl Fn(&Seen) -> f64) -> f64 {
-        self.frames.iter().map(figure).fold(0.0, worse)
+    pub fn most(&self, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
+        self.frames.iter().map(figure).fold(0.0, max_or_nan)
     }
 
     /// The worst of a figure from a frame on.
-    pub fn most_from(&self, frame: i64, figure: impl Fn(&Seen) -> f64) -> f64 {
-        self.frames.iter().filter(|seen| seen.frame >= frame).map(figure).fold(0.0, worse)
+    pub fn most_from(&self, frame: i64, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
+        self.frames.iter().filter(|record| record.frame >= frame).map(figure).fold(0.0, max_or_nan)
     }
 
     /// A count over all frames.
-    pub fn sum(&self, figure: impl Fn(&Seen) -> u64) -> u64 {
+    pub fn sum(&self, figure: impl Fn(&FrameRecord) -> u64) -> u64 {
         self.frames.iter().map(figure).sum()
     }
 
     /// Whether every frame was finite.
     pub fn is_finite(&self) -> bool {
-        self.frames.iter().all(|seen| seen.report.finite && seen.energy.speed.is_finite())
+        self.frames.iter().all(|record| record.report.finite && record.energy.speed.is_finite())
     }
 
     /// The farthest that any point is in the end from where it began, in metres.
@@ -131,8 +133,8 @@ impl Course {
     /// The farthest that the way of any point from its start is from its way in another run, in metres: the same
     /// scene put elsewhere is to move in the same way.
     pub fn farthest_moves_from(&self, other: &Self) -> f64 {
-        let ways = |course: &Self| {
-            let pairs = course.end.iter().flatten().zip(course.start.iter().flatten());
+        let ways = |timeline: &Self| {
+            let pairs = timeline.end.iter().flatten().zip(timeline.start.iter().flatten());
             vec![pairs.map(|(end, start)| end - start).collect::<Vec<_>>()]
         };
         farthest(&ways(self), &ways(other))
@@ -145,10 +147,5 @@ impl Course {
 }
 
 fn farthest(a: &[Vec<Vector3<f64>>], b: &[Vec<Vector3<f64>>]) -> f64 {
-    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).norm()).fold(0.0, worse)
-}
-
-/// The larger of two; what is no number is the largest.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).norm()).fold(0.0, max_or_nan)
 }

@@ -5,11 +5,11 @@ use nucleus_core::{FrameInput, Solver};
 
 use super::accuracy::{Accuracy, Meter};
 use super::workload::{Scene, Setting, Workload};
-use nucleus_measure::clock::{STAGES, Spent, StageClock};
+use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
 /// What is to be run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trial {
+pub struct RunSpec {
     /// The workload.
     pub workload: Workload,
     /// Points along each side of the cloth.
@@ -24,13 +24,13 @@ pub struct Trial {
 
 /// What came of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct RunResult {
     /// What was run.
-    pub trial: Trial,
+    pub spec: RunSpec,
     /// Time in the stepping calls alone, per frame.
-    pub spent: Spent,
+    pub timing: Timing,
     /// Time of the median frame.
-    pub median_frame: Spent,
+    pub median_frame: Timing,
     /// Seconds to build the solver.
     pub build: f64,
     /// The share of each of [`STAGES`] in the time.
@@ -38,7 +38,7 @@ pub struct Outcome {
     /// Link evaluations in a frame.
     pub evaluations: f64,
     /// Runs of the broad phase in a frame.
-    pub searches: f64,
+    pub queries: f64,
     /// Pairs of elements that were not kept apart, over all time steps.
     pub pairs_unresolved: u64,
     /// How wrong it is.
@@ -47,16 +47,16 @@ pub struct Outcome {
     pub hash: u64,
 }
 
-impl Outcome {
+impl RunResult {
     /// Milliseconds a frame: of the processor with one thread, which others on the machine disturb least; on the
     /// wall with more, where waiting counts.
     pub fn ms(&self) -> f64 {
-        1e3 * self.of(&self.spent)
+        1e3 * self.of(&self.timing)
     }
 
-    /// Whichever clock [`Outcome::ms`] goes by.
-    pub fn of(&self, spent: &Spent) -> f64 {
-        if self.trial.threads == 1 { spent.processor } else { spent.wall }
+    /// Whichever clock [`RunResult::ms`] goes by.
+    pub fn of(&self, timing: &Timing) -> f64 {
+        if self.spec.threads == 1 { timing.processor } else { timing.wall }
     }
 
     /// The share of a stage, by its name in [`STAGES`].
@@ -65,7 +65,7 @@ impl Outcome {
     }
 }
 
-impl Trial {
+impl RunSpec {
     /// A full run on one thread.
     pub fn full(workload: Workload, size: u32, setting: Setting) -> Self {
         Self { workload, size, setting, threads: 1, frames: workload.frames() }
@@ -75,8 +75,8 @@ impl Trial {
     ///
     /// # Errors
     /// When the solver refuses the scene, or two runs do not end with the same bits.
-    pub fn run(&self, repeat: u32) -> anyhow::Result<Outcome> {
-        let runs: anyhow::Result<Vec<Outcome>> = (0..repeat.max(1)).map(|_| self.run_once()).collect();
+    pub fn run(&self, repeat: u32) -> anyhow::Result<RunResult> {
+        let runs: anyhow::Result<Vec<RunResult>> = (0..repeat.max(1)).map(|_| self.run_once()).collect();
         median(runs?)
     }
 
@@ -84,32 +84,32 @@ impl Trial {
     ///
     /// # Errors
     /// When the solver refuses the scene.
-    pub fn run_once(&self) -> anyhow::Result<Outcome> {
+    pub fn run_once(&self) -> anyhow::Result<RunResult> {
         let Scene { sheet, builder, frame } = self.workload.scene(self.size, &self.setting)?;
         let mut meter = Meter::new(&sheet, self.size, self.workload.ball());
-        let (build, mut solver) = Spent::on(|| Solver::<f32>::new(builder, self.threads as usize));
+        let (build, mut solver) = Timing::of_process(|| Solver::<f32>::new(builder, self.threads as usize));
         let mut stages = StageClock::default();
         let mut frames = Vec::with_capacity(self.frames as usize);
-        let (mut searches, mut pairs_unresolved) = (0.0, 0);
+        let (mut queries, mut pairs_unresolved) = (0.0, 0);
         for _ in 0..self.frames {
-            let (spent, account) = Spent::on(|| {
+            let (timing, report) = Timing::of_process(|| {
                 let report = solver.step(&frame, &mut stages);
                 stages.stop();
                 report
             });
-            frames.push(spent);
-            searches += f64::from(account.broad_phases) / f64::from(self.frames);
-            pairs_unresolved += account.pairs_unresolved;
+            frames.push(timing);
+            queries += f64::from(report.broad_phases) / f64::from(self.frames);
+            pairs_unresolved += report.pairs_unresolved;
             meter.frame(&solver);
         }
-        Ok(Outcome {
-            trial: *self,
-            spent: mean(&frames),
+        Ok(RunResult {
+            spec: *self,
+            timing: mean(&frames),
             median_frame: median_frame(&frames),
             build: build.wall,
             shares: stages.shares(),
             evaluations: link_evaluations(&solver, &frame),
-            searches,
+            queries,
             pairs_unresolved,
             accuracy: meter.finish(),
             hash: solver.state_hash(),
@@ -121,7 +121,7 @@ impl Trial {
 ///
 /// # Errors
 /// When there are none, or they do not.
-pub fn median(mut runs: Vec<Outcome>) -> anyhow::Result<Outcome> {
+pub fn median(mut runs: Vec<RunResult>) -> anyhow::Result<RunResult> {
     same_bits(&runs)?;
     runs.sort_by(|a, b| a.ms().total_cmp(&b.ms()));
     let middle = runs.len() / 2;
@@ -132,18 +132,18 @@ pub fn median(mut runs: Vec<Outcome>) -> anyhow::Result<Outcome> {
 ///
 /// # Errors
 /// Names the first two hashes that differ.
-pub fn same_bits(runs: &[Outcome]) -> anyhow::Result<()> {
+pub fn same_bits(runs: &[RunResult]) -> anyhow::Result<()> {
     for pair in runs.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let (workload, size) = (a.trial.workload, a.trial.size);
+        let (workload, size) = (a.spec.workload, a.spec.size);
         ensure!(
             a.hash == b.hash,
             "{workload} at {size}, {}: hash {:016x} on {} threads, {:016x} on {}",
-            a.trial.setting,
+            a.spec.setting,
             a.hash,
-            a.trial.threads,
+            a.spec.threads,
             b.hash,
-            b.trial.threads
+            b.spec.threads
         );
     }
     Ok(())
@@ -153,28 +153,28 @@ fn link_evaluations(solver: &Solver<f32>, frame: &FrameInput) -> f64 {
     solver.passes(frame).iter().filter(|pass| pass.name == "stretch").map(|pass| pass.evaluations()).sum()
 }
 
-fn mean(frames: &[Spent]) -> Spent {
+fn mean(frames: &[Timing]) -> Timing {
     let count = frames.len().max(1) as f64;
-    let mean = |of: fn(&Spent) -> f64| frames.iter().map(of).sum::<f64>() / count;
-    Spent { wall: mean(|spent| spent.wall), processor: mean(|spent| spent.processor) }
+    let mean = |of: fn(&Timing) -> f64| frames.iter().map(of).sum::<f64>() / count;
+    Timing { wall: mean(|timing| timing.wall), processor: mean(|timing| timing.processor) }
 }
 
-fn median_frame(frames: &[Spent]) -> Spent {
-    let median = |of: fn(&Spent) -> f64| {
+fn median_frame(frames: &[Timing]) -> Timing {
+    let median = |of: fn(&Timing) -> f64| {
         let mut all: Vec<f64> = frames.iter().map(of).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or_default()
     };
-    Spent { wall: median(|spent| spent.wall), processor: median(|spent| spent.processor) }
+    Timing { wall: median(|timing| timing.wall), processor: median(|timing| timing.processor) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn small(workload: Workload, threads: u32) -> Outcome {
+    fn small(workload: Workload, threads: u32) -> RunResult {
         let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6 };
-        Trial { workload, size: 9, setting, threads, frames: 4 }.run(2).unwrap()
+        RunSpec { workload, size: 9, setting, threads, frames: 4 }.run(2).unwrap()
     }
 
     #[test]

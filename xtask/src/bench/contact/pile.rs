@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use nucleus_core::Surface;
 use nucleus_graph::compile::Program;
 
-use super::scene::{Draft, Place, Setting};
+use super::scene::{Draft, MeshFolder, Setting};
 use crate::bench::mesh::{self, Cells};
 
 /// Frames that a heap is run for: it falls together, and lies.
@@ -72,8 +72,8 @@ fn way() -> Vec<[f64; 2]> {
 ///
 /// # Errors
 /// When a mesh cannot be written or the scene is refused.
-pub fn program(n: u32, setting: Setting, place: &Place) -> anyhow::Result<Program> {
-    Draft { frames: FRAMES, plane: true, sheets: vec![sheet(n)], others: String::new() }
+pub fn program(n: u32, setting: Setting, place: &MeshFolder) -> anyhow::Result<Program> {
+    Draft { frames: FRAMES, plane: true, sheets: vec![sheet(n)], other_nodes: String::new() }
         .program(setting, place)
 }
 
@@ -85,10 +85,10 @@ mod tests {
     #[test]
     fn a_heap_has_the_points_that_it_is_asked_for_and_no_cell_is_drawn_out() {
         for n in [65, 100, 257] {
-            let heap = sheet(n);
-            let points = heap.positions.len() as f64;
+            let pile = sheet(n);
+            let points = pile.positions.len() as f64;
             assert!((points / f64::from(n * n) - 1.0).abs() < 0.02, "{n}: {points}");
-            let lengths = mesh::edges(&heap).into_iter().map(|(_, length)| length / CELL);
+            let lengths = mesh::edges(&pile).into_iter().map(|(_, length)| length / CELL);
             let (least, most) = lengths.fold((f64::MAX, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
             assert!(least > 0.94 && most < 1.06 * 2f64.sqrt(), "{n}: {least} to {most}");
         }
@@ -96,13 +96,14 @@ mod tests {
 
     #[test]
     fn layers_begin_more_than_the_thickness_apart() {
-        let heap = sheet(40);
-        let columns = heap.positions.len() / ROWS as usize;
+        let pile = sheet(40);
+        let columns = pile.positions.len() / ROWS as usize;
         let layer = |point: usize| point / columns / CELLS as usize;
-        for (a, here) in heap.positions.iter().enumerate() {
-            let others = heap.positions.iter().enumerate().filter(|(b, _)| layer(*b) > layer(a));
-            let apart =
-                others.filter(|(b, _)| b / columns > a / columns + 1).map(|(_, there)| (there - here).norm());
+        for (a, here) in pile.positions.iter().enumerate() {
+            let other_nodes = pile.positions.iter().enumerate().filter(|(b, _)| layer(*b) > layer(a));
+            let apart = other_nodes
+                .filter(|(b, _)| b / columns > a / columns + 1)
+                .map(|(_, there)| (there - here).norm());
             let nearest = apart.fold(f64::MAX, f64::min);
             assert!(nearest > 0.005, "{a}: {nearest}");
         }
@@ -112,8 +113,9 @@ mod tests {
     fn a_point_has_as_many_pairs_and_contacts_in_a_heap_of_four_times_the_points() {
         let run = |n: u32| {
             let setting = Setting { evaluations: 12, self_collide: true };
-            let run = Timed::run(&program(n, setting, &Place::new().unwrap()).unwrap(), 1, Some(3), |_| {});
-            [run.pairs / run.searches, run.contacts].map(|count| count / sheet(n).positions.len() as f64)
+            let run =
+                Timed::run(&program(n, setting, &MeshFolder::new().unwrap()).unwrap(), 1, Some(3), |_| {});
+            [run.pairs / run.queries, run.contacts].map(|count| count / sheet(n).positions.len() as f64)
         };
         let [small, large] = [run(65), run(129)];
         for (small, large) in small.into_iter().zip(large) {

@@ -14,19 +14,19 @@ use nucleus_core::{ClothId, FrameInput, PointId, Real, Solver, StateView};
 
 /// The account of a run's energy.
 #[derive(Debug, Clone, Default)]
-pub struct EnergyBook {
+pub struct EnergyBudget {
     /// Mass of each point, cloth by cloth, in kilograms.
     masses: Vec<Vec<f64>>,
     /// Where each point was when the frame began, in metres.
     before: Vec<Vec<Vector3<f64>>>,
     /// What has been brought in so far, in joules.
-    brought: f64,
+    supplied: f64,
     /// What links hold as the frame begins, in joules.
     held: f64,
     /// Whether held points are on their way in this frame.
-    drawn: bool,
+    pins_move: bool,
     /// The fastest that anything that moves by itself has moved so far, in m/s.
-    mover: f64,
+    driver_speed: f64,
     /// The input of the frame, for what is reckoned when it has ended.
     input: Option<FrameInput>,
 }
@@ -40,16 +40,16 @@ pub struct Energy {
     pub share: f64,
 }
 
-impl EnergyBook {
-    /// For a solver at its start, whose cloths have so many points each. `stored` is what the start holds besides,
+impl EnergyBudget {
+    /// For a solver at its start, whose cloths have so many points each. `initial_energy` is what the start holds besides,
     /// in joules: a cloth that starts inside a collider is lifted out of it.
-    pub fn new<R: Real>(solver: &Solver<R>, points: &[usize], stored: f64) -> Self {
+    pub fn new<R: Real>(solver: &Solver<R>, points: &[usize], initial_energy: f64) -> Self {
         let mass = |(cloth, &count): (usize, &usize)| {
             (0..count).map(|k| solver.mass(ClothId(cloth as u32), PointId(k as u32))).collect()
         };
         let masses: Vec<Vec<f64>> = points.iter().enumerate().map(mass).collect();
         let before = places(solver, &masses);
-        Self { masses, before, brought: stored, ..Self::default() }
+        Self { masses, before, supplied: initial_energy, ..Self::default() }
     }
 
     /// A frame is about to begin.
@@ -57,10 +57,10 @@ impl EnergyBook {
         // Before the first frame everything is at rest, whatever the attributes.
         let held = self.input.as_ref().map_or(0.0, |input| solver.elastic_energy(input));
         self.held = solver.elastic_energy(input);
-        self.brought += (self.held - held).max(0.0);
-        self.mover = self.mover.max(mover(input, solver));
+        self.supplied += (self.held - held).max(0.0);
+        self.driver_speed = self.driver_speed.max(driver_speed(input, solver));
         self.before = places(solver, &self.masses);
-        self.drawn = input.pins.iter().any(|pin| pin.start != pin.end);
+        self.pins_move = input.pins.iter().any(|pin| pin.start != pin.end);
         self.input = Some(FrameInput { colliders: Vec::new(), pins: Vec::new(), ..input.clone() });
     }
 
@@ -76,17 +76,17 @@ impl EnergyBook {
             solver.velocities(id, 1.0, &mut velocities);
             for (point, &m) in masses.iter().enumerate() {
                 let way = solver.point(id, point) - self.before[cloth][point];
-                self.brought += usable((weight * m + settings.local_force).dot(&way));
+                self.supplied += finite_or_zero((weight * m + settings.local_force).dot(&way));
                 let speed = velocities[point].map(f64::from);
                 moving += m * Vector3::from(speed).norm_squared() / 2.0;
                 mass += m;
             }
         }
-        if self.drawn {
-            self.brought += usable(solver.elastic_energy(input) - self.held).max(0.0);
+        if self.pins_move {
+            self.supplied += finite_or_zero(solver.elastic_energy(input) - self.held).max(0.0);
         }
         let speed = (2.0 * moving / mass).sqrt();
-        let may = (2.0 * self.brought.max(0.0) / mass).sqrt() + 2.0 * self.mover + ROUNDING;
+        let may = (2.0 * self.supplied.max(0.0) / mass).sqrt() + 2.0 * self.driver_speed + ROUNDING;
         Energy { speed, share: (speed / may).powi(2) }
     }
 }
@@ -95,7 +95,7 @@ impl EnergyBook {
 const ROUNDING: f64 = 1e-3;
 
 /// What the solver is to leave out brings nothing.
-fn usable(work: f64) -> f64 {
+fn finite_or_zero(work: f64) -> f64 {
     if work.is_finite() { work } else { 0.0 }
 }
 
@@ -107,7 +107,7 @@ fn places<R: Real>(solver: &Solver<R>, masses: &[Vec<f64>]) -> Vec<Vec<Vector3<f
 }
 
 /// The fastest of what moves by itself in a frame, in m/s: wind where there is air, colliders, held points.
-fn mover<R: Real>(input: &FrameInput, solver: &Solver<R>) -> f64 {
+fn driver_speed<R: Real>(input: &FrameInput, solver: &Solver<R>) -> f64 {
     let wind = |cloth: &nucleus_core::ClothFrame| {
         let solver = if cloth.feels_wind { input.wind } else { Vector3::zeros() };
         let felt = input.air_density > 0.0 && (cloth.drag > 0.0 || cloth.lift != 0.0);

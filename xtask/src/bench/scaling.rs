@@ -1,8 +1,8 @@
 //! What a link costs, and how time grows with points and shrinks with threads.
 
 use super::report::Report;
+use super::run::{RunResult, RunSpec, median, same_bits};
 use super::table::{Table, figure};
-use super::trial::{Outcome, Trial, median, same_bits};
 use super::workload::{DENSITY, GRAVITY, Setting, Workload};
 
 /// A cloth of 10 kN/m.
@@ -37,13 +37,13 @@ pub fn sag(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let mut table = Table::new("Hanging sheet: sag", &head);
     for (size, frames) in [(41, 60), (81, 41)] {
         for evaluations in [24, 96, 384] {
-            let full = Trial::full(Workload::Hang, size, cloth(evaluations));
-            let run = Trial { frames, ..full }.run(repeat)?;
+            let full = RunSpec::full(Workload::Hang, size, cloth(evaluations));
+            let run = RunSpec { frames, ..full }.run(repeat)?;
             report.keep(&run);
             let sag = -1.0 - run.accuracy.lower_edge;
             let cells = [run.ms(), 1e3 * sag, 1e3 * (sag - exact)].map(figure);
-            let trial = [format!("{size}²"), evaluations.to_string()];
-            table.row(trial.into_iter().chain(cells).chain([format!("{:016x}", run.hash)]));
+            let spec = [format!("{size}²"), evaluations.to_string()];
+            table.row(spec.into_iter().chain(cells).chain([format!("{:016x}", run.hash)]));
         }
     }
     table.note(format!("Exact: {} mm, for 10 kN/m. Measured over the last second.", figure(1e3 * exact)));
@@ -59,8 +59,8 @@ pub fn link_cost(sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Res
     let head = ["points", "ms", "link evaluations", "ns each, relax", "ns each, all stages", "hash"];
     let mut table = Table::new("Hanging sheet: the cost of a link, one thread", &head);
     for &size in sizes {
-        let full = Trial::full(Workload::Hang, size, cloth(48));
-        let run = Trial { frames: 24, ..full }.run(repeat)?;
+        let full = RunSpec::full(Workload::Hang, size, cloth(48));
+        let run = RunSpec { frames: 24, ..full }.run(repeat)?;
         report.keep(&run);
         let each = 1e6 * run.ms() / run.evaluations;
         let relax = each * run.share("relax");
@@ -68,7 +68,7 @@ pub fn link_cost(sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Res
         table.row([format!("{size}²")].into_iter().chain(cells).chain([format!("{:016x}", run.hash)]));
         if size == LINK_SIZE {
             let target = format!("at most {LINK_TARGET} ns an evaluation at {LINK_SIZE}², one core");
-            report.judge(target, format!("{} ns", figure(relax)), relax <= LINK_TARGET);
+            report.check_target(target, format!("{} ns", figure(relax)), relax <= LINK_TARGET);
         }
     }
     report.show(table);
@@ -84,8 +84,8 @@ pub fn scale(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let mut table = Table::new("Hanging sheet: growth, one thread, 24 evaluations", &head);
     let mut first = None;
     for size in SCALE {
-        let full = Trial::full(Workload::Hang, size, cloth(24));
-        let run = Trial { frames: 5, ..full }.run(repeat)?;
+        let full = RunSpec::full(Workload::Hang, size, cloth(24));
+        let run = RunSpec { frames: 5, ..full }.run(repeat)?;
         report.keep(&run);
         // A frame among five: the first of them finds all memory untouched.
         let ms = 1e3 * run.of(&run.median_frame);
@@ -96,7 +96,7 @@ pub fn scale(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
         table.row(cells.into_iter().chain([format!("{:016x}", run.hash)]));
         if Some(&size) == SCALE.last() {
             let target = format!("time per point at {points} points no more than at {}²", SCALE[0]);
-            report.judge(target, format!("{} times", figure(ratio)), ratio <= CHANCE);
+            report.check_target(target, format!("{} times", figure(ratio)), ratio <= CHANCE);
         }
     }
     table.note("The median of five frames.");
@@ -113,17 +113,17 @@ pub fn threads(sizes: &[u32], threads: &[u32], repeat: u32, report: &mut Report)
     let mut table = Table::new("Threads, 48 evaluations", &head);
     for (workload, frames) in [(Workload::Swing, 24), (Workload::Drape, 48)] {
         for &size in sizes {
-            let trial = Trial { frames, ..Trial::full(workload, size, cloth(48)) };
-            let runs = in_turns(&trial, threads, repeat)?;
+            let spec = RunSpec { frames, ..RunSpec::full(workload, size, cloth(48)) };
+            let runs = in_turns(&spec, threads, repeat)?;
             for run in &runs {
                 report.keep(run);
-                let gain = runs[0].spent.wall / run.spent.wall;
-                let place = [workload.to_string(), format!("{size}²"), run.trial.threads.to_string()];
-                let cells = [figure(1e3 * run.spent.wall), figure(gain), format!("{:016x}", run.hash)];
+                let gain = runs[0].timing.wall / run.timing.wall;
+                let place = [workload.to_string(), format!("{size}²"), run.spec.threads.to_string()];
+                let cells = [figure(1e3 * run.timing.wall), figure(gain), format!("{:016x}", run.hash)];
                 table.row(place.into_iter().chain(cells));
-                if (size, runs[0].trial.threads, run.trial.threads) == (PAIR_SIZE, 1, 2) {
+                if (size, runs[0].spec.threads, run.spec.threads) == (PAIR_SIZE, 1, 2) {
                     let target = format!("{workload} {size}²: two threads at least {PAIR_TARGET} times one");
-                    report.judge(target, format!("{} times", figure(gain)), gain >= PAIR_TARGET);
+                    report.check_target(target, format!("{} times", figure(gain)), gain >= PAIR_TARGET);
                 }
             }
         }
@@ -132,14 +132,14 @@ pub fn threads(sizes: &[u32], threads: &[u32], repeat: u32, report: &mut Report)
     Ok(())
 }
 
-fn in_turns(trial: &Trial, threads: &[u32], repeat: u32) -> anyhow::Result<Vec<Outcome>> {
-    let mut runs: Vec<Vec<Outcome>> = vec![Vec::new(); threads.len()];
+fn in_turns(spec: &RunSpec, threads: &[u32], repeat: u32) -> anyhow::Result<Vec<RunResult>> {
+    let mut runs: Vec<Vec<RunResult>> = vec![Vec::new(); threads.len()];
     for _ in 0..repeat.max(1) {
         for (&threads, runs) in threads.iter().zip(&mut runs) {
-            runs.push(Trial { threads, ..*trial }.run_once()?);
+            runs.push(RunSpec { threads, ..*spec }.run_once()?);
         }
     }
-    let medians: anyhow::Result<Vec<Outcome>> = runs.into_iter().map(median).collect();
+    let medians: anyhow::Result<Vec<RunResult>> = runs.into_iter().map(median).collect();
     let medians = medians?;
     same_bits(&medians)?;
     Ok(medians)
