@@ -90,7 +90,7 @@ pub const MAX_TANGLED: &str = "maxTangled";
 /// The check that limits strain; a run without it warns of large strain.
 pub const MAX_STRETCH: &str = "maxStretch";
 
-static FORMS: [Form; 11] = [
+static FORMS: [Form; 12] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
@@ -155,6 +155,15 @@ static FORMS: [Form; 11] = [
         figure: |seen, _| Some(seen.report.strain_99),
     },
     Form {
+        name: "settledStretch99",
+        doc: "From this frame on 99 % of the links are not longer than at rest by more than this share.",
+        parameters: &["frame", "strain"],
+        values: Values::Numbers,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[1],
+        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.strain_99),
+    },
+    Form {
         name: "minGap",
         doc: "Nothing comes closer to a collider than this share of the thickness.",
         parameters: &["gap"],
@@ -217,6 +226,11 @@ impl Check {
     /// What kind of check it is.
     pub fn form(&self) -> &'static Form {
         self.form
+    }
+
+    /// Its arguments, in the order of [`Form::parameters`].
+    pub fn arguments(&self) -> &[f64] {
+        &self.arguments
     }
 
     /// Whether it is answered only where the run is audited.

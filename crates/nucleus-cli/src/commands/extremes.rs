@@ -8,8 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, Color, ColorChoice, ColorSpec, WriteColor};
 use nucleus_measure::extremes::{
-    Evaluation, Expectation, Kind, Measurement, StressCase, TimeBudget, evaluate_all, failure_text, named,
-    page, rows,
+    Evaluation, Kind, Measurement, StressCase, TimeBudget, evaluate_all, failure_text, named, page, rows,
 };
 use serde_json::{Value, json};
 
@@ -47,7 +46,7 @@ impl Extremes {
     pub fn run(self) -> Result<Outcome> {
         let rows = self.rows()?;
         if self.list {
-            let lines = rows.iter().map(|row| format!("{:<36} {}\n", row.name, row.what));
+            let lines = rows.iter().map(|row| format!("{:<36} {}\n", row.name, row.summary));
             output::print(&lines.collect::<String>())?;
             return Ok(Outcome::Fine);
         }
@@ -95,9 +94,8 @@ impl Extremes {
 /// Writes each scene with its meshes into a folder of its own.
 fn save(rows: &[&StressCase], folder: &Path) -> Result<Outcome> {
     for row in rows {
-        let (Expectation::Runs { scene, .. } | Expectation::InvalidInput { scene, .. }) = row.expectation;
         let folder = folder.join(row.name);
-        let written = fs::create_dir_all(&folder).and_then(|()| scene().write(&folder, row.name));
+        let written = fs::create_dir_all(&folder).and_then(|()| row.scene().write(&folder, row.name));
         written.with_context(|| format!("cannot write to `{}`", folder.display()))?;
     }
     let scenes = figures::count(rows.len(), "scene");
@@ -166,12 +164,12 @@ fn as_json(outcome: &Evaluation) -> Value {
             "holds": figure.holds(),
         })
     };
-    let StressCase { name, group, what, expect, known_failure, .. } = outcome.stress_case;
+    let StressCase { name, group, summary, expected, known_failure, .. } = outcome.stress_case;
     json!({
         "name": name,
         "group": group,
-        "what": what,
-        "expect": expect,
+        "what": summary,
+        "expect": expected,
         "holds": outcome.holds(),
         "known_to_fail": known_failure,
         "figures": outcome.figures.iter().map(figure).collect::<Vec<_>>(),

@@ -1,48 +1,47 @@
-//! How much energy a run may have, told from what goes into it, not from what comes out.
+//! Upper bound of the kinetic energy of a run, from the energy supplied to it.
 //!
-//! Energy comes into cloth from four sides: weight and forces do work along the way that the points go; a change of
-//! an attribute may make what is stretched or bent hold more, and so may held points that are drawn apart; and whatever moves by
-//! itself (wind, colliders, held points) pushes. In the frame of something that moves at u, it does no work. So if
-//! weight, forces and changes have brought w joules to m kilograms, the root mean square speed is never above
-//! √(2 w / m) + 2 u, whatever pushed how often, as long as nothing bounces.
+//! Gravity and forces supply energy along the displacement of the points. A change of an attribute may raise elastic
+//! energy, and so may pins that move apart. Drivers (wind, colliders, pins) push; in the frame of reference of a driver
+//! that moves at u, it does no work. If gravity, forces and changes supply w joules to m kilograms, the root mean square
+//! speed never exceeds √(2 w / m) + 2 u, whatever pushes how often, as long as nothing bounces.
 //!
-//! What links hold is not counted with what moves: an unfinished solve leaves them longer than their stiffness says, and
-//! what that would hold has never been there.
+//! Elastic energy does not count as motion: an unconverged solve leaves links longer than their stiffness implies, and
+//! that energy was never supplied.
 
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, FrameInput, PointId, Real, Solver, StateView};
 
-/// The account of a run's energy.
+/// Energy supplied to a run.
 #[derive(Debug, Clone, Default)]
 pub struct EnergyBudget {
     /// Mass of each point, cloth by cloth, in kilograms.
     masses: Vec<Vec<f64>>,
-    /// Where each point was when the frame began, in metres.
+    /// Positions at the start of the frame, in metres.
     before: Vec<Vec<Vector3<f64>>>,
-    /// What has been brought in so far, in joules.
+    /// Energy supplied so far, in joules.
     supplied: f64,
-    /// What links hold as the frame begins, in joules.
+    /// Elastic energy at the start of the frame, in joules.
     held: f64,
-    /// Whether held points are on their way in this frame.
+    /// Whether pins move in this frame.
     pins_move: bool,
-    /// The fastest that anything that moves by itself has moved so far, in m/s.
+    /// Maximum speed of a driver so far, in m/s.
     driver_speed: f64,
-    /// The input of the frame, for what is reckoned when it has ended.
+    /// Input of the frame, for the end of the frame.
     input: Option<FrameInput>,
 }
 
-/// The energy of a run at the end of a frame.
+/// Motion at the end of a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Energy {
     /// Root mean square speed in m/s.
     pub speed: f64,
-    /// The energy of its motion, over what it may have.
-    pub share: f64,
+    /// Kinetic energy over its upper bound.
+    pub ratio: f64,
 }
 
 impl EnergyBudget {
-    /// For a solver at its start, whose cloths have so many points each. `initial_energy` is what the start holds besides,
-    /// in joules: a cloth that starts inside a collider is lifted out of it.
+    /// For a solver in its initial state, whose cloths have `points` points. `initial_energy` is the energy of that state in
+    /// joules, besides potential and elastic energy: depenetration lifts a cloth that starts inside a collider.
     pub fn new<R: Real>(solver: &Solver<R>, points: &[usize], initial_energy: f64) -> Self {
         let mass = |(cloth, &count): (usize, &usize)| {
             (0..count).map(|k| solver.mass(ClothId(cloth as u32), PointId(k as u32))).collect()
@@ -52,9 +51,9 @@ impl EnergyBudget {
         Self { masses, before, supplied: initial_energy, ..Self::default() }
     }
 
-    /// A frame is about to begin.
+    /// Starts a frame.
     pub fn begin<R: Real>(&mut self, solver: &Solver<R>, input: &FrameInput) {
-        // Before the first frame everything is at rest, whatever the attributes.
+        // The initial state is unstrained, whatever the attributes.
         let held = self.input.as_ref().map_or(0.0, |input| solver.elastic_energy(input));
         self.held = solver.elastic_energy(input);
         self.supplied += (self.held - held).max(0.0);
@@ -64,7 +63,7 @@ impl EnergyBudget {
         self.input = Some(FrameInput { colliders: Vec::new(), pins: Vec::new(), ..input.clone() });
     }
 
-    /// The frame has ended.
+    /// Ends a frame.
     pub fn end<R: Real>(&mut self, solver: &Solver<R>) -> Energy {
         let Some(input) = &self.input else { return Energy::default() };
         let (mut mass, mut moving) = (0.0, 0.0);
@@ -75,8 +74,8 @@ impl EnergyBudget {
             let weight = if settings.feels_gravity { input.gravity } else { Vector3::zeros() };
             solver.velocities(id, 1.0, &mut velocities);
             for (point, &m) in masses.iter().enumerate() {
-                let way = solver.point(id, point) - self.before[cloth][point];
-                self.supplied += finite_or_zero((weight * m + settings.local_force).dot(&way));
+                let displacement = solver.point(id, point) - self.before[cloth][point];
+                self.supplied += finite_or_zero((weight * m + settings.local_force).dot(&displacement));
                 let speed = velocities[point].map(f64::from);
                 moving += m * Vector3::from(speed).norm_squared() / 2.0;
                 mass += m;
@@ -86,15 +85,15 @@ impl EnergyBudget {
             self.supplied += finite_or_zero(solver.elastic_energy(input) - self.held).max(0.0);
         }
         let speed = (2.0 * moving / mass).sqrt();
-        let may = (2.0 * self.supplied.max(0.0) / mass).sqrt() + 2.0 * self.driver_speed + ROUNDING;
-        Energy { speed, share: (speed / may).powi(2) }
+        let bound = (2.0 * self.supplied.max(0.0) / mass).sqrt() + 2.0 * self.driver_speed + ROUNDING;
+        Energy { speed, ratio: (speed / bound).powi(2) }
     }
 }
 
-/// Speeds below this are taken for rounding, in m/s.
+/// Tolerance of speeds for rounding, in m/s.
 const ROUNDING: f64 = 1e-3;
 
-/// What the solver is to leave out brings nothing.
+/// Input that the solver ignores supplies no energy.
 fn finite_or_zero(work: f64) -> f64 {
     if work.is_finite() { work } else { 0.0 }
 }
@@ -106,7 +105,7 @@ fn places<R: Real>(solver: &Solver<R>, masses: &[Vec<f64>]) -> Vec<Vec<Vector3<f
     masses.iter().enumerate().map(of).collect()
 }
 
-/// The fastest of what moves by itself in a frame, in m/s: wind where there is air, colliders, held points.
+/// Maximum speed of the drivers in a frame, in m/s: wind where there is air, colliders, pins.
 fn driver_speed<R: Real>(input: &FrameInput, solver: &Solver<R>) -> f64 {
     let wind = |cloth: &nucleus_core::ClothFrame| {
         let solver = if cloth.feels_wind { input.wind } else { Vector3::zeros() };
@@ -122,16 +121,16 @@ fn driver_speed<R: Real>(input: &FrameInput, solver: &Solver<R>) -> f64 {
     finite.chain(colliders(input, solver)).fold(0.0, f64::max)
 }
 
-/// How fast each collider's fastest point goes.
+/// Maximum speed of the points of each collider, in m/s.
 fn colliders<R: Real>(input: &FrameInput, solver: &Solver<R>) -> Vec<f64> {
     let mut before = Vec::new();
     let fastest = |(id, collider): (u32, &nucleus_core::ColliderFrame)| {
         solver.collider_positions(nucleus_core::ColliderId(id), 1.0, &mut before);
-        let ways = collider.end.iter().zip(&before).map(|(end, start)| {
+        let speeds = collider.end.iter().zip(&before).map(|(end, start)| {
             let start = Vector3::from(start.map(f64::from));
             (end - start).norm() / input.duration
         });
-        ways.filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+        speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max)
     };
     (0..).zip(&input.colliders).map(fastest).collect()
 }

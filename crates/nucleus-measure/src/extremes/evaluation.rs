@@ -1,4 +1,4 @@
-//! How a row is judged: every figure against its bound.
+//! Evaluation of a row: every figure against its bound.
 
 use std::collections::HashMap;
 use std::io;
@@ -7,24 +7,25 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 
 use nucleus_core::InvalidInput;
+use nucleus_graph::checks::Check;
 use nucleus_graph::scene::Severity;
 
-use super::row::{Assertion, CostUnit, Expectation, Recovery, Side, StressCase};
+use super::row::{Assertion, CostUnit, Expectation, Recovery, Runs, Side, StressCase};
 use super::scene::TestScene;
 use super::timeline::Timeline;
 
-/// An extreme may cost this many times what the ordinary scene costs.
-pub const MOST_COST: f64 = 3.0;
+/// Largest cost relative to the baseline.
+pub const MAX_COST: f64 = 3.0;
 
-/// Energy is told to this share: the bound is exact, the sum over a frame's steps is not quite.
-const ENERGY: f64 = 1.01;
+/// Largest ratio of kinetic to supplied energy. The bound is exact; its sum over the steps of a frame is not.
+const MAX_ENERGY: f64 = 1.01;
 
 /// How long a run may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeBudget {
-    /// To its end; one that is too dear is given up after 20 s of the processor.
+    /// To its end, except that a run above the cost limit is aborted after 20 s of processor time.
     Long,
-    /// 2 s of the processor, after which it is judged by what it has shown.
+    /// At most 2 s of processor time.
     Short,
 }
 
@@ -37,55 +38,57 @@ impl TimeBudget {
     }
 }
 
-/// How often a run that is a little too dear is run again.
+/// Repetitions of a run that is slightly above the cost limit.
 const RERUNS: usize = 3;
 
-/// What a figure is about: the columns of the table.
+/// Subject of a measurement: the columns of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Whether it runs at all, and stays finite.
+    /// Whether it runs and stays finite.
     Runs,
-    /// Energy of motion over what was brought in.
+    /// Ratio of kinetic to supplied energy.
     Energy,
-    /// Speed after the cause has ended, in m/s.
+    /// Speed after the disturbance, in m/s.
     Speed,
-    /// 99 % strain after the cause has ended.
+    /// 99th percentile of strain after the disturbance.
     Strain,
-    /// Cost over nominal.
+    /// Cost over the baseline.
     Cost,
-    /// What was said, or was not.
+    /// Diagnostics.
     Words,
-    /// What only this row is about.
+    /// Specific to the row.
     Own,
 }
 
 /// A figure and its bound.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
-    /// What it is about.
+    /// Its subject.
     pub kind: Kind,
-    /// What is measured, with its unit.
+    /// The figure, with its unit.
     pub what: String,
-    /// What was found.
+    /// Its value.
     pub value: f64,
-    /// On which side of the limit it has to stay.
+    /// Side of the limit.
     pub side: Side,
     /// The limit.
     pub limit: f64,
 }
 
-/// What came of a row.
+/// Result of a row.
 #[derive(Debug, Clone)]
 pub struct Evaluation {
     /// The row.
     pub stress_case: StressCase,
     /// All figures, in the order of the table's columns.
     pub figures: Vec<Measurement>,
-    /// What was said about the scene, and counted by the solver.
+    /// Bounds on the motion after the disturbance, from the checks of the scene.
+    pub recovery: Option<Recovery>,
+    /// Diagnostics of the scene, and counters of the solver.
     pub reported: Vec<String>,
 }
 
-/// Nominal runs, each made once.
+/// Baseline runs, each executed once.
 #[derive(Debug, Default)]
 pub struct Baselines(Mutex<HashMap<String, Arc<OnceLock<Timeline>>>>);
 
@@ -94,7 +97,7 @@ impl Measurement {
         Self { kind, what: what.into(), value, side: Side::AtMost, limit }
     }
 
-    /// Whether it is on the right side of its limit. NaN never is.
+    /// Whether the value is within its limit. NaN never is.
     pub fn holds(&self) -> bool {
         match self.side {
             Side::AtMost => self.value <= self.limit,
@@ -104,41 +107,42 @@ impl Measurement {
 }
 
 impl Evaluation {
-    /// Whether everything holds.
+    /// Whether all figures are within their limits.
     pub fn holds(&self) -> bool {
         self.figures.iter().all(Measurement::holds)
     }
 
-    /// Whether everything holds but what it costs, which is a matter of the machine too.
+    /// The same without the cost, which depends on the machine.
     pub fn holds_at_any_cost(&self) -> bool {
         self.figures.iter().filter(|figure| figure.kind != Kind::Cost).all(Measurement::holds)
     }
 
-    /// The figure of a column, if the row has it.
+    /// The first figure of a kind, if the row has one.
     pub fn figure(&self, kind: Kind) -> Option<&Measurement> {
         self.figures.iter().find(|figure| figure.kind == kind)
     }
 
-    /// The figures that do not hold.
+    /// The figures outside their limits.
     pub fn failures(&self) -> impl Iterator<Item = &Measurement> {
         self.figures.iter().filter(|figure| !figure.holds())
     }
 }
 
-/// Puts an extreme to the test.
+/// Runs and evaluates a row.
 ///
 /// # Errors
-/// When a mesh cannot be written to a folder of its own.
+/// When a mesh cannot be written to a temporary folder.
 pub fn evaluate(
     stress_case: &StressCase,
     baselines: &Baselines,
     budget: TimeBudget,
 ) -> io::Result<Evaluation> {
-    let mut evaluation = Evaluation { stress_case: *stress_case, figures: Vec::new(), reported: Vec::new() };
-    // A solver that panics has failed its row, not the table.
+    let mut evaluation =
+        Evaluation { stress_case: *stress_case, figures: Vec::new(), recovery: None, reported: Vec::new() };
+    // A panic of the solver fails its row, not the table.
     let result = catch_unwind(AssertUnwindSafe(|| match &stress_case.expectation {
-        Expectation::InvalidInput { scene, names } => evaluation.refused(&scene(), names),
-        Expectation::Runs { .. } => evaluation.runs(baselines, budget),
+        Expectation::Rejected { scene, names } => evaluation.rejects(&scene(), names),
+        Expectation::Runs(runs) => evaluation.runs(runs, baselines, budget),
     }));
     match result {
         Ok(result) => result?,
@@ -147,15 +151,15 @@ pub fn evaluate(
     Ok(evaluation)
 }
 
-/// Puts all these to the test, on so many threads, and tells each outcome in the order of the rows.
+/// Evaluates rows on some threads and passes the results to `report` in the order of the rows.
 ///
 /// # Errors
-/// When a mesh cannot be written to a folder of its own, or `tell` fails.
+/// When a mesh cannot be written to a temporary folder, or `report` fails.
 pub fn evaluate_all<E: From<io::Error>>(
     rows: &[&StressCase],
     threads: usize,
     budget: TimeBudget,
-    tell: &mut dyn FnMut(Evaluation) -> Result<(), E>,
+    report: &mut dyn FnMut(Evaluation) -> Result<(), E>,
 ) -> Result<(), E> {
     let baselines = Baselines::default();
     let next = AtomicUsize::new(0);
@@ -167,7 +171,7 @@ pub fn evaluate_all<E: From<io::Error>>(
                 let done = done;
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     if done.send((row.name, evaluate(row, &baselines, budget))).is_err() {
-                        return; // nobody wants to know any more
+                        return; // the receiver stopped after an error
                     }
                 }
             });
@@ -182,67 +186,63 @@ pub fn evaluate_all<E: From<io::Error>>(
                 let Ok((name, evaluation)) = evaluations.recv() else { return Ok(()) };
                 waiting.insert(name, evaluation);
             };
-            tell(evaluation?)?;
+            report(evaluation?)?;
         }
         Ok(())
     })
 }
 
 impl Evaluation {
-    /// A scene that cannot run says so, and names what is wrong.
-    fn refused(&mut self, scene: &TestScene, names: &[&str]) -> io::Result<()> {
+    fn rejects(&mut self, scene: &TestScene, names: &[&str]) -> io::Result<()> {
         let compiled = scene.compile()?;
-        self.reported = compiled.words(Severity::Error);
-        // Folders of this run mean nothing to anyone.
-        self.reported.iter_mut().for_each(|said| *said = without_folder(said));
-        let said = self.reported.join("\n");
-        let missing = names.iter().filter(|name| !said.contains(**name)).count();
+        self.reported = compiled.messages(Severity::Error);
+        // The temporary folder of the scene is meaningless to readers.
+        self.reported.iter_mut().for_each(|message| *message = without_folder(message));
+        let messages = self.reported.join("\n");
+        let missing = names.iter().filter(|name| !messages.contains(**name)).count();
         let runs = usize::from(compiled.program.is_some());
         self.figures.push(Measurement::at_most(Kind::Runs, "runs after all", runs as f64, 0.0));
         self.figures.push(Measurement::at_most(Kind::Words, "not named in the error", missing as f64, 0.0));
         Ok(())
     }
 
-    fn runs(&mut self, baselines: &Baselines, budget: TimeBudget) -> io::Result<()> {
-        let Expectation::Runs { scene, baseline, cost, initial_energy, recovery, assertions, warnings } =
-            self.stress_case.expectation
-        else {
-            return Ok(());
-        };
-        let scene = scene();
+    fn runs(&mut self, runs: &Runs, baselines: &Baselines, budget: TimeBudget) -> io::Result<()> {
+        let scene = (runs.scene)();
         let compiled = scene.compile()?;
-        self.reported = compiled.words(Severity::Warning);
+        self.recovery = runs.recovery.or_else(|| recovery(&compiled.checks));
+        self.reported = compiled.messages(Severity::Warning);
         let Some(program) = &compiled.program else {
-            self.reported.extend(compiled.words(Severity::Error));
+            self.reported.extend(compiled.messages(Severity::Error));
             self.figures.push(Measurement::at_most(Kind::Runs, "does not run", 1.0, 0.0));
             return Ok(());
         };
-        let baseline = baselines.of(&baseline())?;
-        let is_cheap = |timeline: &Timeline| cost.of(timeline) / cost.of(&baseline) <= MOST_COST;
+        let baseline = baselines.of(&(runs.baseline)())?;
+        let cost = |timeline: &Timeline| runs.cost.of(timeline) / runs.cost.of(&baseline);
+        let is_cheap = |timeline: &Timeline| cost(timeline) <= MAX_COST;
         let should_continue = |timeline: &Timeline| {
             timeline.seconds < budget.seconds() || (budget == TimeBudget::Long && is_cheap(timeline))
         };
-        let run = || Timeline::of::<f32>(program, scene.inject, initial_energy, &should_continue);
+        let run = || Timeline::of::<f32>(program, scene.inject, runs.initial_energy, &should_continue);
         let mut timeline = run();
-        // A busy machine makes a run dear, though never cheap: what is a little too dear is run again.
-        let by_far = cost.of(&timeline) / cost.of(&baseline) > 2.0 * MOST_COST;
+        // A loaded machine only makes a run slower, so the fastest of several runs slightly above the limit counts.
+        let is_far_above = cost(&timeline) > 2.0 * MAX_COST;
         for _ in 0..RERUNS {
-            if by_far || is_cheap(&timeline) || budget == TimeBudget::Short {
+            if is_far_above || is_cheap(&timeline) || budget == TimeBudget::Short {
                 break;
             }
             timeline.seconds = timeline.seconds.min(run().seconds);
         }
         self.basics(&timeline);
-        // What has to hold in the end says nothing of a run that has not got there.
+        // Bounds on the end of a run say nothing about an aborted run.
         if timeline.aborted_after.is_none() {
-            self.recovers(&timeline, recovery);
-            self.assertions(&timeline, &baseline, assertions);
+            self.checks(&timeline, &compiled.checks);
+            self.assertions(&timeline, &baseline, runs.assertions);
         }
-        self.costs(&timeline, &baseline, cost);
-        self.warnings(warnings);
-        self.counts(&timeline);
+        self.cost(cost(&timeline), runs.cost);
+        self.warnings(runs.warnings);
+        self.counters(&timeline);
         if let Some(frame) = timeline.aborted_after {
-            self.reported.push(format!("given up after frame {frame}"));
+            self.reported.push(format!("aborted after frame {frame}"));
         }
         Ok(())
     }
@@ -250,31 +250,35 @@ impl Evaluation {
     fn basics(&mut self, timeline: &Timeline) {
         let bad = timeline.frames.iter().filter(|record| !record.report.finite).count();
         self.figures.push(Measurement::at_most(Kind::Runs, "frames not finite", bad as f64, 0.0));
-        let energy = timeline.most(|record| record.energy.share);
-        self.figures.push(Measurement::at_most(
-            Kind::Energy,
-            "energy over what was brought in",
-            energy,
-            ENERGY,
-        ));
+        let energy = timeline.max(|record| record.energy.ratio);
+        let what = "kinetic energy over supplied energy";
+        self.figures.push(Measurement::at_most(Kind::Energy, what, energy, MAX_ENERGY));
     }
 
-    fn recovers(&mut self, timeline: &Timeline, recovery: Option<Recovery>) {
-        let Some(Recovery { from, speed, strain }) = recovery else { return };
-        let fastest = timeline.most_from(from, |record| record.energy.speed);
-        let longest = timeline.most_from(from, |record| record.report.strain_99);
-        self.figures.push(Measurement::at_most(
-            Kind::Speed,
-            format!("speed from frame {from} on (m/s)"),
-            fastest,
-            speed,
-        ));
-        self.figures.push(Measurement::at_most(
-            Kind::Strain,
-            format!("99 % strain from frame {from} on"),
-            longest,
-            strain,
-        ));
+    /// The checks of the scene; [`Self::basics`] covers `finite`.
+    fn checks(&mut self, timeline: &Timeline, checks: &[Check]) {
+        if let Some(Recovery { from, speed, strain }) = self.recovery {
+            let fastest = timeline.max_from(from, |record| record.energy.speed);
+            let what = format!("speed from frame {from} on (m/s)");
+            self.figures.push(Measurement::at_most(Kind::Speed, what, fastest, speed));
+            let longest = timeline.max_from(from, |record| record.report.strain_99);
+            let what = format!("99 % strain from frame {from} on");
+            self.figures.push(Measurement::at_most(Kind::Strain, what, longest, strain));
+        }
+        for check in checks {
+            let (what, value) = match check.form().name {
+                "finite" | "restsBy" | "settledStretch99" => continue,
+                "noPenetration" => {
+                    let pairs = timeline.sum(|record| record.report.pairs_unresolved);
+                    ("pairs unresolved".to_owned(), pairs as f64)
+                }
+                "maxStretch99" => {
+                    ("99 % strain at any time".to_owned(), timeline.max(|record| record.report.strain_99))
+                }
+                _ => (format!("`{check}` is not evaluated here"), f64::NAN),
+            };
+            self.figures.push(Measurement::at_most(Kind::Own, what, value, check.limit().1));
+        }
     }
 
     fn assertions(&mut self, timeline: &Timeline, baseline: &Timeline, assertions: &[Assertion]) {
@@ -284,33 +288,23 @@ impl Evaluation {
         }
     }
 
-    fn costs(&mut self, timeline: &Timeline, baseline: &Timeline, cost: CostUnit) {
-        let ratio = cost.of(timeline) / cost.of(baseline);
-        self.figures.push(Measurement::at_most(
-            Kind::Cost,
-            format!("cost per {} over nominal", cost.per()),
-            ratio,
-            MOST_COST,
-        ));
+    fn cost(&mut self, ratio: f64, unit: CostUnit) {
+        let what = format!("cost per {} over baseline", unit.name());
+        self.figures.push(Measurement::at_most(Kind::Cost, what, ratio, MAX_COST));
     }
 
-    /// Everything that has to be said is said, and nothing else.
-    fn warnings(&mut self, warnings: &[&str]) {
-        let said = &self.reported;
-        let missing =
-            warnings.iter().filter(|warning| !said.iter().any(|said| said.contains(**warning))).count();
-        let expected = |said: &&String| warnings.iter().any(|warning| said.contains(warning));
-        let idle = said.iter().filter(|said| !expected(said)).count();
-        self.figures.push(Measurement::at_most(
-            Kind::Words,
-            "warnings missing or idle",
-            (missing + idle) as f64,
-            0.0,
-        ));
+    /// Every expected warning appears, and no other.
+    fn warnings(&mut self, expected: &[&str]) {
+        let reported = &self.reported;
+        let missing = expected.iter().filter(|part| !reported.iter().any(|text| text.contains(**part)));
+        let is_expected = |text: &&String| expected.iter().any(|part| text.contains(part));
+        let unexpected = reported.iter().filter(|text| !is_expected(text)).count();
+        let count = (missing.count() + unexpected) as f64;
+        self.figures.push(Measurement::at_most(Kind::Words, "missing or unexpected warnings", count, 0.0));
     }
 
-    /// What the solver counted, in words.
-    fn counts(&mut self, timeline: &Timeline) {
+    /// Counters of the solver, in words.
+    fn counters(&mut self, timeline: &Timeline) {
         let counts = [
             (timeline.sum(|record| record.report.sanitized.count), "inputs refused"),
             (timeline.sum(|record| record.report.pairs_reverted), "pairs reverted"),
@@ -321,23 +315,32 @@ impl Evaluation {
         let first =
             timeline.frames.iter().find_map(|record| Some((record.frame, record.report.sanitized.first?)));
         if let Some((frame, what)) = first {
-            self.reported.push(format!("frame {frame}: {}", named(what)));
+            self.reported.push(format!("frame {frame}: {}", input_name(what)));
         }
     }
 }
 
-/// A message without the folder that its files were in.
-fn without_folder(said: &str) -> String {
-    let folder = |word: &str| match word.rfind(['/', '\\']) {
+/// The bounds of `restsBy` and `settledStretch99`, which name the same frame.
+fn recovery(checks: &[Check]) -> Option<Recovery> {
+    let arguments = |name: &str| checks.iter().find(|check| check.form().name == name).map(Check::arguments);
+    match (arguments("restsBy")?, arguments("settledStretch99")?) {
+        (&[from, speed], &[_, strain]) => Some(Recovery { from: from as i64, speed, strain }),
+        _ => None,
+    }
+}
+
+/// A message with file names instead of paths.
+fn without_folder(message: &str) -> String {
+    let file_name = |word: &str| match word.rfind(['/', '\\']) {
         Some(end) if word.starts_with('`') => format!("`{}", &word[end + 1..]),
         _ => word.to_owned(),
     };
-    said.split(' ').map(folder).collect::<Vec<_>>().join(" ")
+    message.split(' ').map(file_name).collect::<Vec<_>>().join(" ")
 }
 
-/// What was refused, in words.
-fn named(what: InvalidInput) -> String {
-    match what {
+/// The rejected input, in words.
+fn input_name(input: InvalidInput) -> String {
+    match input {
         InvalidInput::ColliderPoint(_, point) => format!("point {} of the collider", point.0),
         InvalidInput::ColliderMotion(_) => "the collider's motion".to_owned(),
         InvalidInput::Pin(_, point) => format!("the pin of point {}", point.0),
@@ -349,10 +352,10 @@ fn named(what: InvalidInput) -> String {
 }
 
 impl Baselines {
-    /// The run of an ordinary scene: the cheaper of two.
+    /// The run of a baseline: the faster of two.
     fn of(&self, scene: &TestScene) -> io::Result<Timeline> {
         let mut runs = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let slot = Arc::clone(runs.entry(scene.text()).or_default());
+        let slot = Arc::clone(runs.entry(scene.text.clone()).or_default());
         drop(runs);
         let compiled = scene.compile()?;
         let timeline = slot.get_or_init(|| match &compiled.program {

@@ -24,7 +24,7 @@ mod timeline;
 
 pub use evaluation::{Baselines, Evaluation, Kind, Measurement, TimeBudget, evaluate, evaluate_all};
 pub use page::{failure_text, page};
-pub use row::{Assertion, CostUnit, Expectation, Recovery, Side, StressCase};
+pub use row::{Assertion, CostUnit, Expectation, Recovery, Runs, Side, StressCase};
 pub use rows::{named, rows};
 pub use scene::{CompiledScene, FaultInjection, TestScene};
 pub use timeline::{FrameRecord, Timeline};

@@ -1,4 +1,4 @@
-//! How a run went, frame by frame.
+//! Timeline of a run: figures of every frame, and initial and final positions.
 
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, Real, StepReport};
@@ -10,39 +10,39 @@ use super::scene::FaultInjection;
 use crate::clock::{Clock, Stopwatch};
 use crate::metrics::max_or_nan;
 
-/// What was seen at the end of a frame.
+/// Figures at the end of a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameRecord {
     /// The frame.
     pub frame: i64,
-    /// What the solver said.
+    /// Report of the solver.
     pub report: StepReport,
-    /// How fast it is, and how much energy it has.
+    /// Speed, and kinetic energy relative to its bound.
     pub energy: Energy,
 }
 
-/// A run, measured.
+/// A measured run.
 #[derive(Debug, Clone, Default)]
 pub struct Timeline {
-    /// Every frame that was solved.
+    /// All solved frames.
     pub frames: Vec<FrameRecord>,
-    /// Where the points of all cloths were when it began, in metres.
+    /// Initial positions of all cloths, in metres.
     pub start: Vec<Vec<Vector3<f64>>>,
-    /// Where they are in the end.
+    /// Final positions of all cloths, in metres.
     pub end: Vec<Vec<Vector3<f64>>>,
-    /// Processor time of all frames in seconds.
+    /// Processor time of all frames, in seconds.
     pub seconds: f64,
-    /// Time steps of all frames.
+    /// Time steps, over all frames.
     pub steps: f64,
-    /// Rows evaluated in all frames.
+    /// Evaluated rows, over all frames.
     pub evaluations: f64,
-    /// The frame after which it was given up, if it was.
+    /// The frame after which the run was aborted, if it was.
     pub aborted_after: Option<i64>,
 }
 
 impl Timeline {
-    /// Runs a program on one thread. `inject` changes what frames bring; `initial_energy` is what the start holds in joules,
-    /// besides what falls and is stretched. After each frame `should_continue` says whether there is to be another.
+    /// Runs a program on one thread. `inject` changes the input of frames. `initial_energy` is the energy of the initial
+    /// state in joules, besides potential and elastic energy. Aborts when `should_continue` returns false after a frame.
     pub fn of<R: Real>(
         program: &Program,
         inject: Option<FaultInjection>,
@@ -86,7 +86,7 @@ impl Timeline {
     }
 }
 
-/// How many points each cloth has.
+/// Number of points of each cloth.
 fn cloths(program: &Program) -> Vec<usize> {
     let cloths = program.objects().iter().filter(|object| matches!(object.kind, ObjectKind::Cloth(_)));
     cloths.map(|object| object.points).collect()
@@ -100,17 +100,17 @@ fn places<R: Real>(simulation: &Simulation<R>, points: &[usize]) -> Vec<Vec<Vect
 }
 
 impl Timeline {
-    /// The worst of a figure over all frames.
-    pub fn most(&self, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
+    /// Maximum of a figure over all frames.
+    pub fn max(&self, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
         self.frames.iter().map(figure).fold(0.0, max_or_nan)
     }
 
-    /// The worst of a figure from a frame on.
-    pub fn most_from(&self, frame: i64, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
+    /// Maximum of a figure from a frame on.
+    pub fn max_from(&self, frame: i64, figure: impl Fn(&FrameRecord) -> f64) -> f64 {
         self.frames.iter().filter(|record| record.frame >= frame).map(figure).fold(0.0, max_or_nan)
     }
 
-    /// A count over all frames.
+    /// Sum of a counter over all frames.
     pub fn sum(&self, figure: impl Fn(&FrameRecord) -> u64) -> u64 {
         self.frames.iter().map(figure).sum()
     }
@@ -120,27 +120,26 @@ impl Timeline {
         self.frames.iter().all(|record| record.report.finite && record.energy.speed.is_finite())
     }
 
-    /// The farthest that any point is in the end from where it began, in metres.
+    /// Largest displacement of a point from start to end, in metres.
     pub fn farthest_from_start(&self) -> f64 {
         farthest(&self.start, &self.end)
     }
 
-    /// The farthest that any point is in the end from where another run has it, in metres.
+    /// Largest distance of final positions from those of another run, in metres.
     pub fn farthest_from(&self, other: &Self) -> f64 {
         farthest(&self.end, &other.end)
     }
 
-    /// The farthest that the way of any point from its start is from its way in another run, in metres: the same
-    /// scene put elsewhere is to move in the same way.
+    /// Largest difference of displacements from those of another run, in metres: invariant under a translation of the scene.
     pub fn farthest_moves_from(&self, other: &Self) -> f64 {
-        let ways = |timeline: &Self| {
+        let displacements = |timeline: &Self| {
             let pairs = timeline.end.iter().flatten().zip(timeline.start.iter().flatten());
             vec![pairs.map(|(end, start)| end - start).collect::<Vec<_>>()]
         };
-        farthest(&ways(self), &ways(other))
+        farthest(&displacements(self), &displacements(other))
     }
 
-    /// The lowest point in the end, in metres.
+    /// Height of the lowest final position, in metres.
     pub fn lowest(&self) -> f64 {
         self.end.iter().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min)
     }

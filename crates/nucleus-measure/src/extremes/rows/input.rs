@@ -1,33 +1,39 @@
-//! What no scene can say and a program can: numbers that are none, in what a frame brings.
+//! Rows that inject faults into the input of frames: NaN, infinity and invalid durations, which a scene file cannot express.
 
 use nalgebra::Vector3;
 use nucleus_core::FrameInput;
 
-use super::{NO_UNRESOLVED_PAIRS, RUNS, Recovery, Runs, StressCase, at_least, at_most, banner, drape};
+use super::super::row::{Assertion, Expectation, Recovery, Runs, StressCase};
+use super::super::scene::TestScene;
+use super::scenes::{BANNER, banner, drape};
 
-/// A ball under a sheet that is carried slowly, so that every frame brings where its points are.
-const CARRIED: &str = "translate: keys([(0, (0, 0.3, 0)), (96, (0.1, 0.3, 0), linear)])";
-
-fn carried() -> super::TestScene {
-    drape("", "", CARRIED).scene(96)
+/// A sheet on a ball that moves slowly, so that every frame has positions of the collider.
+fn carried() -> TestScene {
+    drape()
+        .replace("translate: (0, 0.3, 0)", "translate: keys([(0, (0, 0.3, 0)), (96, (0.1, 0.3, 0), linear)])")
 }
 
 const RESTS: Option<Recovery> = Some(Recovery { from: 90, speed: 0.4, strain: 0.05 });
 
-/// How many things were refused.
+/// No pair of elements is unresolved.
+const NO_UNRESOLVED_PAIRS: Assertion = Assertion::at_most("pairs unresolved", 0.0, |run, _| {
+    run.sum(|record| record.report.pairs_unresolved) as f64
+});
+
+/// Minimum number of rejected inputs.
 macro_rules! refused {
     ($count:expr) => {
-        at_least("inputs refused", $count, |timeline, _| {
-            timeline.sum(|record| record.report.sanitized.count) as f64
+        Assertion::at_least("inputs refused", $count, |run, _| {
+            run.sum(|record| record.report.sanitized.count) as f64
         })
     };
 }
 
-/// How many more than these there were.
+/// Maximum number of rejected inputs.
 macro_rules! no_more_refused {
     ($count:expr) => {
-        at_most("inputs refused ", $count, |timeline, _| {
-            timeline.sum(|record| record.report.sanitized.count) as f64
+        Assertion::at_most("inputs refused ", $count, |run, _| {
+            run.sum(|record| record.report.sanitized.count) as f64
         })
     };
 }
@@ -36,9 +42,9 @@ pub static ROWS: [StressCase; 7] = [
     StressCase {
         name: "nan-in-a-collider",
         group: "Input",
-        what: "one point of a moving ball is not a number in frame 10",
-        expect: "The point stays where it was for that frame, and is named; the sheet never knows.",
-        expectation: Runs {
+        summary: "one point of a moving ball is NaN in frame 10",
+        expected: "The point stays where it was for that frame, and the report names it; the sheet is unaffected.",
+        expectation: Expectation::Runs(Runs {
             scene: || carried().inject(|frame, input| at_frame_10(frame, || collider_point(input, f64::NAN))),
             baseline: carried,
             recovery: RESTS,
@@ -46,38 +52,36 @@ pub static ROWS: [StressCase; 7] = [
                 NO_UNRESOLVED_PAIRS,
                 refused!(1.0),
                 no_more_refused!(1.0),
-                at_most("farthest from the run without it (m)", 0.05, |timeline, baseline| {
-                    timeline.farthest_from(baseline)
+                Assertion::at_most("farthest from the run without it (m)", 0.05, |run, baseline| {
+                    run.farthest_from(baseline)
                 }),
             ],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "infinity-in-a-collider",
         group: "Input",
-        what: "one point of a moving ball is infinitely far away in frame 10",
-        expect: "As above.",
-        expectation: Runs {
+        summary: "one point of a moving ball is at infinity in frame 10",
+        expected: "As above.",
+        expectation: Expectation::Runs(Runs {
             scene: || {
                 carried().inject(|frame, input| at_frame_10(frame, || collider_point(input, f64::INFINITY)))
             },
             baseline: carried,
             recovery: RESTS,
             assertions: &[NO_UNRESOLVED_PAIRS, refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "nan-in-all-of-a-collider",
         group: "Input",
-        what: "every point of a moving ball is not a number from frame 10 to frame 20",
-        expect: "The ball stands still for ten frames, and goes on to where it should be.",
-        expectation: Runs {
+        summary: "every point of a moving ball is NaN from frame 10 to frame 20",
+        expected: "The ball stands still for ten frames, then continues at its keyed position.",
+        expectation: Expectation::Runs(Runs {
             scene: || {
                 carried().inject(|frame, input| {
                     if (10..=20).contains(&frame) {
@@ -89,19 +93,18 @@ pub static ROWS: [StressCase; 7] = [
             baseline: carried,
             recovery: RESTS,
             assertions: &[NO_UNRESOLVED_PAIRS, refused!(11.0)],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "nan-in-a-pin",
         group: "Input",
-        what: "where a held point goes is not a number in frame 10",
-        expect: "The point stays where it was for that frame, and is named.",
-        expectation: Runs {
+        summary: "the target of a pinned point is NaN in frame 10",
+        expected: "The point stays where it was for that frame, and the report names it.",
+        expectation: Expectation::Runs(Runs {
             scene: || {
-                banner("", "").scene(96).inject(|frame, input| {
+                banner().inject(|frame, input| {
                     at_frame_10(frame, || {
                         if let Some(pin) = input.pins.first_mut() {
                             pin.start.x = f64::NAN;
@@ -114,23 +117,22 @@ pub static ROWS: [StressCase; 7] = [
             assertions: &[
                 refused!(1.0),
                 no_more_refused!(1.0),
-                at_most("farthest from the run without it (m)", 1e-9, |timeline, baseline| {
-                    timeline.farthest_from(baseline)
+                Assertion::at_most("farthest from the run without it (m)", 1e-9, |run, baseline| {
+                    run.farthest_from(baseline)
                 }),
             ],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "nan-in-gravity-and-wind",
         group: "Input",
-        what: "gravity and wind are not numbers in frame 10",
-        expect: "They are left out for that frame, and the report says so.",
-        expectation: Runs {
+        summary: "gravity and wind are NaN in frame 10",
+        expected: "They are ignored for that frame, and the report says so.",
+        expectation: Expectation::Runs(Runs {
             scene: || {
-                banner("", "").scene(96).inject(|frame, input| {
+                banner().inject(|frame, input| {
                     at_frame_10(frame, || {
                         input.gravity.y = f64::NAN;
                         input.wind.x = f64::NEG_INFINITY;
@@ -139,36 +141,32 @@ pub static ROWS: [StressCase; 7] = [
             },
             recovery: Some(Recovery { from: 84, speed: 0.2, strain: 0.02 }),
             assertions: &[refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "nan-in-attributes",
         group: "Input",
-        what: "resistances, thickness, friction and damping are not numbers in frame 10",
-        expect: "They take their defaults for that frame, and the report names the cloth.",
-        expectation: Runs {
-            scene: || {
-                drape("", "", "").scene(96).inject(|frame, input| at_frame_10(frame, || attributes(input)))
-            },
-            baseline: || drape("", "", "").scene(96),
+        summary: "resistances, thickness, friction and damping are NaN in frame 10",
+        expected: "They take their defaults for that frame, and the report names the cloth.",
+        expectation: Expectation::Runs(Runs {
+            scene: || drape().inject(|frame, input| at_frame_10(frame, || attributes(input))),
+            baseline: drape,
             recovery: RESTS,
             assertions: &[NO_UNRESOLVED_PAIRS, refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
     StressCase {
         name: "no-duration",
         group: "Input",
-        what: "a frame of no length, one of a negative and one that is no number",
-        expect: "They are passed over: all stays as it is.",
-        expectation: Runs {
+        summary: "frames of zero, negative and NaN duration",
+        expected: "They are skipped: the state does not change.",
+        expectation: Expectation::Runs(Runs {
             scene: || {
-                banner("", "").scene(96).inject(|frame, input| match frame {
+                banner().inject(|frame, input| match frame {
                     10 => input.duration = 0.0,
                     11 => input.duration = -1.0,
                     12 => input.duration = f64::NAN,
@@ -177,16 +175,15 @@ pub static ROWS: [StressCase; 7] = [
             },
             recovery: Some(Recovery { from: 84, speed: 0.2, strain: 0.02 }),
             assertions: &[refused!(3.0), no_more_refused!(3.0)],
-            ..RUNS
-        }
-        .expectation(),
+            ..BANNER
+        }),
         known_failure: None,
     },
 ];
 
-fn at_frame_10(frame: i64, plant: impl FnOnce()) {
+fn at_frame_10(frame: i64, inject: impl FnOnce()) {
     if frame == 10 {
-        plant();
+        inject();
     }
 }
 
