@@ -1,4 +1,4 @@
-//! How fast caches are written, read, sought in and played, and what recording and checkpoints cost a run.
+//! Speed of writing, reading, seeking and playing caches, and the cost of recording and checkpoints.
 
 mod player;
 mod recording;
@@ -13,27 +13,27 @@ use serde_json::Value;
 use super::table::{Table, figure};
 use target::Target;
 
-/// What stands above the tables.
+/// Text above the tables.
 pub const HEAD: &str = "# Caches
 
-**Write** and **read** are megabytes of positions in a second of one core, as they are in memory: byte shuffling, zstd, checksums and the system's own work are all in it.
-The sheet waves so that every float differs from frame to frame; the median of three runs counts.
-**Packed** is the file over that.
-**Seek** is the time to any frame in milliseconds by the clock: the median, and what 99 of 100 stay below.
-`cargo xtask book --only caches` makes this page anew; it takes 12 GB of disk for a while.
+**Write** and **read** are megabytes of uncompressed positions per second of one core, including byte shuffling, zstd, checksums and system calls.
+The sheet waves so that every float changes in every frame; figures are medians of three runs.
+**Packed** is the ratio of file size to uncompressed size.
+**Seek** is the wall time to a random frame in milliseconds: median and 99th percentile.
+`cargo xtask book --only caches` rewrites this page; it needs 12 GB of disk temporarily.
 ";
 
-/// Points along a side, frames, and whether it is packed hard.
+/// Points along a side, frames, and whether compression is `--compact`.
 const SHEETS: [(u32, u32, bool); 3] = [(129, 600, false), (129, 60, true), (1000, 40, false)];
 /// Frames of 129² points in 10 GB.
 const LARGE: u32 = 67_500;
 
-/// What is aimed at: megabytes a second written and read, milliseconds to a frame of a file of 10 GB.
+/// Targets: megabytes per second written and read, milliseconds per seek in a file of 10 GB.
 const WRITE: f64 = 300.0;
 const READ: f64 = 2000.0;
 const SEEK: f64 = 5.0;
 
-/// All tables of the page, first what was aimed at.
+/// All tables of the page, targets first.
 pub fn tables(root: &Path) -> anyhow::Result<String> {
     let folder = crate::target(root).join("caches");
     std::fs::create_dir_all(&folder)?;
@@ -69,8 +69,8 @@ fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)
             targets.push(Target::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
         }
     }
-    table.note("Memory is what recorder and reader add to the process at the most, meshes among it: a few frames, however long the run.");
-    table.note("The sheet's mesh is in the file as well: of 60 frames it is a larger share of what is packed than of 600.");
+    table.note("Memory is the peak that recorder and reader add to the process, meshes included: a few frames, independent of the length of the run.");
+    table.note("The file includes the mesh, which is a larger share of 60 frames than of 600.");
     Ok((table, targets))
 }
 
@@ -81,22 +81,22 @@ fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
         let times = [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
         table.row([name.to_owned()].into_iter().chain(times));
     };
-    row("seek, the system has forgotten the file", "cold_seek_ms");
-    row("seek, it has not", "seek_ms");
+    row("seek, cold file cache", "cold_seek_ms");
+    row("seek, warm file cache", "seek_ms");
     let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
-        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process that grew by {} MB.",
+        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s with {} MB of memory.",
         number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
     ));
     let cold = |k: usize| value["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
     let targets = vec![
-        Target::below("seek in 10 GB that the system has forgotten, median ms", SEEK, cold(0)),
+        Target::below("seek in 10 GB with a cold file cache, median ms", SEEK, cold(0)),
         Target::below("the same, 99 of 100", SEEK, cold(1)),
     ];
     Ok((table, targets))
 }
 
-/// Has a sheet written and read; what the example of the cache crate finds.
+/// Runs the throughput example of the cache crate; its results as JSON.
 fn example(
     root: &Path,
     folder: &Path,

@@ -1,13 +1,13 @@
-//! What we need for no more error than a peer.
+//! Our fastest run with no more error than a peer.
 
 use super::peers::Peer;
 use super::run::RunResult;
 use super::workload::Workload;
 
-/// A sheet that swings to less than this many metres is locked or damped, whatever its strain.
+/// A sheet that sags less, in metres, is locked or overdamped, whatever its strain.
 const LEAST_SAG: f64 = 0.95;
 
-/// With more error than this many percent a run is no cloth, and answers nobody, not even a peer that blew up.
+/// Runs above this error in percent never count, not even against a peer that diverged.
 const MOST_ERROR: f64 = 100.0;
 
 /// A peer and our answer to it.
@@ -15,14 +15,14 @@ const MOST_ERROR: f64 = 100.0;
 pub struct Comparison<'a> {
     /// The peer's figures.
     pub peer: &'a Peer,
-    /// Our fastest run of no more error; nothing where no run of ours gets there.
+    /// Our fastest run of no more error, if there is one.
     pub answer: Option<&'a RunResult>,
     /// Our run of least error.
     pub best: &'a RunResult,
 }
 
 impl<'a> Comparison<'a> {
-    /// Answers a peer with the runs of the same workload and size on one thread; nothing where there are none.
+    /// Compares a peer with the runs of the same workload and size on one thread; `None` without such runs.
     pub fn new(peer: &'a Peer, runs: &'a [RunResult]) -> Option<Self> {
         let same = |run: &&RunResult| {
             let spec = run.spec;
@@ -35,18 +35,18 @@ impl<'a> Comparison<'a> {
         Some(Self { peer, answer, best })
     }
 
-    /// How many times as long the peer takes; nothing where we do not get there.
+    /// Time of the peer over ours; `None` without a run of no more error.
     pub fn speedup(&self) -> Option<f64> {
         self.answer.map(|answer| self.peer.ms / answer.ms())
     }
 
-    /// Whether we get there, and sooner.
+    /// Whether such a run exists and is faster.
     pub fn is_ahead(&self) -> bool {
         self.speedup().is_some_and(|speedup| speedup > 1.0)
     }
 }
 
-/// The error that a workload is judged by, in percent.
+/// The error of a workload, in percent.
 pub fn error(run: &RunResult) -> f64 {
     100.0
         * match run.spec.workload {
@@ -59,7 +59,7 @@ fn no_worse(run: &RunResult, peer: &Peer) -> bool {
     let accuracy = &run.accuracy;
     let swings = run.spec.workload != Workload::Swing || accuracy.sag >= LEAST_SAG;
     let depths = [accuracy.depth, accuracy.worst_depth].map(|depth| 1e3 * depth);
-    // Where the peer's was not noted, ours has to be nil.
+    // If the peer's depth is unknown, ours must be zero.
     let allowed = peer.depth.unwrap_or_default();
     let is_drape = run.spec.workload == Workload::Drape;
     let shallow = !is_drape || (0..2).all(|k| depths[k] <= allowed[k]);
@@ -85,7 +85,7 @@ mod tests {
         depth: Some([1.0, 2.0]),
     };
 
-    /// A run of so many milliseconds, so much error in percent, and so deep in millimetres.
+    /// A run of `ms` milliseconds, `percent` error, and `depth` millimetres.
     fn run(ms: f64, percent: f64, depth: f64) -> RunResult {
         let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24 };
         let accuracy = Accuracy {
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fastest_run_of_no_more_error_answers() {
+    fn the_fastest_run_of_no_more_error_counts() {
         let runs = [run(1.0, 3.0, 0.0), run(2.0, 0.9, 0.0), run(3.0, 0.5, 0.0), run(1.5, 0.5, 4.0)];
         let comparison = Comparison::new(&PEER, &runs).unwrap();
         assert_eq!((comparison.speedup(), comparison.is_ahead()), (Some(4.0), true));
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peer_that_blew_up_is_not_answered_by_a_run_that_nearly_did() {
+    fn a_run_that_nearly_diverged_does_not_count_against_a_diverged_peer() {
         let peer = Peer { error: f64::INFINITY, ..PEER };
         let runs = [run(1.0, 300.0, 0.0), run(1.0, f64::INFINITY, 0.0), run(2.0, 50.0, 0.0)];
         assert_eq!(Comparison::new(&peer, &runs).unwrap().speedup(), Some(4.0));
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_locked_sheet_answers_nobody() {
+    fn a_locked_sheet_does_not_count() {
         let swing = |sag: f64| {
             let mut run = run(1.0, 0.1, 0.0);
             (run.spec.workload, run.accuracy.sag) = (Workload::Swing, sag);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_another_size_answer_nobody() {
+    fn runs_of_another_size_do_not_count() {
         assert!(Comparison::new(&Peer { size: 10, ..PEER }, &[run(1.0, 0.1, 0.0)]).is_none());
     }
 }

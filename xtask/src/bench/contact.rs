@@ -1,17 +1,17 @@
-//! Cloth that meets itself, other cloth, and a ball at 10 m/s: what it costs, and whether anything gets through,
-//! counted by an audit that shares nothing with the solver.
+//! Self-contact, contact of layers, and a ball at 10 m/s: cost and penetrations. An audit, which shares no code with the
+//! solver, counts the penetrations.
 //!
-//! Every run is done twice: once on the clock, once under audit. Both have to end with the same bits, so what is
-//! counted is what was timed.
+//! Every run is executed twice, once timed and once audited. Both must end with the same bits, so that the audited run is
+//! the timed one.
 //!
-//! | You want to know...                      | Read       |
+//! | Question                                 | Module     |
 //! |------------------------------------------|------------|
-//! | what is simulated                        | [`scene`]  |
-//! | one run                                  | [`spec`]  |
-//! | what other solvers need                  | [`peers`]  |
-//! | what is shown                            | [`tables`] |
-//! | what self-collision costs, and its growth | [`cost`]  |
-//! | the cloth that growth is measured on     | [`pile`]   |
+//! | the scenes                               | [`scene`]  |
+//! | one run                                  | [`mod@run`] |
+//! | figures of other solvers                 | [`peers`]  |
+//! | the tables                               | [`tables`] |
+//! | cost of self-collision, and its scaling  | [`cost`]   |
+//! | the cloth of the scaling test            | [`pile`]   |
 
 use anyhow::ensure;
 use nucleus_graph::audit::Closeness;
@@ -31,13 +31,13 @@ mod tables;
 use peers::{PEERS, Peer};
 use run::{RunResult, RunSpec};
 
-/// At how many evaluations in 1/24 s costs are compared.
+/// Evaluations per 1/24 s at which costs are compared.
 const TYPICAL: u32 = 48;
 
-/// How many times as fast as the fastest peer without crossings W3 has to be.
+/// Target speed-up of W3 over the fastest peer without penetrations.
 const LEAD: f64 = 5.0;
 
-/// How many times as fast two threads have to be, and where.
+/// Target speed-up of two threads, and its size.
 const PAIR_TARGET: f64 = 1.5;
 const PAIR_SIZE: u32 = 129;
 
@@ -69,17 +69,17 @@ impl Workload {
         }
     }
 
-    /// Evaluations in 1/24 s that are worth running. Five sheets take minutes a run.
+    /// Evaluations per 1/24 s to run. Five sheets take minutes per run.
     fn evaluations(self) -> &'static [u32] {
         if self == Self::Layers { &[48, 96] } else { &[24, 48, 96, 192] }
     }
 
-    /// Points along the side of a sheet, at most: five larger ones take an hour, and larger ones have no peer.
+    /// Maximum points along the side of a sheet: five larger ones take an hour, and no peer has larger ones.
     fn largest(self) -> u32 {
         if self == Self::Layers { 33 } else { 129 }
     }
 
-    /// The ball that the sheets meet.
+    /// The ball.
     fn ball(self) -> Ball {
         match self {
             Self::Folds | Self::Layers => BALL,
@@ -89,7 +89,7 @@ impl Workload {
     }
 
     fn closeness(self) -> Closeness {
-        // What flies through within a frame is only seen on the way.
+        // Only an audit of every step sees a passage within a frame.
         if self == Self::Shot { Closeness::Steps } else { Closeness::Frames }
     }
 }
@@ -97,7 +97,7 @@ impl Workload {
 /// Runs a workload at all sizes and settings on one thread, and at one setting on all.
 ///
 /// # Errors
-/// When a scene is refused, or a run does not repeat itself.
+/// When a scene is rejected, or repeated runs differ.
 pub fn run(workload: Workload, sizes: &[u32], threads: &[u32], report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for &size in sizes.iter().filter(|size| **size <= workload.largest()) {
@@ -114,12 +114,12 @@ pub fn run(workload: Workload, sizes: &[u32], threads: &[u32], report: &mut Repo
     }
     report.show(tables::own(workload, &runs));
     report.show(tables::by_stage(workload, &runs));
-    report.show(tables::beside_peers(workload, &runs));
+    report.show(tables::compared_with_peers(workload, &runs));
     check_target(workload, sizes, &runs, report);
     Ok(())
 }
 
-/// The same on each number of threads, which must change nothing. What is among the runs already is not run again.
+/// The same run on each number of threads, with identical results required. Reuses known runs.
 fn on_threads(spec: &RunSpec, threads: &[u32], known: &[RunResult]) -> anyhow::Result<Vec<RunResult>> {
     let run = |&threads: &u32| {
         let same = |run: &&RunResult| run.spec == *spec && run.timed.threads == threads;
@@ -134,7 +134,7 @@ fn on_threads(spec: &RunSpec, threads: &[u32], known: &[RunResult]) -> anyhow::R
     Ok(runs)
 }
 
-/// Our fastest run of no more error and nothing inside anything.
+/// Our fastest run of no more error and without penetrations.
 fn answer<'a>(peer: &Peer, runs: &'a [RunResult]) -> Option<&'a RunResult> {
     let clean = |run: &&RunResult| run.audit.is_some_and(|report| report.found() == 0);
     let good = |run: &&RunResult| {
@@ -157,7 +157,7 @@ fn check_thread_targets(runs: &[RunResult], report: &mut Report) {
 
 fn check_target(workload: Workload, sizes: &[u32], runs: &[RunResult], report: &mut Report) {
     let found: u64 = runs.iter().filter_map(|run| run.audit).map(|report| report.found()).sum();
-    let target = format!("{}: nothing passes through anything, at any setting", workload.name());
+    let target = format!("{}: no penetration at any setting", workload.name());
     report.check_target(target, format!("{found} found"), found == 0);
     for &size in sizes {
         let clean =
@@ -165,7 +165,7 @@ fn check_target(workload: Workload, sizes: &[u32], runs: &[RunResult], report: &
         let Some(best) = clean.min_by(|a, b| a.ms.total_cmp(&b.ms)) else { continue };
         let speedup = answer(best, runs).map(|run| best.ms / run.ms());
         let target = format!("{} {size}²: at least {LEAD} times as fast as {}", workload.name(), best.name);
-        let found = speedup.map_or("no clean run of so little stretch".to_owned(), |speedup| {
+        let found = speedup.map_or("no run without penetration at this stretch".to_owned(), |speedup| {
             format!("{} times", figure(speedup))
         });
         report.check_target(target, found, speedup.is_some_and(|speedup| speedup >= LEAD));

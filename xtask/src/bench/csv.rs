@@ -1,4 +1,4 @@
-//! Every run as a line of comma-separated values.
+//! All runs as comma-separated values.
 
 use std::fmt::Write;
 use std::fs;
@@ -9,7 +9,7 @@ use anyhow::Context;
 use super::run::RunResult;
 use nucleus_measure::clock::STAGES;
 
-/// Writes all runs; times in milliseconds a frame, strains as fractions, lengths in metres.
+/// Writes all runs; times in milliseconds per frame, strains as fractions, lengths in metres.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -45,7 +45,7 @@ fn text(runs: &[RunResult]) -> String {
         ];
         text.extend([named, ",".to_owned(), set]);
         for number in times.iter().chain(&stages).chain(&errors) {
-            // Writing to a string cannot fail.
+            // Writing to a string does not fail.
             let _ = write!(text, ",{number}");
         }
         let _ = writeln!(text, ",{:016x}", run.hash);

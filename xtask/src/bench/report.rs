@@ -1,16 +1,16 @@
-//! What is kept of a bench: every run, every table, and which targets were met.
+//! Results of a bench: runs, tables, and targets.
 
 use super::run::RunResult;
 use super::table::Table;
 
-/// A target, and whether it was met.
+/// A target and its result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TargetResult {
-    /// What was to be shown.
+    /// The target.
     pub target: String,
     /// The figure.
     pub found: String,
-    /// Whether that is good enough.
+    /// Whether it is met.
     pub is_met: bool,
 }
 
@@ -21,31 +21,31 @@ impl TargetResult {
     }
 }
 
-/// Everything that was found.
+/// All results.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
-    /// The machine, a line a fact.
+    /// Description of the machine, by line.
     pub machine: Vec<String>,
     /// Every run.
     pub runs: Vec<RunResult>,
-    /// Every table that was shown.
+    /// All printed tables.
     pub tables: Vec<Table>,
-    /// Every target that was looked at.
+    /// All checked targets.
     pub targets: Vec<TargetResult>,
 }
 
 impl Report {
-    /// Nothing found yet on this machine.
+    /// An empty report of this machine.
     pub fn new(machine: Vec<String>) -> Self {
         machine.iter().for_each(|line| println!("{line}"));
         Self { machine, ..Self::default() }
     }
 
-    /// Keeps a run, and says that it is done.
+    /// Adds a run, and prints a line.
     pub fn keep(&mut self, run: &RunResult) {
         let spec = run.spec;
         eprintln!(
-            "{} {}², {}, threads {}: {:.3} ms a frame, {:016x}",
+            "{} {}², {}, threads {}: {:.3} ms per frame, {:016x}",
             spec.workload,
             spec.size,
             spec.setting,
@@ -56,7 +56,7 @@ impl Report {
         self.runs.push(run.clone());
     }
 
-    /// Prints a table and keeps it; one without rows is passed over.
+    /// Prints and adds a table, unless it is empty.
     pub fn show(&mut self, table: Table) {
         if !table.rows.is_empty() {
             print!("\n{table}");
@@ -64,12 +64,12 @@ impl Report {
         }
     }
 
-    /// Notes whether a target was met.
+    /// Adds the result of a target.
     pub fn check_target(&mut self, target: impl Into<String>, found: String, is_met: bool) {
         self.targets.push(TargetResult { target: target.into(), found, is_met });
     }
 
-    /// Which targets were met.
+    /// Table of all targets.
     pub fn target_table(&self) -> Table {
         let mut table = Table::new("Targets", &["target", "", "found"]);
         for target in &self.targets {

@@ -1,4 +1,4 @@
-//! One workload run at one setting, timed and measured.
+//! A run of a workload at a setting, timed and measured.
 
 use anyhow::{Context, ensure};
 use nucleus_core::{FrameInput, Solver};
@@ -7,54 +7,54 @@ use super::accuracy::{Accuracy, Meter};
 use super::workload::{Scene, Setting, Workload};
 use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
-/// What is to be run.
+/// Specification of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunSpec {
     /// The workload.
     pub workload: Workload,
     /// Points along each side of the cloth.
     pub size: u32,
-    /// What is set.
+    /// The setting.
     pub setting: Setting,
-    /// Cores to use.
+    /// Threads.
     pub threads: u32,
     /// Frames to run.
     pub frames: u32,
 }
 
-/// What came of it.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunResult {
-    /// What was run.
+    /// Its specification.
     pub spec: RunSpec,
-    /// Time in the stepping calls alone, per frame.
+    /// Time in the stepping calls, per frame.
     pub timing: Timing,
     /// Time of the median frame.
     pub median_frame: Timing,
     /// Seconds to build the solver.
     pub build: f64,
-    /// The share of each of [`STAGES`] in the time.
+    /// Share of each of [`STAGES`] in the time.
     pub shares: [f64; STAGES.len()],
     /// Link evaluations in a frame.
     pub evaluations: f64,
-    /// Runs of the broad phase in a frame.
+    /// Broad-phase queries per frame.
     pub queries: f64,
-    /// Pairs of elements that were not kept apart, over all time steps.
+    /// Pairs of elements unresolved at the end of a time step, over all time steps.
     pub pairs_unresolved: u64,
-    /// How wrong it is.
+    /// Its errors.
     pub accuracy: Accuracy,
-    /// The solver's fingerprint after the last frame.
+    /// Hash of the last state.
     pub hash: u64,
 }
 
 impl RunResult {
-    /// Milliseconds a frame: of the processor with one thread, which others on the machine disturb least; on the
-    /// wall with more, where waiting counts.
+    /// Milliseconds per frame: processor time with one thread, which load disturbs least; wall time with more, which includes
+    /// waiting.
     pub fn ms(&self) -> f64 {
         1e3 * self.of(&self.timing)
     }
 
-    /// Whichever clock [`RunResult::ms`] goes by.
+    /// The clock of [`RunResult::ms`].
     pub fn of(&self, timing: &Timing) -> f64 {
         if self.spec.threads == 1 { timing.processor } else { timing.wall }
     }
@@ -74,7 +74,7 @@ impl RunSpec {
     /// Runs `repeat` times and returns the run of the median time.
     ///
     /// # Errors
-    /// When the solver refuses the scene, or two runs do not end with the same bits.
+    /// When the solver rejects the scene, or two runs differ.
     pub fn run(&self, repeat: u32) -> anyhow::Result<RunResult> {
         let runs: anyhow::Result<Vec<RunResult>> = (0..repeat.max(1)).map(|_| self.run_once()).collect();
         median(runs?)
@@ -83,7 +83,7 @@ impl RunSpec {
     /// Runs once.
     ///
     /// # Errors
-    /// When the solver refuses the scene.
+    /// When the solver rejects the scene.
     pub fn run_once(&self) -> anyhow::Result<RunResult> {
         let Scene { sheet, builder, frame } = self.workload.scene(self.size, &self.setting)?;
         let mut meter = Meter::new(&sheet, self.size, self.workload.ball());
@@ -117,10 +117,10 @@ impl RunSpec {
     }
 }
 
-/// The run of the median time; all have to end with the same bits.
+/// The run of the median time; all must have the same hash.
 ///
 /// # Errors
-/// When there are none, or they do not.
+/// When there are none, or they differ.
 pub fn median(mut runs: Vec<RunResult>) -> anyhow::Result<RunResult> {
     same_bits(&runs)?;
     runs.sort_by(|a, b| a.ms().total_cmp(&b.ms()));
@@ -194,13 +194,13 @@ mod tests {
     }
 
     #[test]
-    fn links_are_counted_once_for_each_evaluation() {
+    fn links_count_once_per_evaluation() {
         // 9 by 9 points in quads: 8 links in each of 9 rows and 9 columns, 6 times.
         assert_eq!(small(Workload::Hang, 1).evaluations, 2.0 * 8.0 * 9.0 * 6.0);
     }
 
     #[test]
-    fn the_shares_of_the_stages_make_a_whole() {
+    fn the_shares_of_the_stages_sum_to_one() {
         let run = small(Workload::Drape, 1);
         assert!((run.shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         assert!(run.share("relax") > 0.0 && run.share("collide") > 0.0);

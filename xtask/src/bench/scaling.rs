@@ -1,4 +1,4 @@
-//! What a link costs, and how time grows with points and shrinks with threads.
+//! Cost of a link evaluation, and scaling with points and threads.
 
 use super::report::Report;
 use super::run::{RunResult, RunSpec, median, same_bits};
@@ -13,24 +13,24 @@ const fn cloth(evaluations: u32) -> Setting {
 /// Its stiffness in N/m.
 const STIFFNESS: f64 = 10_000.0;
 
-/// Nanoseconds that an evaluation of a link may take, at [`LINK_SIZE`] and on one core.
+/// Target time of a link evaluation in nanoseconds, on one core at [`LINK_SIZE`].
 const LINK_TARGET: f64 = 3.5;
 const LINK_SIZE: u32 = 129;
 
-/// Points along the side of the sheets that growth is measured on.
+/// Points along the side of the sheets of the scaling test.
 const SCALE: [u32; 4] = [129, 257, 513, 1000];
 
-/// What may be added to the time per point by chance before growth counts as worse than linear.
+/// Tolerance of linear scaling.
 const CHANCE: f64 = 1.05;
 
-/// How many times as fast two threads have to be, and where.
+/// Target speed-up of two threads, and its size.
 const PAIR_TARGET: f64 = 1.6;
 const PAIR_SIZE: u32 = 257;
 
-/// How far a hanging sheet sags, against what its stiffness says: rho g H² / 2K.
+/// Sag of a hanging sheet, compared with ρ g H² / 2K.
 ///
 /// # Errors
-/// When the solver refuses a scene or repeats itself with other bits.
+/// When the solver rejects a scene, or repeated runs differ.
 pub fn sag(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let exact = DENSITY * GRAVITY / (2.0 * STIFFNESS);
     let head = ["points", "evaluations", "ms", "sag mm", "error mm", "hash"];
@@ -54,7 +54,7 @@ pub fn sag(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
 /// Nanoseconds for one evaluation of one link.
 ///
 /// # Errors
-/// When the solver refuses a scene or repeats itself with other bits.
+/// When the solver rejects a scene, or repeated runs differ.
 pub fn link_cost(sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let head = ["points", "ms", "link evaluations", "ns each, relax", "ns each, all stages", "hash"];
     let mut table = Table::new("Hanging sheet: the cost of a link, one thread", &head);
@@ -78,10 +78,10 @@ pub fn link_cost(sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Res
 /// Time per point up to a million points.
 ///
 /// # Errors
-/// When the solver refuses a scene or repeats itself with other bits.
+/// When the solver rejects a scene, or repeated runs differ.
 pub fn scale(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let head = ["points", "ms", "ms per thousand points", "to the first", "build s", "hash"];
-    let mut table = Table::new("Hanging sheet: growth, one thread, 24 evaluations", &head);
+    let mut table = Table::new("Hanging sheet: scaling, one thread, 24 evaluations", &head);
     let mut first = None;
     for size in SCALE {
         let full = RunSpec::full(Workload::Hang, size, cloth(24));
@@ -107,7 +107,7 @@ pub fn scale(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
 /// The same run on several numbers of threads, which take turns so that a busy moment hits all of them.
 ///
 /// # Errors
-/// When the solver refuses a scene, or threads change a bit.
+/// When the solver rejects a scene, or threads change a bit.
 pub fn threads(sizes: &[u32], threads: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let head = ["workload", "points", "threads", "wall ms", "times as fast", "hash"];
     let mut table = Table::new("Threads, 48 evaluations", &head);

@@ -1,4 +1,4 @@
-//! A scene run on the clock, as an artist would run it.
+//! A timed run of a scene through the graph crate, as the command runs it.
 
 use nucleus_core::StateView;
 use nucleus_graph::Simulation;
@@ -7,32 +7,32 @@ use nucleus_graph::compile::Program;
 use super::memory;
 use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
-/// What came of it; what is not said to be otherwise is of a frame in the mean.
+/// Results; means per frame unless stated otherwise.
 #[derive(Debug, Clone)]
 pub struct Timed {
     pub threads: u32,
-    /// Frames that were run.
+    /// Number of frames.
     pub frames: u32,
-    /// Seconds in the stepping calls.
+    /// Time in the stepping calls.
     pub timing: Timing,
-    /// The share of each of [`STAGES`] in the time.
+    /// Share of each of [`STAGES`] in the time.
     pub shares: [f64; STAGES.len()],
-    /// Runs of the broad phase.
+    /// Broad-phase queries.
     pub queries: f64,
-    /// Pairs that could touch, over all runs of the broad phase.
+    /// Candidate pairs, over all broad-phase queries.
     pub pairs: f64,
-    /// The same in the frame that had most.
+    /// Maximum of candidate pairs in a frame.
     pub most_pairs: u64,
-    /// Contacts that pushed, over all passes.
+    /// Active contacts, over all passes.
     pub contacts: f64,
-    /// The most memory that the process held, in bytes; nothing where the system does not tell.
+    /// Peak memory of the process in bytes; `None` on systems that do not report it.
     pub memory: Option<u64>,
-    /// All bits of the state after the last frame.
+    /// Hash of the last state.
     pub hash: u64,
 }
 
 impl Timed {
-    /// Runs a scene, the first `frames` of it or all, and shows the state after each to `seen`.
+    /// Runs a scene, the first `frames` of it or all, and passes the state after each frame to `seen`.
     pub fn run(
         program: &Program,
         threads: u32,
@@ -59,20 +59,20 @@ impl Timed {
             seen(run.state());
         }
         let hash = state_hash(&run);
-        Self { shares: stages.shares(), memory: memory::most(), hash, ..all.in_the_mean() }
+        Self { shares: stages.shares(), memory: memory::peak(), hash, ..all.in_the_mean() }
     }
 
-    /// Milliseconds: of the processor with one thread, on the wall with more.
+    /// Milliseconds: processor time with one thread, wall time with more.
     pub fn ms(&self) -> f64 {
         1e3 * if self.threads == 1 { self.timing.processor } else { self.timing.wall }
     }
 
-    /// The most memory that the process held, in megabytes.
+    /// Peak memory in megabytes.
     pub fn megabytes(&self) -> f64 {
         self.memory.map_or(f64::NAN, |bytes| bytes as f64 / 1e6)
     }
 
-    /// Nothing run yet.
+    /// Before the first frame.
     fn begun(threads: u32) -> Self {
         Self {
             threads,
@@ -100,7 +100,7 @@ impl Timed {
     }
 }
 
-/// All bits of the state of a run, of all its nuclei.
+/// Hash of the state of a run, over all its nuclei.
 pub fn state_hash(run: &Simulation<f32>) -> u64 {
     let mut solvers = run.solvers().map(|solver| solver.state_hash());
     let first = solvers.next().unwrap_or_default();

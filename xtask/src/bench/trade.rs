@@ -1,4 +1,4 @@
-//! Time against error: a workload at many settings, beside what other solvers need.
+//! Time against error: a workload at many settings, compared with other solvers.
 
 use super::comparison::{self, Comparison};
 use super::peers::{PEERS, SOURCE};
@@ -8,13 +8,13 @@ use super::table::{Table, figure};
 use super::workload::{Setting, Workload};
 use nucleus_measure::clock::STAGES;
 
-/// The evaluations at which it is shown where the time goes.
+/// Evaluations of the table by stage.
 const TYPICAL: u32 = 48;
 
-/// Runs a workload at all sizes and settings, one thread.
+/// Runs a workload at all sizes and settings on one thread.
 ///
 /// # Errors
-/// When the solver refuses a scene or repeats itself with other bits.
+/// When the solver rejects a scene, or repeated runs differ.
 pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for &size in sizes {
@@ -36,7 +36,7 @@ pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) 
     Ok(())
 }
 
-/// What is worth running. Large sheets need more evaluations before anything is right, and take too long at most.
+/// Settings to run. Large sheets converge only with many evaluations, and the largest counts take too long.
 fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     let evaluations: &[u32] = match (workload, size) {
         (Workload::Drape, 257..) => &[48, 96],
@@ -55,8 +55,8 @@ fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     variants.iter().flat_map(each).filter(is_worth_it).collect()
 }
 
-/// Stiff cloth wants many evaluations before its stiffness is felt; soft cloth has its own strain, which more of
-/// them do not lessen. What bending costs is seen at two settings.
+/// Stiff cloth needs many evaluations to converge; soft cloth has physical strain that more of them do not reduce. Bending
+/// is measured at two settings.
 fn is_worth_it(setting: &Setting) -> bool {
     let Setting { resistance, bend, evaluations } = *setting;
     let fits = match resistance {
@@ -70,7 +70,7 @@ fn is_worth_it(setting: &Setting) -> bool {
 /// Our own runs.
 fn own_table(workload: Workload, runs: &[RunResult]) -> Table {
     let errors: &[&str] = match workload {
-        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "searches", "unresolved"],
+        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "queries", "unresolved"],
         _ => &["strain %", "stretch %", "largest %", "sag m", "energy J/kg"],
     };
     let head: Vec<&str> =
@@ -103,7 +103,7 @@ fn stage_table(workload: Workload, runs: &[RunResult]) -> Table {
         (0..STAGES.len()).filter(|&k| typical.iter().any(|run| run.shares[k] > 0.002)).collect();
     let names = used.iter().map(|&k| STAGES[k].1);
     let head: Vec<&str> = ["points", "ms"].into_iter().chain(names).chain(["setting", "hash"]).collect();
-    let mut table = Table::new(&format!("{workload}: milliseconds a frame by stage"), &head);
+    let mut table = Table::new(&format!("{workload}: milliseconds per frame by stage"), &head);
     for run in typical {
         let stages = used.iter().map(|&k| figure(run.ms() * run.shares[k]));
         let cells = [format!("{}²", run.spec.size), figure(run.ms())];
@@ -113,10 +113,10 @@ fn stage_table(workload: Workload, runs: &[RunResult]) -> Table {
     table
 }
 
-/// The peers, each with our answer.
+/// The peers, each with our fastest run of no more error.
 fn contest_table(workload: Workload, comparisons: &[Comparison]) -> Table {
     let head = ["points", "peer", "its ms", "its error %", "our ms", "our error %", "", "our setting"];
-    let mut table = Table::new(&format!("{workload}: what we need for no more error than a peer"), &head);
+    let mut table = Table::new(&format!("{workload}: fastest run with no more error than each peer"), &head);
     for comparison in comparisons {
         let peer = comparison.peer;
         let name = [peer.name, peer.version, peer.setting].join(" ");

@@ -8,7 +8,7 @@ use crate::trade::run::Run;
 
 pub const LEFT_STRETCH: Experiment = Experiment {
     claim: "N2.2-5",
-    says: "Stretch left by the last collision goes away with more substeps or more collision iterations.",
+    says: "Stretch that remains after the last collision pass falls with more substeps or more collision iterations.",
     scene: "A ball is driven into a sheet at 0.9 m/s; stretch resistance 80.",
     run: || vec![left_stretch(Reading::Classic), left_stretch(Reading::Physical)],
 };
@@ -16,7 +16,7 @@ pub const LEFT_STRETCH: Experiment = Experiment {
 pub const SLIGHTLY_ABOVE: Experiment = Experiment {
     claim: "N2.4-15",
     says: "Collision iterations slightly above substeps are the most efficient.",
-    scene: "The same, at 8 substeps and stretch resistance 80; efficient is what has the least strain times milliseconds.",
+    scene: "The same, at 8 substeps and stretch resistance 80; efficiency is measured by strain times milliseconds.",
     run: || vec![slightly_above(), no_passes()],
 };
 
@@ -27,7 +27,7 @@ pub const A_TENTH: Experiment = Experiment {
     run: || vec![a_tenth(), no_passes()],
 };
 
-/// What a table of strains says of a count.
+/// Column heads of the tables.
 const HEAD: [&str; 4] = ["substeps", "collision iterations", "ms", "strain, 99 %"];
 
 fn row(run: &Run) -> Vec<String> {
@@ -40,7 +40,7 @@ fn row(run: &Run) -> Vec<String> {
     ]
 }
 
-/// Counts that are tried, each twice the one before.
+/// Tested counts.
 const COUNTS: [u32; 5] = [1, 2, 4, 8, 16];
 
 fn left_stretch(reading: Reading) -> ClaimResult {
@@ -59,7 +59,7 @@ fn left_stretch(reading: Reading) -> ClaimResult {
         let [few, many] =
             [24.0, 384.0].map(|evaluations| strain(&drape(&Parameters { evaluations, ..parameters })));
         reason += &format!(
-            "; what lessens it is the budget: {} at 24 evaluations, {} at 384",
+            "; a larger budget reduces it: {} at 24 evaluations, {} at 384",
             percent(few),
             percent(many)
         );
@@ -72,11 +72,11 @@ fn left_stretch(reading: Reading) -> ClaimResult {
     }
 }
 
-/// Collision iterations that are tried at 8 substeps, and which of them are slightly above.
+/// Collision iterations at 8 substeps, and the index of the one slightly above 8.
 const PASSES: [u32; 7] = [2, 4, 8, 10, 16, 32, 64];
 const SLIGHTLY: usize = 3;
 
-/// Products of strain and time that are nearer than this are the same: times are not more exact.
+/// Relative tolerance of products of strain and time, from the accuracy of times.
 const TIE: f64 = 1.1;
 
 fn slightly_above() -> ClaimResult {
@@ -139,7 +139,7 @@ fn a_tenth() -> ClaimResult {
     }
 }
 
-/// Read as Physical, every evaluation has a collision pass of its own: the attribute has no say.
+/// Read as Physical, every evaluation has its own collision pass, and the attribute has no effect.
 fn no_passes() -> ClaimResult {
     let hashes = [1, 4, 64].map(|passes| {
         drape(&Parameters { collision_iterations: passes, ..Parameters::new(Reading::Physical) }).hash
@@ -149,7 +149,7 @@ fn no_passes() -> ClaimResult {
         reading: "Physical",
         status: if same { Status::DoesNotApply } else { Status::DoesNotHold },
         reason: match same {
-            true => "every evaluation has a collision pass of its own; 1, 4 and 64 collision iterations end with the same bits"
+            true => "every evaluation has its own collision pass; 1, 4 and 64 collision iterations end with the same bits"
                 .to_owned(),
             false => "collision iterations change the result".to_owned(),
         },
@@ -186,13 +186,13 @@ mod tests {
 
     // EVIDENCE: N2.4-16  far fewer collision iterations than a tenth of the stretch resistance cost much strain
     #[test]
-    fn collision_iterations_want_to_be_a_tenth_of_the_stretch_resistance() {
+    fn a_tenth_of_the_stretch_resistance_is_enough_collision_iterations() {
         let result = a_tenth();
         assert_eq!(result.status, Status::Holds, "{}", result.reason);
     }
 
     #[test]
-    fn read_as_physical_collision_iterations_change_not_a_bit() {
+    fn read_as_physical_collision_iterations_have_no_effect() {
         assert_eq!(no_passes().status, Status::DoesNotApply);
     }
 }

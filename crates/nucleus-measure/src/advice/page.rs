@@ -1,11 +1,11 @@
-//! The experiments as a page.
+//! The experiments as a Markdown page.
 
 use std::fmt::Write;
 
 use super::{ClaimResult, Experiment};
 use crate::trade::Reading;
 
-/// What a reading is called on the page.
+/// Name of a reading on the page.
 pub(super) fn name(reading: Reading) -> &'static str {
     match reading {
         Reading::Classic => "Classic",
@@ -13,17 +13,14 @@ pub(super) fn name(reading: Reading) -> &'static str {
     }
 }
 
-/// The page in Markdown. `machine` is what the times were taken on.
+/// The page in Markdown; `machine` describes the machine of the times.
 pub fn page(results: &[(Experiment, Vec<ClaimResult>)], machine: &str) -> String {
     let mut text = format!(
-        "# The paper's advice, tried\n\nThe white paper on Nucleus gives advice on settings; [`claims.md`](claims.md) numbers it.\n\
-         Here each piece of it is an experiment on this solver, for both readings of a resistance.\n\
-         Counts and strains are the same on every machine; milliseconds are processor time of one core.\n\
-         `cargo xtask book` makes this page anew.\n\n{machine}\n\n| Claim | | Classic | Physical |\n|---|---|---|---|\n"
+        "# The paper's advice, tested\n\nThe white paper on Nucleus gives advice on settings; [`claims.md`](claims.md) numbers it.\nEach piece of advice is an experiment on this solver, for both readings of a resistance.\nCounts and strains are the same on every machine; milliseconds are processor time of one core.\n`cargo xtask book` rewrites this page.\n\n{machine}\n\n| Claim | | Classic | Physical |\n|---|---|---|---|\n"
     );
     for (experiment, results) in results {
         let status = |reading: &str| {
-            results.iter().find(|f| f.reading == reading).map_or("not tried", |f| f.status.words())
+            results.iter().find(|f| f.reading == reading).map_or("not tested", |f| f.status.words())
         };
         let Experiment { claim, says, .. } = experiment;
         put(&mut text, format_args!("| {claim} | {says} | {} | {} |", status("Classic"), status("Physical")));
@@ -44,7 +41,7 @@ pub fn page(results: &[(Experiment, Vec<ClaimResult>)], machine: &str) -> String
 }
 
 fn put(text: &mut String, line: std::fmt::Arguments) {
-    // Writing to a string cannot fail.
+    // Writing to a string does not fail.
     let _ = writeln!(text, "{line}");
 }
 

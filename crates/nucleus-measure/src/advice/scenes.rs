@@ -1,11 +1,11 @@
-//! The scenes of the experiments, as text, and how they are run.
+//! The scenes of the experiments.
 
 use nucleus_graph::scene::read_scene_text;
 
 use crate::trade::run::{Run, run_setting};
 use crate::trade::{Benchmark, Reading};
 
-/// What is set in an experiment.
+/// Parameters of an experiment.
 #[derive(Debug, Clone, Copy)]
 pub struct Parameters {
     pub reading: Reading,
@@ -30,7 +30,7 @@ impl Parameters {
     }
 }
 
-/// A sheet of half a metre that meets a ball at 2.5 m/s and is wrapped round it; a second.
+/// One second of a sheet of 0.6 m that a ball strikes at 0.9 m/s.
 pub fn drape(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
@@ -46,7 +46,7 @@ pub fn drape(parameters: &Parameters) -> Run {
     ))
 }
 
-/// A strip so many cells long that hangs by its upper edge; a second.
+/// One second of a strip of `cells` cells that hangs from its upper edge.
 pub fn strip(parameters: &Parameters, cells: u32) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
@@ -60,7 +60,7 @@ pub fn strip(parameters: &Parameters, cells: u32) -> Run {
     ))
 }
 
-/// Points without any links that fall on a ball and from it to the ground; a second.
+/// One second of points without links that fall on a ball and on the ground.
 pub fn particles(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
@@ -74,18 +74,18 @@ pub fn particles(parameters: &Parameters) -> Run {
     ))
 }
 
-/// Runs a scene. Experiments are our own; one that cannot run is a mistake of ours.
+/// Runs a scene; panics if it does not compile, which is a bug of this module.
 fn run(text: &str) -> Run {
     let (scene, _) =
         read_scene_text(text, "experiment.ron".as_ref()).unwrap_or_else(|found| panic!("{found:?}"));
     let benchmark = Benchmark::new(&scene).unwrap_or_else(|error| panic!("{error}"));
     let setting = benchmark.own();
     let followed = run_setting::<f32>(&benchmark, &setting, benchmark.program(), None, &|| true);
-    let (run, _) = followed.unwrap_or_else(|| panic!("it was never asked to end"));
+    let (run, _) = followed.unwrap_or_else(|| panic!("never cancelled"));
     run
 }
 
-/// The strain of 99 % of the edges, RMS over the frames.
+/// 99th percentile of strain, RMS over the frames.
 pub fn strain(run: &Run) -> f64 {
     crate::metrics::root_mean_square(run.frames.iter().map(|frame| frame.strain))
 }
@@ -96,7 +96,7 @@ pub fn late_strain(run: &Run) -> f64 {
     crate::metrics::root_mean_square(run.frames[from..].iter().map(|frame| frame.strain))
 }
 
-/// Candidate pairs that a run of the broad phase finds, on average.
+/// Mean number of candidate pairs per broad-phase query.
 pub fn pairs_per_query(run: &Run) -> f64 {
     run.pairs as f64 / run.queries.max(1) as f64
 }

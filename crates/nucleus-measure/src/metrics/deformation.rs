@@ -70,6 +70,11 @@ impl Edges {
         Self { ends, rest }
     }
 
+    /// Ends and rest length in metres of every edge, by increasing ends.
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
+        self.ends.iter().copied().zip(self.rest.iter().copied())
+    }
+
     /// Strains of a state.
     pub fn strain(&self, points: &[Vector3<f64>]) -> Strain {
         let length = |&[a, b]: &[u32; 2]| (points[b as usize] - points[a as usize]).norm();

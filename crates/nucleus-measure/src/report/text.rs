@@ -26,7 +26,7 @@ pub fn text(trade: &Trade) -> String {
     lines.join("\n") + "\n"
 }
 
-/// `to 1 %: 12.5 ms a frame with 96 evaluations in 3 substeps`.
+/// `to 1 %: 12.5 ms per frame with 96 evaluations in 3 substeps`.
 pub fn time_to(trade: &Trade, error: f64) -> String {
     let wanted = percent(error);
     if !trade.resolves(error) {
@@ -34,7 +34,7 @@ pub fn time_to(trade: &Trade, error: f64) -> String {
         return format!("to {wanted}: not resolved, the reference uncertainty is {floor}");
     }
     match (trade.cheapest(error), trade.frontier().last()) {
-        (Some(point), _) => format!("to {wanted}: {} ms a frame with {}", figure(point.ms), point.setting),
+        (Some(point), _) => format!("to {wanted}: {} ms per frame with {}", figure(point.ms), point.setting),
         (None, Some(best)) => {
             let error = percent(best.error.unwrap_or_default());
             format!(

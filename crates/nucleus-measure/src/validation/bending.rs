@@ -9,51 +9,53 @@ use crate::fixture::{DENSITY, STRIP, Vec3, membrane, sheet};
 pub const CASES: &[Case] = &[
     Case {
         name: "cantilever",
-        description: "A strip of 50 elements, clamped level, bends under its own weight, Γ = w L³ / B. Drop over reach of \
-            its tip, against Euler's elastica by shooting; Romero et al. 2021 use the same curve.",
+        description: "A strip of 50 elements, clamped horizontally, bends under its own weight, Γ = w L³ / B. Vertical over \
+            horizontal displacement of its tip, compared with Euler's elastica by shooting; Romero et al. 2021 use \
+            the same curve.",
         known_failure: None,
         run: cantilever,
     },
     Case {
         name: "cantilever-fine",
-        description: "The same with 100 elements, where it curves the most: the error falls with the square of their length.",
+        description: "The same with 100 elements, at the largest curvatures: the error is proportional to the square of their \
+            length.",
         known_failure: None,
         run: cantilever_fine,
     },
     Case {
         name: "elastica",
-        description: "The tip of a weightless strip is held where a load P L² / B would hold it; then so does its tip lie, \
-            in degrees, and its middle, over L.",
+        description: "The tip of a weightless strip is pinned at its position under a load P L² / B: angle of the tip in \
+            degrees.",
         known_failure: None,
         run: elastica,
     },
     Case {
         name: "lateral-buckling",
-        description: "A strip on edge, clamped at one end, buckles sideways under its own weight at q L³ / √(EI GJ) = \
-            12.854 (Michell, Prandtl). A plate of Poisson's ratio nought has GJ = 2 EI. Kicked sideways, and then \
-            left alone: how far its tip is out of its plane from 6 to 10 s, over how far from 2 to 6 s.",
+        description: "A strip on edge, clamped at one end, buckles sideways under its own weight at q L³ / √(EI GJ) = 12.854 \
+            (Michell, Prandtl). A plate of Poisson's ratio zero has GJ = 2 EI. After a sideways impulse: maximum \
+            out-of-plane displacement of the tip from 6 to 10 s, over that from 2 to 6 s.",
         known_failure: Some(
-            "It stays in its plane, at 1.15 times the load too, and the reason is not known: a strip that stands \
-            on its end buckles as it should.",
+            "It stays in its plane, at 1.15 times the load too. The reason is unknown: a vertical strip buckles \
+                as expected.",
         ),
         run: lateral,
     },
     Case {
         name: "column",
-        description: "A strip that stands on its end falls over at w L³ / B = 7.8373 (Greenhill). Kicked sideways, and \
-            then left alone: how far it leans from 6 to 10 s, over how far from 2 to 6 s.",
+        description: "A vertical strip, clamped at its lower end, buckles at w L³ / B = 7.8373 (Greenhill). After a sideways \
+            impulse: maximum displacement of the tip from 6 to 10 s, over that from 2 to 6 s.",
         known_failure: None,
         run: column,
     },
 ];
 
-/// B in N·m of all strips; with L = 1 m a strip swings at 3.5 rad/s whatever its weight.
+/// Bending stiffness B of all strips in N·m; at L = 1 m the lowest frequency is 3.5 rad/s.
 const BEND: f64 = 0.2;
 
-/// A clamp that holds two rows of points holds the strip up to midway between them: the free length begins there.
+/// A clamp of two pinned columns of points; the free length starts midway between them.
 struct Strip {
     fixture: Fixture,
-    /// Columns of points, two of which are held.
+    /// Columns of points; the first two are pinned.
     columns: usize,
 }
 
@@ -76,7 +78,7 @@ impl Strip {
         Ok(Self { fixture, columns })
     }
 
-    /// The middle of a column, counted from the clamp.
+    /// Centroid of a column, counted from the clamp.
     fn column(&self, column: usize) -> Vec3 {
         let points = self.fixture.points();
         let rows = points.len() / self.columns;
@@ -88,16 +90,16 @@ impl Strip {
     }
 }
 
-/// A strip after it has come to rest under a gravity that makes `gamma`.
+/// Equilibrium of a strip under a gravity that makes `gamma`.
 ///
-/// A hinge of a row of shorter elements is as stiff against points that are as much lighter: what one sweep leaves undone
-/// grows with the fourth power of the number of elements, and falls with the square of the evaluations.
+/// Shorter elements have stiffer hinges and lighter points: the error of one sweep grows with the fourth power of the
+/// number of elements, and falls with the square of the evaluations.
 fn droop(elements: u32, gamma: f64) -> Result<Curve, BuildError> {
     let evaluations = 4000.0 * (f64::from(elements) / 50.0).powi(2);
     let mut strip = Strip::new([elements, 1], 0.05, [Vec3::x(), Vec3::z()], evaluations)?;
     let gravity = gamma * BEND / DENSITY;
     let weight = DENSITY * gravity;
-    // So stiff that its length changes by 1e-4.
+    // The axial strain is 1e-4.
     strip.fixture.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(1e4 * weight.max(BEND)) };
     strip.fixture.frame.gravity = -Vec3::y() * gravity;
     strip.fixture.damp_velocity(2.0 * 3.5f64.max(gravity.sqrt()));
@@ -140,7 +142,7 @@ fn elastica() -> Result<Vec<Comparison>, BuildError> {
         carry_tip(&mut strip, exact, 24);
         strip.fixture.run_to_rest(1e-5, 48);
         let along = strip.tip() - strip.column(strip.columns - 2);
-        // The last hinge lies half an element before the middle of the last element.
+        // The last hinge is half an element before the centre of the last element.
         let degrees = (-along.y).atan2(along.x).to_degrees();
         let quantity = format!("tip angle at P L²/B = {load}, degrees");
         comparisons.push(Comparison::new(
@@ -153,7 +155,7 @@ fn elastica() -> Result<Vec<Comparison>, BuildError> {
     Ok(comparisons)
 }
 
-/// Carries the tip to where it is to be, along a line, in some frames.
+/// Moves the pinned tip to `goal` in some frames.
 fn carry_tip(strip: &mut Strip, goal: Curve, frames: u32) {
     let columns = strip.columns;
     let held = strip.fixture.frame.pins.clone();
@@ -162,7 +164,7 @@ fn carry_tip(strip: &mut Strip, goal: Curve, frames: u32) {
         let place = |point: usize, at: f64| {
             let from = strip.fixture.surface.positions[point];
             let to = Vec3::new(goal.out, -goal.down, from.z);
-            // A bow, not a line, so that the strip is never stretched.
+            // Along an arc, so that the strip is never stretched.
             let (share, bow) = (at, (std::f64::consts::PI * at).sin() * 0.15);
             from + (to - from) * share - Vec3::new(bow, 0.0, 0.0)
         };
@@ -182,12 +184,12 @@ fn carry_tip(strip: &mut Strip, goal: Curve, frames: u32) {
     }
 }
 
-/// N on every point for a quarter of a second. A strip that buckles grows some twenty times in the four seconds between the
-/// windows; it has to begin so small that it is still small then.
+/// Impulse: N on every point for a quarter of a second. A buckling strip grows about twentyfold in the four seconds between
+/// the windows, so it has to start small to stay in the linear range.
 const KICK: f64 = 1e-10;
 
-/// After a kick along `aside`: how far the tip goes that way between 6 and 10 s, over how far between 2 and 6 s. Near the
-/// critical load a strip of these measures swings at some 1 rad/s if it swings at all.
+/// After an impulse along `aside`: maximum displacement of the tip from 6 to 10 s, over that from 2 to 6 s. Near the
+/// critical load a stable strip oscillates at about 1 rad/s.
 fn growth(mut strip: Strip, gravity: f64, aside: Vec3) -> f64 {
     strip.fixture.frame.gravity = -Vec3::y() * gravity;
     let start = strip.tip().dot(&aside);

@@ -1,4 +1,4 @@
-//! Friction and bounce, on the ground plane and round a cylinder.
+//! Friction and restitution, on the ground plane and on a cylinder.
 
 use nucleus_core::{
     BuildError, Cloth, ClothLists, Collider, ColliderFrame, Faces, GroundPlane, Mass, ModelBuilder, Surface,
@@ -10,24 +10,24 @@ use crate::fixture::{DENSITY, GRAVITY, Vec3, membrane, sheet};
 pub const CASES: &[Case] = &[
     Case {
         name: "incline",
-        description: "A sheet of 10 cm lies on a plane that falls off by 1 in 2, so that it is held by a friction of 0.5 and \
-            more. Where it slides, the way after a second is (g / 2)(sin θ - μ cos θ).",
+        description: "A sheet of 10 cm lies on a plane with a slope of 1 in 2, so that a friction of 0.5 or more holds it. \
+            Where it slides, its displacement after a second is (g / 2)(sin θ - μ cos θ).",
         known_failure: None,
         run: incline,
     },
     Case {
         name: "restitution",
-        description: "A sheet is dropped from 1 m on a plane that gives back the share e of its speed: it rises to e².",
+        description: "A sheet is dropped from 1 m on a plane with a coefficient of restitution e: it rises to e².",
         known_failure: None,
         run: restitution,
     },
     Case {
         name: "capstan",
-        description: "A ribbon lies over half a cylinder; one end hangs down, the other farther. It slips when the pull of \
-            the one is more than exp(μ π) times that of the other, the weight on the cylinder included.",
+        description: "A ribbon lies over half a cylinder, with ends of different length. It slips when the tension of one end \
+            exceeds exp(μ π) times that of the other (capstan equation), including the weight on the cylinder.",
         known_failure: Some(
-            "More evaluations hold less, so that what the smaller number holds is no merit. Friction of a sheet on a plane \
-            is exact; where some of it is lost on a cylinder of faces is not known.",
+            "More evaluations hold less, so the smaller number holds by error. Friction of a sheet on a plane is \
+                exact; the cause of the loss on a faceted cylinder is unknown.",
         ),
         run: capstan,
     },
@@ -62,20 +62,20 @@ fn incline() -> Result<Vec<Comparison>, BuildError> {
     let way = |friction: f64| GRAVITY / 2.0 * (sin - friction * cos);
     let mut comparisons = vec![
         Comparison::new(
-            "way at μ = 0.505 in a second, over the length",
+            "displacement at μ = 0.505 in a second, over the length",
             1e-4,
             slid(0.505)? / 0.1,
             Tolerance::AtMost,
         ),
         Comparison::new(
-            "way at μ = 0.495 in a second, m",
+            "displacement at μ = 0.495 in a second, m",
             way(0.495),
             slid(0.495)?,
             Tolerance::Relative(0.01),
         ),
     ];
     for friction in [0.0, 0.2, 0.4] {
-        let quantity = format!("way at μ = {friction} in a second, m");
+        let quantity = format!("displacement at μ = {friction} in a second, m");
         comparisons.push(Comparison::new(
             quantity,
             way(friction),
@@ -94,7 +94,7 @@ fn restitution() -> Result<Vec<Comparison>, BuildError> {
             plane.bounce = bounce;
         }
         fixture.frame.duration /= 8.0;
-        // It meets the plane after 0.45 s and is highest e times as long after that.
+        // It reaches the plane after 0.45 s and its apex e times that later.
         let first = (2.0 / GRAVITY).sqrt();
         let frames = |seconds: f64| (seconds / fixture.frame.duration) as u32;
         let (before, after) = (frames(first * 1.05), frames(first * bounce * 1.6));
@@ -112,20 +112,20 @@ fn restitution() -> Result<Vec<Comparison>, BuildError> {
 
 const RADIUS: f64 = 0.1;
 const ROPE_FRICTION: f64 = 0.3;
-/// Metres of ribbon that hang on the lighter side.
+/// Hanging length of the lighter side, in metres.
 const SHORT: f64 = 0.1;
 
-/// Metres in half a second: less than this is not slipping.
+/// Creep below slipping, in metres per half second.
 const MOST_CREEP: f64 = 5e-3;
 
-/// The metres of ribbon that just hold [`SHORT`]: dT/dφ = μ (T - w R cos φ) + w R sin φ over the upper half, φ from
-/// the horizontal on the lighter side, T + the weight's part pressing on the cylinder. In metres of ribbon, w = 1.
+/// Length of ribbon, in metres, in equilibrium with [`SHORT`]: dT/dφ = μ (T - w R cos φ) + w R sin φ over the upper half, φ from
+/// the horizontal on the lighter side; the tension and the radial part of the weight press on the cylinder. w = 1.
 fn long_side(radius: f64) -> f64 {
     let steps = 100_000;
     let h = std::f64::consts::PI / f64::from(steps);
     let slope = |phi: f64, pull: f64| {
-        // Upwards from the lighter side the ribbon's own weight adds to the pull, downwards it takes from it; what
-        // presses on the cylinder is the pull and the part of the weight along the radius.
+        // The ribbon's weight adds to the tension on the way up and subtracts on the way down; the normal force is the
+        // tension and the radial part of the weight.
         radius * phi.cos() + ROPE_FRICTION * (pull + radius * phi.sin())
     };
     (0..steps).fold(SHORT, |pull, step| {
@@ -175,8 +175,8 @@ fn ribbon_slip(radius: f64, long: f64, evaluations: f64) -> Result<f64, BuildErr
     let thickness = THICKNESS / 2.0;
     fixture.frame.colliders =
         vec![ColliderFrame { collide: true, thickness, friction: 0.0, ..ColliderFrame::default() }];
-    // Let go at once, the ends would bounce at up to twice their weight: it comes in a second, and the ribbon damps what it
-    // does along itself.
+    // Gravity ramps up over a second and the ribbon damps stretch, because a sudden load would bounce to twice the
+    // weight.
     fixture.cloth().stretch_damp = 1.0;
     for frame in 1..=24 {
         fixture.frame.gravity = -Vec3::y() * GRAVITY * f64::from(frame) / 24.0;
@@ -189,7 +189,7 @@ fn ribbon_slip(radius: f64, long: f64, evaluations: f64) -> Result<f64, BuildErr
     Ok(start - fixture.point(end).y)
 }
 
-/// A cylinder along z, 96 round.
+/// A cylinder along z with 96 facets.
 fn cylinder() -> Surface {
     let round = 96u32;
     let mut surface = Surface { positions: Vec::new(), faces: Faces::default() };

@@ -1,4 +1,4 @@
-//! Cusick's drape test: a disc of cloth, 30 cm across, clamped on a disc of 18 cm, hangs over its rim in folds.
+//! Cusick's drape test: a disc of cloth of 30 cm, clamped on a disc of 18 cm, hangs over the rim in folds.
 //! The drape coefficient is the share of the ring that its shadow covers.
 
 use nucleus_core::{BuildError, Cloth, Faces, Mass, ModelBuilder, Stiffness, Surface};
@@ -8,18 +8,18 @@ use crate::fixture::{STRIP, Vec3, membrane};
 
 pub const CASES: &[Case] = &[Case {
     name: "cusick-drape",
-    description: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, beside the band \
-        in which such cloths are measured. Bending stiffness and weight are usual ones of such cloths. Refined four \
-        times, it changes by less than 2.",
+    description: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, compared with the \
+        measured range of such cloths. Bending stiffness and weight are typical of such cloths. With four times the \
+        points, it changes by less than 2.",
     known_failure: Some(
-        "All cloths come out near 60 %, whatever their stiffness against bending: the sheet is held open in its own \
-            plane. Without resistance to compression the same silk drapes to 6 %, with a shear stiffness of 17 N/m to 54 %; \
-            squares of 12 mm are probably too coarse for folds of a centimetre.",
+        "All cloths drape to about 60 %, whatever their bending stiffness: in-plane stiffness holds the sheet \
+            open. Without compression resistance the same silk drapes to 6 %, with a shear stiffness of 17 N/m to 54 \
+            %; squares of 12 mm are probably too coarse for folds of a centimetre.",
     ),
     run: cusick,
 }];
 
-/// Name, bending stiffness in N·m, mass in kg/m², and the band in %.
+/// Name, bending stiffness in N·m, mass in kg/m², and measured range in %.
 const CLOTHS: [(&str, f64, f64, [f64; 2]); 3] = [
     ("silk", 3e-6, 0.07, [20.0, 40.0]),
     ("cotton", 1.2e-5, 0.12, [60.0, 76.0]),
@@ -62,7 +62,7 @@ fn coefficient(cells: u32, bend: f64, density: f64) -> Result<f64, BuildError> {
     Ok(100.0 * (shadow - circle(0.09)) / (circle(0.15) - circle(0.09)))
 }
 
-/// The area in shadow: how far out the rim reaches in each direction, and the clamp at least.
+/// Area of the shadow: the radius of the rim in each direction, at least that of the clamp.
 fn shadow(fixture: &Fixture, rim: &[usize]) -> f64 {
     const BINS: usize = 720;
     let mut reach = [0.09f64; BINS];
@@ -79,8 +79,8 @@ fn shadow(fixture: &Fixture, rim: &[usize]) -> f64 {
     reach.iter().map(|radius| radius * radius / 2.0 * std::f64::consts::TAU / BINS as f64).sum()
 }
 
-/// A disc of quads, the square grid blown up to a circle; and the points of its rim in order. A point is in the plane
-/// y = 0 but for a millionth, so that folds have something to begin with.
+/// A disc of quads, a square grid mapped to a circle, and the points of its rim in order. Perturbed out of the plane by
+/// a micrometre, which seeds the folds.
 fn disc(cells: u32) -> (Surface, Vec<usize>) {
     let n = cells + 1;
     let mut surface = Surface { positions: Vec::new(), faces: Faces::default() };

@@ -8,14 +8,14 @@ use crate::fixture::{DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet};
 pub const CASES: &[Case] = &[
     Case {
         name: "hanging-sheet",
-        description: "A sheet of stiffness K that hangs from its upper edge gets longer by ρ g H² / 2K; with cross links, and \
-            of equilateral triangles, it is narrower in its middle by a third of its strain there.",
+        description: "A sheet of stiffness K that hangs from its upper edge lengthens by ρ g H² / 2K; with cross links, and of \
+            equilateral triangles, its Poisson's ratio is 1/3.",
         known_failure: None,
         run: hanging,
     },
     Case {
         name: "catenary",
-        description: "A chain of 100 links between two hooks: sag over length, by the span over the length.",
+        description: "A chain of 100 links between two hooks: sag over length, for several spans over length.",
         known_failure: None,
         run: catenary,
     },
@@ -33,7 +33,7 @@ fn hanging() -> Result<Vec<Comparison>, BuildError> {
     Ok(comparisons)
 }
 
-/// Rows of equilateral triangles a quarter of a metre wide and one metre high; every second row is set in by half a side.
+/// Rows of equilateral triangles, 0.25 m wide and 1 m high; odd rows are offset by half a side.
 fn triangles() -> Surface {
     let (columns, rows) = (9u32, 37u32);
     let side = 0.25 / f64::from(columns - 1);
@@ -57,7 +57,7 @@ fn triangles() -> Surface {
     surface
 }
 
-/// Strain of the whole, and how much narrower the middle is.
+/// Sag, and Poisson's ratio.
 fn hang(
     name: &str,
     surface: Surface,
@@ -82,8 +82,8 @@ fn hang(
     let mut comparisons =
         vec![Comparison::new(format!("{name}: sag in m"), sag, down, Tolerance::Relative(0.01))];
     if poisson > 0.0 {
-        // Two thirds down, far from the edge that cannot get narrower; over the inner half of the width, for free
-        // sides of triangles are ragged.
+        // At two thirds of the height, far from the pinned edge, and over the inner half of the width, because free sides of
+        // triangles are ragged.
         let (row, inner) = (rows * 2 / 3, [columns / 4, columns - 1 - columns / 4]);
         let wide = |column: usize| fixture.surface.positions[row * columns + column].x;
         let narrower = (moved(row, inner[0]).x - moved(row, inner[1]).x) / (wide(inner[1]) - wide(inner[0]));
@@ -111,7 +111,7 @@ fn exact_sag(span: f64) -> f64 {
 }
 
 fn chain(span: f64) -> Result<Comparison, BuildError> {
-    // A ladder, folded to its span: a zigzag keeps every rung and link at its length.
+    // A ladder folded to its span as a zigzag, which preserves all lengths.
     let mut ladder = sheet([101, 2], Vec3::zeros(), Vec3::x(), Vec3::z() * 0.01);
     let rise = (1.0 - span * span).sqrt() * 0.01;
     for (k, p) in ladder.positions.iter_mut().enumerate() {
@@ -137,7 +137,7 @@ mod tests {
     use super::exact_sag;
 
     #[test]
-    fn the_exact_catenary_agrees_with_a_table_computed_elsewhere() {
+    fn the_exact_catenary_agrees_with_an_independent_table() {
         for (span, sag) in [(0.5, 0.398_194), (0.8, 0.265_438), (0.95, 0.135_898), (0.99, 0.061_145)] {
             assert!((exact_sag(span) - sag).abs() < 2e-6, "{span}: {}", exact_sag(span));
         }

@@ -1,4 +1,4 @@
-//! Falls and swings, and what is conserved.
+//! Falls and swings, and conserved quantities.
 
 use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
 
@@ -20,19 +20,19 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "momentum",
-        description: "A sheet in empty space is pushed and turned, and then left alone for a second: the change of its \
-            momentum and of its angular momentum, over what they were. A link pulls along where it is at the end of a step, not \
-            where it was at its start; so a step takes spin away, in proportion to its length.",
+        description: "A free sheet is pushed and rotated, then isolated for a second: relative change of linear and of angular \
+            momentum. A link acts along its direction at the end of a step, not at its start, so a step dissipates \
+            angular momentum in proportion to its length.",
         known_failure: Some(
-            "Spin is lost in proportion to the length of a step: eight times the evaluations lose an eighth. 1e-4 takes \
-            some 2,000 evaluations.",
+            "The loss of angular momentum is proportional to the step: eight times the evaluations lose an \
+                eighth. 1e-4 needs about 2,000 evaluations.",
         ),
         run: momentum,
     },
     Case {
         name: "energy",
-        description: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: the most energy of motion and height \
-            that it ever has over what it had at first, in J.",
+        description: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: maximum of kinetic plus potential \
+            energy over the initial value, in J.",
         known_failure: None,
         run: energy,
     },
@@ -128,7 +128,7 @@ fn drift(evaluations: f64) -> Result<(f64, f64), BuildError> {
     let mut fixture = Fixture::new(tilted, STRIP, evaluations)?;
     fixture.cloth().stiffness = Stiffness { bend: Some(1e-4), ..membrane(1e4) };
     fixture.frame.gravity = Vec3::zeros();
-    // Pushed while one corner is held, it turns about that, and then flies off.
+    // Pushed while one corner is pinned, it rotates about that corner, then flies off.
     fixture.cloth().local_force = Vec3::new(0.002, 0.02, 0.004);
     fixture.pin([0]);
     fixture.run(12);

@@ -1,22 +1,20 @@
-//! The results as a page of Markdown.
+//! The results as a Markdown page.
 
 use std::fmt::Write;
 
 use super::{Case, Comparison, Tolerance};
 
-/// The page: a section per case, with a table of what was found.
+/// The page: a section per case, with a table of its figures.
 ///
 /// # Errors
-/// Never in practice: text is written into memory.
+/// Never: writing to a string does not fail.
 pub fn page(results: &[(Case, Vec<Comparison>)]) -> Result<String, std::fmt::Error> {
     let all: Vec<&Comparison> = results.iter().flat_map(|(_, comparisons)| comparisons).collect();
     let right = all.iter().filter(|comparison| comparison.holds()).count();
     let mut page = String::from(
-        "# Validation\n\n\
-         The solver against exact physics: `nucleus validate` runs this, and `--write` makes this page.\n\
-         Everything is in double precision and SI units, so that what is left is the error of the method.\n\n",
+        "# Validation\n\nThe solver compared with closed-form and tabulated solutions: `nucleus validate` runs the cases, and `--write` writes this page.\nRuns are in double precision and SI units, so that the remaining error is that of the method.\n\n",
     );
-    writeln!(page, "{right} of {} figures are within what is allowed.", all.len())?;
+    writeln!(page, "{right} of {} figures are within their tolerance.", all.len())?;
     let wrong: Vec<String> =
         results.iter().filter_map(|(case, comparisons)| failures(case, comparisons)).collect();
     if !wrong.is_empty() {
@@ -24,7 +22,9 @@ pub fn page(results: &[(Case, Vec<Comparison>)]) -> Result<String, std::fmt::Err
     }
     for (case, comparisons) in results {
         writeln!(page, "\n## {}\n\n{}\n", case.name, case.description)?;
-        page.push_str("| figure | exact | found | error | allowed | |\n|---|---:|---:|---:|---:|---|\n");
+        page.push_str(
+            "| figure | reference | computed | error | tolerance | |\n|---|---:|---:|---:|---:|---|\n",
+        );
         for comparison in comparisons {
             writeln!(page, "| {} |", comparison.cells().join(" | "))?;
         }
@@ -32,7 +32,7 @@ pub fn page(results: &[(Case, Vec<Comparison>)]) -> Result<String, std::fmt::Err
     Ok(page)
 }
 
-/// What is wrong with a case, each figure with a line, and why.
+/// The failures of a case, one line each, with the known reason.
 fn failures(case: &Case, comparisons: &[Comparison]) -> Option<String> {
     let line = |comparison: &Comparison| {
         format!("- {}: {}, {}", case.name, comparison.quantity, comparison.summary())
@@ -43,7 +43,7 @@ fn failures(case: &Case, comparisons: &[Comparison]) -> Option<String> {
 }
 
 impl Comparison {
-    /// Figure, exact, found, error, what is allowed, and a word on the outcome.
+    /// Figure, reference, computed, error, tolerance, status.
     pub fn cells(&self) -> [String; 6] {
         let (exact, tolerance) = match self.tolerance {
             Tolerance::Relative(most) => (figure(self.exact), format!("{} %", figure(100.0 * most))),
@@ -55,12 +55,12 @@ impl Comparison {
         [self.quantity.clone(), exact, figure(self.found), self.error_in_words(), tolerance, word.to_owned()]
     }
 
-    /// What was found against what is allowed.
+    /// Computed figure, reference and tolerance.
     fn summary(&self) -> String {
         let [_, exact, found, error, tolerance, _] = self.cells();
         match self.error() {
-            Some(_) => format!("{found} for {exact}: off by {error}, allowed {tolerance}"),
-            None => format!("{found}, allowed {tolerance}"),
+            Some(_) => format!("{found} instead of {exact}: error {error}, tolerance {tolerance}"),
+            None => format!("{found}, tolerance {tolerance}"),
         }
     }
 
@@ -73,7 +73,7 @@ impl Comparison {
     }
 }
 
-/// Five digits that matter.
+/// Five significant digits.
 fn figure(x: f64) -> String {
     match x.abs() {
         size if size == 0.0 || !size.is_finite() => format!("{x}"),
@@ -90,7 +90,7 @@ fn figure(x: f64) -> String {
     }
 }
 
-/// Two digits, with a sign.
+/// Two significant digits with a sign.
 fn signed(x: f64) -> String {
     let digits =
         if x == 0.0 || !x.is_finite() { 0 } else { (1 - x.abs().log10().floor() as i32).clamp(0, 6) };
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_names_what_fails_with_its_figure() {
+    fn the_page_lists_failures_with_their_figures() {
         let case = Case {
             known_failure: Some("A reason."),
             ..super::super::cases().next().expect("there are cases")
@@ -114,7 +114,10 @@ mod tests {
         ];
         let page = page(&[(case, comparisons)]).expect("memory takes text");
         assert!(page.contains("1 of 2 figures"), "{page}");
-        assert!(page.contains("wrong, 2.5 for 2: off by +0.50, allowed 0.1\n  A reason.\n"), "{page}");
+        assert!(
+            page.contains("wrong, 2.5 instead of 2: error +0.50, tolerance 0.1\n  A reason.\n"),
+            "{page}"
+        );
         assert!(page.contains("| right | 2 | 2.01 | +0.50 % | 1 % | ok |"), "{page}");
     }
 }

@@ -1,4 +1,4 @@
-//! The player in a browser: how long until the first picture, and how fast one can scrub.
+//! The player in a browser: time to the first picture, and time per frame when scrubbing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,17 +12,17 @@ use super::{Table, example, figure};
 
 /// Frames of 129² points in 2 GB.
 const FRAMES: u32 = 13_500;
-/// What drives the browser.
+/// The browser driver.
 const DRIVER: &str = "puppeteer-core@24";
-/// Where Chromium may be.
+/// Possible paths of Chromium.
 const PLACES: [&str; 3] = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/// A screen of 60 Hz leaves so many milliseconds for a frame.
+/// Milliseconds per frame of a 60 Hz screen.
 const REFRESH: f64 = 1e3 / 60.0;
-/// What is there within so many milliseconds is there at once.
+/// Limit of an immediate response, in milliseconds.
 const AT_ONCE: f64 = 1e3;
 
-/// The table of the page, which says so where there is no browser; and what was aimed at.
+/// The table of the page, with a note if there is no browser; and the targets.
 pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
     let mut table = Table::new("The player", &["a cache of 2 GB, 129²", "median ms", "99 of 100 ms"]);
     let Some(chromium) = PLACES.iter().map(Path::new).find(|path| path.exists()) else {
@@ -36,16 +36,16 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)>
     fs::remove_file(cache)?;
     let both = |key: &str| [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
     for (name, key) in [
-        ("the bytes of a frame anywhere, from the server", "fetch"),
-        ("unpack them: zstd, checksum, floats", "unpack"),
-        ("take them up: normals, bounds, to the graphics", "update"),
+        ("fetch the bytes of a random frame from the server", "fetch"),
+        ("decompress: zstd, checksum, floats", "unpack"),
+        ("update: normals, bounds, upload", "update"),
         ("draw, 1280 x 720, without a graphics card", "draw"),
     ] {
         table.row([name.to_owned()].into_iter().chain(both(key)));
     }
     let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
-        "From the call of the page to the first picture: {} ms. {}, headless; a screen of 60 Hz leaves 16.7 ms.",
+        "From the request of the page to the first picture: {} ms. {}, headless; a screen of 60 Hz leaves 16.7 ms.",
         number("opened"),
         value["browser"].as_str().unwrap_or_default()
     ));
@@ -53,8 +53,8 @@ pub fn table(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)>
     let frame = median("fetch") + median("unpack") + median("update");
     let opened = value["opened"].as_f64().unwrap_or(f64::NAN);
     let targets = vec![
-        Target::below("a cache of 2 GB opens at once in the player, ms", AT_ONCE, opened),
-        Target::below("scrubbing 129² at 60 Hz: all but drawing, ms a frame", REFRESH, frame),
+        Target::below("opening a cache of 2 GB in the player, ms", AT_ONCE, opened),
+        Target::below("scrubbing 129² at 60 Hz without drawing, ms per frame", REFRESH, frame),
     ];
     Ok((table, targets))
 }

@@ -1,8 +1,8 @@
-//! What caches are to reach, and whether they do.
+//! Performance targets of caches.
 
 use super::{Table, figure};
 
-/// A figure that is aimed at.
+/// A figure and its target.
 pub struct Target {
     what: String,
     limit: f64,
@@ -11,12 +11,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// What is found has to stay below.
+    /// An upper limit.
     pub fn below(what: &str, limit: f64, value: f64) -> Self {
         Self { what: what.to_owned(), limit, value, is_upper: true }
     }
 
-    /// What is found has to be more.
+    /// A lower limit.
     pub fn above(what: &str, limit: f64, value: f64) -> Self {
         Self { what: what.to_owned(), limit, value, is_upper: false }
     }
@@ -26,9 +26,9 @@ impl Target {
     }
 }
 
-/// The first table of the page.
+/// Table of all targets.
 pub fn table(targets: &[&Target]) -> Table {
-    let mut table = Table::new("What was aimed at", &["", "aim", "found", "reached"]);
+    let mut table = Table::new("Targets", &["", "aim", "found", "reached"]);
     for target in targets {
         let sign = if target.is_upper { "below" } else { "above" };
         let reached = if target.is_reached() { "yes" } else { "no" };
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_that_is_missing_reaches_nothing() {
+    fn a_missing_figure_misses_its_target() {
         assert!(
             !Target::below("", 1.0, f64::NAN).is_reached() && !Target::above("", 1.0, f64::NAN).is_reached()
         );

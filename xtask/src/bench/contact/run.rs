@@ -1,4 +1,4 @@
-//! One workload at one setting: timed, measured, and run again under audit.
+//! A run of a workload at a setting: timed, measured, and repeated under audit.
 
 use anyhow::ensure;
 use nucleus_audit::Account;
@@ -6,12 +6,12 @@ use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
 use super::Workload;
-use super::scene::{self, MeshFolder, Setting};
+use super::scene::{self, Setting};
 use crate::bench::accuracy::Meter;
 use crate::bench::table::figure;
 use crate::bench::timed::{Timed, state_hash};
 
-/// What is to be run.
+/// Specification of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunSpec {
     pub workload: Workload,
@@ -22,18 +22,18 @@ pub struct RunSpec {
     pub frames: u32,
 }
 
-/// What came of it.
+/// Result of a run.
 #[derive(Debug, Clone)]
 pub struct RunResult {
     pub spec: RunSpec,
     pub timed: Timed,
     /// RMS stretch of the lowest sheet at the last frame.
     pub stretch: f64,
-    /// Its largest stretch, at the last frame and at the worst.
+    /// Its maximum stretch, at the last frame and over all frames.
     pub largest: [f64; 2],
-    /// Its deepest point in the ball in metres, at the last frame and at the worst.
+    /// Maximum depth of its points in the ball in metres, at the last frame and over all frames.
     pub depths: [f64; 2],
-    /// What the audit found, where there was one.
+    /// Result of the audit, if there was one.
     pub audit: Option<Account>,
 }
 
@@ -51,10 +51,10 @@ impl RunSpec {
         Self { workload, size, setting, frames: workload.frames() }
     }
 
-    /// Runs on the clock.
+    /// A timed run.
     ///
     /// # Errors
-    /// When the scene is refused.
+    /// When the scene is rejected.
     pub fn timed(&self, threads: u32) -> anyhow::Result<RunResult> {
         let Self { workload, size, .. } = *self;
         let mut meter = Meter::new(&scene::lowest_sheet(workload, size), size, Some(workload.ball()));
@@ -70,10 +70,10 @@ impl RunSpec {
         })
     }
 
-    /// Runs on the clock on one thread, and again under audit.
+    /// A timed run on one thread, repeated under audit.
     ///
     /// # Errors
-    /// When the scene is refused, or the two do not end with the same bits.
+    /// When the scene is rejected, or the two differ.
     pub fn timed_and_audited(&self) -> anyhow::Result<RunResult> {
         let Self { workload, size, setting, frames } = *self;
         let mut result = self.timed(1)?;
@@ -86,12 +86,12 @@ impl RunSpec {
         ensure!(hash == timed, "{} {size}²: hash {timed:016x}, under audit {hash:016x}", workload.name());
         result.audit = run.audit().map(|audit| audit.account());
         let (ms, found) = (figure(result.ms()), result.audit.map_or(0, |report| report.found()));
-        eprintln!("{} {size}², {setting}: {ms} ms a frame, {found} found by the audit", workload.name());
+        eprintln!("{} {size}², {setting}: {ms} ms per frame, {found} found by the audit", workload.name());
         Ok(result)
     }
 
     fn program(&self) -> anyhow::Result<Program> {
-        scene::program(self.workload, self.size, self.setting, MeshFolder::new()?)
+        scene::program(self.workload, self.size, self.setting, tempfile::tempdir()?)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The tables of a workload: our runs, their stages, threads, and beside the peers.
+//! Tables of a workload: our runs, stages, threads, and comparison with peers.
 
 use nucleus_graph::audit::Closeness;
 
@@ -9,7 +9,7 @@ use crate::bench::peers::SOURCE;
 use crate::bench::stages;
 use crate::bench::table::{Table, figure};
 
-/// All runs of a workload, and what came of them.
+/// All runs of a workload.
 pub fn own(workload: Workload, runs: &[RunResult]) -> Table {
     let head = [
         "points",
@@ -44,25 +44,23 @@ pub fn own(workload: Workload, runs: &[RunResult]) -> Table {
         let setting = [run.spec.setting.to_string(), format!("{:016x}", run.timed.hash)];
         table.row([format!("{}²", run.spec.size)].into_iter().chain(cells.map(figure)).chain(setting));
     }
-    let seen = match workload.closeness() {
+    let scope = match workload.closeness() {
         Closeness::Frames => "edges inside faces at the ends of frames",
-        Closeness::Steps => {
-            "pairs that passed through each other on the way from one state that the solver shows to the next"
-        }
+        Closeness::Steps => "pairs that passed through each other between consecutive states of the solver",
     };
-    table.note(format!("Found: {seen}, over the whole run. Inside: edges inside faces at the last frame."));
+    table.note(format!("Found: {scope}, over the whole run. Inside: edges inside faces at the last frame."));
     table
 }
 
-/// What each stage takes at a typical setting.
+/// Time by stage at the typical setting.
 pub fn by_stage(workload: Workload, runs: &[RunResult]) -> Table {
     let typical = runs.iter().filter(|run| run.spec.setting.evaluations == TYPICAL);
     let row = |run: &RunResult| (vec![format!("{}²", run.spec.size)], run.ms(), run.timed.shares);
-    let title = format!("{}: milliseconds a frame by stage, {TYPICAL} evaluations", workload.name());
+    let title = format!("{}: milliseconds per frame by stage, {TYPICAL} evaluations", workload.name());
     stages::table(&title, &["points"], &typical.map(row).collect::<Vec<_>>())
 }
 
-/// The same run on several numbers of threads; how many times as fast as the first each is.
+/// The same run on several numbers of threads, with the speed-up relative to the first.
 pub fn threads(runs: &[RunResult]) -> Table {
     let head = ["points", "threads", "wall ms", "times as fast", "hash"];
     let title = runs.first().map(|run| {
@@ -79,19 +77,19 @@ pub fn threads(runs: &[RunResult]) -> Table {
     table
 }
 
-/// What we need to be no worse than each peer.
-pub fn beside_peers(workload: Workload, runs: &[RunResult]) -> Table {
+/// Each peer with our fastest run of no more stretch and no penetration.
+pub fn compared_with_peers(workload: Workload, runs: &[RunResult]) -> Table {
     let head = [
         "points",
         "peer",
         "its ms",
         "its stretch %",
-        "crossings left",
+        "penetrations",
         "our ms",
         "our stretch %",
         "times as fast",
     ];
-    let title = format!("{}: what we need for no more stretch and no crossing at all", workload.name());
+    let title = format!("{}: fastest run with no more stretch and no penetration", workload.name());
     let mut table = Table::new(&title, &head);
     for peer in PEERS.iter().filter(|peer| peer.workload == workload) {
         if !runs.iter().any(|run| run.spec.size == peer.size) {

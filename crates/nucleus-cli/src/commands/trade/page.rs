@@ -40,7 +40,7 @@ pub fn of(
     }
     if let (Some(both), Some(point)) = (&found.references, &trade.reference) {
         let caption =
-            format!("{}, in double precision; {} ms a frame", point.setting, report::figure(point.ms));
+            format!("{}, in double precision; {} ms per frame", point.setting, report::figure(point.ms));
         shown.push(("reference".to_owned(), caption, both.fine.end.clone()));
     }
     let pictures = pictures(subject, shown)?;
@@ -67,7 +67,7 @@ pub fn of(
 fn caption(point: &Point) -> String {
     let error = point.error.map(report::percent).unwrap_or_default();
     let trouble = point.trouble().map(|trouble| format!("; {trouble}")).unwrap_or_default();
-    format!("{}; {} ms a frame, error {error}{trouble}", point.setting, report::figure(point.ms))
+    format!("{}; {} ms per frame, error {error}{trouble}", point.setting, report::figure(point.ms))
 }
 
 /// The last frame of each, all seen by one camera. Colours tell strain, where an error shows best.
