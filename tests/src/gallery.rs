@@ -11,13 +11,16 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this crate is in a folder of the repository")
 }
 
-/// The scene files of the gallery, sorted by path.
+/// The scene files of the gallery, sorted by path, without the stress tests that `nucleus extremes` evaluates.
 pub fn scenes() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join("scenes")];
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(&folder).expect("scenes can be listed") {
             let path = entry.expect("scenes can be listed").path();
+            if path.is_dir() && path.ends_with("extremes") {
+                continue;
+            }
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|end| end == "ron") {

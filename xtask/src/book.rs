@@ -1,16 +1,16 @@
-//! `cargo xtask book`: makes anew every page whose figures are measured.
+//! `cargo xtask book`: regenerates all pages with measured figures.
 //!
-//! | You want to know...                              | Read                         |
+//! | Question                                         | Read                         |
 //! |--------------------------------------------------|------------------------------|
-//! | which pages there are                            | [`Page`]                     |
-//! | how a scene's trade is measured                  | [`nucleus_measure::trade`]   |
-//! | whether the paper's advice holds                 | [`nucleus_measure::advice`]  |
-//! | what holds where scenes leave the ordinary       | [`nucleus_measure::extremes`] |
-//! | how far the solver is from exact physics         | [`nucleus_measure::validation`] |
-//! | what a prototype promised                        | [`nucleus_measure::experiments`] |
-//! | what a feature costs                             | [`mod@features`]             |
-//! | how fast caches are                              | [`mod@caches`]               |
-//! | speed and error beside other solvers             | [`mod@bench`]                |
+//! | the pages                                        | [`Page`]                     |
+//! | work-precision curve of a scene                  | [`nucleus_measure::trade`]   |
+//! | the paper's advice, tested                       | [`nucleus_measure::advice`]  |
+//! | stress tests                                     | [`nucleus_measure::extremes`] |
+//! | comparison with closed-form solutions            | [`nucleus_measure::validation`] |
+//! | design experiments                               | [`nucleus_measure::experiments`] |
+//! | cost of a feature                                | [`mod@features`]             |
+//! | speed of caches                                  | [`mod@caches`]               |
+//! | cost and error, compared with other solvers      | [`mod@bench`]                |
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -20,54 +20,54 @@ use std::{env, fs};
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use nucleus_measure::{advice, experiments, machine, report, store, trade};
+use nucleus_measure::{advice, clock, experiments, report, result_cache, trade};
 
 use crate::bench::{self, caches, features};
 
-/// What to make.
+/// Pages to regenerate.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Options {
-    /// Pages to make [default: all]
+    /// Pages to regenerate [default: all]
     #[arg(long, value_delimiter = ',')]
     only: Vec<Page>,
 }
 
-/// A page of the book, or several of one kind.
+/// A page of the book, or a folder of pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Page {
     /// `docs/trade`: error against time for scenes of the gallery
     Trade,
-    /// `docs/advice.md`: the paper's advice, tried
+    /// `docs/advice.md`: the paper's advice, tested
     Advice,
-    /// `docs/extremes.md`: what holds where scenes leave the ordinary
+    /// `docs/extremes.md`: stress tests
     Extremes,
-    /// `docs/validation.md`: the solver against exact physics
+    /// `docs/validation.md`: the solver compared with closed-form solutions
     Validation,
-    /// `docs/experiments.md`: what a prototype promised, and what the solver does
+    /// `docs/experiments.md`: design experiments, prototype and solver
     Experiments,
-    /// `docs/caches.md`: how fast caches are written, read, found their way about in, and played
+    /// `docs/caches.md`: speed of writing, reading, seeking and playing caches
     Caches,
-    /// `docs/features.md`: what each feature costs, on and off
+    /// `docs/features.md`: cost of each feature, on and off
     Features,
-    /// `docs/contact.md`: what contact costs beside other solvers, and whether anything gets through
+    /// `docs/contact.md`: cost of contact compared with other solvers, and penetrations
     Contact,
-    /// `docs/benchmarks.md`: speed at which error, beside other solvers; takes half an hour
+    /// `docs/benchmarks.md`: error against time, compared with other solvers; takes half an hour
     Benchmarks,
 }
 
-/// Runs of each sheet of the page on features; the median counts.
+/// Repetitions of each sheet of the page on features; the median counts.
 const FEATURE_RUNS: u32 = 9;
 
-/// The scenes whose trade is in the book.
+/// The scenes whose work-precision curve is in the book.
 const SCENES: [&str; 4] =
     ["cloth/tablecloth", "cloth/flag", "cloth/drape_on_sphere", "collision/fast_sphere"];
 
-/// What is swept of each: its first second, in which every one of them meets what it meets, at so many settings as a book can
-/// wait for. `nucleus trade SCENE` by itself sweeps two seconds at five times as many.
+/// Options of the sweep: the first second, which includes the first contacts of each scene, at few settings.
+/// `nucleus trade SCENE` by itself sweeps two seconds at five times as many.
 const SWEEP: [&str; 8] =
     ["--frames", "24", "--evaluations", "24,96,384", "--substeps", "1,4", "--iterations", "4"];
 
-/// Makes what is asked for.
+/// Regenerates the requested pages.
 pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
     let asked_for = |page: &&Page| options.only.is_empty() || options.only.contains(page);
     for page in Page::value_variants().iter().filter(asked_for) {
@@ -88,7 +88,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// By the command, as anyone would; runs that are kept from before are not done again.
+/// Runs `nucleus trade`; it resumes from finished runs.
 fn trades(root: &Path) -> anyhow::Result<()> {
     let folder = root.join("docs").join("trade");
     let mut found = Vec::new();
@@ -102,11 +102,11 @@ fn trades(root: &Path) -> anyhow::Result<()> {
         let json = fs::read(folder.join(format!("{name}.trade.json")))?;
         found.push((name.to_owned(), serde_json::from_slice::<trade::Trade>(&json)?));
     }
-    let index = report::index(&found, &machine::describe().join("\n"));
-    Ok(store::write_whole(&folder.join("README.md"), index.as_bytes())?)
+    let index = report::index(&found, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&folder.join("README.md"), index.as_bytes())?)
 }
 
-/// The command, built as it is to be used.
+/// Builds and runs the command in release mode.
 fn nucleus(root: &Path, arguments: &[&OsStr]) -> anyhow::Result<ExitStatus> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -114,7 +114,7 @@ fn nucleus(root: &Path, arguments: &[&OsStr]) -> anyhow::Result<ExitStatus> {
     command.current_dir(root).status().context("cargo cannot be started")
 }
 
-/// A page that a command writes. What fails is in the page with its figure, so that trouble is no reason to stop.
+/// A page that a command writes. Exit code 1 reports failures, which the page lists, and is accepted.
 fn by_command(root: &Path, command: &str, page: &str) -> anyhow::Result<()> {
     let page = root.join("docs").join(page);
     let status = nucleus(root, &[command.as_ref(), "--write".as_ref(), page.as_ref()])?;
@@ -128,34 +128,34 @@ fn experiments(root: &Path) -> anyhow::Result<()> {
         eprintln!("{}", experiment.name);
         results.push((experiment, experiment.run()?));
     }
-    let page = experiments::page(&results, &machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("experiments.md"), page.as_bytes())?)
+    let page = experiments::page(&results, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("experiments.md"), page.as_bytes())?)
 }
 
 fn caches(root: &Path) -> anyhow::Result<()> {
-    let machine = machine::describe().join("\n");
+    let machine = clock::describe_machine().join("\n");
     let page = format!("{}\n{machine}\n\n{}", caches::HEAD, caches::tables(root)?);
-    Ok(store::write_whole(&root.join("docs").join("caches.md"), page.as_bytes())?)
+    Ok(result_cache::write_atomic(&root.join("docs").join("caches.md"), page.as_bytes())?)
 }
 
 fn features(root: &Path) -> anyhow::Result<()> {
     let table = features::table(FEATURE_RUNS)?;
-    let page = format!("{}\n{}\n\n{table}", features::HEAD, machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("features.md"), page.as_bytes())?)
+    let page = format!("{}\n{}\n\n{table}", features::HEAD, clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("features.md"), page.as_bytes())?)
 }
 
 fn advices(root: &Path) -> anyhow::Result<()> {
     let mut results = Vec::new();
     for experiment in advice::experiments() {
         eprintln!("{}: {}", experiment.claim, experiment.says);
-        let findings = (experiment.try_it)();
-        for finding in &findings {
-            eprintln!("  {}: {}: {}", finding.reading, finding.verdict.words(), finding.because);
+        let claim_results = (experiment.run)();
+        for result in &claim_results {
+            eprintln!("  {}: {}: {}", result.reading, result.status.words(), result.reason);
         }
-        results.push((experiment, findings));
+        results.push((experiment, claim_results));
     }
-    let page = advice::page(&results, &machine::describe().join("\n"));
-    Ok(store::write_whole(&root.join("docs").join("advice.md"), page.as_bytes())?)
+    let page = advice::page(&results, &clock::describe_machine().join("\n"));
+    Ok(result_cache::write_atomic(&root.join("docs").join("advice.md"), page.as_bytes())?)
 }
 
 #[cfg(test)]
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_index_of_the_book_leads_to_every_page_and_names_every_verb() {
+    fn the_index_of_the_book_links_every_page_and_names_every_option() {
         let root = crate::root();
         let index = fs::read_to_string(root.join("docs/README.md")).unwrap();
         for page in Page::value_variants() {

@@ -1,4 +1,4 @@
-//! Everything that must hold before a change goes in, in order, stopping at the first failure.
+//! All checks before a merge, in order; stops at the first failure.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
@@ -9,17 +9,20 @@ use anyhow::{Context, bail, ensure};
 
 use crate::{files, readme, tidy};
 
-/// How long a command of the README that never ends by itself has to stay up.
+/// Minimum uptime of a server command of the README.
 const SERVES_FOR: Duration = Duration::from_secs(3);
 
-/// What the README tells to run for all tests; no step of its own repeats it.
+/// The command of the README that runs all tests, so that no step repeats it.
 const TESTS: &str = "cargo test --release --workspace";
 
-/// Runs all steps, each under a heading and with its time.
+/// Scenes that `nucleus extremes` evaluates; some of them fail by intention, and some run for minutes.
+const STRESS_TESTS: &str = "scenes/extremes";
+
+/// Runs all steps, each with a heading and its time.
 pub fn run(root: &Path) -> anyhow::Result<()> {
     let start = Instant::now();
     step("format", || cargo(root, &["fmt", "--all", "--check"], &[]))?;
-    // Lints and pages are the same with `--release`; what build scripts and macros need is compiled for it already.
+    // With `--release`, lints and pages share build scripts and macros with the build.
     let lints = ["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"];
     step("lints", || cargo(root, &lints, &[]))?;
     let pages = ["doc", "--release", "--workspace", "--no-deps"];
@@ -47,13 +50,13 @@ fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> anyho
     succeed(command, &format!("cargo {}", arguments.join(" ")))
 }
 
-/// Runs what the README says, word by word, so that it cannot become untrue.
+/// Runs the commands of the README literally, so that they stay correct.
 fn readme_commands(root: &Path) -> anyhow::Result<()> {
     let commands = readme::commands(&fs::read_to_string(root.join("README.md")).context("README.md")?);
     ensure!(commands.iter().any(|text| text == TESTS), "README.md does not say `{TESTS}`");
     for text in commands {
         println!("-- {text}");
-        clear_the_way(root, &text)?;
+        remove_old_cache(root, &text)?;
         let mut words = text.split_whitespace();
         let mut command = Command::new(words.next().unwrap_or_default());
         command.args(words).current_dir(root);
@@ -66,19 +69,23 @@ fn readme_commands(root: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Takes away the cache that the same command has left the time before: `nucleus run` replaces none by itself.
-fn clear_the_way(root: &Path, command: &str) -> anyhow::Result<()> {
+/// Removes the cache of an earlier run of the same command, because `nucleus run` replaces none.
+fn remove_old_cache(root: &Path, command: &str) -> anyhow::Result<()> {
     let scene = command.split_whitespace().find(|word| word.ends_with(".ron"));
     let stem = scene.and_then(|scene| Path::new(scene).file_stem());
     let Some(cache) = stem.map(|stem| root.join(stem).with_extension("mcap")) else { return Ok(()) };
-    if cache.exists() { fs::remove_file(&cache).context("the cache of the last time") } else { Ok(()) }
+    if cache.exists() { fs::remove_file(&cache).context("the cache of an earlier run") } else { Ok(()) }
 }
 
-/// Every scene with its own checks.
+/// Runs every scene with its checks.
 fn scenes(root: &Path) -> anyhow::Result<()> {
     let program = built(root).join("nucleus");
     let all = files::below(&root.join("scenes"))?;
-    let scenes: Vec<_> = all.iter().filter(|path| path.extension().is_some_and(|end| end == "ron")).collect();
+    let stress_tests = root.join(STRESS_TESTS);
+    let is_scene = |path: &&PathBuf| {
+        path.extension().is_some_and(|end| end == "ron") && !path.starts_with(&stress_tests)
+    };
+    let scenes: Vec<_> = all.iter().filter(is_scene).collect();
     ensure!(!scenes.is_empty(), "there are no scenes");
     for scene in scenes {
         let name = files::name(root, scene);
@@ -91,7 +98,7 @@ fn scenes(root: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where cargo puts optimised programs.
+/// Folder of optimised programs.
 fn built(root: &Path) -> PathBuf {
     crate::target(root).join("release")
 }
@@ -102,11 +109,11 @@ fn succeed(mut command: Command, name: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Starts what runs until it is stopped, and stops it when it has stayed up for a while.
+/// Starts a server and stops it after [`SERVES_FOR`].
 fn serve(mut command: Command, name: &str) -> anyhow::Result<()> {
     let mut child = command.spawn().with_context(|| format!("`{name}` cannot be started"))?;
     let result = stays_up(&mut child, name);
-    // It may have ended by itself in the meantime; then there is nothing to stop.
+    // It may have ended already; then there is nothing to stop.
     let _ = child.kill();
     child.wait()?;
     result
@@ -129,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_server_is_fine_while_it_stays_up_and_a_failure_is_not() {
+    fn a_server_passes_if_it_stays_up_and_fails_if_it_exits_with_an_error() {
         let shell = |script: &str| {
             let mut command = Command::new("sh");
             command.args(["-c", script]);

@@ -1,7 +1,7 @@
-//! Which claim of the paper is shown by which test or scene.
+//! The tests and scenes that cover each claim of the paper.
 //!
 //! `docs/claims.md` numbers the claims. A test carries, in the comment above it, the word EVIDENCE, a colon
-//! and one or more numbers, then what it shows of them; a scene carries the same in a comment of its own line.
+//! and one or more numbers, then a description; a scene carries the same in a comment on its own line.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,22 +17,22 @@ use crate::files;
 pub struct Claim {
     /// Its number: `N2.4-11`.
     pub id: String,
-    /// What it says.
+    /// The claim.
     pub text: String,
 }
 
-/// A place that says it shows a claim.
+/// A tag that covers a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Evidence {
     /// The claim's number.
     pub claim: String,
     /// File and line.
     pub place: String,
-    /// The test's name, or the scene's; empty where there is no test below the comment.
+    /// Name of the test or the scene; empty if no test follows the comment.
     pub name: String,
 }
 
-/// Prints every claim with what shows it, then those that nothing shows.
+/// Prints every claim with its tests and scenes, then the claims without any.
 pub fn print(root: &Path) -> anyhow::Result<()> {
     let claims = claims(root).context("docs/claims.md")?;
     let mut shown: BTreeMap<String, Vec<Evidence>> = BTreeMap::new();
@@ -46,7 +46,7 @@ pub fn print(root: &Path) -> anyhow::Result<()> {
             .iter()
             .for_each(|evidence| println!("         {}  {}", evidence.place, evidence.name));
     }
-    println!("\n{} of {} claims are shown; these {} are not:", with.len(), claims.len(), without.len());
+    println!("\n{} of {} claims are covered; these {} are not:", with.len(), claims.len(), without.len());
     without.iter().for_each(|claim| println!("{:<8} {}", claim.id, claim.text));
     for (id, evidence) in shown.iter().filter(|(id, _)| !claims.iter().any(|claim| claim.id == **id)) {
         println!("{}: there is no claim {id}", evidence[0].place);
@@ -64,7 +64,7 @@ pub fn claims(root: &Path) -> io::Result<Vec<Claim>> {
     Ok(page.lines().filter_map(claim).collect())
 }
 
-/// All that tests and scenes say they show, in order of file and line.
+/// All tags of tests and scenes, in order of file and line.
 pub fn evidence(root: &Path) -> io::Result<Vec<Evidence>> {
     let mut all = Vec::new();
     for folder in ["crates", "tests", "scenes"] {
@@ -81,7 +81,7 @@ fn evidence_in(file: &str, text: &str) -> Vec<Evidence> {
     let lines: Vec<_> = text.lines().collect();
     let mut found = Vec::new();
     for (index, line) in lines.iter().enumerate() {
-        // Not in the midst of a line: that is text which a test is about.
+        // A tag within a line is data of a test.
         let Some(tag) = line.trim_start().strip_prefix("// EVIDENCE:") else { continue };
         let name = match file.ends_with(".rs") {
             true => test_below(&lines[index..]).unwrap_or_default(),
@@ -95,14 +95,14 @@ fn evidence_in(file: &str, text: &str) -> Vec<Evidence> {
     found
 }
 
-/// `N2.4-11`: a letter, a section, a number in it.
+/// `N2.4-11`: a letter, a section, a number within it.
 fn is_id(word: &str) -> bool {
     let parts = word.strip_prefix('N').and_then(|rest| rest.split_once('-'));
     let numbers = |part: &str| part.split('.').all(|part| part.parse::<u32>().is_ok());
     parts.is_some_and(|(section, number)| numbers(section) && numbers(number))
 }
 
-/// The function below a comment, with nothing but comments and attributes between.
+/// The function below a comment, with only comments and attributes between.
 fn test_below(lines: &[&str]) -> Option<String> {
     let mut code = lines.iter().map(|line| line.trim_start());
     let first = code.find(|line| !line.starts_with("//") && !line.starts_with('#'))?;
@@ -110,7 +110,7 @@ fn test_below(lines: &[&str]) -> Option<String> {
     Some(name.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default().to_owned())
 }
 
-/// A scene by its folder and name: `cloth/drape`.
+/// Name of a scene: `cloth/drape`.
 fn scene_name(file: &str) -> String {
     file.trim_start_matches("scenes/").trim_end_matches(".ron").to_owned()
 }
@@ -144,19 +144,19 @@ mod tests {
     }
 
     #[test]
-    fn a_tag_in_a_text_that_a_test_is_about_is_none() {
+    fn a_tag_in_a_string_of_a_test_is_ignored() {
         let text = format!("    let text = r#\"{TAG} N1.2-2  a flag\n\"#;\n#[test]\nfn next() {{}}\n");
         assert_eq!(evidence_in("tests/paper.rs", &text), []);
     }
 
     #[test]
-    fn a_tag_that_is_not_right_above_a_test_has_no_name() {
+    fn a_tag_that_is_not_directly_above_a_test_has_no_name() {
         let text = format!("{TAG} N1.2-2  a flag\nconst FLAG: u32 = 1;\n#[test]\nfn next() {{}}\n");
         assert_eq!(evidence_in("tests/paper.rs", &text)[0].name, "");
     }
 
     #[test]
-    fn every_tag_names_a_claim_that_exists_and_stands_right_above_a_test() {
+    fn every_tag_names_an_existing_claim_and_is_directly_above_a_test() {
         let root = crate::root();
         let claims = claims(&root).unwrap();
         for evidence in evidence(&root).unwrap() {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn no_claim_is_numbered_twice_and_sections_are_numbered_without_a_gap() {
+    fn claim_numbers_are_unique_and_consecutive() {
         let mut last = ("".to_owned(), 0);
         for claim in claims(&crate::root()).unwrap() {
             let (section, number) = claim.id.split_once('-').unwrap();

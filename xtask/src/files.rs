@@ -1,13 +1,12 @@
-//! Which files belong to the repository.
+//! The files of the repository.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// All files below `folder`, in order of their paths; none if there is no such folder.
+/// All files below `folder`, in order of their paths; none if the folder does not exist.
 ///
-/// Passed over are what is built (`target`) and what is hidden, apart from the folders that hold rules of
-/// the repository.
+/// Skips build results (`target`) and hidden entries, except the folders with rules of the repository.
 pub fn below(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     if folder.is_dir() {
@@ -17,7 +16,7 @@ pub fn below(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// The folders directly in `folder` that [`below`] looks into, by name; none that are hidden.
+/// The visible folders directly in `folder`, by name.
 pub fn folders(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -31,7 +30,7 @@ pub fn folders(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// A path as it is printed: from the root, with slashes.
+/// A path relative to the root, with slashes.
 pub fn name(root: &Path, path: &Path) -> String {
     path.strip_prefix(root).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }

@@ -1,7 +1,7 @@
-//! Whether other tools read what `nucleus export` writes: Blender, Pixar's USD, VTK, Foxglove's own types, rerun
-//! and Khronos' glTF validator; and whether films come out where there is an ffmpeg ([`films`]).
+//! Exports of `nucleus export` read by other tools: Blender, Pixar's USD, VTK, Foxglove's types, rerun and Khronos' glTF
+//! validator; and films, written with an ffmpeg ([`films`]).
 //!
-//! Each export is held against the cache as the `mcap` package of others reads it, point by point.
+//! Compares each export with the cache, read by the independent `mcap` package, point by point.
 
 mod films;
 
@@ -13,17 +13,17 @@ use std::process::Command;
 use anyhow::{Context, bail, ensure};
 use serde_json::Value;
 
-/// How exports are checked.
+/// Options of the interoperability check.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A cache to check the exports of, instead of the sample and a scene of the gallery.
+    /// Cache whose exports to check, instead of the sample and a scene of the gallery.
     cache: Vec<PathBuf>,
-    /// Only writes films, by an ffmpeg that is fetched.
+    /// Only write films, with a downloaded ffmpeg.
     #[arg(long, conflicts_with = "cache")]
     films: bool,
 }
 
-/// The scripts; each prints what it has found as one line of JSON.
+/// The scripts; each prints its results as one line of JSON.
 const SCRIPTS: [(&str, &str); 5] = [
     ("cache.py", include_str!("interop/cache.py")),
     ("blender.py", include_str!("interop/blender.py")),
@@ -32,7 +32,7 @@ const SCRIPTS: [(&str, &str); 5] = [
     ("gltf.js", include_str!("interop/gltf.js")),
 ];
 
-/// Blender wants an older numpy than rerun, so each has a place of its own.
+/// Virtual environments: Blender needs an older numpy than rerun.
 const ENVIRONMENTS: [(&str, &[&str]); 2] = [
     ("readers", &["bpy==5.0.1", "numpy<2", "usd-core==26.11", "vtk==9.7.2", "mcap==1.6.0", "zstandard"]),
     (
@@ -48,10 +48,10 @@ const ENVIRONMENTS: [(&str, &[&str]); 2] = [
 ];
 const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
 
-/// The Python that Blender's module is made for.
+/// The Python version of Blender's module.
 const PYTHON: &str = "python3.11";
 
-/// Installs what is missing, exports, and asks every reader.
+/// Installs missing tools, exports, and runs every reader.
 pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
     let place = super::target(root).join("interop");
     fs::create_dir_all(&place)?;
@@ -81,12 +81,12 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
     films::run(root, &place)
 }
 
-/// The sample, which is odd in every way, and the beginning of a real run.
+/// The sample, which has all unusual features, and the start of a real run.
 fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let [sample, drape] = ["sample.mcap", "drape.mcap"].map(|name| place.join(name));
     let release = super::target(root).join("release");
     for cache in [&sample, &drape] {
-        // Nothing is overwritten without being told to.
+        // Caches are never overwritten without a flag.
         if cache.exists() {
             fs::remove_file(cache)?;
         }
@@ -94,7 +94,7 @@ fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
     succeed(Command::new(release.join("examples/sample")).arg(&sample))?;
     let scene = root.join("scenes/cloth/drape_on_sphere.ron");
     let mut run = Command::new(release.join("nucleus"));
-    // Checks of frames that are not reached fail; that is no trouble here, as long as there is a cache.
+    // Checks of later frames fail; only the cache matters here.
     run.arg("run").arg(scene).args(["--frames", "24", "-o"]).arg(&drape).status()?;
     ensure!(drape.exists(), "the scene was not recorded");
     Ok(vec![sample, drape])
@@ -114,7 +114,7 @@ fn export(root: &Path, cache: &Path, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Asks every reader; gives the number of those that found something else than was recorded.
+/// Runs every reader; returns the number of differing exports.
 fn check(place: &Path, cache: &Path, folder: &Path) -> anyhow::Result<usize> {
     let python = |environment: &str| place.join(environment).join("bin/python");
     let mut failed = 0;
@@ -133,20 +133,20 @@ fn check(place: &Path, cache: &Path, folder: &Path) -> anyhow::Result<usize> {
         let Some(rows) = found.filter(|_| output.status.success()) else {
             bail!("{script}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr));
         };
-        failed += rows.iter().map(tell).filter(|fine| !fine).count();
+        failed += rows.iter().map(report).filter(|fine| !fine).count();
     }
     Ok(failed)
 }
 
-/// Prints a finding; says whether it is fine.
-fn tell(row: &Value) -> bool {
+/// Prints a result; returns whether it matches.
+fn report(row: &Value) -> bool {
     let word = |key: &str| row[key].as_str().unwrap_or_default();
-    let verdict = match (row["trouble"].as_str(), row["error"].as_f64()) {
+    let status = match (row["trouble"].as_str(), row["error"].as_f64()) {
         (Some(trouble), _) => format!("FAILED: {trouble}"),
         (None, Some(error)) => format!("error {error:.1e}"),
         (None, None) => "same".to_owned(),
     };
-    println!("{:<34} {:<28} {verdict}", word("what"), word("reader"));
+    println!("{:<34} {:<28} {status}", word("what"), word("reader"));
     row["trouble"].is_null()
 }
 
@@ -165,7 +165,7 @@ fn install(place: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Installs packages of Python into a place of their own, if they are not there; gives its Python.
+/// Installs Python packages into a virtual environment, unless present; returns its Python.
 fn environment(place: &Path, name: &str, packages: &[&str]) -> anyhow::Result<PathBuf> {
     let folder = place.join(name);
     let (stamp, python) = (folder.join("installed"), folder.join("bin/python"));

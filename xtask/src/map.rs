@@ -1,26 +1,26 @@
-//! `ARCHITECTURE.md` as a map: which crates, folders and modules it names.
+//! Parser of the code map of `ARCHITECTURE.md`: crates, folders and modules.
 //!
-//! What counts stands below the heading `## Code map`, up to the next heading of that size:
+//! The code map is the section `## Code map`:
 //!
 //! ```text
 //! ## Code map
 //! | `crates/` | the library crates |            top-level folders: the first name of a table row
 //! ### `crates/nucleus-core`                     a crate: a heading that is its folder
-//! | `step` | one frame, told as a story |       its modules: the first name of a table row
+//! | `step` | one frame of the solver |       its modules: the first name of a table row
 //! ```
 
 use std::collections::BTreeMap;
 
-/// A name and the line that it stands on, counted from 1.
+/// A name and its line, counted from 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
-    /// The name, without ticks and without a slash at its end.
+    /// The name, without backticks and without a final slash.
     pub name: String,
     /// The line.
     pub line: usize,
 }
 
-/// What the code map names.
+/// The code map.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct CodeMap {
     /// Top-level folders.
@@ -29,7 +29,7 @@ pub struct CodeMap {
     pub crates: BTreeMap<String, CrateMap>,
 }
 
-/// What the code map says of one crate.
+/// The code map of one crate.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct CrateMap {
     /// The line of its heading.
@@ -38,7 +38,7 @@ pub struct CrateMap {
     pub modules: Vec<Named>,
 }
 
-/// Reads the code map out of the page; nothing is found where it has none.
+/// Parses the code map of a page; empty if there is none.
 pub fn read(page: &str) -> CodeMap {
     let mut map = CodeMap::default();
     let mut inside = false;
@@ -66,7 +66,7 @@ pub fn read(page: &str) -> CodeMap {
     map
 }
 
-/// What stands between the first two ticks.
+/// The text between the first two backticks.
 fn first_name(text: &str) -> Option<String> {
     let name = text.split('`').nth(1)?;
     Some(name.trim_end_matches('/').to_owned())
@@ -80,7 +80,7 @@ mod tests {
         ### `crates/one`\nProse with `ticks`.\n| `step` | a frame |\n| `ids` | names |\n## Invariants\n| `nor` | this |\n";
 
     #[test]
-    fn folders_crates_and_modules_are_told_apart() {
+    fn folders_crates_and_modules_are_distinguished() {
         let named = |name: &str, line| Named { name: name.into(), line };
         let map = read(PAGE);
         assert_eq!(map.folders, [named("crates", 7)]);

@@ -1,10 +1,10 @@
-//! `cargo xtask meshes`: writes the meshes of the gallery that no primitive gives, always the same. Centimetres, Y up.
+//! `cargo xtask meshes`: writes the generated meshes of the gallery, deterministically. Centimetres, Y up.
 //!
-//! | You want to know...                       | Read         |
+//! | Question                                  | Read         |
 //! |-------------------------------------------|--------------|
-//! | which there are                           | [`ALL`]      |
-//! | how two ribbons make a knot               | [`knot`]     |
-//! | how they are written                      | [`Mesh`]     |
+//! | the meshes                                | [`ALL`]      |
+//! | the two ribbons of a knot                 | [`knot`]     |
+//! | the OBJ writer                            | [`Mesh`]     |
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -22,10 +22,10 @@ pub struct Mesh {
     faces: Vec<Vec<usize>>,
 }
 
-/// A file's name and what makes its mesh.
+/// A file name and its generator.
 type Entry = (&'static str, fn() -> Mesh);
 
-/// The meshes by the name of their file.
+/// All meshes.
 const ALL: [Entry; 8] = [
     ("beads", beads),
     ("tube", tube),
@@ -48,7 +48,7 @@ pub fn run(root: &Path) -> anyhow::Result<()> {
 }
 
 impl Mesh {
-    /// A strip of quads: row after row of as many points; with `closed` the last of a row meets its first.
+    /// A strip of quads: rows of equal length; with `closed`, the last point of a row connects to its first.
     fn rows(rows: Vec<Vec<[f64; 3]>>, closed: bool) -> Self {
         let width = rows.first().map_or(0, Vec::len);
         let count = rows.len();
@@ -72,19 +72,19 @@ impl Mesh {
     fn obj(&self) -> String {
         let mut text = String::from("# Written by `cargo xtask meshes`.\n");
         for [x, y, z] in &self.points {
-            // No -0.00000, which depends on how a nought came about.
+            // Normalises -0.0, whose sign depends on the arithmetic.
             let [x, y, z] = [x, y, z].map(|x| (x * 1e5).round() / 1e5 + 0.0);
-            writeln!(text, "v {x:.5} {y:.5} {z:.5}").expect("a string takes everything");
+            writeln!(text, "v {x:.5} {y:.5} {z:.5}").expect("writing to a string does not fail");
         }
         for face in &self.faces {
             let corners: Vec<String> = face.iter().map(|k| (k + 1).to_string()).collect();
-            writeln!(text, "f {}", corners.join(" ")).expect("a string takes everything");
+            writeln!(text, "f {}", corners.join(" ")).expect("writing to a string does not fail");
         }
         text
     }
 }
 
-/// A ring of points round the y axis.
+/// A ring of points about the y axis.
 fn ring(count: usize, radius: f64, height: f64) -> Vec<[f64; 3]> {
     let point = |k: usize| {
         let turn = TAU * k as f64 / count as f64;
@@ -93,7 +93,7 @@ fn ring(count: usize, radius: f64, height: f64) -> Vec<[f64; 3]> {
     (0..count).map(point).collect()
 }
 
-/// An open tube along x, 100 long and 25 wide, 40 points round and 61 along.
+/// An open tube along x, 100 long and 25 in diameter, 40 points around and 61 along.
 fn tube() -> Mesh {
     let row = |k: usize| {
         let along = 100.0 * (k as f64 / 60.0 - 0.5);
@@ -102,13 +102,13 @@ fn tube() -> Mesh {
     Mesh::rows((0..61).map(row).collect(), true)
 }
 
-/// An open cone with a spout: 80 wide above, 20 wide below.
+/// An open cone with a spout: 80 in diameter at the top, 20 at the bottom.
 fn funnel() -> Mesh {
     let outline = [(40.0, 60.0), (28.0, 45.0), (16.0, 30.0), (10.0, 22.5), (10.0, 12.0), (10.0, 0.0)];
     Mesh::rows(outline.iter().map(|&(radius, height)| ring(48, radius, height)).collect(), true)
 }
 
-/// A tetrahedron with a corner down at the origin.
+/// A tetrahedron with a vertex at the origin, pointing down.
 fn plunger() -> Mesh {
     let mut mesh = Mesh { points: ring(3, 4.5, 14.0), faces: Vec::new() };
     mesh.points.push([0.0, 0.0, 0.0]);
@@ -130,7 +130,7 @@ fn needles() -> Mesh {
     mesh
 }
 
-/// Eight layers of 6 by 6 points, 2.6 apart, every other one over the gaps of the one below: beads that are to be poured.
+/// Eight layers of 6 by 6 points, 2.6 apart, alternately offset: beads for pouring.
 fn beads() -> Mesh {
     let point = |k: usize| {
         let [column, row, layer] = [k % 6, k / 6 % 6, k / 36];
@@ -143,7 +143,7 @@ fn beads() -> Mesh {
     Mesh { points: (0..288).map(point).collect(), faces: Vec::new() }
 }
 
-/// Fifty level squares of 20 with 7 by 7 points, 0.5 apart, each turned a little against the one below.
+/// Fifty horizontal squares of 20 with 7 by 7 points, 0.5 apart, each rotated slightly relative to the one below.
 fn fifty_layers() -> Mesh {
     let mut mesh = Mesh::default();
     for layer in 0..50 {
@@ -163,11 +163,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_files_of_the_gallery_are_those_that_are_written() {
+    fn the_files_of_the_gallery_match_their_generators() {
         let folder = crate::root().join("scenes/meshes");
         for (name, make) in ALL {
             let there = fs::read_to_string(folder.join(name).with_extension("obj")).unwrap_or_default();
-            assert!(there == make().obj(), "scenes/meshes/{name}.obj: `cargo xtask meshes` writes it anew");
+            assert!(there == make().obj(), "scenes/meshes/{name}.obj: `cargo xtask meshes` rewrites it");
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The commands that the README tells people to type.
+//! The shell commands of the README.
 
-/// The lines of the first code block that is meant for a shell, without comments and prompts.
+/// The commands of the first shell block, without comments and prompts.
 pub fn commands(page: &str) -> Vec<String> {
     let mut block = page.lines().skip_while(|line| !opens_shell_block(line)).skip(1);
     let lines = block.by_ref().take_while(|line| !line.starts_with("```"));
@@ -18,14 +18,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_shell_block_is_taken_line_by_line() {
+    fn commands_are_the_lines_of_the_first_shell_block() {
         let page = "# Nucleus\n```ron\nScene()\n```\n```sh\n# drape\n$ cargo run -- run a.ron  # half a minute\n\n\
             cargo run -- play a.mcap\n```\n```sh\nrm everything\n```\n";
         assert_eq!(commands(page), ["cargo run -- run a.ron", "cargo run -- play a.mcap"]);
     }
 
     #[test]
-    fn a_page_without_one_has_no_commands() {
+    fn a_page_without_a_shell_block_has_no_commands() {
         assert_eq!(commands("# Nucleus\n```\ntext\n```\n"), [""; 0]);
     }
 }

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
-use nucleus_measure::store::Store;
-use nucleus_measure::trade::recommend::{Choice, for_error};
-use nucleus_measure::trade::{Setting, Subject, Trade};
+use nucleus_measure::result_cache::ResultCache;
+use nucleus_measure::trade::{Benchmark, Setting, Trade};
+use nucleus_measure::trade::{Choice, for_error};
 
 /// An error as a share: `1%`, `0.5 %` or `0.01`.
 pub fn error(text: &str) -> Result<f64, String> {
@@ -56,19 +56,19 @@ fn folder() -> PathBuf {
 }
 
 /// The stored results of a scene.
-pub fn store(subject: &Subject) -> Store {
-    Store::new(&folder().join("trade"), &subject.name())
+pub fn store(subject: &Benchmark) -> ResultCache {
+    ResultCache::new(&folder().join("trade"), &subject.name())
 }
 
 /// The scene at the cheapest stored setting with at most the error `wanted`, a description of it, and the setting.
 pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
-    let subject = Subject::new(scene)?;
-    let trade = Trade::find(&store(&subject))?.with_context(|| {
+    let subject = Benchmark::new(scene)?;
+    let trade = Trade::load(&store(&subject))?.with_context(|| {
         format!("there are no stored results for `{name}` and this solver: run `nucleus trade {name}` first")
     })?;
     let point = match for_error(&trade, wanted) {
         Choice::Found(point) => point,
-        Choice::Nearest(point) | Choice::Untold(point) => bail!(
+        Choice::Nearest(point) | Choice::Unresolved(point) => bail!(
             "no setting of `{name}` reaches {}; the nearest has {}, with {}",
             report::percent(wanted),
             report::percent(point.error.unwrap_or_default()),

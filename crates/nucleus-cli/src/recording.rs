@@ -10,7 +10,7 @@ use nucleus_cache::{
 };
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
-use nucleus_measure::fingerprint::Fingerprint;
+use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
 
 use crate::initial_state::InitialState;

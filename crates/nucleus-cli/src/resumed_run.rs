@@ -9,7 +9,7 @@ use nucleus_core::RestoreError;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::Scene;
-use nucleus_measure::trade::Subject;
+use nucleus_measure::trade::Benchmark;
 
 use crate::files;
 use crate::output::say;
@@ -110,7 +110,7 @@ impl ResumedRun {
         };
         if let Some(setting) = run.extra.get(SETTING) {
             let setting = serde_json::from_str(setting).context("the cache's `setting` cannot be read")?;
-            *scene = Subject::new(scene)?.set(&setting);
+            *scene = Benchmark::new(scene)?.set(&setting);
         }
         let program = compile(scene).map_err(broken)?;
         if program.time().start == i64::from(run.start) {

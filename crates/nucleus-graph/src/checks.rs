@@ -102,7 +102,7 @@ pub const MAX_STRETCH: &str = "maxStretch";
 pub const RENAMED: &[(&str, &str)] =
     &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
-static FORMS: [Form; 11] = [
+static FORMS: [Form; 12] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
@@ -165,6 +165,15 @@ static FORMS: [Form; 11] = [
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
         figure: |sample, _| Some(sample.report.strain_99),
+    },
+    Form {
+        name: "settledStretch99",
+        doc: "From this frame on 99 % of the links are not longer than at rest by more than this share.",
+        parameters: &["frame", "strain"],
+        values: Values::Numbers,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[1],
+        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.strain_99),
     },
     Form {
         name: "minGap",
@@ -230,6 +239,11 @@ impl Check {
     /// Its kind.
     pub fn form(&self) -> &'static Form {
         self.form
+    }
+
+    /// Its arguments, in the order of [`Form::parameters`].
+    pub fn arguments(&self) -> &[f64] {
+        &self.arguments
     }
 
     /// Whether it requires an audit.

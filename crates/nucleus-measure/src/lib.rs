@@ -1,20 +1,20 @@
-//! How wrong a run is, and what it costs.
+//! Error and cost of a run.
 //!
-//! | You want to know...                                        | Read                  |
-//! |------------------------------------------------------------|-----------------------|
-//! | what can be wrong with a run, and in which unit            | [`metrics`]           |
-//! | how time is measured, in all and by stage                  | [`clock`]             |
-//! | on which machine it was measured                          | [`machine`]           |
-//! | what a run is held against, and until when                 | [`mod@reference`]         |
-//! | which setting is how wrong, and what it costs              | [`trade`]             |
-//! | how that is shown: a page, a table, JSON                   | [`report`]            |
-//! | whether the advice of the paper holds                      | [`advice`]            |
-//! | what holds where scenes leave the ordinary                 | [`extremes`]          |
-//! | how far the solver is from exact physics                   | [`validation`]        |
-//! | what a prototype promised, and what the solver does        | [`experiments`]       |
-//! | where results are kept                                     | [`store`]             |
+//! | Question                                                        | Module              |
+//! |-----------------------------------------------------------------|---------------------|
+//! | error measures, each with its unit                              | [`metrics`]         |
+//! | wall time, processor time, time by stage, the machine           | [`clock`]           |
+//! | error and cost of a scene at many settings                      | [`trade`]           |
+//! | reports of a trade: HTML page, table, CSV                       | [`report`]          |
+//! | whether the paper's advice on settings holds                    | [`advice`]          |
+//! | stress tests: scenes with extreme inputs, and bounds on them    | [`extremes`]        |
+//! | the solver against closed-form and tabulated solutions          | [`validation`]      |
+//! | design experiments: prototype against solver                    | [`experiments`]     |
+//! | sheets, frame inputs and runs that those four share             | [`fixture`]         |
+//! | results kept between commands                                   | [`result_cache`]    |
 //!
-//! **Invariant:** nothing here knows the terminal, and no result depends on how many runs go on side by side.
+//! **Invariant:** nothing here writes to the terminal, and no result depends on the number of runs that execute in
+//! parallel.
 
 #![forbid(unsafe_code)]
 
@@ -22,13 +22,9 @@ pub mod advice;
 pub mod clock;
 pub mod experiments;
 pub mod extremes;
-pub mod fingerprint;
-pub mod machine;
+pub mod fixture;
 pub mod metrics;
-pub mod reference;
 pub mod report;
-mod rig;
-pub mod store;
+pub mod result_cache;
 pub mod trade;
-pub mod trajectory;
 pub mod validation;

@@ -1,16 +1,16 @@
-//! How wrong a run is, measured as the peers were.
+//! Errors of a run, measured as for the peers.
 
 use nalgebra::Vector3;
 use nucleus_core::{COUNT_PERIOD, ClothId, StateView, Surface};
+use nucleus_measure::metrics::deformation::Edges;
 
 use super::ball::Ball;
-use super::mesh;
 use super::workload::GRAVITY;
 
 /// The frames of a second.
 const SECOND: usize = 24;
 
-/// The errors of a run. Strains are length over length at rest, less one; no number is finite once the run is not.
+/// Errors of a run. Strains are length over rest length, minus 1; after a frame that is not finite, no figure is finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// RMS strain of all edges, averaged over all frames.
@@ -21,19 +21,19 @@ pub struct Accuracy {
     pub max: f64,
     /// Largest strain at the worst frame.
     pub worst_max: f64,
-    /// How deep the lowest point ever came below height 0, in metres.
+    /// Maximum depth of the lowest point below height 0, in metres.
     pub sag: f64,
     /// Change of kinetic and potential energy from the first frame to the end of the first second, in J/kg.
     pub energy: f64,
-    /// How deep a point is inside the ball at the last frame, in metres; nought where there is none.
+    /// Maximum depth of a point inside the ball at the last frame, in metres; 0 without a ball.
     pub depth: f64,
     /// The same at the worst frame.
     pub worst_depth: f64,
-    /// Height of the lower edge's middle, averaged over the last second, in metres.
+    /// Height of the midpoint of the lower edge, averaged over the last second, in metres.
     pub lower_edge: f64,
 }
 
-/// Watches a run frame by frame.
+/// Accumulates errors frame by frame.
 pub struct Meter {
     edges: Vec<([u32; 2], f64)>,
     points: Vec<Vector3<f64>>,
@@ -48,7 +48,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// For a sheet of `n` by `n` points that starts at rest, and the ball that it meets.
+    /// For a sheet of `n` by `n` points that starts at rest, and its ball.
     pub fn new(sheet: &Surface, n: u32, ball: Option<Ball>) -> Self {
         let points = sheet.positions.clone();
         let last = Accuracy {
@@ -63,7 +63,7 @@ impl Meter {
             lower_edge: 0.0,
         };
         Self {
-            edges: mesh::edges(sheet),
+            edges: Edges::of(sheet).iter().collect(),
             before: points.clone(),
             lower_middle: (n * n - n / 2 - 1) as usize,
             points,
@@ -76,7 +76,7 @@ impl Meter {
         }
     }
 
-    /// Takes up the state at the end of a frame.
+    /// Adds the state at the end of a frame.
     pub fn frame(&mut self, state: &dyn StateView) {
         std::mem::swap(&mut self.points, &mut self.before);
         for (point, place) in self.points.iter_mut().enumerate() {
@@ -91,7 +91,7 @@ impl Meter {
         self.lower_edges.push(self.points[self.lower_middle].y);
     }
 
-    /// The account of the frames so far.
+    /// Errors of all frames so far.
     pub fn finish(self) -> Accuracy {
         let tail = &self.lower_edges[self.lower_edges.len().saturating_sub(SECOND)..];
         let energy = self.energies.first().zip(self.energies.get(SECOND - 1));
@@ -103,7 +103,7 @@ impl Meter {
         }
     }
 
-    /// Of the deepest point, in the ball where it is now.
+    /// Depth of the deepest point in the ball at its current position.
     fn depth(&self) -> f64 {
         let Some(ball) = self.ball else { return 0.0 };
         self.points.iter().map(|point| ball.depth(self.frames as f64, point)).fold(0.0, f64::max)
@@ -118,7 +118,7 @@ impl Meter {
             max = f64::max(max, strain);
         }
         let root_mean = |sum: f64| (sum / self.edges.len() as f64).sqrt();
-        // A sum keeps what is not finite; the comparisons above would lose it.
+        // NaN propagates through a sum, but not through the comparisons above.
         let lost = if squares.is_finite() { 0.0 } else { f64::INFINITY };
         self.strains += root_mean(squares) + lost;
         self.frames += 1;
@@ -126,7 +126,7 @@ impl Meter {
         self.last.worst_max = self.last.worst_max.max(self.last.max);
     }
 
-    /// Kinetic energy from the way of the frame, potential energy in its middle.
+    /// Kinetic energy from the displacement of the frame, potential energy at its midpoint.
     fn measure_energy(&mut self) {
         let energy = |(now, before): (&Vector3<f64>, &Vector3<f64>)| {
             let speed = (now - before).norm() / COUNT_PERIOD;
@@ -140,10 +140,10 @@ impl Meter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::mesh::Cells;
+    use crate::bench::mesh::{self, Cells};
     use crate::bench::workload::BALL;
 
-    /// A cloth whose points are where a function puts them.
+    /// A cloth with points at given positions.
     struct Placed<F>(F);
 
     impl<F: Fn(usize) -> Vector3<f64>> StateView for Placed<F> {
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_blown_up_by_a_tenth_is_strained_by_a_tenth_everywhere() {
+    fn a_sheet_scaled_by_a_tenth_has_a_uniform_strain_of_a_tenth() {
         let sheet = level(5);
         let mut meter = Meter::new(&sheet, 5, None);
         meter.frame(&Placed(|point| sheet.positions[point] * 1.1));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn free_fall_keeps_its_energy() {
+    fn free_fall_conserves_energy() {
         let sheet = level(3);
         let mut meter = Meter::new(&sheet, 3, None);
         for frame in 1..=SECOND {
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn one_lost_point_makes_every_strain_endless() {
+    fn a_nan_point_makes_every_strain_infinite() {
         let sheet = level(3);
         let mut meter = Meter::new(&sheet, 3, None);
         meter.frame(&Placed(
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_flies_is_met_where_it_is_at_the_end_of_the_frame() {
+    fn depth_uses_the_position_of_the_ball_at_the_end_of_the_frame() {
         let sheet = level(3);
         let ball = Ball { radius: 0.5, start: [0.0, 0.0, -2.0], flight: [0.0, 0.0, 1.0] };
         let mut meter = Meter::new(&sheet, 3, Some(ball));
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_ball_nothing_is_deep() {
+    fn without_a_ball_the_depth_is_zero() {
         let sheet = level(3);
         let mut meter = Meter::new(&sheet, 3, None);
         meter.frame(&Placed(|_| BALL.start.into()));

@@ -1,8 +1,8 @@
-//! How fast caches are written, read, sought in and played, and what recording and checkpoints cost a run.
+//! Speed of writing, reading, seeking and playing caches, and the cost of recording and checkpoints.
 
-mod goal;
 mod player;
 mod recording;
+mod target;
 
 use std::path::Path;
 use std::process::Command;
@@ -11,56 +11,45 @@ use anyhow::{Context, ensure};
 use serde_json::Value;
 
 use super::table::{Table, figure};
-use goal::Goal;
+use target::Target;
 
-/// What stands above the tables.
+/// Text above the tables.
 pub const HEAD: &str = "# Caches
 
-How fast caches are written and read, and how much memory and disk space they take.
-
-- **Write** and **read** are megabytes of uncompressed positions per second of processor time on one core. They include byte shuffle, zstd, checksums and system calls.
-- **Ratio** is the size of the file over the size of its uncompressed positions.
-- **Seek** is the wall time in milliseconds to read a random frame: the median and the 99th percentile.
-
-The test object is a waving sheet in which every float differs from frame to frame.
-Throughput is the median of three runs.
-`cargo xtask book --only caches` measures and writes this page again; it needs 12 GB of temporary disk space.
+**Write** and **read** are megabytes of uncompressed positions per second of one core, including byte shuffling, zstd, checksums and system calls.
+The sheet waves so that every float changes in every frame; figures are medians of three runs.
+**Packed** is the ratio of file size to uncompressed size.
+**Seek** is the wall time to a random frame in milliseconds: median and 99th percentile.
+`cargo xtask book --only caches` rewrites this page; it needs 12 GB of disk temporarily.
 ";
 
-/// Points along a side, frames, and whether it is packed hard.
+/// Points along a side, frames, and whether compression is `--compact`.
 const SHEETS: [(u32, u32, bool); 3] = [(129, 600, false), (129, 60, true), (1000, 40, false)];
 /// Frames of 129² points in 10 GB.
 const LARGE: u32 = 67_500;
 
-/// What is aimed at: megabytes a second written and read, milliseconds to a frame of a file of 10 GB.
+/// Targets: megabytes per second written and read, milliseconds per seek in a file of 10 GB.
 const WRITE: f64 = 300.0;
 const READ: f64 = 2000.0;
 const SEEK: f64 = 5.0;
 
-/// All tables of the page, first what was aimed at.
+/// All tables of the page, targets first.
 pub fn tables(root: &Path) -> anyhow::Result<String> {
     let folder = crate::target(root).join("caches");
     std::fs::create_dir_all(&folder)?;
     let [costs, checkpoint] = recording::tables()?;
     let (throughput, large) = (throughput(root, &folder)?, large(root, &folder)?);
     let parts = [throughput, large, costs, checkpoint, player::table(root, &folder)?];
-    let goals: Vec<&Goal> = parts.iter().flat_map(|(_, goals)| goals).collect();
-    let tables = std::iter::once(goal::table(&goals)).chain(parts.iter().map(|(table, _)| table.clone()));
+    let targets: Vec<&Target> = parts.iter().flat_map(|(_, targets)| targets).collect();
+    let tables = std::iter::once(target::table(&targets)).chain(parts.iter().map(|(table, _)| table.clone()));
     Ok(tables.map(|table| format!("{table}\n")).collect())
 }
 
-fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let head = [
-        "sheet",
-        "compression",
-        "write MB/s",
-        "read MB/s",
-        "ratio",
-        "recorder, bytes per point",
-        "reader, MB",
-    ];
+fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
+    let head =
+        ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
     let mut table = Table::new("Speed and memory", &head);
-    let mut goals = Vec::new();
+    let mut targets = Vec::new();
     for (side, frames, is_compact) in SHEETS {
         let mut runs = Vec::new();
         for _ in 0..3 {
@@ -71,43 +60,43 @@ fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> 
             all.sort_by(f64::total_cmp);
             all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
         };
-        let packing = if is_compact { "`--compact`" } else { "default" };
+        let packing = if is_compact { "`--compact`" } else { "usual" };
         let keys = ["write_mb_s", "read_mb_s", "packed", "recorder_bytes_per_point", "reader_mb"];
         let cells = [format!("{side}²"), packing.to_owned()];
         table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
         if !is_compact {
-            goals.push(Goal::above(&format!("write {side}², MB/s"), WRITE, median("write_mb_s")));
-            goals.push(Goal::above(&format!("read {side}², MB/s"), READ, median("read_mb_s")));
+            targets.push(Target::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
+            targets.push(Target::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
         }
     }
-    table.note("Memory is the peak increase of the process by recorder or reader, including meshes: a few frames, independent of the length of the run.");
-    table.note("The file also holds the sheet's mesh, which is a larger share of a file of 60 frames than of one of 600.");
-    Ok((table, goals))
+    table.note("Memory is the peak that recorder and reader add to the process, meshes included: a few frames, independent of the length of the run.");
+    table.note("The file includes the mesh, which is a larger share of 60 frames than of 600.");
+    Ok((table, targets))
 }
 
-fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let found = example(root, folder, 129, LARGE, false, None)?;
-    let mut table = Table::new("A file of 10 GB", &["", "median, ms", "99th percentile, ms"]);
+fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
+    let value = example(root, folder, 129, LARGE, false, None)?;
+    let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
     let mut row = |name: &str, key: &str| {
-        let times = [0, 1].map(|k| figure(found[key][k].as_f64().unwrap_or(f64::NAN)));
+        let times = [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
         table.row([name.to_owned()].into_iter().chain(times));
     };
-    row("seek, cold page cache", "cold_seek_ms");
-    row("seek, warm page cache", "seek_ms");
-    let number = |key: &str| figure(found[key].as_f64().unwrap_or(f64::NAN));
+    row("seek, cold file cache", "cold_seek_ms");
+    row("seek, warm file cache", "seek_ms");
+    let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
     table.note(format!(
-        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s by a process whose memory grew by {} MB.",
+        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s with {} MB of memory.",
         number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
     ));
-    let cold = |k: usize| found["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
-    let goals = vec![
-        Goal::below("seek in a 10 GB file, cold page cache, median, ms", SEEK, cold(0)),
-        Goal::below("the same, 99th percentile, ms", SEEK, cold(1)),
+    let cold = |k: usize| value["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
+    let targets = vec![
+        Target::below("seek in 10 GB with a cold file cache, median ms", SEEK, cold(0)),
+        Target::below("the same, 99 of 100", SEEK, cold(1)),
     ];
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
-/// Has a sheet written and read; what the example of the cache crate finds.
+/// Runs the throughput example of the cache crate; its results as JSON.
 fn example(
     root: &Path,
     folder: &Path,

@@ -1,17 +1,17 @@
-//! Cloth that meets itself, other cloth, and a ball at 10 m/s: what it costs, and whether anything gets through,
-//! counted by an audit that shares nothing with the solver.
+//! Self-contact, contact of layers, and a ball at 10 m/s: cost and penetrations. An audit, which shares no code with the
+//! solver, counts the penetrations.
 //!
-//! Every run is done twice: once on the clock, once under audit. Both have to end with the same bits, so what is
-//! counted is what was timed.
+//! Every run is executed twice, once timed and once audited. Both must end with the same bits, so that the audited run is
+//! the timed one.
 //!
-//! | You want to know...                      | Read       |
+//! | Question                                 | Module     |
 //! |------------------------------------------|------------|
-//! | what is simulated                        | [`scene`]  |
-//! | one run                                  | [`trial`]  |
-//! | what other solvers need                  | [`peers`]  |
-//! | what is shown                            | [`tables`] |
-//! | what self-collision costs, and its growth | [`cost`]  |
-//! | the cloth that growth is measured on     | [`heap`]   |
+//! | the scenes                               | [`scene`]  |
+//! | one run                                  | [`mod@run`] |
+//! | figures of other solvers                 | [`peers`]  |
+//! | the tables                               | [`tables`] |
+//! | cost of self-collision, and its scaling  | [`cost`]   |
+//! | the cloth of the scaling test            | [`pile`]   |
 
 use anyhow::ensure;
 use nucleus_graph::audit::Closeness;
@@ -22,22 +22,22 @@ use super::table::figure;
 use super::workload::BALL;
 
 pub mod cost;
-mod heap;
 mod peers;
+mod pile;
+mod run;
 mod scene;
 mod tables;
-mod trial;
 
 use peers::{PEERS, Peer};
-use trial::{Outcome, Trial};
+use run::{RunResult, RunSpec};
 
-/// At how many evaluations in 1/24 s costs are compared.
+/// Evaluations per 1/24 s at which costs are compared.
 const TYPICAL: u32 = 48;
 
-/// How many times as fast as the fastest peer without crossings W3 has to be.
+/// Target speed-up of W3 over the fastest peer without penetrations.
 const LEAD: f64 = 5.0;
 
-/// How many times as fast two threads have to be, and where.
+/// Target speed-up of two threads, and its size.
 const PAIR_TARGET: f64 = 1.5;
 const PAIR_SIZE: u32 = 129;
 
@@ -69,17 +69,17 @@ impl Workload {
         }
     }
 
-    /// Evaluations in 1/24 s that are worth running. Five sheets take minutes a run.
+    /// Evaluations per 1/24 s to run. Five sheets take minutes per run.
     fn evaluations(self) -> &'static [u32] {
         if self == Self::Layers { &[48, 96] } else { &[24, 48, 96, 192] }
     }
 
-    /// Points along the side of a sheet, at most: five larger ones take an hour, and larger ones have no peer.
+    /// Maximum points along the side of a sheet: five larger ones take an hour, and no peer has larger ones.
     fn largest(self) -> u32 {
         if self == Self::Layers { 33 } else { 129 }
     }
 
-    /// The ball that the sheets meet.
+    /// The ball.
     fn ball(self) -> Ball {
         match self {
             Self::Folds | Self::Layers => BALL,
@@ -89,7 +89,7 @@ impl Workload {
     }
 
     fn closeness(self) -> Closeness {
-        // What flies through within a frame is only seen on the way.
+        // Only an audit of every step sees a passage within a frame.
         if self == Self::Shot { Closeness::Steps } else { Closeness::Frames }
     }
 }
@@ -97,16 +97,16 @@ impl Workload {
 /// Runs a workload at all sizes and settings on one thread, and at one setting on all.
 ///
 /// # Errors
-/// When a scene is refused, or a run does not repeat itself.
+/// When a scene is rejected, or repeated runs differ.
 pub fn run(workload: Workload, sizes: &[u32], threads: &[u32], report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for &size in sizes.iter().filter(|size| **size <= workload.largest()) {
         for &evaluations in workload.evaluations() {
-            runs.push(Trial::full(workload, size, evaluations).timed_and_audited()?);
+            runs.push(RunSpec::full(workload, size, evaluations).timed_and_audited()?);
         }
-        let side_by_side = on_threads(&Trial::full(workload, size, TYPICAL), threads, &runs)?;
+        let side_by_side = on_threads(&RunSpec::full(workload, size, TYPICAL), threads, &runs)?;
         report.show(tables::threads(&side_by_side));
-        judge_threads(&side_by_side, report);
+        check_thread_targets(&side_by_side, report);
     }
     if runs.is_empty() {
         eprintln!("{}: no size up to {}² was asked for", workload.name(), workload.largest());
@@ -114,60 +114,61 @@ pub fn run(workload: Workload, sizes: &[u32], threads: &[u32], report: &mut Repo
     }
     report.show(tables::own(workload, &runs));
     report.show(tables::by_stage(workload, &runs));
-    report.show(tables::beside_peers(workload, &runs));
-    judge(workload, sizes, &runs, report);
+    report.show(tables::compared_with_peers(workload, &runs));
+    check_target(workload, sizes, &runs, report);
     Ok(())
 }
 
-/// The same on each number of threads, which must change nothing. What is among the runs already is not run again.
-fn on_threads(trial: &Trial, threads: &[u32], known: &[Outcome]) -> anyhow::Result<Vec<Outcome>> {
+/// The same run on each number of threads, with identical results required. Reuses known runs.
+fn on_threads(spec: &RunSpec, threads: &[u32], known: &[RunResult]) -> anyhow::Result<Vec<RunResult>> {
     let run = |&threads: &u32| {
-        let same = |run: &&Outcome| run.trial == *trial && run.timed.threads == threads;
-        known.iter().find(same).map_or_else(|| trial.timed(threads), |run| Ok(run.clone()))
+        let same = |run: &&RunResult| run.spec == *spec && run.timed.threads == threads;
+        known.iter().find(same).map_or_else(|| spec.timed(threads), |run| Ok(run.clone()))
     };
-    let runs: anyhow::Result<Vec<Outcome>> = threads.iter().map(run).collect();
+    let runs: anyhow::Result<Vec<RunResult>> = threads.iter().map(run).collect();
     let runs = runs?;
     for run in &runs {
-        let (name, size) = (trial.workload.name(), trial.size);
+        let (name, size) = (spec.workload.name(), spec.size);
         ensure!(run.timed.hash == runs[0].timed.hash, "{name} {size}²: threads change the result");
     }
     Ok(runs)
 }
 
-/// Our fastest run of no more error and nothing inside anything.
-fn answer<'a>(peer: &Peer, runs: &'a [Outcome]) -> Option<&'a Outcome> {
-    let clean = |run: &&Outcome| run.audit.is_some_and(|account| account.found() == 0);
-    let good = |run: &&Outcome| {
-        run.trial.size == peer.size && peer.stretch.is_none_or(|most| 1e2 * run.stretch <= most)
+/// Our fastest run of no more error and without penetrations.
+fn answer<'a>(peer: &Peer, runs: &'a [RunResult]) -> Option<&'a RunResult> {
+    let clean = |run: &&RunResult| run.audit.is_some_and(|report| report.found() == 0);
+    let good = |run: &&RunResult| {
+        run.spec.size == peer.size && peer.stretch.is_none_or(|most| 1e2 * run.stretch <= most)
     };
     runs.iter().filter(clean).filter(good).min_by(|a, b| a.ms().total_cmp(&b.ms()))
 }
 
-fn judge_threads(runs: &[Outcome], report: &mut Report) {
+fn check_thread_targets(runs: &[RunResult], report: &mut Report) {
     for run in runs {
-        let (trial, first) = (&run.trial, &runs[0].timed);
-        if (first.threads, run.timed.threads, trial.size) == (1, 2, PAIR_SIZE) {
-            let gain = first.spent.wall / run.timed.spent.wall;
-            let (name, size) = (trial.workload.name(), trial.size);
+        let (spec, first) = (&run.spec, &runs[0].timed);
+        if (first.threads, run.timed.threads, spec.size) == (1, 2, PAIR_SIZE) {
+            let gain = first.timing.wall / run.timed.timing.wall;
+            let (name, size) = (spec.workload.name(), spec.size);
             let target = format!("{name} {size}²: two threads at least {PAIR_TARGET} times one");
-            report.judge(target, format!("{} times", figure(gain)), gain >= PAIR_TARGET);
+            report.check_target(target, format!("{} times", figure(gain)), gain >= PAIR_TARGET);
         }
     }
 }
 
-fn judge(workload: Workload, sizes: &[u32], runs: &[Outcome], report: &mut Report) {
-    let found: u64 = runs.iter().filter_map(|run| run.audit).map(|account| account.found()).sum();
-    let target = format!("{}: nothing passes through anything, at any setting", workload.name());
-    report.judge(target, format!("{found} found"), found == 0);
+fn check_target(workload: Workload, sizes: &[u32], runs: &[RunResult], report: &mut Report) {
+    let found: u64 = runs.iter().filter_map(|run| run.audit).map(|report| report.found()).sum();
+    let target = format!("{}: no penetration at any setting", workload.name());
+    report.check_target(target, format!("{found} found"), found == 0);
     for &size in sizes {
         let clean =
             PEERS.iter().filter(|peer| (peer.workload, peer.size, peer.left) == (workload, size, "0"));
         let Some(best) = clean.min_by(|a, b| a.ms.total_cmp(&b.ms)) else { continue };
-        let lead = answer(best, runs).map(|run| best.ms / run.ms());
+        let speedup = answer(best, runs).map(|run| best.ms / run.ms());
         let target = format!("{} {size}²: at least {LEAD} times as fast as {}", workload.name(), best.name);
-        let found = lead
-            .map_or("no clean run of so little stretch".to_owned(), |lead| format!("{} times", figure(lead)));
-        report.judge(target, found, lead.is_some_and(|lead| lead >= LEAD));
+        let found = speedup.map_or("no run without penetration at this stretch".to_owned(), |speedup| {
+            format!("{} times", figure(speedup))
+        });
+        report.check_target(target, found, speedup.is_some_and(|speedup| speedup >= LEAD));
     }
 }
 
@@ -179,8 +180,8 @@ mod tests {
 
     #[test]
     fn a_run_with_crossings_answers_nobody() {
-        let trial = Trial { frames: 1, ..Trial::full(Workload::Folds, 9, 6) };
-        let mut run = trial.timed_and_audited().unwrap();
+        let spec = RunSpec { frames: 1, ..RunSpec::full(Workload::Folds, 9, 6) };
+        let mut run = spec.timed_and_audited().unwrap();
         let peer = Peer { size: 9, stretch: None, ..PEERS[0] };
         assert!(answer(&peer, std::slice::from_ref(&run)).is_some());
         run.audit = Some(AuditCounts { intersections: 1, ..AuditCounts::default() });
@@ -191,18 +192,18 @@ mod tests {
     fn a_target_is_not_met_by_running_nothing() {
         let mut report = Report::default();
         run(Workload::Layers, &[2000], &[1], &mut report).unwrap();
-        assert!(report.verdicts.is_empty() && report.tables.is_empty());
+        assert!(report.targets.is_empty() && report.tables.is_empty());
     }
 
     #[test]
     fn what_was_run_already_is_not_run_again_on_threads() {
-        let trial = Trial { frames: 2, ..Trial::full(Workload::Layers, 9, 6) };
-        let mut known = trial.timed(1).unwrap();
-        let runs = on_threads(&trial, &[1, 3], std::slice::from_ref(&known)).unwrap();
+        let spec = RunSpec { frames: 2, ..RunSpec::full(Workload::Layers, 9, 6) };
+        let mut known = spec.timed(1).unwrap();
+        let runs = on_threads(&spec, &[1, 3], std::slice::from_ref(&known)).unwrap();
         assert_eq!(runs.iter().map(|run| run.timed.threads).collect::<Vec<_>>(), [1, 3]);
-        assert_eq!(runs[0].timed.spent, known.timed.spent);
+        assert_eq!(runs[0].timed.timing, known.timed.timing);
         // Another result on other threads is found out.
         known.timed.hash ^= 1;
-        assert!(on_threads(&trial, &[1, 3], &[known]).is_err());
+        assert!(on_threads(&spec, &[1, 3], &[known]).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Cost of each feature: features are added to the same sheet one after the other.
+//! Only what a scene needs: one feature at a time is added to the same sheet, and its cost is measured.
 
 use nalgebra::Vector3;
 use nucleus_core::{
@@ -9,13 +9,13 @@ use super::mesh::{self, Cells};
 use super::report::Report;
 use super::table::{Table, figure};
 use super::workload::{DENSITY, Setting, frame};
-use nucleus_measure::clock::Spent;
+use nucleus_measure::clock::Timing;
 
-/// Points along the side of the sheet.
+/// Points along each side of the sheet.
 const SIZE: u32 = 65;
 const FRAMES: u32 = 8;
 
-/// What is added, the list that is built for it, and what is set.
+/// A feature: name, list to build, attribute to set.
 type Feature = (&'static str, fn(&mut ClothLists), fn(&mut FrameInput));
 
 const FEATURES: [Feature; 7] = [
@@ -35,9 +35,9 @@ const FEATURES: [Feature; 7] = [
     ),
 ];
 
-/// What a frame costs.
+/// Cost of a frame.
 struct Cost {
-    /// Milliseconds of the processor.
+    /// Milliseconds of processor time.
     ms: f64,
     passes: Vec<PassCost>,
 }
@@ -52,32 +52,32 @@ fn measure(lists: ClothLists, input: &FrameInput, repeat: u32) -> Result<Cost, B
         let mut solver = Solver::<f32>::new(builder, 1);
         passes = solver.passes(input);
         solver.step(input, &mut ());
-        let (spent, ()) = Spent::on(|| {
+        let (timing, ()) = Timing::of_process(|| {
             (0..FRAMES).for_each(|_| {
                 solver.step(input, &mut ());
             });
         });
-        times.push(1e3 * spent.processor / f64::from(FRAMES));
+        times.push(1e3 * timing.processor / f64::from(FRAMES));
     }
     times.sort_by(f64::total_cmp);
     Ok(Cost { ms: times[times.len() / 2], passes })
 }
 
-/// The text of the page above its table.
-pub const HEAD: &str = "# Cost of each feature
+/// Text of the page above its table.
+pub const HEAD: &str = "# Only what a scene needs
 
-Features are added one after the other to the same falling sheet of 65² points with 48 evaluations in 1/24 s.
-**Rows** are constraint rows that a sweep projects, **passes** the passes of each time step; `nucleus info` shows both.
+Features are added one by one to the same falling sheet of 65² points, with 48 evaluations per 1/24 s.
+**Rows** are the constraints that are swept, **passes** the operations of every step, as `nucleus info` shows them.
 **More ms** is the time that the feature adds to a frame.
-**Off** compares two sheets without the feature: one with its list built and its attribute at 0, one without the list. \
-There are no additional rows and passes, and the difference in time is noise.
-`cargo xtask book --only features` regenerates this page.
+**Off** has the feature's list built and its attribute at 0, compared with the sheet without that list: it adds no rows \
+and no passes, and its difference in time is noise.
+`cargo xtask book --only features` rewrites this page.
 ";
 
-/// Adds the features one by one.
+/// Measures the features one by one.
 ///
 /// # Errors
-/// When the solver refuses the sheet.
+/// When the solver rejects the sheet.
 pub fn run(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     report.show(table(repeat)?);
     Ok(())
@@ -86,10 +86,10 @@ pub fn run(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
 /// The same, as a table.
 ///
 /// # Errors
-/// When the solver refuses the sheet.
+/// When the solver rejects the sheet.
 pub fn table(repeat: u32) -> anyhow::Result<Table> {
     let head = ["with", "rows", "passes", "ms", "more ms", "off: more rows", "more passes", "more ms"];
-    let mut table = Table::new("What is added, and what it costs", &head);
+    let mut table = Table::new("Features and their cost", &head);
     let mut input = frame(&Setting { resistance: 0.0, bend: 0.0, evaluations: 48 });
     input.cloths[0] = ClothFrame { compression_resistance: 0.0, ..input.cloths[0] };
     let mut lists = ClothLists::NONE;
@@ -97,7 +97,7 @@ pub fn table(repeat: u32) -> anyhow::Result<Table> {
     table.row(before.cells("points alone", 0.0, None));
     for (name, list, set) in FEATURES {
         list(&mut lists);
-        // Cross links are swept with the links along edges, and the ground has no list: neither can be built and off.
+        // Cross links share the pass of edge links, and the ground has no list: neither can be built and off.
         let can_be_off = !matches!(name, "cross links" | "ground");
         let off = if can_be_off { Some(measure(lists, &input, repeat)?.more_than(&before)) } else { None };
         set(&mut input);
@@ -110,7 +110,7 @@ pub fn table(repeat: u32) -> anyhow::Result<Table> {
 }
 
 impl Cost {
-    /// Rows, passes and milliseconds above those of another.
+    /// Rows, passes and milliseconds in addition to those of another.
     fn more_than(&self, other: &Self) -> [f64; 3] {
         let count = |of: fn(&Self) -> usize| of(self) as f64 - of(other) as f64;
         [count(Self::rows), count(|cost| cost.passes.len()), self.ms - other.ms]
@@ -133,14 +133,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_off_has_no_row_and_no_pass() {
-        let table = table(1).expect("a sheet of ours");
+    fn a_disabled_feature_has_no_rows_and_no_passes() {
+        let table = table(1).expect("a valid sheet");
         let off: Vec<_> = table.rows.iter().filter(|row| !row[5].is_empty()).collect();
         assert_eq!(off.len(), 5);
         for row in off {
             assert_eq!((row[5].as_str(), row[6].as_str()), ("0", "0"), "{row:?}");
         }
-        // What is on has some, so that the count above could have been another.
+        // Enabled features have rows or passes, so the zeros above are significant.
         assert!(table.rows.windows(2).all(|pair| pair[0][1..3] != pair[1][1..3] || pair[1][0] == "ground"));
     }
 }

@@ -1,5 +1,4 @@
-//! Scenes of contact as they are, on one thread and on more: what each stage costs, how many pairs there are, and whether
-//! threads change a bit.
+//! Contact scenes of the gallery, on one thread and on more: cost by stage, candidate pairs, and identical bits.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,19 +12,19 @@ use super::stages;
 use super::table::{Table, figure};
 use super::timed::Timed;
 
-/// The scenes that are run where none are named, from the root of the repository.
+/// Default folder of scenes, from the root of the repository.
 const FOLDER: &str = "scenes/collision";
 
-/// A scene on every number of threads.
+/// Runs of a scene, one per number of threads.
 struct Runs {
     name: String,
     runs: Vec<Timed>,
 }
 
-/// Runs the scenes of these files whole, or those of the gallery where there are none.
+/// Runs these scenes to their ends, or those of the gallery if there are none.
 ///
 /// # Errors
-/// When a scene cannot be read or is refused, or threads change its result.
+/// When a scene cannot be read or compiled, or threads change its result.
 pub fn run(files: &[PathBuf], threads: &[u32], report: &mut Report) -> anyhow::Result<()> {
     let found = if files.is_empty() { of_the_gallery(&crate::root().join(FOLDER))? } else { files.to_vec() };
     let all: anyhow::Result<Vec<Runs>> = found.iter().map(|file| Runs::new(file, threads)).collect();
@@ -56,7 +55,7 @@ impl Runs {
         for &threads in threads {
             let run = Timed::run(&program, threads, None, |_| {});
             let (ms, hash) = (figure(run.ms()), run.hash);
-            eprintln!("{name}, threads {threads}: {ms} ms a frame, {} frames, {hash:016x}", run.frames);
+            eprintln!("{name}, threads {threads}: {ms} ms per frame, {} frames, {hash:016x}", run.frames);
             runs.push(run);
         }
         same_bits(&name, &runs)?;
@@ -95,17 +94,17 @@ fn time_table(all: &[Runs]) -> Table {
         "ms",
         "wall",
         "times as fast",
-        "searches",
+        "queries",
         "pairs",
         "most pairs",
         "MB",
         "hash",
     ];
-    let mut table = Table::new("Scenes of contact as they are", &head);
+    let mut table = Table::new("Contact scenes of the gallery", &head);
     for Runs { name, runs } in all {
         for run in runs {
-            let gain = runs[0].spent.wall / run.spent.wall;
-            let times = [run.ms(), 1e3 * run.spent.wall, gain, run.searches, run.pairs].map(figure);
+            let gain = runs[0].timing.wall / run.timing.wall;
+            let times = [run.ms(), 1e3 * run.timing.wall, gain, run.queries, run.pairs].map(figure);
             let whole = [run.threads, run.frames].map(|count| count.to_string());
             let rest = [run.most_pairs.to_string(), figure(run.megabytes()), format!("{:016x}", run.hash)];
             table.row([name.clone()].into_iter().chain(whole).chain(times).chain(rest));
@@ -119,7 +118,7 @@ fn stage_table(all: &[Runs]) -> Table {
         |name: &str, run: &Timed| (vec![name.to_owned(), run.threads.to_string()], run.ms(), run.shares);
     let rows: Vec<stages::Row> =
         all.iter().flat_map(|Runs { name, runs }| runs.iter().map(move |run| row(name, run))).collect();
-    stages::table("Scenes of contact: milliseconds a frame by stage", &["scene", "threads"], &rows)
+    stages::table("Contact scenes: milliseconds per frame by stage", &["scene", "threads"], &rows)
 }
 
 #[cfg(test)]
@@ -149,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_that_threads_change_are_an_error() {
+    fn a_result_that_depends_on_threads_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("small.ron");
         fs::write(&file, SCENE).unwrap();
@@ -160,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_is_not_run() {
+    fn a_scene_with_errors_is_not_run() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("wrong.ron");
         fs::write(&file, "Scene(nodes: {})").unwrap();

@@ -1,47 +1,46 @@
-//! The meshes of the workloads: square sheets of triangles or quads, and a sphere.
+//! Meshes of the workloads: square sheets of triangles or quads, and a sphere.
 
-use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 use nucleus_core::{Faces, Surface};
+use nucleus_measure::fixture;
 
-/// How the cells of a sheet are cut.
+/// Triangulation of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cells {
-    /// Two triangles a cell, the diagonal turning from cell to cell so that no direction is favoured.
+    /// Two triangles per cell, the diagonal alternating from cell to cell so that no direction is preferred.
     Triangles,
-    /// One quad a cell.
+    /// One quad per cell.
     Quads,
 }
 
 /// A sheet of `n` by `n` points from `origin` along `u` and `v`, in metres. Points come row by row along `u`.
 pub fn sheet(n: u32, cells: Cells, origin: Vector3<f64>, u: Vector3<f64>, v: Vector3<f64>) -> Surface {
-    let at = |k: u32| f64::from(k) / f64::from(n - 1);
-    let place = |row| (0..n).map(move |column| origin + u * at(column) + v * at(row));
-    let positions = (0..n).flat_map(place).collect();
-    Surface { positions, faces: faces([n, n], cells) }
+    let quads = fixture::sheet([n, n], origin, u, v);
+    match cells {
+        Cells::Quads => quads,
+        Cells::Triangles => Surface { faces: triangles([n, n]), ..quads },
+    }
 }
 
-/// The faces of a sheet of so many columns and rows of points, which come row by row.
-pub fn faces([columns, rows]: [u32; 2], cells: Cells) -> Faces {
+/// The triangles of a sheet of `columns` by `rows` points, row by row.
+pub fn triangles([columns, rows]: [u32; 2]) -> Faces {
     let quads = (columns as usize - 1) * (rows as usize - 1);
     let mut faces = Faces::with_capacity(2 * quads, 6 * quads);
     for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
         let a = row * columns + column;
         let (b, c, d) = (a + 1, a + columns, a + columns + 1);
-        match cells {
-            Cells::Quads => faces.push(&[a, c, d, b]),
-            Cells::Triangles if (row + column).is_multiple_of(2) => {
-                [[a, c, b], [b, c, d]].iter().for_each(|face| faces.push(face));
-            }
-            Cells::Triangles => [[a, c, d], [a, d, b]].iter().for_each(|face| faces.push(face)),
-        }
+        let halves = match (row + column).is_multiple_of(2) {
+            true => [[a, c, b], [b, c, d]],
+            false => [[a, c, d], [a, d, b]],
+        };
+        halves.iter().for_each(|face| faces.push(face));
     }
     faces
 }
 
-/// A sphere of triangles, 64 round and 32 down, its points on the sphere itself.
+/// A triangulated sphere of 64 meridians and 32 parallels, with vertices on the sphere.
 pub fn sphere(radius: f64, centre: Vector3<f64>) -> Surface {
     const ROUND: u32 = 64;
     const DOWN: u32 = 32;
@@ -66,26 +65,17 @@ pub fn sphere(radius: f64, centre: Vector3<f64>) -> Surface {
     Surface { positions, faces }
 }
 
-/// Every edge once, each with its length at rest in metres.
-pub fn edges(surface: &Surface) -> Vec<([u32; 2], f64)> {
-    let round = |face: &[u32]| -> Vec<[u32; 2]> {
-        let ends = |k: usize| [face[k], face[(k + 1) % face.len()]];
-        (0..face.len()).map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect()
-    };
-    let all: BTreeSet<[u32; 2]> = surface.faces.iter().flat_map(round).collect();
-    let length = |[a, b]: [u32; 2]| (surface.positions[b as usize] - surface.positions[a as usize]).norm();
-    all.into_iter().map(|ends| (ends, length(ends))).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use nucleus_measure::metrics::deformation::Edges;
+
     use super::*;
 
     #[test]
     fn a_sheet_of_triangles_has_one_diagonal_in_every_cell() {
         let n = 5;
         let sheet = sheet(n, Cells::Triangles, Vector3::zeros(), Vector3::x(), Vector3::z());
-        let edges = edges(&sheet);
+        let edges: Vec<_> = Edges::of(&sheet).iter().collect();
         assert_eq!(edges.len() as u32, 2 * n * (n - 1) + (n - 1) * (n - 1));
         let side = 1.0 / f64::from(n - 1);
         let diagonals = edges.iter().filter(|(_, length)| *length > 1.2 * side).count() as u32;
@@ -95,8 +85,8 @@ mod tests {
     #[test]
     fn a_sphere_is_closed_and_faces_outwards() {
         let ball = sphere(0.35, Vector3::zeros());
-        // Euler: points - edges + faces = 2 for anything closed that a ball can be pressed into.
-        assert_eq!(ball.positions.len() + ball.faces.len() - edges(&ball).len(), 2);
+        // Euler characteristic of a sphere: points - edges + faces = 2.
+        assert_eq!(ball.positions.len() + ball.faces.len() - Edges::of(&ball).iter().count(), 2);
         for corners in ball.faces.iter() {
             let [a, b, c] = [0, 1, 2].map(|k| ball.positions[corners[k] as usize]);
             assert!((b - a).cross(&(c - a)).dot(&(a + b + c)) > 0.0);

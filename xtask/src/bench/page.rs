@@ -1,4 +1,4 @@
-//! The page that shows the figures: tables between two marks, in place of those of the run before.
+//! The tables of a page, between two markers, replaced by each bench.
 
 use std::fs;
 use std::path::Path;
@@ -10,15 +10,15 @@ use super::report::Report;
 const BEGIN: &str = "<!-- figures: written by `cargo xtask bench --write` -->\n";
 const END: &str = "<!-- end of figures -->\n";
 
-/// Whether the page is there and has a place for the figures.
+/// Checks that the page exists and has both markers.
 ///
 /// # Errors
-/// When it cannot be read, or has not both marks in their order.
+/// When it cannot be read, or lacks a marker.
 pub fn check(path: &Path) -> anyhow::Result<()> {
     put(&read(path)?, "").map(drop).with_context(|| format!("`{}`", path.display()))
 }
 
-/// Puts the figures of a report into the page.
+/// Replaces the figures of a page by those of a report.
 ///
 /// # Errors
 /// As [`check`], and when the page cannot be written.
@@ -27,10 +27,10 @@ pub fn write(path: &Path, report: &Report) -> anyhow::Result<()> {
     fs::write(path, page).with_context(|| format!("`{}` cannot be written", path.display()))
 }
 
-/// Targets first, as they are what most readers come for.
+/// All tables, targets first.
 fn figures(report: &Report) -> String {
     let mut text = report.machine.join("\n") + "\n";
-    let targets = report.verdict_table();
+    let targets = report.target_table();
     for table in [&targets].into_iter().filter(|table| !table.rows.is_empty()).chain(&report.tables) {
         text.extend(["\n", &table.to_string()]);
     }
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_take_the_place_of_those_before_and_nothing_else_changes() {
+    fn figures_are_replaced_and_the_rest_of_the_page_is_unchanged() {
         let page = format!("above\n{BEGIN}old\n{END}below\n");
         let once = put(&page, "new\n").unwrap();
         assert_eq!(once, format!("above\n{BEGIN}\nnew\n\n{END}below\n"));
@@ -69,12 +69,12 @@ mod tests {
     fn targets_are_shown_where_there_are_any() {
         let mut report = Report::default();
         assert!(!figures(&report).contains("Targets"));
-        report.judge("more", "less".to_owned(), false);
+        report.check_target("more", "less".to_owned(), false);
         assert!(figures(&report).contains("Targets"));
     }
 
     #[test]
-    fn a_page_without_a_place_for_figures_is_refused() {
+    fn a_page_without_markers_is_rejected() {
         for page in ["", BEGIN, END, &format!("{END}{BEGIN}")] {
             assert!(put(page, "").unwrap_err().to_string().contains("no place for figures"));
         }

@@ -1,4 +1,4 @@
-//! The figures of other solvers on the same workloads, one core, and when they were taken.
+//! Figures of other solvers on the same workloads on one core.
 
 use super::workload::Workload::{self, Drape, Swing};
 
@@ -6,23 +6,23 @@ use super::workload::Workload::{self, Drape, Swing};
 pub const SOURCE: &str = "The peers' figures were taken on 21 November 2026 on two shared cores of a Xeon with \
     AVX-512: processor time in the stepping call, one thread, many of them a single run.";
 
-/// What another solver needs.
+/// A run of another solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peer {
     /// Its name.
     pub name: &'static str,
     /// Its version.
     pub version: &'static str,
-    /// What was set.
+    /// Its setting.
     pub setting: &'static str,
     /// The workload.
     pub workload: Workload,
     /// Points along each side of the cloth.
     pub size: u32,
-    /// Milliseconds of processor time a frame.
+    /// Milliseconds of processor time per frame.
     pub ms: f64,
     /// W1: RMS strain of all edges over all frames. W2: RMS stretch at the last frame. In percent; endless
-    /// where the run blew up.
+    /// if the run diverged.
     pub error: f64,
     /// Deepest point in the ball at the last frame and at the worst, in millimetres, where it was noted.
     pub depth: Option<[f64; 2]>,

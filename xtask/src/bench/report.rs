@@ -1,62 +1,62 @@
-//! What is kept of a bench: every run, every table, and which targets were met.
+//! Results of a bench: runs, tables, and targets.
 
+use super::run::RunResult;
 use super::table::Table;
-use super::trial::Outcome;
 
-/// A target, and whether it was met.
+/// A target and its result.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verdict {
-    /// What was to be shown.
+pub struct TargetResult {
+    /// The target.
     pub target: String,
     /// The figure.
     pub found: String,
-    /// Whether that is good enough.
+    /// Whether it is met.
     pub is_met: bool,
 }
 
-impl Verdict {
+impl TargetResult {
     /// `met` or `missed`.
     pub fn word(&self) -> &'static str {
         if self.is_met { "met" } else { "missed" }
     }
 }
 
-/// Everything that was found.
+/// All results.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
-    /// The machine, a line a fact.
+    /// Description of the machine, by line.
     pub machine: Vec<String>,
     /// Every run.
-    pub runs: Vec<Outcome>,
-    /// Every table that was shown.
+    pub runs: Vec<RunResult>,
+    /// All printed tables.
     pub tables: Vec<Table>,
-    /// Every target that was looked at.
-    pub verdicts: Vec<Verdict>,
+    /// All checked targets.
+    pub targets: Vec<TargetResult>,
 }
 
 impl Report {
-    /// Nothing found yet on this machine.
+    /// An empty report of this machine.
     pub fn new(machine: Vec<String>) -> Self {
         machine.iter().for_each(|line| println!("{line}"));
         Self { machine, ..Self::default() }
     }
 
-    /// Keeps a run, and says that it is done.
-    pub fn keep(&mut self, run: &Outcome) {
-        let trial = run.trial;
+    /// Adds a run, and prints a line.
+    pub fn keep(&mut self, run: &RunResult) {
+        let spec = run.spec;
         eprintln!(
-            "{} {}², {}, threads {}: {:.3} ms a frame, {:016x}",
-            trial.workload,
-            trial.size,
-            trial.setting,
-            trial.threads,
+            "{} {}², {}, threads {}: {:.3} ms per frame, {:016x}",
+            spec.workload,
+            spec.size,
+            spec.setting,
+            spec.threads,
             run.ms(),
             run.hash
         );
         self.runs.push(run.clone());
     }
 
-    /// Prints a table and keeps it; one without rows is passed over.
+    /// Prints and adds a table, unless it is empty.
     pub fn show(&mut self, table: Table) {
         if !table.rows.is_empty() {
             print!("\n{table}");
@@ -64,16 +64,16 @@ impl Report {
         }
     }
 
-    /// Notes whether a target was met.
-    pub fn judge(&mut self, target: impl Into<String>, found: String, is_met: bool) {
-        self.verdicts.push(Verdict { target: target.into(), found, is_met });
+    /// Adds the result of a target.
+    pub fn check_target(&mut self, target: impl Into<String>, found: String, is_met: bool) {
+        self.targets.push(TargetResult { target: target.into(), found, is_met });
     }
 
-    /// Which targets were met.
-    pub fn verdict_table(&self) -> Table {
+    /// Table of all targets.
+    pub fn target_table(&self) -> Table {
         let mut table = Table::new("Targets", &["target", "", "found"]);
-        for verdict in &self.verdicts {
-            table.row([verdict.target.clone(), verdict.word().to_owned(), verdict.found.clone()]);
+        for target in &self.targets {
+            table.row([target.target.clone(), target.word().to_owned(), target.found.clone()]);
         }
         table
     }

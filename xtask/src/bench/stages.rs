@@ -3,13 +3,13 @@
 use super::table::{Table, figure};
 use nucleus_measure::clock::STAGES;
 
-/// What is less than this share in all rows has no column.
+/// Stages below this share in all rows have no column.
 const LEAST: f64 = 0.002;
 
-/// A run: what its first cells say, its milliseconds a frame, and the share of each of [`STAGES`] in them.
+/// A run: its first cells, milliseconds per frame, and the share of each of [`STAGES`].
 pub type Row = (Vec<String>, f64, [f64; STAGES.len()]);
 
-/// The table of some runs; `first` are the heads of their first cells.
+/// Table of runs; `first` are the heads of the first cells.
 pub fn table(title: &str, first: &[&str], runs: &[Row]) -> Table {
     let is_used = |k: &usize| runs.iter().any(|(_, _, shares)| shares[*k] > LEAST);
     let used: Vec<usize> = (0..STAGES.len()).filter(is_used).collect();
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stages_that_nothing_is_spent_on_have_no_column() {
+    fn stages_without_time_have_no_column() {
         let mut shares = [0.0; STAGES.len()];
         (shares[0], shares[3], shares[8]) = (0.25, 0.749, 0.001);
         let table = table("by stage", &["points"], &[(vec!["33²".to_owned()], 8.0, shares)]);

@@ -1,15 +1,15 @@
-//! Tables as Markdown, columns as wide as they have to be; read as well on a terminal.
+//! Markdown tables with aligned columns, readable on a terminal.
 
 use std::fmt;
 
-/// A heading, a table, and what is to be said of it.
+/// A table with a heading and notes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Table {
-    /// The heading above it.
+    /// Heading.
     pub title: String,
-    /// The heads of the columns.
+    /// Column heads.
     pub head: Vec<String>,
-    /// The rows, each as long as the head.
+    /// Rows, each as long as the head.
     pub rows: Vec<Vec<String>>,
     /// Sentences below it.
     pub notes: Vec<String>,
@@ -33,7 +33,7 @@ impl Table {
     }
 }
 
-/// A number with three figures, or a word for what is none.
+/// A number with three significant digits, or a word if it is not finite.
 pub fn figure(number: f64) -> String {
     match number.abs() {
         _ if number.is_nan() => "-".to_owned(),
@@ -47,7 +47,7 @@ pub fn figure(number: f64) -> String {
     }
 }
 
-/// Numbers stand right; a column of them holds nothing else.
+/// Whether a cell is numeric; numeric columns are right-aligned.
 fn is_number(cell: &str) -> bool {
     cell == "lost" || cell.chars().all(|c| c.is_ascii_digit() || ".-²".contains(c))
 }
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_as_wide_as_their_widest_cell_and_numbers_stand_right() {
+    fn columns_fit_their_widest_cell_and_numbers_are_right_aligned() {
         let mut table = Table::new("Times", &["solver", "ms"]);
         table.row(["2nd one".to_owned(), figure(1.234)]);
         table.row(["another".to_owned(), figure(1234.5)]);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_said_in_words() {
+    fn values_that_are_not_finite_are_words() {
         assert_eq!([f64::NAN, f64::INFINITY, 0.0].map(figure), ["-", "lost", "0"]);
     }
 }

@@ -1,85 +1,85 @@
-//! A scene run on the clock, as an artist would run it.
+//! A timed run of a scene through the graph crate, as the command runs it.
 
 use nucleus_core::StateView;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
 use super::memory;
-use nucleus_measure::clock::{STAGES, Spent, StageClock};
+use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
-/// What came of it; what is not said to be otherwise is of a frame in the mean.
+/// Results; means per frame unless stated otherwise.
 #[derive(Debug, Clone)]
 pub struct Timed {
     pub threads: u32,
-    /// Frames that were run.
+    /// Number of frames.
     pub frames: u32,
-    /// Seconds in the stepping calls.
-    pub spent: Spent,
-    /// The share of each of [`STAGES`] in the time.
+    /// Time in the stepping calls.
+    pub timing: Timing,
+    /// Share of each of [`STAGES`] in the time.
     pub shares: [f64; STAGES.len()],
-    /// Runs of the broad phase.
-    pub searches: f64,
-    /// Pairs that could touch, over all runs of the broad phase.
+    /// Broad-phase queries.
+    pub queries: f64,
+    /// Candidate pairs, over all broad-phase queries.
     pub pairs: f64,
-    /// The same in the frame that had most.
+    /// Maximum of candidate pairs in a frame.
     pub most_pairs: u64,
-    /// Contacts that pushed, over all passes.
+    /// Active contacts, over all passes.
     pub contacts: f64,
-    /// The most memory that the process held, in bytes; nothing where the system does not tell.
+    /// Peak memory of the process in bytes; `None` on systems that do not report it.
     pub memory: Option<u64>,
-    /// All bits of the state after the last frame.
+    /// Hash of the last state.
     pub hash: u64,
 }
 
 impl Timed {
-    /// Runs a scene, the first `frames` of it or all, and shows the state after each to `seen`.
+    /// Runs a scene, the first `frames` of it or all, and passes the state after each frame to `seen`.
     pub fn run(
         program: &Program,
         threads: u32,
         frames: Option<u32>,
         mut seen: impl FnMut(&dyn StateView),
     ) -> Self {
-        memory::forget();
+        memory::reset_peak();
         let mut run = Simulation::<f32>::new(program, threads as usize);
         let mut stages = StageClock::default();
         let mut all = Self::begun(threads);
         while frames.map_or(!run.is_done(), |frames| all.frames < frames) {
-            let (spent, account) = Spent::on(|| {
-                let account = run.advance(&mut stages).report;
+            let (timing, report) = Timing::of_process(|| {
+                let report = run.advance(&mut stages).report;
                 stages.stop();
-                account
+                report
             });
             all.frames += 1;
-            all.spent.wall += spent.wall;
-            all.spent.processor += spent.processor;
-            all.searches += f64::from(account.broad_phases);
-            all.pairs += account.candidate_pairs as f64;
-            all.most_pairs = all.most_pairs.max(account.candidate_pairs);
-            all.contacts += account.contacts as f64;
+            all.timing.wall += timing.wall;
+            all.timing.processor += timing.processor;
+            all.queries += f64::from(report.broad_phases);
+            all.pairs += report.candidate_pairs as f64;
+            all.most_pairs = all.most_pairs.max(report.candidate_pairs);
+            all.contacts += report.contacts as f64;
             seen(run.state());
         }
         let hash = state_hash(&run);
-        Self { shares: stages.shares(), memory: memory::most(), hash, ..all.in_the_mean() }
+        Self { shares: stages.shares(), memory: memory::peak(), hash, ..all.in_the_mean() }
     }
 
-    /// Milliseconds: of the processor with one thread, on the wall with more.
+    /// Milliseconds: processor time with one thread, wall time with more.
     pub fn ms(&self) -> f64 {
-        1e3 * if self.threads == 1 { self.spent.processor } else { self.spent.wall }
+        1e3 * if self.threads == 1 { self.timing.processor } else { self.timing.wall }
     }
 
-    /// The most memory that the process held, in megabytes.
+    /// Peak memory in megabytes.
     pub fn megabytes(&self) -> f64 {
         self.memory.map_or(f64::NAN, |bytes| bytes as f64 / 1e6)
     }
 
-    /// Nothing run yet.
+    /// Before the first frame.
     fn begun(threads: u32) -> Self {
         Self {
             threads,
             frames: 0,
-            spent: Spent::default(),
+            timing: Timing::default(),
             shares: Default::default(),
-            searches: 0.0,
+            queries: 0.0,
             pairs: 0.0,
             most_pairs: 0,
             contacts: 0.0,
@@ -91,8 +91,8 @@ impl Timed {
     fn in_the_mean(self) -> Self {
         let mean = |all: f64| all / f64::from(self.frames.max(1));
         Self {
-            spent: Spent { wall: mean(self.spent.wall), processor: mean(self.spent.processor) },
-            searches: mean(self.searches),
+            timing: Timing { wall: mean(self.timing.wall), processor: mean(self.timing.processor) },
+            queries: mean(self.queries),
             pairs: mean(self.pairs),
             contacts: mean(self.contacts),
             ..self
@@ -100,7 +100,7 @@ impl Timed {
     }
 }
 
-/// All bits of the state of a run, of all its nuclei.
+/// Hash of the state of a run, over all its nuclei.
 pub fn state_hash(run: &Simulation<f32>) -> u64 {
     let mut solvers = run.solvers().map(|solver| solver.state_hash());
     let first = solvers.next().unwrap_or_default();

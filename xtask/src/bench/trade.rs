@@ -1,42 +1,42 @@
-//! Time against error: a workload at many settings, beside what other solvers need.
+//! Time against error: a workload at many settings, compared with other solvers.
 
-use super::contest::{self, Contest};
+use super::comparison::{self, Comparison};
 use super::peers::{PEERS, SOURCE};
 use super::report::Report;
+use super::run::{RunResult, RunSpec};
 use super::table::{Table, figure};
-use super::trial::{Outcome, Trial};
 use super::workload::{Setting, Workload};
 use nucleus_measure::clock::STAGES;
 
-/// The evaluations at which it is shown where the time goes.
+/// Evaluations of the table by stage.
 const TYPICAL: u32 = 48;
 
-/// Runs a workload at all sizes and settings, one thread.
+/// Runs a workload at all sizes and settings on one thread.
 ///
 /// # Errors
-/// When the solver refuses a scene or repeats itself with other bits.
+/// When the solver rejects a scene, or repeated runs differ.
 pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for &size in sizes {
         for setting in settings(workload, size) {
-            let run = Trial::full(workload, size, setting).run(repeat)?;
+            let run = RunSpec::full(workload, size, setting).run(repeat)?;
             report.keep(&run);
             runs.push(run);
         }
     }
     report.show(own_table(workload, &runs));
     report.show(stage_table(workload, &runs));
-    let contests: Vec<Contest> = PEERS
+    let comparisons: Vec<Comparison> = PEERS
         .iter()
         .filter(|peer| peer.workload == workload && sizes.contains(&peer.size))
-        .filter_map(|peer| Contest::new(peer, &runs))
+        .filter_map(|peer| Comparison::new(peer, &runs))
         .collect();
-    report.show(contest_table(workload, &contests));
-    judge(workload, sizes, &contests, report);
+    report.show(contest_table(workload, &comparisons));
+    check_target(workload, sizes, &comparisons, report);
     Ok(())
 }
 
-/// What is worth running. Large sheets need more evaluations before anything is right, and take too long at most.
+/// Settings to run. Large sheets converge only with many evaluations, and the largest counts take too long.
 fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     let evaluations: &[u32] = match (workload, size) {
         (Workload::Drape, 257..) => &[48, 96],
@@ -55,8 +55,8 @@ fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     variants.iter().flat_map(each).filter(is_worth_it).collect()
 }
 
-/// Stiff cloth wants many evaluations before its stiffness is felt; soft cloth has its own strain, which more of
-/// them do not lessen. What bending costs is seen at two settings.
+/// Stiff cloth needs many evaluations to converge; soft cloth has physical strain that more of them do not reduce. Bending
+/// is measured at two settings.
 fn is_worth_it(setting: &Setting) -> bool {
     let Setting { resistance, bend, evaluations } = *setting;
     let fits = match resistance {
@@ -68,9 +68,9 @@ fn is_worth_it(setting: &Setting) -> bool {
 }
 
 /// Our own runs.
-fn own_table(workload: Workload, runs: &[Outcome]) -> Table {
+fn own_table(workload: Workload, runs: &[RunResult]) -> Table {
     let errors: &[&str] = match workload {
-        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "searches", "unresolved"],
+        Workload::Drape => &["stretch %", "largest %", "depth mm", "worst mm", "queries", "unresolved"],
         _ => &["strain %", "stretch %", "largest %", "sag m", "energy J/kg"],
     };
     let head: Vec<&str> =
@@ -82,47 +82,48 @@ fn own_table(workload: Workload, runs: &[Outcome]) -> Table {
             Workload::Drape => {
                 let depths = [1e3 * found.depth, 1e3 * found.worst_depth];
                 let stretches = [1e2 * found.stretch, 1e2 * found.max];
-                [stretches, depths, [run.searches, run.pairs_unresolved as f64]].concat()
+                [stretches, depths, [run.queries, run.pairs_unresolved as f64]].concat()
             }
             _ => vec![1e2 * found.strain, 1e2 * found.stretch, 1e2 * found.max, found.sag, found.energy],
         };
-        let cells = [format!("{}²", run.trial.size), figure(run.ms()), figure(1e3 * run.spent.wall)]
+        let cells = [format!("{}²", run.spec.size), figure(run.ms()), figure(1e3 * run.timing.wall)]
             .into_iter()
             .chain(errors.into_iter().map(figure))
-            .chain([run.trial.setting.to_string(), format!("{:016x}", run.hash)]);
+            .chain([run.spec.setting.to_string(), format!("{:016x}", run.hash)]);
         table.row(cells);
     }
     table
 }
 
 /// Milliseconds by stage at a typical setting.
-fn stage_table(workload: Workload, runs: &[Outcome]) -> Table {
-    let typical: Vec<&Outcome> = runs.iter().filter(|run| run.trial.setting.evaluations == TYPICAL).collect();
+fn stage_table(workload: Workload, runs: &[RunResult]) -> Table {
+    let typical: Vec<&RunResult> =
+        runs.iter().filter(|run| run.spec.setting.evaluations == TYPICAL).collect();
     let used: Vec<usize> =
         (0..STAGES.len()).filter(|&k| typical.iter().any(|run| run.shares[k] > 0.002)).collect();
     let names = used.iter().map(|&k| STAGES[k].1);
     let head: Vec<&str> = ["points", "ms"].into_iter().chain(names).chain(["setting", "hash"]).collect();
-    let mut table = Table::new(&format!("{workload}: milliseconds a frame by stage"), &head);
+    let mut table = Table::new(&format!("{workload}: milliseconds per frame by stage"), &head);
     for run in typical {
         let stages = used.iter().map(|&k| figure(run.ms() * run.shares[k]));
-        let cells = [format!("{}²", run.trial.size), figure(run.ms())];
-        let of_run = [run.trial.setting.to_string(), format!("{:016x}", run.hash)];
+        let cells = [format!("{}²", run.spec.size), figure(run.ms())];
+        let of_run = [run.spec.setting.to_string(), format!("{:016x}", run.hash)];
         table.row(cells.into_iter().chain(stages).chain(of_run));
     }
     table
 }
 
-/// The peers, each with our answer.
-fn contest_table(workload: Workload, contests: &[Contest]) -> Table {
+/// The peers, each with our fastest run of no more error.
+fn contest_table(workload: Workload, comparisons: &[Comparison]) -> Table {
     let head = ["points", "peer", "its ms", "its error %", "our ms", "our error %", "", "our setting"];
-    let mut table = Table::new(&format!("{workload}: what we need for no more error than a peer"), &head);
-    for contest in contests {
-        let peer = contest.peer;
+    let mut table = Table::new(&format!("{workload}: fastest run with no more error than each peer"), &head);
+    for comparison in comparisons {
+        let peer = comparison.peer;
         let name = [peer.name, peer.version, peer.setting].join(" ");
-        let run = contest.answer.unwrap_or(contest.best);
-        let standing = match contest.lead() {
-            Some(lead) if lead > 1.0 => format!("{} x faster", figure(lead)),
-            Some(lead) => format!("missed: {} x slower", figure(1.0 / lead)),
+        let run = comparison.answer.unwrap_or(comparison.best);
+        let standing = match comparison.speedup() {
+            Some(speedup) if speedup > 1.0 => format!("{} x faster", figure(speedup)),
+            Some(speedup) => format!("missed: {} x slower", figure(1.0 / speedup)),
             None => "missed: our least error".to_owned(),
         };
         table.row([
@@ -131,22 +132,23 @@ fn contest_table(workload: Workload, contests: &[Contest]) -> Table {
             figure(peer.ms),
             figure(peer.error),
             figure(run.ms()),
-            figure(contest::error(run)),
+            figure(comparison::error(run)),
             standing,
-            run.trial.setting.to_string(),
+            run.spec.setting.to_string(),
         ]);
     }
     table.note(SOURCE);
     table
 }
 
-fn judge(workload: Workload, sizes: &[u32], contests: &[Contest], report: &mut Report) {
+fn check_target(workload: Workload, sizes: &[u32], comparisons: &[Comparison], report: &mut Report) {
     for &size in sizes {
-        let here: Vec<&Contest> = contests.iter().filter(|contest| contest.peer.size == size).collect();
-        let lost = here.iter().filter(|contest| !contest.is_won());
+        let here: Vec<&Comparison> =
+            comparisons.iter().filter(|comparison| comparison.peer.size == size).collect();
+        let lost = here.iter().filter(|comparison| !comparison.is_ahead());
         let lost: Vec<String> =
-            lost.map(|contest| format!("{} {}", contest.peer.name, contest.peer.setting)).collect();
-        let leads = here.iter().filter_map(|contest| contest.lead());
+            lost.map(|comparison| format!("{} {}", comparison.peer.name, comparison.peer.setting)).collect();
+        let leads = here.iter().filter_map(|comparison| comparison.speedup());
         let least = leads.fold(f64::INFINITY, f64::min);
         if here.is_empty() {
             continue;
@@ -156,6 +158,6 @@ fn judge(workload: Workload, sizes: &[u32], contests: &[Contest], report: &mut R
             false => format!("{} of {}, not {}", here.len() - lost.len(), here.len(), lost.join(", ")),
         };
         let target = format!("{workload} {size}²: ahead of every peer at no more error");
-        report.judge(target, found, lost.is_empty());
+        report.check_target(target, found, lost.is_empty());
     }
 }

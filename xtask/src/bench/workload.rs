@@ -1,12 +1,14 @@
-//! The workloads, the same that the peers were measured on: Y is up; metres, kilograms, seconds.
+//! The workloads on which the peers were measured. Y is up; metres, kilograms, seconds.
 
 use std::fmt;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    BuildError, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput,
-    GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Surface,
+    BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
+    Mass, ModelBuilder, Pin, PointId, Stiffness, Surface,
 };
+
+use nucleus_measure::fixture;
 
 use super::ball::Ball;
 use super::mesh::{self, Cells};
@@ -14,22 +16,18 @@ use super::mesh::{self, Cells};
 /// The ball that W2 falls on.
 pub const BALL: Ball = Ball { radius: 0.35, start: [0.0, 0.5, 0.0], flight: [0.0; 3] };
 
-/// Mass of all cloth in kg/m².
-pub const DENSITY: f64 = 0.2;
+pub use nucleus_measure::fixture::{DENSITY, GRAVITY};
 
-/// Acceleration of gravity in m/s².
-pub const GRAVITY: f64 = 9.81;
-
-/// Cloth and what it meets touch at this distance in metres.
+/// Distance of contact between cloth and collider, in metres.
 const THICKNESS: f64 = 0.005;
 
-/// Friction between the two.
+/// Friction coefficient of the pair.
 const FRICTION: f64 = 0.5;
 
-/// What is simulated.
+/// A workload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Workload {
-    /// W1: a level sheet of 1 m, held at two corners, swings down.
+    /// W1: a horizontal sheet of 1 m, pinned at two corners, swings down.
     Swing,
     /// W2: a sheet of 1.5 m falls on a ball above the ground.
     Drape,
@@ -47,14 +45,14 @@ impl fmt::Display for Workload {
     }
 }
 
-/// What is set for a run.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// Stretch and compression resistance; 20 is 10 kN/m.
     pub resistance: f64,
     /// Bend resistance.
     pub bend: f64,
-    /// Evaluations in 1/24 s, over 3 substeps.
+    /// Evaluations per 1/24 s, over 3 substeps.
     pub evaluations: u32,
 }
 
@@ -65,18 +63,18 @@ impl fmt::Display for Setting {
     }
 }
 
-/// A workload made ready for the solver.
+/// A workload as input of the solver.
 pub struct Scene {
-    /// The cloth's mesh as it starts, which is its shape at rest.
+    /// The initial mesh of the cloth, which is its rest shape.
     pub sheet: Surface,
     /// The objects.
     pub builder: ModelBuilder,
-    /// The input of every frame; nothing is animated.
+    /// The input of every frame; there is no animation.
     pub frame: FrameInput,
 }
 
 impl Workload {
-    /// Frames of a full run: until swing or drape is over.
+    /// Frames of a full run, to the end of the motion.
     pub fn frames(self) -> u32 {
         match self {
             Self::Swing => 120,
@@ -85,7 +83,7 @@ impl Workload {
         }
     }
 
-    /// What the sheet falls on.
+    /// The ball, if there is one.
     pub fn ball(self) -> Option<Ball> {
         (self == Self::Drape).then_some(BALL)
     }
@@ -93,7 +91,7 @@ impl Workload {
     /// The scene with `n` by `n` points of cloth.
     ///
     /// # Errors
-    /// When the solver refuses a mesh.
+    /// When the solver rejects a mesh.
     pub fn scene(self, n: u32, setting: &Setting) -> Result<Scene, BuildError> {
         let sheet = self.sheet(n);
         let mut builder = ModelBuilder::new();
@@ -130,36 +128,19 @@ impl Workload {
     }
 }
 
-/// Cloth that feels gravity and nothing else.
+/// Cloth under gravity alone, with the resistances of a setting, over 3 substeps.
 pub fn frame(setting: &Setting) -> FrameInput {
-    let cloth = ClothFrame {
-        stretch_resistance: setting.resistance,
-        compression_resistance: setting.resistance,
-        bend_resistance: setting.bend,
-        stretch_damp: 0.0,
-        drag: 0.0,
-        lift: 0.0,
-        ..ClothFrame::default()
-    };
-    FrameInput {
-        duration: COUNT_PERIOD,
-        substeps: 3,
-        collision_iterations: 4.0,
-        resistance: ResistanceModel::Physical { evaluations: f64::from(setting.evaluations) },
-        gravity: -Vector3::y() * GRAVITY,
-        wind: Vector3::zeros(),
-        air_density: 1.0,
-        plane: None,
-        layer_range: 4.0,
-        self_collision_iterations: 4.0,
-        cloths: vec![cloth],
-        colliders: Vec::new(),
-        pins: Vec::new(),
-    }
+    let mut frame = fixture::gravity_only(f64::from(setting.evaluations));
+    frame.substeps = 3;
+    let cloth = &mut frame.cloths[0];
+    cloth.stiffness = Stiffness::default();
+    (cloth.stretch_resistance, cloth.compression_resistance) = (setting.resistance, setting.resistance);
+    cloth.bend_resistance = setting.bend;
+    frame
 }
 
-/// Friction adds up over the two sides, and so does thickness; the plane has none of its own. Cloth that falls
-/// is damped as Maya's is by default.
+/// Friction and thickness are summed over both sides; the plane has no thickness. Falling cloth has Maya's default
+/// stretch damping.
 fn set_ball_and_ground(frame: &mut FrameInput) {
     let (thickness, friction) = (THICKNESS / 2.0, FRICTION / 2.0);
     for cloth in &mut frame.cloths {

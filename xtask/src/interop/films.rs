@@ -1,4 +1,4 @@
-//! Films by an ffmpeg that is fetched, for machines that have none: the test of films passes over them where none is found.
+//! Films with a downloaded ffmpeg, for machines without one, on which the test of films passes without running.
 
 use std::env;
 use std::fs;
@@ -9,14 +9,14 @@ use anyhow::{Context, ensure};
 
 use super::{cargo_with, environment, succeed};
 
-/// A package of Python that has a whole ffmpeg in it, with H.264 and VP9.
+/// A Python package that contains ffmpeg with H.264 and VP9.
 const PACKAGE: &str = "imageio-ffmpeg==0.6.0";
 /// The test in `crates/nucleus-cli/tests/cli/render.rs`.
 const TEST: &str = "render::a_film_has_every_frame_at_its_rate_and_the_colours_of_the_picture";
-/// Prints where it is.
+/// Prints the path of its ffmpeg.
 const WHERE: &str = "import imageio_ffmpeg; print(imageio_ffmpeg.get_ffmpeg_exe())";
 
-/// Has films written and read back.
+/// Runs the test that writes films and reads them back.
 pub fn run(root: &Path, place: &Path) -> anyhow::Result<()> {
     println!("\n== films");
     let folder = install(place)?;
@@ -34,12 +34,12 @@ pub fn run(root: &Path, place: &Path) -> anyhow::Result<()> {
         TEST,
         "--nocapture",
     ];
-    // That it is found is sure before: where it is not, the test passes without having written a film.
+    // Ensures that ffmpeg is found; without it the test passes without writing a film.
     succeed(Command::new("ffmpeg").args(["-loglevel", "error", "-version"]).env("PATH", &path))?;
     cargo_with(root, &test, &[("PATH", &path)])
 }
 
-/// Fetches ffmpeg; gives the folder in which it has that name.
+/// Downloads ffmpeg; returns a folder that contains it as `ffmpeg`.
 fn install(place: &Path) -> anyhow::Result<PathBuf> {
     let python = environment(place, "films", &[PACKAGE])?;
     let output = Command::new(&python).args(["-c", WHERE]).output();

@@ -1,24 +1,24 @@
-//! A reef knot before it is pulled tight: two bights, each round both strands of the other.
+//! A loose reef knot: two bights, each around both strands of the other.
 //!
 //! The left ribbon comes from the left, narrow, passes over the right ribbon's bight, widens and passes under
 //! its strands, and turns back over them. The right ribbon is the same, turned by half a turn and upside down.
-//! Ribbons stand on edge, so that they bend where the knot turns.
+//! Ribbons are on edge, so that they bend where the knot turns.
 
 use std::f64::consts::{PI, TAU};
 
 use super::Mesh;
 
-/// Half the distance of the strands of a ribbon, where they leave the knot and inside it.
+/// Half the distance of the strands of a ribbon, outside the knot and inside it.
 const NARROW: f64 = 3.0;
 const WIDE: f64 = 8.0;
 
-/// Where strands widen, from and to; the second is also the centre of the bight's half circle.
+/// Range of x in which strands widen; its end is also the centre of the bight's half circle.
 const WIDENS: [f64; 2] = [-4.0, 4.0];
 
-/// Where the ribbon ends.
+/// The x of the ribbon's ends.
 const END: f64 = -60.0;
 
-/// How far a ribbon is above or below the middle where it passes another, and half its width.
+/// Height of a ribbon above or below the middle at a crossing, and half its width.
 const RISE: f64 = 2.4;
 const HALF_WIDTH: f64 = 1.5;
 
@@ -46,12 +46,12 @@ fn ribbon(place: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
     Mesh::rows((0..ALONG).map(row).collect(), false)
 }
 
-/// From one end to the other, as if the widening went straight.
+/// Length from end to end, neglecting the widening.
 fn path_length() -> f64 {
     2.0 * (WIDENS[1] - END) + PI * WIDE
 }
 
-/// Where the ribbon is after a way along it: x, z, and its height.
+/// Centre line at an arc length: x, z, and height.
 fn centre_line(way: f64) -> [f64; 3] {
     let straight = WIDENS[1] - END;
     let bight = PI * WIDE;
@@ -68,9 +68,9 @@ fn centre_line(way: f64) -> [f64; 3] {
     [x, NARROW + (WIDE - NARROW) * widening, RISE * weave(x)]
 }
 
-/// 1 where a strand passes over, -1 where it passes under, by its x.
+/// 1 where a strand passes over, -1 where it passes under, as a function of x.
 fn weave(x: f64) -> f64 {
-    // It meets the bight of the other ribbon where that is as narrow as this one.
+    // It crosses the bight of the other ribbon where that is as narrow as this one.
     let bight = -(WIDENS[1] + (WIDE * WIDE - NARROW * NARROW).sqrt());
     if x < bight {
         smooth((x - bight + 12.0) / 12.0)
@@ -81,7 +81,7 @@ fn weave(x: f64) -> f64 {
     }
 }
 
-/// From 0 to 1 without a kink.
+/// Smooth step from 0 to 1.
 fn smooth(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x - (TAU * x).sin() / TAU
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ribbons_are_apart_where_they_pass_each_other() {
+    fn the_ribbons_are_separated_at_their_crossings() {
         let line = |turned: bool| {
             let place = |k: usize| {
                 let [x, z, height] = centre_line(path_length() * k as f64 / 2000.0);
@@ -102,7 +102,7 @@ mod tests {
         };
         for [x, z, height] in line(false) {
             for [other_x, other_z, other] in line(true) {
-                // Where they pass, the edges of one are clear of those of the other.
+                // At a crossing, the edges of one are clear of those of the other.
                 let near = (x - other_x).hypot(z - other_z) < 0.3;
                 assert!(
                     !near || (height - other).abs() > 2.0 * HALF_WIDTH + 0.5,

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, Color, ColorChoice, ColorSpec, WriteColor};
 use nucleus_measure::extremes::{
-    Extreme, Figure, Kind, Outcome as Judged, Patience, Trial, judge_all, miss, named, page, rows,
+    Evaluation, Kind, Measurement, StressCase, TimeBudget, evaluate_all, failure_text, named, page, rows,
 };
 use serde_json::{Value, json};
 
@@ -46,7 +46,7 @@ impl Extremes {
     pub fn run(self) -> Result<Outcome> {
         let rows = self.rows()?;
         if self.list {
-            let lines = rows.iter().map(|row| format!("{:<36} {}\n", row.name, row.what));
+            let lines = rows.iter().map(|row| format!("{:<36} {}\n", row.name, row.summary));
             output::print(&lines.collect::<String>())?;
             return Ok(Outcome::Success);
         }
@@ -56,7 +56,7 @@ impl Extremes {
         let mut outcomes = Vec::new();
         // The page is the result if one is written, else the table.
         let is_result = self.write.is_none();
-        let mut take = |outcome: Judged| -> Result<()> {
+        let mut take = |outcome: Evaluation| -> Result<()> {
             match self.json {
                 true => output::check(output::write(&format!("{}\n", as_json(&outcome))), is_result)?,
                 false => output::check(print(&outcome, outcomes.last())?, is_result)?,
@@ -64,23 +64,23 @@ impl Extremes {
             outcomes.push(outcome);
             Ok(())
         };
-        judge_all(&rows, options::thread_count(self.jobs), Patience::Long, &mut take)?;
+        evaluate_all(&rows, options::thread_count(self.jobs), TimeBudget::Long, &mut take)?;
         if !self.json {
             output::report(&total(&outcomes));
         }
         if let Some(file) = &self.write {
             fs::write(file, page(&outcomes)).with_context(|| format!("cannot write `{}`", file.display()))?;
         }
-        Ok(if outcomes.iter().all(Judged::holds) { Outcome::Success } else { Outcome::Problem })
+        Ok(if outcomes.iter().all(Evaluation::holds) { Outcome::Success } else { Outcome::Problem })
     }
 
     /// The requested rows.
-    fn rows(&self) -> Result<Vec<&'static Extreme>> {
+    fn rows(&self) -> Result<Vec<&'static StressCase>> {
         let known = |name: &str| rows().any(|row| row.name.starts_with(name));
         if let Some(unknown) = self.only.iter().find(|name| !known(name)) {
             bail!("there is no row `{unknown}`; `nucleus extremes --list` lists them");
         }
-        let wanted = |row: &&Extreme| {
+        let wanted = |row: &&StressCase| {
             let asked = |name: &String| match named(name) {
                 Some(exact) => exact.name == row.name,
                 None => row.name.starts_with(name.as_str()),
@@ -92,11 +92,10 @@ impl Extremes {
 }
 
 /// Writes each scene with its meshes into a folder per row.
-fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
+fn save(rows: &[&StressCase], folder: &Path) -> Result<Outcome> {
     for row in rows {
-        let (Trial::Runs { case, .. } | Trial::InvalidInput { case, .. }) = row.trial;
         let folder = folder.join(row.name);
-        let written = fs::create_dir_all(&folder).and_then(|()| case().write(&folder, row.name));
+        let written = fs::create_dir_all(&folder).and_then(|()| row.scene().write(&folder, row.name));
         written.with_context(|| format!("cannot write to `{}`", folder.display()))?;
     }
     let scenes = figures::count(rows.len(), "scene");
@@ -105,7 +104,7 @@ fn save(rows: &[&Extreme], folder: &Path) -> Result<Outcome> {
 }
 
 /// `71 of 80 rows hold, 9 fail`.
-fn total(outcomes: &[Judged]) -> String {
+fn total(outcomes: &[Evaluation]) -> String {
     let failing = outcomes.iter().filter(|outcome| !outcome.holds()).count();
     let all = figures::count(outcomes.len(), "row");
     match failing {
@@ -115,18 +114,18 @@ fn total(outcomes: &[Judged]) -> String {
 }
 
 /// Prints a row of the table, after a heading if it is the first of its group.
-fn print(outcome: &Judged, before: Option<&Judged>) -> Result<io::Result<()>> {
+fn print(outcome: &Evaluation, before: Option<&Evaluation>) -> Result<io::Result<()>> {
     let choice = if stdout().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let writer = BufferWriter::stdout(choice);
     let mut buffer = writer.buffer();
-    if before.is_none_or(|before| before.extreme.group != outcome.extreme.group) {
-        heading(&mut buffer, outcome.extreme.group)?;
+    if before.is_none_or(|before| before.stress_case.group != outcome.stress_case.group) {
+        heading(&mut buffer, outcome.stress_case.group)?;
     }
     line(&mut buffer, outcome)?;
     for figure in outcome.failures() {
-        writeln!(buffer, "        {}", miss(figure))?;
+        writeln!(buffer, "        {}", failure_text(figure))?;
     }
-    if let Some(reason) = outcome.extreme.fails.filter(|_| !outcome.holds()) {
+    if let Some(reason) = outcome.stress_case.known_failure.filter(|_| !outcome.holds()) {
         writeln!(buffer, "        known: {reason}")?;
     }
     Ok(writer.print(&buffer))
@@ -138,7 +137,7 @@ fn heading(buffer: &mut Buffer, group: &str) -> Result<()> {
     Ok(buffer.reset()?)
 }
 
-fn line(buffer: &mut Buffer, outcome: &Judged) -> Result<()> {
+fn line(buffer: &mut Buffer, outcome: &Evaluation) -> Result<()> {
     let (verdict, colour) = if outcome.holds() { ("ok", Color::Green) } else { ("FAIL", Color::Red) };
     buffer.set_color(ColorSpec::new().set_fg(Some(colour)))?;
     write!(buffer, "  {verdict:<4} ")?;
@@ -150,13 +149,13 @@ fn line(buffer: &mut Buffer, outcome: &Judged) -> Result<()> {
     let speed = cell(Kind::Speed, &|speed| format!("{speed:.4} m/s"));
     let strain = cell(Kind::Strain, &|strain| format!("{:.2} %", 100.0 * strain));
     let cost = cell(Kind::Cost, &|cost| format!("{cost:.1}×"));
-    let name = outcome.extreme.name;
+    let name = outcome.stress_case.name;
     Ok(writeln!(buffer, "{name:<33} {energy:>8} {speed:>10} {strain:>9} {cost:>6}")?)
 }
 
 /// A row as JSON. Figures that are not finite become null.
-fn as_json(outcome: &Judged) -> Value {
-    let figure = |figure: &Figure| {
+fn as_json(outcome: &Evaluation) -> Value {
+    let figure = |figure: &Measurement| {
         json!({
             "what": figure.what.trim(),
             "value": figure.value,
@@ -165,14 +164,14 @@ fn as_json(outcome: &Judged) -> Value {
             "holds": figure.holds(),
         })
     };
-    let Extreme { name, group, what, expect, fails, .. } = outcome.extreme;
+    let StressCase { name, group, summary, expected, known_failure, .. } = outcome.stress_case;
     json!({
         "name": name,
         "group": group,
-        "what": what,
-        "expect": expect,
+        "what": summary,
+        "expect": expected,
         "holds": outcome.holds(),
-        "known_to_fail": fails,
+        "known_to_fail": known_failure,
         "figures": outcome.figures.iter().map(figure).collect::<Vec<_>>(),
         "reported": outcome.reported,
     })

@@ -6,10 +6,12 @@ use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use nucleus_graph::scene::edit;
 use nucleus_measure::report;
-use nucleus_measure::store::{Store, write_whole};
-use nucleus_measure::trade::plan::Wishes;
-use nucleus_measure::trade::recommend::{Choice, for_error, for_time};
-use nucleus_measure::trade::{Found, Point, Reading, Setting, Subject, TradeError, Watch, measure};
+use nucleus_measure::result_cache::{ResultCache, write_atomic};
+use nucleus_measure::trade::SweepOptions;
+use nucleus_measure::trade::{
+    Benchmark, Point, Reading, Setting, SweepControl, SweepResult, TradeError, run_sweep,
+};
+use nucleus_measure::trade::{Choice, for_error, for_time};
 
 use crate::options::{self, FrameRange};
 use crate::output::say;
@@ -94,7 +96,7 @@ impl Trade {
             let frames = (DEFAULT_SECONDS * scene.time.fps).ceil() as i64;
             scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
         }
-        let subject = match Subject::new(&scene) {
+        let subject = match Benchmark::new(&scene) {
             Ok(subject) => subject,
             Err(error) => return problem(error),
         };
@@ -103,26 +105,26 @@ impl Trade {
             store.clear()?;
         }
         process::listen_for_signals()?;
-        match self.measure(&subject, &store) {
+        match self.run_sweep(&subject, &store) {
             Ok(found) => self.report(&subject, &store, &found, &text),
             Err(TradeError::Interrupted) => {
                 say!("interrupted: finished runs are stored; the same command continues the sweep");
                 Ok(Outcome::Interrupted)
             }
-            Err(TradeError::Store(error)) => Err(error.into()),
+            Err(TradeError::Cache(error)) => Err(error.into()),
             Err(error) => problem(error),
         }
     }
 
-    fn measure(&self, subject: &Subject, store: &Store) -> Result<Found, TradeError> {
+    fn run_sweep(&self, subject: &Benchmark, store: &ResultCache) -> Result<SweepResult, TradeError> {
         let mut progress = SweepProgress::new();
-        let found = measure(
+        let found = run_sweep(
             subject,
             &self.wishes(),
             store,
-            Watch {
-                side_by_side: options::thread_count(self.jobs),
-                tell: &mut |done| progress.show(done),
+            SweepControl {
+                workers: options::thread_count(self.jobs),
+                progress: &mut |done| progress.show(done),
                 should_continue: &|| !process::is_interrupted(),
             },
         );
@@ -131,8 +133,8 @@ impl Trade {
         found
     }
 
-    fn wishes(&self) -> Wishes {
-        Wishes {
+    fn wishes(&self) -> SweepOptions {
+        SweepOptions {
             readings: match self.resistance_model {
                 None => Vec::new(),
                 Some(ResistanceModels::Classic) => vec![Reading::Classic],
@@ -146,7 +148,7 @@ impl Trade {
         }
     }
 
-    fn report(&self, subject: &Subject, store: &Store, found: &Found, text: &str) -> Result<Outcome> {
+    fn report(&self, subject: &Benchmark, store: &ResultCache, found: &SweepResult, text: &str) -> Result<Outcome> {
         let trade = &found.trade;
         let choice = match self.time {
             Some(ms) => for_time(trade, ms),
@@ -161,7 +163,7 @@ impl Trade {
         let json = serde_json::to_string_pretty(trade)? + "\n";
         let files = [("html", html), ("csv", report::csv(trade)), ("json", json)];
         for (end, content) in &files {
-            write_whole(&path(end), content.as_bytes())?;
+            write_atomic(&path(end), content.as_bytes())?;
         }
         if self.json {
             output::report_json(&serde_json::to_value(trade)?);
@@ -176,7 +178,7 @@ impl Trade {
         let is_requested = self.error.is_some() || self.time.is_some();
         Ok(match choice {
             Choice::Found(_) => Outcome::Success,
-            Choice::Nearest(_) | Choice::Untold(_) if !is_requested => Outcome::Success,
+            Choice::Nearest(_) | Choice::Unresolved(_) if !is_requested => Outcome::Success,
             _ => Outcome::Problem,
         })
     }
@@ -194,7 +196,7 @@ impl Trade {
         match choice {
             Choice::Found(point) => format!("recommended for {wanted}: {}\n", costs(point)),
             Choice::Nearest(point) => format!("no setting reaches {wanted}; the nearest: {}\n", costs(point)),
-            Choice::Untold(point) => format!(
+            Choice::Unresolved(point) => format!(
                 "the uncertainty of the reference, {}, is larger than {wanted}; the most accurate setting within that \
                  uncertainty: {}\n",
                 report::percent(floor.unwrap_or_default()),
@@ -205,10 +207,10 @@ impl Trade {
     }
 
     /// Writes the text of the scene with only the attributes of the setting changed.
-    fn apply(&self, to: Option<&PathBuf>, subject: &Subject, setting: &Setting, text: &str) -> Result<()> {
+    fn apply(&self, to: Option<&PathBuf>, subject: &Benchmark, setting: &Setting, text: &str) -> Result<()> {
         let edited = edit::edit(text, &subject.edits(setting))?;
         let to = to.unwrap_or(&self.scene);
-        write_whole(to, edited.as_bytes())?;
+        write_atomic(to, edited.as_bytes())?;
         say!("`{}` now has {setting}", to.display());
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use nucleus_measure::validation::{Case, Finding, cases, page};
+use nucleus_measure::validation::{Case, Comparison, cases, page};
 use serde_json::json;
 
 use crate::output::say;
@@ -36,7 +36,7 @@ pub struct Validate {
 }
 
 /// A case and its findings.
-type CaseResult = (Case, Vec<Finding>);
+type CaseResult = (Case, Vec<Comparison>);
 
 impl Validate {
     /// Runs the cases and prints their tables.
@@ -45,7 +45,7 @@ impl Validate {
         if self.list {
             cases
                 .iter()
-                .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.about)))?;
+                .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.description)))?;
             return Ok(Outcome::Success);
         }
         let results = self.run_all(&cases)?;
@@ -57,7 +57,7 @@ impl Validate {
             true => output::report_json(&as_json(&results)),
             false => output::report(&as_text(&results)),
         }
-        let right = results.iter().all(|(_, findings)| findings.iter().all(Finding::holds));
+        let right = results.iter().all(|(_, findings)| findings.iter().all(Comparison::holds));
         Ok(if right { Outcome::Success } else { Outcome::Problem })
     }
 
@@ -121,7 +121,7 @@ fn as_text(results: &[CaseResult]) -> String {
 }
 
 fn as_json(results: &[CaseResult]) -> serde_json::Value {
-    let finding = |finding: &Finding| {
+    let finding = |finding: &Comparison| {
         json!({
             "quantity": finding.quantity, "exact": finding.exact, "found": finding.found,
             "error": finding.error(), "holds": finding.holds(),
@@ -129,7 +129,7 @@ fn as_json(results: &[CaseResult]) -> serde_json::Value {
     };
     let case = |(case, findings): &CaseResult| {
         json!({
-            "name": case.name, "about": case.about, "findings": findings.iter().map(finding).collect::<Vec<_>>(),
+            "name": case.name, "about": case.description, "findings": findings.iter().map(finding).collect::<Vec<_>>(),
         })
     };
     json!({ "cases": results.iter().map(case).collect::<Vec<_>>() })

@@ -84,3 +84,11 @@ fn unknown_names_and_wrong_counts_of_arguments_are_refused() {
     assert_eq!(Check::new("maxStretch", &[]), None);
     assert_eq!(Check::new("maxStrech", &[1.0]), None);
 }
+
+#[test]
+fn settled_strain_ignores_the_frames_before_it() {
+    let strain = |strain_99| StepReport { strain_99, ..StepReport::default() };
+    let outcome = judge("settledStretch99", &[3.0, 0.02], &[strain(0.5), strain(0.01), strain(0.015)]);
+    assert_eq!((outcome.passed, outcome.worst), (true, Some((0.015, 4))));
+    assert!(!judge("settledStretch99", &[3.0, 0.02], &[strain(0.0), strain(0.03)]).passed);
+}

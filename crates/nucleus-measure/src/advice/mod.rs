@@ -1,58 +1,56 @@
-//! The paper's advice on settings, tried on this solver: does it hold, on which scene, read in which way?
+//! The paper's advice on settings, tested on this solver for both readings of resistances.
 //!
-//! | You want to know...                                      | Read            |
+//! | Question                                                 | Read            |
 //! |----------------------------------------------------------|-----------------|
 //! | the experiments, one for each claim                      | [`experiments`] |
-//! | the scenes that they are made on                         | `scenes.rs`     |
-//! | how they become a page                                   | [`page`]        |
+//! | their scenes                                             | `scenes.rs`     |
+//! | the Markdown page                                        | [`page`]        |
 
 mod collisions;
+mod counts;
 mod page;
-mod particles;
-mod propagation;
 mod scenes;
-mod substeps;
 
 pub use page::page;
 
-/// A claim of the paper, tried.
+/// An experiment on a claim of the paper.
 pub struct Experiment {
-    /// Its number among the claims.
+    /// Number of the claim.
     pub claim: &'static str,
-    /// What it says.
+    /// The claim.
     pub says: &'static str,
-    /// What is run, in words.
+    /// The scene, in words.
     pub scene: &'static str,
     /// Runs it.
-    pub try_it: fn() -> Vec<Finding>,
+    pub run: fn() -> Vec<ClaimResult>,
 }
 
-/// What was found, for one reading of resistances.
+/// Result for one reading of resistances.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct ClaimResult {
     /// `Classic`, `Physical`.
     pub reading: &'static str,
     /// Whether the claim holds.
-    pub verdict: Verdict,
-    /// Why, with the figures that decide.
-    pub because: String,
-    /// Heads of the columns, and the rows.
+    pub status: Status,
+    /// The reason, with the decisive figures.
+    pub reason: String,
+    /// Column heads, and rows.
     pub table: (Vec<&'static str>, Vec<Vec<String>>),
 }
 
 /// Whether a claim holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// It does.
+pub enum Status {
+    /// It holds.
     Holds,
-    /// It does not.
+    /// It does not hold.
     DoesNotHold,
-    /// There is nothing for it to be about.
+    /// The reading has nothing that the claim is about.
     DoesNotApply,
 }
 
-impl Verdict {
-    /// From whether it holds.
+impl Status {
+    /// `Holds` or `DoesNotHold`.
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }
     }
@@ -71,10 +69,10 @@ impl Verdict {
 pub fn experiments() -> [Experiment; 6] {
     [
         collisions::LEFT_STRETCH,
-        substeps::FASTER,
+        counts::FASTER,
         collisions::SLIGHTLY_ABOVE,
         collisions::A_TENTH,
-        particles::ONE_IS_ENOUGH,
-        propagation::STEEP,
+        counts::ONE_IS_ENOUGH,
+        counts::STEEP,
     ]
 }

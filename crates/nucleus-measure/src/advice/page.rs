@@ -1,11 +1,11 @@
-//! The experiments as a page.
+//! The experiments as a Markdown page.
 
 use std::fmt::Write;
 
-use super::{Experiment, Finding};
+use super::{ClaimResult, Experiment};
 use crate::trade::Reading;
 
-/// What a reading is called on the page.
+/// Name of a reading on the page.
 pub(super) fn name(reading: Reading) -> &'static str {
     match reading {
         Reading::Classic => "Classic",
@@ -13,28 +13,22 @@ pub(super) fn name(reading: Reading) -> &'static str {
     }
 }
 
-/// The page in Markdown. `machine` is what the times were taken on.
-pub fn page(results: &[(Experiment, Vec<Finding>)], machine: &str) -> String {
+/// The page in Markdown; `machine` describes the machine of the times.
+pub fn page(results: &[(Experiment, Vec<ClaimResult>)], machine: &str) -> String {
     let mut text = format!(
-        "# The paper's advice, tried\n\nThe white paper on Nucleus gives advice on settings; [`claims.md`](claims.md) numbers it.\n\
-         Here each piece of it is an experiment on this solver, for both readings of a resistance.\n\
-         Counts and strains are the same on every machine; milliseconds are processor time of one core.\n\
-         `cargo xtask book` makes this page anew.\n\n{machine}\n\n| Claim | | Classic | Physical |\n|---|---|---|---|\n"
+        "# The paper's advice, tested\n\nThe white paper on Nucleus gives advice on settings; [`claims.md`](claims.md) numbers it.\nEach piece of advice is an experiment on this solver, for both readings of a resistance.\nCounts and strains are the same on every machine; milliseconds are processor time of one core.\n`cargo xtask book` rewrites this page.\n\n{machine}\n\n| Claim | | Classic | Physical |\n|---|---|---|---|\n"
     );
-    for (experiment, findings) in results {
-        let verdict = |reading: &str| {
-            findings.iter().find(|f| f.reading == reading).map_or("not tried", |f| f.verdict.words())
+    for (experiment, results) in results {
+        let status = |reading: &str| {
+            results.iter().find(|f| f.reading == reading).map_or("not tested", |f| f.status.words())
         };
         let Experiment { claim, says, .. } = experiment;
-        put(
-            &mut text,
-            format_args!("| {claim} | {says} | {} | {} |", verdict("Classic"), verdict("Physical")),
-        );
+        put(&mut text, format_args!("| {claim} | {says} | {} | {} |", status("Classic"), status("Physical")));
     }
-    for (Experiment { claim, says, scene, .. }, findings) in results {
+    for (Experiment { claim, says, scene, .. }, results) in results {
         put(&mut text, format_args!("\n## {claim}\n\n{says}\n\n{scene}"));
-        for Finding { reading, verdict, because, table: (head, rows) } in findings {
-            put(&mut text, format_args!("\n**{reading}: {}.** {}.", verdict.words(), capital(because)));
+        for ClaimResult { reading, status, reason, table: (head, rows) } in results {
+            put(&mut text, format_args!("\n**{reading}: {}.** {}.", status.words(), capital(reason)));
             if !rows.is_empty() {
                 put(&mut text, format_args!("\n| {} |\n|{}", head.join(" | "), "---:|".repeat(head.len())));
             }
@@ -47,7 +41,7 @@ pub fn page(results: &[(Experiment, Vec<Finding>)], machine: &str) -> String {
 }
 
 fn put(text: &mut String, line: std::fmt::Arguments) {
-    // Writing to a string cannot fail.
+    // Writing to a string does not fail.
     let _ = writeln!(text, "{line}");
 }
 

@@ -1,13 +1,13 @@
-//! The scenes of the experiments, as text, and how they are run.
+//! The scenes of the experiments.
 
 use nucleus_graph::scene::read_scene_text;
 
-use crate::trade::run::{Run, follow};
-use crate::trade::{Reading, Subject};
+use crate::trade::run::{Run, run_setting};
+use crate::trade::{Benchmark, Reading};
 
-/// What is set in an experiment.
+/// Parameters of an experiment.
 #[derive(Debug, Clone, Copy)]
-pub struct Knobs {
+pub struct Parameters {
     pub reading: Reading,
     pub substeps: u32,
     pub collision_iterations: u32,
@@ -15,7 +15,7 @@ pub struct Knobs {
     pub evaluations: f64,
 }
 
-impl Knobs {
+impl Parameters {
     /// Maya's defaults.
     pub const fn new(reading: Reading) -> Self {
         Self { reading, substeps: 3, collision_iterations: 4, stretch: 20.0, evaluations: 96.0 }
@@ -30,8 +30,8 @@ impl Knobs {
     }
 }
 
-/// A sheet of half a metre that meets a ball at 2.5 m/s and is wrapped round it; a second.
-pub fn drape(knobs: &Knobs) -> Run {
+/// One second of a sheet of 0.6 m that a ball strikes at 0.9 m/s.
+pub fn drape(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -40,14 +40,14 @@ pub fn drape(knobs: &Knobs) -> Run {
         "sphere": polySphere(radius: 20, subdivisions: (24, 16), translateY: keys([(1, 0), (13, 45), (25, 45)])),
         "ball": nRigid(inputMesh: "sphere", thickness: 0.4, friction: 0.3),
     }})"#,
-        knobs.nucleus(),
-        stretch = knobs.stretch,
-        half = knobs.stretch / 2.0
+        parameters.nucleus(),
+        stretch = parameters.stretch,
+        half = parameters.stretch / 2.0
     ))
 }
 
-/// A strip so many cells long that hangs by its upper edge; a second.
-pub fn strip(knobs: &Knobs, cells: u32) -> Run {
+/// One second of a strip of `cells` cells that hangs from its upper edge.
+pub fn strip(parameters: &Parameters, cells: u32) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -55,13 +55,13 @@ pub fn strip(knobs: &Knobs, cells: u32) -> Run {
         "cloth": nCloth(inputMesh: "plane", stretchResistance: {stretch}, compressionResistance: {stretch}, bendResistance: 0, damp: 0.5, selfCollide: false),
         "rail": dynamicConstraint(constraintType: transform, components: ["cloth.vtx[0:4]"]),
     }})"#,
-        knobs.nucleus(),
-        stretch = knobs.stretch,
+        parameters.nucleus(),
+        stretch = parameters.stretch,
     ))
 }
 
-/// Points without any links that fall on a ball and from it to the ground; a second.
-pub fn particles(knobs: &Knobs) -> Run {
+/// One second of points without links that fall on a ball and on the ground.
+pub fn particles(parameters: &Parameters) -> Run {
     run(&format!(
         r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
         "nucleus1": {},
@@ -70,22 +70,22 @@ pub fn particles(knobs: &Knobs) -> Run {
         "sphere": polySphere(radius: 20, subdivisions: (24, 16)),
         "ball": nRigid(inputMesh: "sphere", thickness: 0.5),
     }})"#,
-        knobs.nucleus().replace("nucleus(", "nucleus(usePlane: true, planeOrigin: (0, -20, 0), "),
+        parameters.nucleus().replace("nucleus(", "nucleus(usePlane: true, planeOrigin: (0, -20, 0), "),
     ))
 }
 
-/// Runs a scene. Experiments are our own; one that cannot run is a mistake of ours.
+/// Runs a scene; panics if it does not compile, which is a bug of this module.
 fn run(text: &str) -> Run {
     let (scene, _) =
         read_scene_text(text, "experiment.ron".as_ref()).unwrap_or_else(|found| panic!("{found:?}"));
-    let subject = Subject::new(&scene).unwrap_or_else(|error| panic!("{error}"));
-    let setting = subject.own();
-    let followed = follow::<f32>(&subject, &setting, subject.program(), None, &|| true);
-    let (run, _) = followed.unwrap_or_else(|| panic!("it was never asked to end"));
+    let benchmark = Benchmark::new(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let setting = benchmark.own();
+    let followed = run_setting::<f32>(&benchmark, &setting, benchmark.program(), None, &|| true);
+    let (run, _) = followed.unwrap_or_else(|| panic!("never cancelled"));
     run
 }
 
-/// The strain of 99 % of the edges, RMS over the frames.
+/// 99th percentile of strain, RMS over the frames.
 pub fn strain(run: &Run) -> f64 {
     crate::metrics::root_mean_square(run.frames.iter().map(|frame| frame.strain))
 }
@@ -96,7 +96,7 @@ pub fn late_strain(run: &Run) -> f64 {
     crate::metrics::root_mean_square(run.frames[from..].iter().map(|frame| frame.strain))
 }
 
-/// Candidate pairs that a run of the broad phase finds, on average.
-pub fn pairs_per_search(run: &Run) -> f64 {
-    run.pairs as f64 / run.searches.max(1) as f64
+/// Mean number of candidate pairs per broad-phase query.
+pub fn pairs_per_query(run: &Run) -> f64 {
+    run.pairs as f64 / run.queries.max(1) as f64
 }

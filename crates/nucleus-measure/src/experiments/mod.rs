@@ -1,15 +1,15 @@
-//! Four experiments that the solver's design rests on, made on the solver itself.
+//! Four design experiments, repeated on the solver.
 //!
-//! They were first made on a prototype of springs, before there was a solver (solver dossier, F.2 and G). What the
-//! prototype found stands beside what is found here, so that a choice whose reason has gone is seen.
+//! They were first done on a prototype of springs (solver dossier, F.2 and G). Results of both are compared, so that a
+//! design choice whose reason has vanished is visible.
 //!
-//! | You want to know...                                      | Read            |
+//! | Question                                                 | Read            |
 //! |----------------------------------------------------------|-----------------|
-//! | how far stiff cloth sags for a budget, and swings        | `hanging.rs`    |
-//! | how far it is stretched over a ball                      | `draped.rs`     |
-//! | whether the order of sweeps makes energy                 | `order.rs`      |
-//! | what single precision costs                              | `precision.rs`  |
-//! | how they become a page                                   | [`page`]        |
+//! | sag and swing of stiff cloth for a budget                | `hanging.rs`    |
+//! | its strain over a ball                                   | `draped.rs`     |
+//! | energy created by the order of sweeps                    | `order.rs`      |
+//! | error of single precision                                | `precision.rs`  |
+//! | the Markdown page                                        | [`page`]        |
 
 mod draped;
 mod hanging;
@@ -19,39 +19,39 @@ mod precision;
 
 use nucleus_core::{BuildError, Real, ResistanceModel, Stiffness};
 
-use crate::clock::{Clock, Spent};
-use crate::rig::{Rig, membrane};
+use crate::clock::{Clock, Timing};
+use crate::fixture::{Fixture, membrane};
 
 pub use page::page;
 
 /// An experiment.
 #[derive(Debug, Clone, Copy)]
 pub struct Experiment {
-    /// A word to ask for it by.
+    /// Name, for `--only`.
     pub name: &'static str,
-    /// What is run.
-    pub about: &'static str,
-    /// Where the solver differs from the prototype in what is run, and what that does.
-    pub differs: &'static str,
+    /// The set-up.
+    pub description: &'static str,
+    /// Differences from the prototype's set-up, and their effect.
+    pub differences: &'static str,
     run: fn() -> Result<Vec<Table>, BuildError>,
 }
 
-/// Figures of an experiment.
+/// A table of figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// What is in it.
+    /// Heading.
     pub title: &'static str,
-    /// The heads of its columns.
+    /// Column heads.
     pub head: Vec<&'static str>,
-    /// Its rows, each as long as the head.
+    /// Rows, each as long as the head.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Experiment {
-    /// Makes it.
+    /// Runs it.
     ///
     /// # Errors
-    /// When the solver refuses what is built.
+    /// When the solver rejects the mesh.
     pub fn run(&self) -> Result<Vec<Table>, BuildError> {
         (self.run)()
     }
@@ -62,19 +62,19 @@ pub fn experiments() -> [Experiment; 4] {
     [hanging::HANGING, draped::DRAPED, order::ORDER, precision::PRECISION]
 }
 
-/// N/m of all cloth here: a usual woven cloth.
+/// Stiffness of all cloth in N/m: a typical woven cloth.
 const STIFFNESS: f64 = 10_000.0;
 
-/// How a budget of evaluations in 1/24 s is spent.
+/// How a budget of evaluations per 1/24 s is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Spending {
-    /// Small steps, each with one sweep.
+enum Scheme {
+    /// Small time steps with one sweep each.
     SmallSteps,
-    /// Passes over so many substeps: Maya's reading.
+    /// Several sweeps in each of some substeps: Maya's reading.
     Passes(u32),
 }
 
-impl Spending {
+impl Scheme {
     fn words(self) -> String {
         match self {
             Self::SmallSteps => "small steps, one sweep each (Physical)".to_owned(),
@@ -83,35 +83,35 @@ impl Spending {
         }
     }
 
-    /// Sets a rig to it. A pass takes the whole error away: links are as stiff as the passes make them.
-    fn set<R: Real>(self, rig: &mut Rig<R>, evaluations: u32) {
+    /// Applies the scheme to a fixture. A Classic pass removes the whole error, independent of stiffness.
+    fn set<R: Real>(self, fixture: &mut Fixture<R>, evaluations: u32) {
         let count = f64::from(evaluations);
         match self {
             Self::SmallSteps => {
-                rig.frame.substeps = 1;
-                rig.frame.resistance = ResistanceModel::Physical { evaluations: count };
-                rig.cloth().stiffness = membrane(STIFFNESS);
+                fixture.frame.substeps = 1;
+                fixture.frame.resistance = ResistanceModel::Physical { evaluations: count };
+                fixture.cloth().stiffness = membrane(STIFFNESS);
             }
             Self::Passes(substeps) => {
-                rig.frame.substeps = substeps;
-                rig.frame.resistance = ResistanceModel::Classic;
-                let cloth = rig.cloth();
+                fixture.frame.substeps = substeps;
+                fixture.frame.resistance = ResistanceModel::Classic;
+                let cloth = fixture.cloth();
                 cloth.stiffness = Stiffness::default();
                 (cloth.stretch_resistance, cloth.compression_resistance) = (count, count);
                 (cloth.shear_resistance, cloth.bend_resistance) = (0.0, 0.0);
             }
         }
-        rig.frame.collision_iterations = count;
+        fixture.frame.collision_iterations = count;
     }
 }
 
-/// Runs frames and gives milliseconds of the processor for each.
+/// Runs frames; milliseconds of processor time per frame.
 fn timed(frames: u32, mut frame: impl FnMut()) -> f64 {
-    let (spent, ()) = Spent::by(Clock::Thread, || (0..frames).for_each(|_| frame()));
-    1e3 * spent.processor / f64::from(frames)
+    let (timing, ()) = Timing::measure(Clock::Thread, || (0..frames).for_each(|_| frame()));
+    1e3 * timing.processor / f64::from(frames)
 }
 
-/// A figure that the prototype has, or a dash.
+/// A figure of the prototype, or a dash.
 fn or_dash(figure: Option<f64>) -> String {
     figure.map_or("–".to_owned(), crate::report::figure)
 }

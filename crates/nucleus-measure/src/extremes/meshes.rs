@@ -1,4 +1,4 @@
-//! Meshes that no modeller would keep, as OBJ text.
+//! Degenerate and extreme meshes, as OBJ text.
 
 use std::fmt::Write;
 
@@ -19,7 +19,7 @@ fn grid_points(cells: usize) -> String {
     text
 }
 
-/// A grid with a point of no face far from it.
+/// A grid with two vertices of no face at a distance.
 pub fn grid_and_stray_points(cells: usize) -> String {
     let mut text = grid(cells);
     point(&mut text, [2.0, 0.0, 0.0]);
@@ -27,7 +27,7 @@ pub fn grid_and_stray_points(cells: usize) -> String {
     text
 }
 
-/// A grid with faces that name a point twice, that lie on a line, or have no length at all.
+/// A grid with faces that name a vertex twice, lie on a line, or have no length.
 pub fn grid_and_flat_faces(cells: usize) -> String {
     let mut text = grid(cells);
     face(&mut text, &[1, 2, 2]);
@@ -36,7 +36,7 @@ pub fn grid_and_flat_faces(cells: usize) -> String {
     text
 }
 
-/// A grid of which one row of cells is a millionth as high as it is wide.
+/// A grid in which one row of cells is a millionth as high as it is wide.
 pub fn slivers(cells: usize) -> String {
     let middle = cells / 2;
     let mut text = String::new();
@@ -57,7 +57,7 @@ fn quads(text: &mut String, cells: usize, first: usize) {
     }
 }
 
-/// A grid of which one row of cells has no height: their points are doubled, and joined by edges of no length.
+/// A grid in which one row of cells has zero height: its vertices are doubled and joined by edges of zero length.
 pub fn edges_of_no_length(cells: usize) -> String {
     let mut text = String::new();
     for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
@@ -67,7 +67,7 @@ pub fn edges_of_no_length(cells: usize) -> String {
     }
     for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
         let a = row * (cells + 1) + column + 1;
-        // It reaches into the next row, so that it has an area and is not left out.
+        // It extends into the next row, so that its area is not zero.
         if row == cells / 2 {
             face(&mut text, &[a, a + cells + 1, a + cells + 2, a + 2 * cells + 3]);
         } else {
@@ -77,7 +77,7 @@ pub fn edges_of_no_length(cells: usize) -> String {
     text
 }
 
-/// Two grids at the same place that share no point: every point is double.
+/// Two coincident grids without common vertices.
 pub fn doubled(cells: usize) -> String {
     let mut text = grid_points(cells);
     text += &grid_points(cells);
@@ -86,7 +86,7 @@ pub fn doubled(cells: usize) -> String {
     text
 }
 
-/// Every face twice, the second time the other way round.
+/// Every face twice, the second time with inverted winding.
 pub fn faces_twice(cells: usize) -> String {
     let mut text = grid(cells);
     for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
@@ -123,7 +123,7 @@ pub fn book(pages: usize, cells: usize) -> String {
     text
 }
 
-/// A disc of one point in the middle and `spokes` triangles round it; the middle is the first point.
+/// A disc of a central vertex, the first, and `spokes` triangles around it.
 pub fn fan(spokes: usize) -> String {
     let mut text = String::new();
     point(&mut text, [0.0, 0.0, 0.0]);
@@ -137,8 +137,8 @@ pub fn fan(spokes: usize) -> String {
     text
 }
 
-/// A strip of quads whose sides grow from cell to cell, so that the last point weighs `ratio` times the first. A
-/// metre long; it begins at z = 0.5.
+/// A strip of quads with geometrically growing sides: the last vertex has `ratio` times the mass of the first. A metre
+/// long, from z = 0.5.
 pub fn graded(cells: usize, ratio: f64) -> String {
     let growth = ratio.powf(0.5 / cells as f64);
     let lengths: Vec<f64> = (0..cells).map(|k| growth.powi(k as i32)).collect();
@@ -158,7 +158,7 @@ pub fn graded(cells: usize, ratio: f64) -> String {
     text
 }
 
-/// Points alone, on a line.
+/// Vertices on a line, without faces.
 pub fn points(count: usize) -> String {
     let mut text = String::new();
     (0..count).for_each(|k| point(&mut text, [k as f64 / 10.0, 0.0, 0.0]));

@@ -1,31 +1,30 @@
-//! The table of extremes: what the solver does where scenes leave the ordinary.
+//! Stress tests: scenes with extreme inputs, and bounds that hold in them.
 //!
-//! | You want to know…                                   | Read                |
+//! | Question                                            | Read                |
 //! |-----------------------------------------------------|---------------------|
-//! | which extremes there are                            | [`rows()`], `rows/` |
-//! | what a row is, and when it holds                    | [`Extreme`]         |
-//! | how a scene is given                                | [`Case`]            |
-//! | how it is run, and what is measured                 | [`Course`]          |
-//! | how much energy a run may have                      | `energy.rs`         |
-//! | how a row is judged                                 | [`Outcome`]         |
-//! | how the page is written                             | [`page`]            |
+//! | the rows                                            | [`rows()`], `rows/` |
+//! | a row: scene, baseline, bounds                      | [`StressCase`]      |
+//! | the scene of a row, with its meshes                 | [`TestScene`]       |
+//! | a run, frame by frame                               | [`Timeline`]        |
+//! | upper bound of the kinetic energy of a run          | `energy_budget.rs`  |
+//! | evaluation of a row against its bounds              | [`Evaluation`]      |
+//! | the Markdown page                                   | [`page`]            |
 //!
-//! **Invariant:** every bound is stated in the row, before anything is run, and follows from the scene or from what
-//! a user needs; none is a copy of what the solver happened to do.
+//! **Invariant:** every bound is stated in the row before the run, and follows from the scene or from the needs of a
+//! user; none is copied from the output of the solver.
 
-mod case;
-mod cost;
-mod course;
-mod energy;
+mod energy_budget;
+mod evaluation;
 mod meshes;
 mod page;
 mod row;
 mod rows;
-mod verdict;
+mod scene;
+mod timeline;
 
-pub use case::{Case, Compiled, Tamper};
-pub use course::{Course, Seen};
-pub use page::{miss, page};
-pub use row::{Cost, Demand, Extreme, Recovery, Trial};
+pub use evaluation::{Baselines, Evaluation, Kind, Measurement, TimeBudget, evaluate, evaluate_all};
+pub use page::{failure_text, page};
+pub use row::{Assertion, CostUnit, Expectation, Recovery, Runs, Side, StressCase};
 pub use rows::{named, rows};
-pub use verdict::{Figure, Kind, Nominals, Outcome, Patience, Side, judge, judge_all};
+pub use scene::{CompiledScene, FaultInjection, TestScene};
+pub use timeline::{FrameRecord, Timeline};

@@ -1,53 +1,54 @@
-//! The table as a page of the book.
+//! The table as a Markdown page.
 
 use std::fmt::Write;
 
-use super::row::{Recovery, Trial};
-use super::verdict::{Figure, Kind, Outcome};
+use super::evaluation::{Evaluation, Kind, Measurement};
+use super::row::Recovery;
 
 const HEAD: &str = "# Extremes
 
-What the solver does where scenes leave the ordinary.
-Every row is a scene of its own: `nucleus extremes --only NAME` runs it, and `nucleus extremes --save FOLDER` writes it out, so that it can be changed, recorded and looked at.
-Bounds are set before a row is run, from the scene itself or from what one needs of it; a row that misses one is listed as failing, with its figure.
+Behaviour of the solver with extreme inputs.
+`nucleus extremes --only NAME` runs a row, and `nucleus extremes --save FOLDER` writes its scene, so that it can be changed, recorded and viewed.
+Most scenes are in `scenes/extremes/`; rows with generated meshes or injected faults are in code.
+Bounds are set before a row is run, from the scene itself or from the needs of a user; a row outside a bound is listed as failing, with its figure.
 
-- **Energy** is the energy of motion, at its worst, over what weight, forces and changes of attributes had brought in by then, as if wind, colliders and held points had each struck the cloth elastically; above 1.01 the solver has made energy.
-- **Speed** (root mean square) and **strain** (99 % of all links are below it) are what is left when the cause has ended and some time has passed; the frames are in the scenes.
-- **Cost** is processor time over that of the same scene without the extreme, per frame, or per time step or evaluated row where the extreme is the number of those; at most 3. A run that has taken 20 s and is above that is given up; what would have to hold in its end is then not judged.
-- **Reported** is what was said when the scene was read, and what the solver counted.
+- **Energy** is the maximum of kinetic energy over supplied energy. Gravity, forces and changes of attributes supply energy, and wind, colliders and pins do so as if each had struck the cloth elastically. Above 1.01 the solver has created energy.
+- **Speed** (root mean square) and **strain** (99th percentile of all links) are the maxima after the disturbance has ended and some time has passed; the frames are in the scenes.
+- **Cost** is processor time over that of the baseline, the same scene without the extreme input: per frame, or per time step or evaluated row if their number is the extreme. The limit is 3. A run above the limit is aborted after 20 s, and bounds on its end are not evaluated.
+- **Reported** lists diagnostics of the scene and counters of the solver.
 
 ";
 
-/// The page, from the outcomes of all rows.
-pub fn page(outcomes: &[Outcome]) -> String {
+/// The page, from the evaluations of all rows.
+pub fn page(evaluations: &[Evaluation]) -> String {
     let mut text = HEAD.to_owned();
-    let failing = outcomes.iter().filter(|outcome| !outcome.holds()).count();
-    let holding = outcomes.len() - failing;
+    let failing = evaluations.iter().filter(|evaluation| !evaluation.holds()).count();
+    let holding = evaluations.len() - failing;
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{holding} of {} rows hold.", outcomes.len());
+    let _ = writeln!(text, "{holding} of {} rows hold.", evaluations.len());
     if failing > 0 {
-        let _ = writeln!(text, "\n## What fails\n");
-        for outcome in outcomes.iter().filter(|outcome| !outcome.holds()) {
-            fails(&mut text, outcome);
+        let _ = writeln!(text, "\n## Failures\n");
+        for evaluation in evaluations.iter().filter(|evaluation| !evaluation.holds()) {
+            known_failure(&mut text, evaluation);
         }
     }
-    for group in outcomes.chunk_by(|a, b| a.extreme.group == b.extreme.group) {
-        let _ = writeln!(text, "\n## {}\n", group[0].extreme.group);
+    for group in evaluations.chunk_by(|a, b| a.stress_case.group == b.stress_case.group) {
+        let _ = writeln!(text, "\n## {}\n", group[0].stress_case.group);
         table(&mut text, group);
         text.push('\n');
-        group.iter().for_each(|outcome| entry(&mut text, outcome));
+        group.iter().for_each(|evaluation| entry(&mut text, evaluation));
     }
     text
 }
 
-fn fails(text: &mut String, outcome: &Outcome) {
-    let misses: Vec<String> = outcome.failures().map(miss).collect();
-    let reason = outcome.extreme.fails.unwrap_or("Not known to fail: something has changed.");
-    let _ = writeln!(text, "- **`{}`**: {}.\n  {reason}", outcome.extreme.name, misses.join("; "));
+fn known_failure(text: &mut String, evaluation: &Evaluation) {
+    let misses: Vec<String> = evaluation.failures().map(failure_text).collect();
+    let reason = evaluation.stress_case.known_failure.unwrap_or("Not known to fail: something has changed.");
+    let _ = writeln!(text, "- **`{}`**: {}.\n  {reason}", evaluation.stress_case.name, misses.join("; "));
 }
 
 /// `speed from frame 72 on (m/s): 5.1, at most 0.5`.
-pub fn miss(figure: &Figure) -> String {
+pub fn failure_text(figure: &Measurement) -> String {
     format!(
         "{}: {}, {} {}",
         figure.what.trim(),
@@ -57,46 +58,42 @@ pub fn miss(figure: &Figure) -> String {
     )
 }
 
-fn table(text: &mut String, outcomes: &[Outcome]) {
+fn table(text: &mut String, evaluations: &[Evaluation]) {
     text.push_str(
         "| Extreme | Energy | Speed, m/s | Strain | Cost | Reported | |\n|---|--:|--:|--:|--:|---|---|\n",
     );
-    for outcome in outcomes {
+    for evaluation in evaluations {
         let cell = |kind: Kind, show: fn(f64) -> String| {
-            outcome.figure(kind).map_or("–".to_owned(), |figure| show(figure.value))
+            evaluation.figure(kind).map_or("–".to_owned(), |figure| show(figure.value))
         };
         let [energy, speed] = [Kind::Energy, Kind::Speed].map(|kind| cell(kind, number));
         let (strain, cost) = (cell(Kind::Strain, percent), cell(Kind::Cost, |cost| format!("{cost:.1}")));
         let reported =
-            if outcome.reported.is_empty() { "–".to_owned() } else { outcome.reported.join("; ") };
-        let verdict = if outcome.holds() { "holds" } else { "**fails**" };
-        let name = outcome.extreme.name;
+            if evaluation.reported.is_empty() { "–".to_owned() } else { evaluation.reported.join("; ") };
+        let status = if evaluation.holds() { "holds" } else { "**fails**" };
+        let name = evaluation.stress_case.name;
         let reported = reported.replace('|', "\\|");
         let _ =
-            writeln!(text, "| `{name}` | {energy} | {speed} | {strain} | {cost} | {reported} | {verdict} |");
+            writeln!(text, "| `{name}` | {energy} | {speed} | {strain} | {cost} | {reported} | {status} |");
     }
 }
 
-fn entry(text: &mut String, outcome: &Outcome) {
-    let extreme = &outcome.extreme;
-    let _ = writeln!(text, "**`{}`**: {}.\n{}", extreme.name, extreme.what, extreme.expect);
-    let own = outcome.figures.iter().filter(|figure| figure.kind == Kind::Own).map(miss);
+fn entry(text: &mut String, evaluation: &Evaluation) {
+    let stress_case = &evaluation.stress_case;
+    let _ = writeln!(text, "**`{}`**: {}.\n{}", stress_case.name, stress_case.summary, stress_case.expected);
+    let own = evaluation.figures.iter().filter(|figure| figure.kind == Kind::Own).map(failure_text);
     let own: Vec<String> = own.collect();
     if !own.is_empty() {
         let _ = writeln!(text, "Measured: {}.", own.join("; "));
     }
-    if let Trial::Runs { recovery: Some(Recovery { from, speed, strain }), .. } = extreme.trial {
-        let _ = write!(text, "From frame {from} on it has to be slower than {} m/s", number(speed));
-        if strain.is_finite() {
-            let _ =
-                write!(text, " and, but for 1 % of the links, stretched by less than {}", percent(strain));
-        }
-        text.push_str(".\n");
+    if let Some(Recovery { from, speed, strain }) = evaluation.recovery {
+        let (speed, strain) = (number(speed), percent(strain));
+        let _ = writeln!(text, "Bounds from frame {from} on: speed {speed} m/s, strain {strain}.");
     }
     text.push('\n');
 }
 
-/// Three digits that matter, as a page wants them.
+/// Three significant digits.
 pub fn number(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 {

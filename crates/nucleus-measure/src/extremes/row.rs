@@ -1,103 +1,146 @@
-//! What a row of the table is.
+//! A row of the table: a scene, its baseline, and bounds.
 
-use super::case::Case;
-use super::course::Course;
-use super::verdict::Side;
+use super::scene::TestScene;
+use super::timeline::Timeline;
 
-/// A named extreme.
+/// A stress case.
 #[derive(Debug, Clone, Copy)]
-pub struct Extreme {
+pub struct StressCase {
     /// Its name, for `--only`.
     pub name: &'static str,
-    /// Which part of the table it belongs to.
+    /// Its group in the table.
     pub group: &'static str,
-    /// What is extreme, in one line.
-    pub what: &'static str,
-    /// What a user should expect, and what to do where that is not enough.
-    pub expect: &'static str,
-    /// How it is put to the test.
-    pub trial: Trial,
-    /// Why it fails, where it is known to.
-    pub fails: Option<&'static str>,
+    /// The extreme input, in one line without a full stop.
+    pub summary: &'static str,
+    /// The expected behaviour, and a workaround if that is not sufficient.
+    pub expected: &'static str,
+    /// Scene and bounds.
+    pub expectation: Expectation,
+    /// Why it fails, if it is known to.
+    pub known_failure: Option<&'static str>,
 }
 
-/// How an extreme is put to the test.
+/// Expected outcome of a scene.
 #[derive(Debug, Clone, Copy)]
-pub enum Trial {
-    /// It runs, and these things hold.
-    Runs {
+pub enum Expectation {
+    /// It runs within bounds.
+    Runs(Runs),
+    /// It is rejected with an error that contains all these parts.
+    Rejected {
         /// The scene.
-        case: fn() -> Case,
-        /// The same without the extreme, that it may cost three times as much as.
-        nominal: fn() -> Case,
-        /// By what the cost is divided.
-        cost: Cost,
-        /// What the start holds in joules besides what falls and is stretched.
-        stored: f64,
-        /// How it comes to rest when the cause has ended.
-        recovery: Option<Recovery>,
-        /// What else holds.
-        demands: &'static [Demand],
-        /// What has to be said when it is read; nothing else is.
-        warns: &'static [&'static str],
-    },
-    /// It is refused when it is read, in these words.
-    InvalidInput {
-        /// The scene.
-        case: fn() -> Case,
-        /// What the message has to name.
+        scene: fn() -> TestScene,
+        /// Parts of the message.
         names: &'static [&'static str],
     },
 }
 
-/// What the processor time of a run is divided by, before it is compared.
+/// A scene that runs, and its bounds. Bounds that the check language expresses are checks of the scene itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Runs {
+    /// The scene.
+    pub scene: fn() -> TestScene,
+    /// The same scene without the extreme input: the baseline of its cost.
+    pub baseline: fn() -> TestScene,
+    /// The unit of cost.
+    pub cost: CostUnit,
+    /// Energy of the initial state in joules, besides potential and elastic energy.
+    pub initial_energy: f64,
+    /// Bounds on the motion after the disturbance; `None` takes them from the checks of the scene.
+    pub recovery: Option<Recovery>,
+    /// Bounds besides the checks of the scene.
+    pub assertions: &'static [Assertion],
+    /// Parts of the expected warnings; any other warning is a failure.
+    pub warnings: &'static [&'static str],
+}
+
+/// Denominator of the processor time of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cost {
+pub enum CostUnit {
     /// Frames.
     Frame,
-    /// Time steps: where the extreme is how many there are.
+    /// Time steps: for an extreme number of steps.
     Step,
-    /// Evaluated rows: where the extreme is how often an effect is evaluated, or how large the mesh is.
+    /// Evaluated rows: for an extreme number of iterations, or a larger mesh.
     Evaluation,
 }
 
-/// How a run comes to rest when the cause has ended.
+/// Bounds on the motion after the disturbance has ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recovery {
-    /// From this frame on...
+    /// First frame of the bounds.
     pub from: i64,
-    /// ... the root mean square speed is at most this, in m/s.
+    /// Root mean square speed in m/s.
     pub speed: f64,
-    /// ... 99 % of the links are stretched by at most this share.
+    /// 99th percentile of strain.
     pub strain: f64,
 }
 
-/// Something else that holds: a figure read off the run and its nominal one, and a bound on it.
+/// Side of a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Upper limit.
+    AtMost,
+    /// Lower limit.
+    AtLeast,
+}
+
+impl Side {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+        }
+    }
+}
+
+/// A bound on a figure of a run and its baseline.
 #[derive(Debug, Clone, Copy)]
-pub struct Demand {
-    /// What is measured, with its unit.
+pub struct Assertion {
+    /// The figure, with its unit.
     pub what: &'static str,
-    /// Reads it off: the run, then the nominal one.
-    pub figure: fn(&Course, &Course) -> f64,
-    /// On which side of the limit it has to stay.
+    /// Computes it from the run and the baseline.
+    pub figure: fn(&Timeline, &Timeline) -> f64,
+    /// Side of the limit.
     pub side: Side,
     /// The limit.
     pub limit: f64,
 }
 
-impl Cost {
-    /// What a run took, in seconds per frame, step or evaluation.
-    pub fn of(self, course: &Course) -> f64 {
-        let divisor = match self {
-            Self::Frame => course.frames.len() as f64,
-            Self::Step => course.steps,
-            Self::Evaluation => course.evaluations,
-        };
-        course.seconds / divisor.max(1.0)
+impl Assertion {
+    /// An upper limit.
+    pub const fn at_most(what: &'static str, limit: f64, figure: fn(&Timeline, &Timeline) -> f64) -> Self {
+        Self { what, figure, side: Side::AtMost, limit }
     }
 
-    /// What it is per.
-    pub fn per(self) -> &'static str {
+    /// A lower limit.
+    pub const fn at_least(what: &'static str, limit: f64, figure: fn(&Timeline, &Timeline) -> f64) -> Self {
+        Self { what, figure, side: Side::AtLeast, limit }
+    }
+}
+
+impl StressCase {
+    /// The scene.
+    pub fn scene(&self) -> TestScene {
+        match self.expectation {
+            Expectation::Runs(Runs { scene, .. }) | Expectation::Rejected { scene, .. } => scene(),
+        }
+    }
+}
+
+impl CostUnit {
+    /// Processor time in seconds per unit.
+    pub fn of(self, timeline: &Timeline) -> f64 {
+        let divisor = match self {
+            Self::Frame => timeline.frames.len() as f64,
+            Self::Step => timeline.steps,
+            Self::Evaluation => timeline.evaluations,
+        };
+        timeline.seconds / divisor.max(1.0)
+    }
+
+    /// Name of the unit.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Frame => "frame",
             Self::Step => "time step",

@@ -1,16 +1,16 @@
-//! Charts as SVG, drawn with the page's own colours.
+//! SVG charts in the colours of the page's style sheet.
 
 use std::fmt::Write;
 
 use super::{figure, percent};
 
-/// Width and height of a chart.
+/// Width and height of a chart, in SVG units.
 const SIZE: [f64; 2] = [760.0, 420.0];
 
-/// Room left of, above, right of and below the field.
+/// Margins: left, top, right, bottom.
 const MARGIN: [f64; 4] = [70.0, 16.0, 18.0, 48.0];
 
-/// An axis: from one value to another, over so many pixels.
+/// An axis.
 #[derive(Debug, Clone)]
 pub struct Axis {
     pub name: String,
@@ -20,22 +20,22 @@ pub struct Axis {
     is_share: bool,
 }
 
-/// A dot.
+/// A data point.
 pub struct Dot {
     pub at: [f64; 2],
-    /// Which of the colours, counted from nought.
+    /// Index of the colour, from 0.
     pub colour: usize,
     pub is_sound: bool,
-    /// What is shown when it is pointed at.
+    /// Tooltip.
     pub title: String,
-    /// What is written beside it.
+    /// Text beside the dot.
     pub label: Option<String>,
 }
 
-/// A line from place to place.
+/// A polyline.
 pub struct Line {
     pub through: Vec<[f64; 2]>,
-    /// Its class in the style sheet.
+    /// CSS class.
     pub class: &'static str,
 }
 
@@ -45,14 +45,14 @@ pub struct Chart {
     pub y: Axis,
     pub dots: Vec<Dot>,
     pub lines: Vec<Line>,
-    /// Below this everything is shaded, with a remark.
+    /// Shaded region below a value, with a label.
     pub floor: Option<(f64, String)>,
-    /// A line straight up here, with a remark.
+    /// Vertical line at a value, with a label.
     pub mark: Option<(f64, String)>,
 }
 
 impl Axis {
-    /// A logarithmic axis that holds these values with some room.
+    /// Logarithmic axis over the range of some values, with a margin.
     pub fn log(name: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let usable = values.into_iter().filter(|x| x.is_finite() && *x > 0.0);
         let (low, high) = usable.fold((f64::INFINITY, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
@@ -60,17 +60,17 @@ impl Axis {
         Self { name: name.to_owned(), low, high, is_log: true, is_share: false }
     }
 
-    /// A plain axis.
-    pub fn plain(name: &str, low: f64, high: f64) -> Self {
+    /// Linear axis.
+    pub fn linear(name: &str, low: f64, high: f64) -> Self {
         Self { name: name.to_owned(), low, high: high.max(low + 1.0), is_log: false, is_share: false }
     }
 
-    /// The same, with its values written in percent.
+    /// The same, with tick labels in percent.
     pub fn in_percent(self) -> Self {
         Self { is_share: true, ..self }
     }
 
-    /// Where a value is, 0 to 1; what is outside is at the end.
+    /// Position of a value along the axis, 0 to 1, clamped.
     fn share(&self, x: f64) -> f64 {
         let scale = |x: f64| if self.is_log { x.max(1e-300).ln() } else { x };
         ((scale(x) - scale(self.low)) / (scale(self.high) - scale(self.low))).clamp(0.0, 1.0)
@@ -90,13 +90,13 @@ impl Axis {
         all.filter(|x| (self.low..=self.high).contains(x)).collect()
     }
 
-    fn written(&self, x: f64) -> String {
+    fn tick_label(&self, x: f64) -> String {
         if self.is_share { percent(x) } else { figure(x) }
     }
 }
 
 impl Chart {
-    /// As SVG.
+    /// Renders the chart.
     pub fn svg(&self) -> String {
         let [width, height] = SIZE;
         let mut svg = format!(
@@ -130,7 +130,7 @@ impl Chart {
             let x = self.place([tick, self.y.low])[0];
             let below = bottom + 18.0;
             put(svg, format_args!("<path class=\"grid\" d=\"M{x:.1} {top:.1}V{bottom:.1}\"/>"));
-            let words = self.x.written(tick);
+            let words = self.x.tick_label(tick);
             put(
                 svg,
                 format_args!("<text x=\"{x:.1}\" y=\"{below:.1}\" text-anchor=\"middle\">{words}</text>"),
@@ -139,7 +139,7 @@ impl Chart {
         for tick in self.y.ticks() {
             let y = self.place([self.x.low, tick])[1];
             put(svg, format_args!("<path class=\"grid\" d=\"M{left:.1} {y:.1}H{right:.1}\"/>"));
-            let (beside, middle, words) = (left - 8.0, y + 4.0, self.y.written(tick));
+            let (beside, middle, words) = (left - 8.0, y + 4.0, self.y.tick_label(tick));
             put(
                 svg,
                 format_args!("<text x=\"{beside:.1}\" y=\"{middle:.1}\" text-anchor=\"end\">{words}</text>"),
@@ -228,7 +228,7 @@ fn put(svg: &mut String, element: std::fmt::Arguments) {
     let _ = writeln!(svg, "{element}");
 }
 
-/// Text that is safe in HTML.
+/// Escapes text for HTML.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_decade_on_a_log_axis_is_as_long_as_the_next() {
+    fn decades_have_equal_length_on_a_log_axis() {
         let axis = Axis { low: 0.1, high: 10.0, ..Axis::log("x", [1.0]) };
         assert!((axis.share(1.0) - 0.5).abs() < 1e-12);
         assert_eq!(axis.share(0.0), 0.0);
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_in_a_chart_can_hold_any_sign() {
+    fn text_in_a_chart_is_escaped() {
         let x = Axis::log("a < b & c", [1.0, 2.0]);
         let chart =
             Chart { x: x.clone(), y: x, dots: Vec::new(), lines: Vec::new(), floor: None, mark: None };
@@ -254,8 +254,8 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_of_nothing_can_still_be_drawn() {
+    fn an_axis_without_values_still_has_ticks() {
         assert!(Axis::log("x", []).ticks().len() > 1);
-        assert!(Axis::plain("x", 0.0, 0.0).ticks().len() > 1);
+        assert!(Axis::linear("x", 0.0, 0.0).ticks().len() > 1);
     }
 }

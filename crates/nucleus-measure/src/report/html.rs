@@ -1,4 +1,4 @@
-//! The page: one file, pictures inside, good to read by day and by night.
+//! The HTML page: one file with embedded pictures, for light and dark colour schemes.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -7,36 +7,36 @@ use super::chart::{Axis, Chart, Dot, Line, escape};
 use super::{figure, percent, time_to};
 use crate::trade::{Point, Reading, Setting, Trade};
 
-/// A picture of a state.
+/// A picture of the last state of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// What it is: `cheapest`, `recommended`, `reference`.
+    /// Title: `cheapest`, `recommended`, `reference`.
     pub title: String,
-    /// What there is to say of it.
+    /// Caption.
     pub caption: String,
     /// A PNG file.
     pub png: Vec<u8>,
 }
 
-/// What the page is made of.
+/// Content of the page.
 pub struct Page<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// What was found.
+    /// The work-precision curve.
     pub trade: &'a Trade,
-    /// The error that was looked for.
+    /// The requested error.
     pub wanted: f64,
-    /// The setting that is recommended, if any is sound.
+    /// The recommended setting, if any is sound.
     pub recommended: Option<&'a Point>,
-    /// States side by side.
+    /// Pictures, side by side.
     pub pictures: &'a [Picture],
-    /// How single runs went apart from the reference: a name, and the distance in each frame.
+    /// Distance of single runs from the reference in each frame, by name.
     pub series: &'a [(String, Vec<f64>)],
-    /// The machine, in words.
+    /// Description of the machine.
     pub machine: &'a str,
 }
 
-/// The page as text.
+/// Renders the page.
 pub fn html(page: &Page) -> String {
     let scene = escape(page.scene);
     let [start, end] = page.trade.frames;
@@ -50,18 +50,17 @@ pub fn html(page: &Page) -> String {
     text += &cards(page.trade);
     text += &pictures(page.pictures);
     text += &trade_chart(page);
-    text += &apart_chart(page);
+    text += &divergence_chart(page);
     text += &table(page.trade);
     text += &how(page);
     text
 }
 
-/// The first sentence: what to do.
+/// The recommendation, in one sentence.
 fn lead(page: &Page) -> String {
     let trade = page.trade;
     let Some(best) = page.recommended else {
-        return "<p class=\"lead\">No setting is sound: each went wrong, as the table below says.</p>\n"
-            .to_owned();
+        return "<p class=\"lead\">No setting is sound; the table below lists the reasons.</p>\n".to_owned();
     };
     let error = best.error.unwrap_or_default();
     let reached = match error <= page.wanted {
@@ -69,7 +68,7 @@ fn lead(page: &Page) -> String {
         false => format!("the nearest to an error of {}, which no setting reaches", percent(page.wanted)),
     };
     let mut text = format!(
-        "<p class=\"lead\"><b>{}</b> is {reached}: {} ms a frame, error {}.",
+        "<p class=\"lead\"><b>{}</b> is {reached}: {} ms per frame, error {}.",
         escape(&best.setting.to_string()),
         figure(best.ms),
         percent(error)
@@ -88,7 +87,7 @@ fn lead(page: &Page) -> String {
     text + "</p>\n"
 }
 
-/// Time to three errors, and the slope.
+/// Time to three errors, and the slope of the curve.
 fn cards(trade: &Trade) -> String {
     let card = |title: String, big: String, small: String| {
         format!(
@@ -99,7 +98,7 @@ fn cards(trade: &Trade) -> String {
     let mut text = "<div class=\"cards\">\n".to_owned();
     for error in [0.1, 0.01, 0.001] {
         let title = format!("time to {}", percent(error));
-        text += &match trade.cheapest(error).filter(|_| trade.can_tell(error)) {
+        text += &match trade.cheapest(error).filter(|_| trade.resolves(error)) {
             Some(point) => card(title, format!("{} ms", figure(point.ms)), point.setting.to_string()),
             None => {
                 let why = time_to(trade, error);
@@ -109,7 +108,7 @@ fn cards(trade: &Trade) -> String {
         };
     }
     if let Some(slope) = trade.slope() {
-        let small = "the power of the time with which the error falls".to_owned();
+        let small = "exponent of error against time".to_owned();
         text += &card("slope".to_owned(), format!("{slope:.2}"), small);
     }
     text + "</div>\n"
@@ -131,7 +130,7 @@ fn pictures(pictures: &[Picture]) -> String {
     text + "</div>\n"
 }
 
-/// What the colour of a dot tells: the substeps, and the reading.
+/// Group of settings with one colour: reading and substeps.
 fn family(setting: &Setting) -> (Reading, u32) {
     (setting.reading, setting.substeps)
 }
@@ -171,11 +170,11 @@ fn trade_chart(page: &Page) -> String {
     };
     let errors = trade.points.iter().filter_map(known).map(|[_, error]| error).chain(trade.floor);
     let chart = Chart {
-        x: Axis::log("milliseconds a frame, on one core", trade.points.iter().map(|point| point.ms)),
+        x: Axis::log("milliseconds per frame, on one core", trade.points.iter().map(|point| point.ms)),
         y: Axis::log(trade.measure.name(), errors).in_percent(),
         dots: trade.points.iter().filter_map(dot).collect(),
         lines: vec![Line { through: trade.frontier().filter_map(known).collect(), class: "frontier" }],
-        floor: trade.floor.map(|floor| (floor, "the references differ by this much".to_owned())),
+        floor: trade.floor.map(|floor| (floor, "reference uncertainty".to_owned())),
         mark: None,
     };
     let mut text =
@@ -192,19 +191,23 @@ fn trade_chart(page: &Page) -> String {
     text + "<span><i style=\"border:2px solid var(--bad)\"></i>not sound</span></div></div>\n"
 }
 
-/// How far runs go apart from the reference, frame by frame.
-fn apart_chart(page: &Page) -> String {
+/// Distance of runs from the reference, frame by frame.
+fn divergence_chart(page: &Page) -> String {
     let trade = page.trade;
-    if trade.apart.is_empty() {
+    if trade.divergence.is_empty() {
         return String::new();
     }
     let start = trade.frames[0] as f64 + 1.0;
-    let places = |apart: &[f64]| -> Vec<[f64; 2]> {
-        apart.iter().enumerate().map(|(k, apart)| [start + k as f64, apart.max(1e-7)]).collect()
+    let places = |divergence: &[f64]| -> Vec<[f64; 2]> {
+        divergence
+            .iter()
+            .enumerate()
+            .map(|(k, divergence)| [start + k as f64, divergence.max(1e-7)])
+            .collect()
     };
-    let mut lines = vec![Line { through: places(&trade.apart), class: "l0" }];
-    for ((_, apart), class) in page.series.iter().zip(["l1", "l2"]) {
-        lines.push(Line { through: places(apart), class });
+    let mut lines = vec![Line { through: places(&trade.divergence), class: "l0" }];
+    for ((_, divergence), class) in page.series.iter().zip(["l1", "l2"]) {
+        lines.push(Line { through: places(divergence), class });
     }
     let values =
         lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
@@ -217,13 +220,13 @@ fn apart_chart(page: &Page) -> String {
         .collect();
     let key = format!("<div class=\"key\">{key}</div>");
     let mark = match trade.measure {
-        crate::trade::Measure::Position { frames } => {
-            Some((start + frames as f64 - 1.0, "compared to here".to_owned()))
+        crate::trade::ErrorMeasure::Position { frames } => {
+            Some((start + frames as f64 - 1.0, "end of comparison".to_owned()))
         }
         _ => None,
     };
     let chart = Chart {
-        x: Axis::plain("frame", start, trade.frames[1] as f64),
+        x: Axis::linear("frame", start, trade.frames[1] as f64),
         y: Axis::log("distance from the reference", values).in_percent(),
         dots: Vec::new(),
         lines,
@@ -231,16 +234,16 @@ fn apart_chart(page: &Page) -> String {
         mark,
     };
     format!(
-        "<h2>How long positions can be compared</h2>\n<div class=\"chart\">{}{key}</div>\n<p class=\"soft\">Where two references, \
-         one with half the step of the other, go apart, a fold has fallen to one side in one of them and to the other in the \
-         other. From there on the distance says nothing about a setting.</p>\n",
+        "<h2>Predictability horizon</h2>\n<div class=\"chart\">{}{key}</div>\n<p class=\"soft\">Two references, \
+         one with half the step of the other, diverge when a fold falls to one side in one of them and to the other side in the \
+         other. Beyond that frame the distance measures chaos, not the error of a setting.</p>\n",
         chart.svg()
     )
 }
 
 fn table(trade: &Trade) -> String {
     let mut text = "<h2>All settings</h2>\n<div class=\"wide\"><table>\n<tr><th>ms</th><th>error</th><th>position, RMS</th>\
-                    <th>largest</th><th>strain, 99 %</th><th>largest</th><th>energy made</th><th>gap</th><th>setting</th></tr>\n"
+                    <th>largest</th><th>strain, 99 %</th><th>largest</th><th>energy created</th><th>gap</th><th>setting</th></tr>\n"
         .to_owned();
     let maybe = |x: Option<f64>, show: fn(f64) -> String| x.map_or("–".to_owned(), show);
     for point in trade.reference.iter().chain(&trade.points) {
@@ -271,19 +274,17 @@ fn table(trade: &Trade) -> String {
 fn how(page: &Page) -> String {
     let trade = page.trade;
     let floor =
-        trade.floor.map(|floor| format!(" The two references differ by {} in this measure.", percent(floor)));
+        trade.floor.map(|floor| format!(" The reference uncertainty is {} in this measure.", percent(floor)));
     let energy = match trade.is_closed {
         true => {
-            "Nothing drives the cloth, so kinetic and potential energy above where they began were made by the solver; \
-                 the table gives them over those of a fall by the cloth's own size."
+            "Nothing drives the cloth, so any rise of kinetic plus potential energy above its initial value is created by the \
+                 solver; the table gives it over the energy of a fall by the cloth's own size."
         }
-        false => {
-            "Wind or something that moves drives the cloth, so that energy made by the solver cannot be told apart."
-        }
+        false => "Wind or animation drives the cloth, so created energy is not measured.",
     };
     format!(
-        "<h2>How it was measured</h2>\n<p>{}{}</p>\n<p>A time is processor time of one core, in the solver alone. The strain is \
-         the one that 99 % of the edges stay below, RMS over all frames; a gap is the least over the thickness. {energy}</p>\n\
+        "<h2>Method</h2>\n<p>{}{}</p>\n<p>Times are processor time of one core, in the solver alone. Strain is \
+         the 99th percentile over all edges, RMS over all frames; gap is the minimum over the thickness. {energy}</p>\n\
          <footer>{} · scene and solver {}</footer>\n</html>\n",
         escape(&trade.measure.sentence()),
         floor.unwrap_or_default(),

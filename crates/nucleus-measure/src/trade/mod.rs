@@ -1,29 +1,26 @@
-//! Speed against accuracy: a scene at many settings, each with its cost and its error.
+//! Work-precision curve of a scene: processor time against error at many settings.
 //!
-//! | You want to know...                                     | Read                 |
-//! |---------------------------------------------------------|----------------------|
-//! | what is looked at, and what it is held against          | [`Subject`]          |
-//! | what a setting is                                       | [`Setting`]          |
-//! | which settings are run                                  | [`plan`]             |
-//! | one run                                                 | [`run`]              |
-//! | how many go on side by side, and how they are resumed   | [`sweep`]            |
-//! | what error means for a scene                            | [`Measure`]          |
-//! | what is found: frontier, slope, time to an error        | [`Trade`]            |
-//! | which setting to take                                   | [`recommend`]        |
-//! | where that is kept for later runs                       | `curve.rs`           |
+//! | Question                                                       | Module           |
+//! |----------------------------------------------------------------|------------------|
+//! | the attributes that are varied                                 | `setting.rs`     |
+//! | the scene, its facts before a run, and the scene at a setting  | `benchmark.rs`   |
+//! | which settings are run                                         | `plan.rs`        |
+//! | one run, frame by frame, and its trajectory                    | [`run`]          |
+//! | reference runs, predictability horizon, error measure          | `reference.rs`   |
+//! | the curve: Pareto frontier, slope, recommended setting         | `curve.rs`       |
+//! | parallel execution, progress and resumption                    | [`sweep`]        |
 
+mod benchmark;
 mod curve;
-mod found;
-mod measure;
-pub mod plan;
-pub mod recommend;
+mod plan;
+mod reference;
 pub mod run;
 mod setting;
-mod subject;
 pub mod sweep;
 
-pub use found::{Point, Trade};
-pub use measure::Measure;
+pub use benchmark::{Benchmark, TradeError, object_positions};
+pub use curve::{Choice, Point, Trade, for_error, for_time};
+pub use plan::SweepOptions;
+pub use reference::{ErrorMeasure, References};
 pub use setting::{Reading, Setting};
-pub use subject::{Subject, TradeError};
-pub use sweep::{Found, Progress, Watch, measure};
+pub use sweep::{Progress, SweepControl, SweepResult, run_sweep};

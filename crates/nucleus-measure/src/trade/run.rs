@@ -1,26 +1,26 @@
-//! One run: followed frame by frame, and held against the reference.
+//! One run: figures per frame, and the trajectory of all cloth points.
 
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, Real, StateView};
 use nucleus_graph::Simulation;
-use nucleus_graph::compile::{Object, ObjectKind, Program};
+use nucleus_graph::compile::{ObjectKind, Program};
 use serde::{Deserialize, Serialize};
 
+use super::benchmark::{Benchmark, object_positions};
 use super::setting::Setting;
-use super::subject::Subject;
-use crate::clock::{Clock, Spent};
-use crate::metrics::contact::Contact;
-use crate::metrics::{distance, energy};
-use crate::trajectory::Trajectory;
+use crate::clock::{Clock, Timing};
+use crate::metrics::conservation::potential;
+use crate::metrics::deformation::{Contact, distance};
 
-/// What was seen at the end of a frame.
+/// Figures at the end of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// From the reference, over the cloth's size: RMS over the points, and the largest. Nothing without a reference.
-    pub apart: Option<[f64; 2]>,
-    /// The strain that 99 % of the edges stay below.
+    /// Distance from the reference over the cloth's size: RMS over the points, and maximum. `None` without a reference.
+    #[serde(rename = "apart")]
+    pub divergence: Option<[f64; 2]>,
+    /// 99th percentile of the strains of all edges.
     pub strain: f64,
-    /// The largest strain.
+    /// Maximum strain.
     pub max_strain: f64,
     /// Kinetic energy in joules.
     pub kinetic: f64,
@@ -30,26 +30,27 @@ pub struct Frame {
     pub ms: f64,
 }
 
-/// A run that has ended.
+/// A finished run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// What was set.
+    /// Its setting.
     pub setting: Setting,
-    /// Bits of its numbers: 32, or 64 for references.
+    /// Floating-point width in bits: 32, or 64 for references.
     pub bits: u32,
-    /// Frames that were asked for.
+    /// Requested frames.
     pub asked: usize,
-    /// Frame after frame, the start left out; fewer than were asked for if one was not finite.
+    /// All frames without the start; fewer than requested if one was not finite.
     pub frames: Vec<Frame>,
     /// Kinetic and potential energy at the start, in joules.
     pub start_energy: f64,
-    /// What contact was like.
+    /// Contact quality.
     pub contact: Contact,
     /// Candidate pairs of the broad phase, over all frames.
     pub pairs: u64,
-    /// Runs of the broad phase, over all frames.
-    pub searches: u64,
-    /// Fingerprint of the state at the end, in hexadecimal.
+    /// Broad-phase queries, over all frames.
+    #[serde(rename = "searches")]
+    pub queries: u64,
+    /// Hash of the last state, in hexadecimal.
     pub hash: String,
 }
 
@@ -59,87 +60,88 @@ impl Run {
         self.frames.len() == self.asked
     }
 
-    /// Milliseconds of processor time to a frame, on one core.
+    /// Milliseconds of processor time per frame, on one core.
     pub fn ms(&self) -> f64 {
         self.frames.iter().map(|frame| frame.ms).sum::<f64>() / self.frames.len().max(1) as f64
     }
 
-    /// What tells it from other runs of a scene.
+    /// Unique name among the runs of a scene.
     pub fn key(&self) -> String {
         key(&self.setting, self.bits, self.asked)
     }
 }
 
-/// What tells a run from other runs of a scene.
+/// Unique name of a run among the runs of a scene.
 pub fn key(setting: &Setting, bits: u32, frames: usize) -> String {
     format!("{}-f{bits}-n{frames}", setting.key())
 }
 
-/// What is wanted of a run besides its figures.
+/// States that are kept of a run.
 #[derive(Debug, Clone, Default)]
-pub struct Kept {
-    /// Every frame, in metres.
-    pub path: Option<Trajectory>,
-    /// All objects at the end, in the order of the program, in scene units.
+pub struct RunStates {
+    /// All frames, in metres.
+    pub trajectory: Option<Trajectory>,
+    /// All objects in the last frame, in the order of the program, in scene units.
     pub end: Vec<Vec<[f32; 3]>>,
 }
 
-/// Runs a program in `R` and holds it against `wanted`. Ends early, with nothing, if `should_continue` says so.
-pub fn follow<R: Real>(
-    subject: &Subject,
+/// Runs a program with scalar `R` and measures its distance from `reference`. Returns `None` if `should_continue`
+/// returns false.
+pub fn run_setting<R: Real>(
+    benchmark: &Benchmark,
     setting: &Setting,
     program: &Program,
-    wanted: Option<&Trajectory>,
+    reference: Option<&Trajectory>,
     should_continue: &dyn Fn() -> bool,
-) -> Option<(Run, Kept)> {
+) -> Option<(Run, RunStates)> {
     let mut simulation: Simulation<R> = Simulation::new(program, 1);
     let bits = 8 * size_of::<R>() as u32;
     let mut points = Vec::new();
     all_points(&simulation, &mut points);
-    let height = |points: &[Vector3<f64>]| energy::potential(&subject.masses, points, subject.gravity);
-    let asked = subject.frames();
+    let potential_energy = |points: &[Vector3<f64>]| potential(&benchmark.masses, points, benchmark.gravity);
+    let asked = benchmark.frames();
     let mut run = Run {
         setting: *setting,
         bits,
         asked,
         frames: Vec::with_capacity(asked),
-        start_energy: height(&points),
+        start_energy: potential_energy(&points),
         contact: Contact::default(),
         pairs: 0,
-        searches: 0,
+        queries: 0,
         hash: String::new(),
     };
-    // References are what is kept whole; whatever is held against one is not one.
-    let mut path = (bits == 64).then(|| Trajectory::new(&points));
-    let mut reference = Vec::new();
+    // Only references need all their frames.
+    let mut trajectory = (bits == 64).then(|| Trajectory::new(&points));
+    let mut expected = Vec::new();
     for frame in 0..asked {
         if !should_continue() {
             return None;
         }
-        let (spent, seen) = Spent::by(Clock::Thread, || simulation.advance(&mut ()).report);
-        if !seen.finite {
+        let (timing, report) = Timing::measure(Clock::Thread, || simulation.advance(&mut ()).report);
+        if !report.finite {
             break;
         }
         all_points(&simulation, &mut points);
-        let strain = subject.strain(&points);
-        let apart = wanted.filter(|wanted| frame < wanted.frames()).map(|wanted| {
-            wanted.frame(frame, &mut reference);
-            let found = distance::distance(&points, &reference, subject.size);
-            [found.rms, found.max]
+        let strain = benchmark.strain(&points);
+        let divergence = reference.filter(|reference| frame < reference.frames()).map(|reference| {
+            reference.frame(frame, &mut expected);
+            let deviation = distance(&points, &expected, benchmark.size);
+            [deviation.rms, deviation.max]
         });
-        run.contact.add(&seen);
-        run.pairs += seen.candidate_pairs;
-        run.searches += u64::from(seen.broad_phases);
+        run.contact.add(&report);
+        run.pairs += report.candidate_pairs;
+        run.queries += u64::from(report.broad_phases);
         run.frames.push(Frame {
-            apart,
-            strain: strain.most.max(0.0),
+            divergence,
+            strain: strain.p99.max(0.0),
             max_strain: strain.max.max(0.0),
-            kinetic: seen.kinetic_energy,
-            energy: seen.kinetic_energy + height(&points),
-            ms: 1e3 * spent.processor,
+            kinetic: report.kinetic_energy,
+            energy: report.kinetic_energy + potential_energy(&points),
+            ms: 1e3 * timing.processor,
         });
-        if let Some(path) = &mut path {
-            path.push(&points);
+        if let Some(trajectory) = &mut trajectory {
+            trajectory.push(&points);
         }
     }
     run.hash = format!("{:016x}", simulation.solver().state_hash());
@@ -147,19 +149,10 @@ pub fn follow<R: Real>(
     for (object, out) in simulation.objects().iter().zip(&mut end) {
         object_positions(&simulation, object, out);
     }
-    Some((run, Kept { path, end }))
+    Some((run, RunStates { trajectory, end }))
 }
 
-/// Replaces `out` by the positions of an object in scene units.
-pub fn object_positions<R: Real>(simulation: &Simulation<R>, object: &Object, out: &mut Vec<[f32; 3]>) {
-    let (state, units) = (simulation.state(), simulation.units_per_metre());
-    match object.kind {
-        ObjectKind::Cloth(id) => state.positions(id, units, out),
-        ObjectKind::Collider(id) => state.collider_positions(id, units, out),
-    }
-}
-
-/// Replaces `out` by all points of all cloth in metres.
+/// Replaces `out` by the points of all cloth in metres.
 fn all_points<R: Real>(simulation: &Simulation<R>, out: &mut Vec<Vector3<f64>>) {
     out.clear();
     let state: &dyn StateView = simulation.state();
@@ -167,5 +160,110 @@ fn all_points<R: Real>(simulation: &Simulation<R>, out: &mut Vec<Vector3<f64>>) 
         if let ObjectKind::Cloth(id) = object.kind {
             out.extend((0..object.points).map(|point| state.point(ClothId(id.0), point)));
         }
+    }
+}
+
+/// Positions of all cloth points of a run, frame by frame, in metres: cloth after cloth, in mesh order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trajectory {
+    /// Origin of the stored `f32` positions, so that distance from the world origin costs no precision.
+    origin: [f64; 3],
+    /// Points per frame.
+    points: usize,
+    /// Points of frame 0, points of frame 1, ...
+    rows: Vec<[f32; 3]>,
+}
+
+/// First bytes of a file: format and version.
+const MAGIC: &[u8; 8] = b"nucltrj1";
+
+impl Trajectory {
+    /// Without frames; the origin is the centroid of `start`.
+    pub fn new(start: &[Vector3<f64>]) -> Self {
+        let middle = start.iter().sum::<Vector3<f64>>() / start.len().max(1) as f64;
+        Self { origin: middle.into(), points: start.len(), rows: Vec::new() }
+    }
+
+    /// Adds a frame.
+    pub fn push(&mut self, points: &[Vector3<f64>]) {
+        let origin = Vector3::from(self.origin);
+        self.rows.extend(points.iter().map(|point| <[f64; 3]>::from(point - origin).map(|x| x as f32)));
+    }
+
+    /// The number of frames.
+    pub fn frames(&self) -> usize {
+        self.rows.len().checked_div(self.points).unwrap_or(0)
+    }
+
+    /// The number of points.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Replaces `out` by the positions in a frame, counted from 0.
+    pub fn frame(&self, frame: usize, out: &mut Vec<Vector3<f64>>) {
+        let origin = Vector3::from(self.origin);
+        let rows = &self.rows[frame * self.points..(frame + 1) * self.points];
+        out.clear();
+        out.extend(rows.iter().map(|row| origin + Vector3::from(row.map(f64::from))));
+    }
+
+    /// Serialises into bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let head = MAGIC.iter().copied();
+        let origin = self.origin.iter().flat_map(|x| x.to_le_bytes());
+        let points = (self.points as u64).to_le_bytes();
+        let rows = self.rows.iter().flatten().flat_map(|x| x.to_le_bytes());
+        head.chain(origin).chain(points).chain(rows).collect()
+    }
+
+    /// Deserialises; `None` if the bytes are not a complete trajectory.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let bytes = bytes.strip_prefix(MAGIC)?;
+        let (origin, bytes) = bytes.split_at_checked(24)?;
+        let (points, bytes) = bytes.split_at_checked(8)?;
+        let mut origin = origin.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().unwrap_or_default()));
+        let origin = std::array::from_fn(|_| origin.next().unwrap_or_default());
+        let points = usize::try_from(u64::from_le_bytes(points.try_into().ok()?)).ok()?;
+        let number = |x: &[u8]| f32::from_le_bytes(x.try_into().unwrap_or_default());
+        let row = |row: &[u8]| [number(&row[0..4]), number(&row[4..8]), number(&row[8..12])];
+        let is_complete = points > 0 && bytes.len() % points.checked_mul(12)? == 0;
+        is_complete.then(|| Self { origin, points, rows: bytes.chunks_exact(12).map(row).collect() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_frames() -> Trajectory {
+        let start = [Vector3::new(1e7, 2.0, 3.0), Vector3::new(1e7 + 1.0, 2.0, 3.0)];
+        let mut path = Trajectory::new(&start);
+        path.push(&start);
+        path.push(&start.map(|point| point + Vector3::y() * 1e-6));
+        path
+    }
+
+    #[test]
+    fn a_micrometre_is_resolved_ten_thousand_kilometres_away() {
+        let mut points = Vec::new();
+        two_frames().frame(1, &mut points);
+        assert!((points[1].y - 2.0 - 1e-6).abs() < 1e-9 && (points[1].x - 1e7 - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn serialisation_round_trips() {
+        let path = two_frames();
+        assert_eq!(Trajectory::from_bytes(&path.to_bytes()), Some(path.clone()));
+        assert_eq!((path.frames(), path.points()), (2, 2));
+    }
+
+    #[test]
+    fn truncated_bytes_are_rejected() {
+        let bytes = two_frames().to_bytes();
+        for length in [0, 4, 8, 20, 39, bytes.len() - 1, bytes.len() - 12] {
+            assert_eq!(Trajectory::from_bytes(&bytes[..length]), None, "{length}");
+        }
+        assert_eq!(Trajectory::from_bytes(b"something else altogether, and long enough for a head"), None);
     }
 }

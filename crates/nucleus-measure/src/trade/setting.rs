@@ -1,20 +1,20 @@
-//! A setting: the attributes that trade time for accuracy.
+//! A setting: values of the attributes that trade time for accuracy.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// How resistances are read (`resistanceModel`).
+/// Interpretation of resistances (`resistanceModel`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reading {
-    /// Counts of iterations.
+    /// Iteration counts.
     Classic,
-    /// Stiffnesses, with a budget of evaluations.
+    /// Stiffnesses, solved with a budget of evaluations.
     Physical,
 }
 
-/// What is set on the nucleus, and on cloth.
+/// Values on the nucleus and on cloth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// `resistanceModel`.
@@ -23,14 +23,14 @@ pub struct Setting {
     pub substeps: u32,
     /// `maxCollisionIterations`, per 1/24 s.
     pub collision_iterations: u32,
-    /// Physical: `evaluations`, per 1/24 s; of a keyed scene the largest, the other keys in proportion.
+    /// Physical: `evaluations` per 1/24 s; for a keyed attribute the maximum, with the other keys in proportion.
     pub evaluations: f64,
-    /// Classic: a factor on stretch, compression and shear resistance.
+    /// Classic: factor on stretch, compression and shear resistance.
     pub resistance: f64,
 }
 
 impl Setting {
-    /// A name that no other setting has, for files and lists.
+    /// Unique name, for files and lists.
     pub fn key(&self) -> String {
         let Self { substeps, collision_iterations: passes, evaluations, resistance, .. } = self;
         match self.reading {
@@ -40,7 +40,7 @@ impl Setting {
     }
 }
 
-/// For people: `192 evaluations in 3 substeps`.
+/// Human-readable: `192 evaluations in 3 substeps`.
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { substeps, collision_iterations: passes, evaluations, resistance, .. } = self;
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_have_names_of_their_own_and_read_as_words() {
+    fn settings_have_unique_keys_and_readable_names() {
         let physical = Setting {
             reading: Reading::Physical,
             substeps: 1,

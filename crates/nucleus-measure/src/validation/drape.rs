@@ -1,47 +1,47 @@
-//! Cusick's drape test: a disc of cloth, 30 cm across, clamped on a disc of 18 cm, hangs over its rim in folds.
+//! Cusick's drape test: a disc of cloth of 30 cm, clamped on a disc of 18 cm, hangs over the rim in folds.
 //! The drape coefficient is the share of the ring that its shadow covers.
 
 use nucleus_core::{BuildError, Cloth, Faces, Mass, ModelBuilder, Stiffness, Surface};
 
-use super::{Allowed, Case, Finding, Rig};
-use crate::rig::{STRIP, Vec3, membrane};
+use super::{Case, Comparison, Fixture, Tolerance};
+use crate::fixture::{STRIP, Vec3, membrane};
 
 pub const CASES: &[Case] = &[Case {
     name: "cusick-drape",
-    about: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, beside the band \
-        in which such cloths are measured. Bending stiffness and weight are usual ones of such cloths. Refined four \
-        times, it changes by less than 2.",
-    fails: Some(
-        "All cloths come out near 60 %, whatever their stiffness against bending: the sheet is held open in its own \
-            plane. Without resistance to compression the same silk drapes to 6 %, with a shear stiffness of 17 N/m to 54 %; \
-            squares of 12 mm are probably too coarse for folds of a centimetre.",
+    description: "A disc of 30 cm clamped on one of 18 cm (BS 5058): the share of the ring in shadow, in %, compared with the \
+        measured range of such cloths. Bending stiffness and weight are typical of such cloths. With four times the \
+        points, it changes by less than 2.",
+    known_failure: Some(
+        "All cloths drape to about 60 %, whatever their bending stiffness: in-plane stiffness holds the sheet \
+            open. Without compression resistance the same silk drapes to 6 %, with a shear stiffness of 17 N/m to 54 \
+            %; squares of 12 mm are probably too coarse for folds of a centimetre.",
     ),
     run: cusick,
 }];
 
-/// Name, bending stiffness in N·m, mass in kg/m², and the band in %.
+/// Name, bending stiffness in N·m, mass in kg/m², and measured range in %.
 const CLOTHS: [(&str, f64, f64, [f64; 2]); 3] = [
     ("silk", 3e-6, 0.07, [20.0, 40.0]),
     ("cotton", 1.2e-5, 0.12, [60.0, 76.0]),
     ("denim", 8e-5, 0.36, [70.0, 90.0]),
 ];
 
-fn cusick() -> Result<Vec<Finding>, BuildError> {
-    let mut findings = Vec::new();
+fn cusick() -> Result<Vec<Comparison>, BuildError> {
+    let mut comparisons = Vec::new();
     for (name, bend, density, [low, high]) in CLOTHS {
         let found = coefficient(24, bend, density)?;
-        let allowed = Allowed::Margin((high - low) / 2.0);
-        findings.push(Finding::new(format!("{name}: drape, %"), (low + high) / 2.0, found, allowed));
+        let tolerance = Tolerance::Absolute((high - low) / 2.0);
+        comparisons.push(Comparison::new(format!("{name}: drape, %"), (low + high) / 2.0, found, tolerance));
     }
     let (_, bend, density, _) = CLOTHS[1];
     let (coarse, fine) = (coefficient(24, bend, density)?, coefficient(48, bend, density)?);
-    findings.push(Finding::new(
+    comparisons.push(Comparison::new(
         "cotton: drape with four times the points, %",
         coarse,
         fine,
-        Allowed::Margin(2.0),
+        Tolerance::Absolute(2.0),
     ));
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Share of the ring in shadow, in %, of a disc of `cells` by `cells` quads.
@@ -51,24 +51,24 @@ fn coefficient(cells: u32, bend: f64, density: f64) -> Result<f64, BuildError> {
     builder.cloth(Cloth::new(surface.clone(), Mass::PerArea(density), STRIP))?;
     let held: Vec<usize> =
         (0..surface.positions.len()).filter(|&point| surface.positions[point].norm() < 0.0901).collect();
-    let mut rig = Rig::of(builder, surface, 12.0 * f64::from(cells));
-    rig.cloth().stiffness = Stiffness { bend: Some(bend), ..membrane(300.0) };
-    rig.cloth().drag = 6.0 * nucleus_core::COUNT_PERIOD * density;
-    rig.cloth().tangential_drag = 1.0;
-    rig.hold(held);
-    rig.settle(1e-4, 144);
-    let shadow = shadow(&rig, &rim);
+    let mut fixture = Fixture::from_builder(builder, surface, 12.0 * f64::from(cells));
+    fixture.cloth().stiffness = Stiffness { bend: Some(bend), ..membrane(300.0) };
+    fixture.cloth().drag = 6.0 * nucleus_core::COUNT_PERIOD * density;
+    fixture.cloth().tangential_drag = 1.0;
+    fixture.pin(held);
+    fixture.run_to_rest(1e-4, 144);
+    let shadow = shadow(&fixture, &rim);
     let circle = |radius: f64| std::f64::consts::PI * radius * radius;
     Ok(100.0 * (shadow - circle(0.09)) / (circle(0.15) - circle(0.09)))
 }
 
-/// The area in shadow: how far out the rim reaches in each direction, and the clamp at least.
-fn shadow(rig: &Rig, rim: &[usize]) -> f64 {
+/// Area of the shadow: the radius of the rim in each direction, at least that of the clamp.
+fn shadow(fixture: &Fixture, rim: &[usize]) -> f64 {
     const BINS: usize = 720;
     let mut reach = [0.09f64; BINS];
     let around = rim.iter().zip(rim.iter().cycle().skip(1));
     for (&a, &b) in around {
-        let (a, b) = (rig.point(a), rig.point(b));
+        let (a, b) = (fixture.point(a), fixture.point(b));
         for k in 0..=20 {
             let p = a + (b - a) * (f64::from(k) / 20.0);
             let turn = p.z.atan2(p.x).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
@@ -79,8 +79,8 @@ fn shadow(rig: &Rig, rim: &[usize]) -> f64 {
     reach.iter().map(|radius| radius * radius / 2.0 * std::f64::consts::TAU / BINS as f64).sum()
 }
 
-/// A disc of quads, the square grid blown up to a circle; and the points of its rim in order. A point is in the plane
-/// y = 0 but for a millionth, so that folds have something to begin with.
+/// A disc of quads, a square grid mapped to a circle, and the points of its rim in order. Perturbed out of the plane by
+/// a micrometre, which seeds the folds.
 fn disc(cells: u32) -> (Surface, Vec<usize>) {
     let n = cells + 1;
     let mut surface = Surface { positions: Vec::new(), faces: Faces::default() };

@@ -1,13 +1,13 @@
-//! The exact curve of a thin strip that bends without stretching (Euler's elastica), by shooting.
+//! Euler's elastica, the inextensible strip under bending, by shooting.
 
-/// The curve of a clamped strip of unit length: angles below the horizontal, and where the tip is.
+/// Tip of a clamped strip of unit length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
-    /// Angle of the tip in radians.
+    /// Angle below the horizontal, in radians.
     pub tip_angle: f64,
-    /// How far out the tip is, over the length.
+    /// Horizontal displacement from the clamp, over the length.
     pub out: f64,
-    /// How far down the tip is, over the length.
+    /// Vertical displacement, over the length.
     pub down: f64,
 }
 
@@ -24,22 +24,22 @@ pub fn tip_loaded(load: f64) -> Curve {
     shoot(|_, angle| -load * angle.cos())
 }
 
-/// Finds the angle of the tip at which the other end is clamped level. Starting at the tip, where there is no
-/// moment, `bend(s, angle)` is the change of the curvature along s. The complement of the angle is sought by the
-/// logarithm: under a great load the tip hangs straight down but for 1e-10.
+/// Bisects for the tip angle at which the clamp is horizontal. Integration starts at the tip, where the moment is
+/// zero; `bend(s, angle)` is the derivative of the curvature. The unknown is the logarithm of the complement of the
+/// angle, because under a large load the tip is vertical up to 1e-10.
 fn shoot(bend: impl Fn(f64, f64) -> f64) -> Curve {
     let angle = |log: f64| std::f64::consts::FRAC_PI_2 - log.exp();
     let (mut low, mut high) = (-60.0f64, std::f64::consts::FRAC_PI_2.ln());
     for _ in 0..100 {
         let middle = (low + high) / 2.0;
-        // The nearer to straight down the tip is, the farther the clamp is from level.
+        // The closer the tip is to vertical, the farther the clamp is from horizontal.
         if integrate(angle(middle), &bend).1 > 0.0 { low = middle } else { high = middle }
     }
     let (curve, _) = integrate(angle((low + high) / 2.0), &bend);
     curve
 }
 
-/// Integrates from the tip to the clamp (Runge and Kutta, fourth order); the curve, and the angle at the clamp.
+/// Integrates from the tip to the clamp (Runge-Kutta, fourth order); the curve, and the angle at the clamp.
 fn integrate(tip_angle: f64, bend: &impl Fn(f64, f64) -> f64) -> (Curve, f64) {
     let h = 1.0 / f64::from(STEPS);
     // Angle, curvature, out, down.
@@ -54,7 +54,7 @@ fn integrate(tip_angle: f64, bend: &impl Fn(f64, f64) -> f64) -> (Curve, f64) {
         let k3 = slope(s + h / 2.0, add(y, k2, h / 2.0));
         let k4 = slope(s + h, add(y, k3, h));
         y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
-        // Past level: no need to go on, and far past it the curve is of no meaning.
+        // Past horizontal the sign is known, and the curve is meaningless.
         if y[0] < -1.0 {
             break;
         }
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_heavy_strip_agrees_with_a_table_computed_elsewhere() {
+    fn the_heavy_strip_agrees_with_an_independent_table() {
         // Gamma, tip angle in degrees, W / L, H / L.
         let table = [
             (0.1, 0.955, 0.999_911, 0.012_498),
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn the_loaded_strip_agrees_with_a_table_computed_elsewhere() {
+    fn the_loaded_strip_agrees_with_an_independent_table() {
         for (load, degrees, out, down) in [
             (0.25, 7.121, 0.995_882, 0.082_746),
             (2.0, 44.791, 0.839_358, 0.493_457),

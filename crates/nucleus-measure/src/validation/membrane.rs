@@ -2,21 +2,21 @@
 
 use nucleus_core::{BuildError, ClothLists, Faces, Surface};
 
-use super::{Allowed, Case, Finding, Rig};
-use crate::rig::{DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet};
+use super::{Case, Comparison, Fixture, Tolerance};
+use crate::fixture::{DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "hanging-sheet",
-        about: "A sheet of stiffness K that hangs from its upper edge gets longer by ρ g H² / 2K; with cross links, and \
-            of equilateral triangles, it is narrower in its middle by a third of its strain there.",
-        fails: None,
+        description: "A sheet of stiffness K that hangs from its upper edge lengthens by ρ g H² / 2K; with cross links, and of \
+            equilateral triangles, its Poisson's ratio is 1/3.",
+        known_failure: None,
         run: hanging,
     },
     Case {
         name: "catenary",
-        about: "A chain of 100 links between two hooks: sag over length, by the span over the length.",
-        fails: None,
+        description: "A chain of 100 links between two hooks: sag over length, for several spans over length.",
+        known_failure: None,
         run: catenary,
     },
 ];
@@ -24,16 +24,16 @@ pub const CASES: &[Case] = &[
 /// N/m.
 const STIFFNESS: f64 = 500.0;
 
-fn hanging() -> Result<Vec<Finding>, BuildError> {
+fn hanging() -> Result<Vec<Comparison>, BuildError> {
     let grid = || sheet([9, 33], -Vec3::x() / 8.0, Vec3::x() / 4.0, -Vec3::y());
     let alone = ClothLists { cross_links: false, ..STRIP };
-    let mut findings = hang("squares without cross links", grid(), alone, 0.0)?;
-    findings.extend(hang("squares with cross links", grid(), STRIP, 1.0 / 3.0)?);
-    findings.extend(hang("equilateral triangles", triangles(), STRIP, 1.0 / 3.0)?);
-    Ok(findings)
+    let mut comparisons = hang("squares without cross links", grid(), alone, 0.0)?;
+    comparisons.extend(hang("squares with cross links", grid(), STRIP, 1.0 / 3.0)?);
+    comparisons.extend(hang("equilateral triangles", triangles(), STRIP, 1.0 / 3.0)?);
+    Ok(comparisons)
 }
 
-/// Rows of equilateral triangles a quarter of a metre wide and one metre high; every second row is set in by half a side.
+/// Rows of equilateral triangles, 0.25 m wide and 1 m high; odd rows are offset by half a side.
 fn triangles() -> Surface {
     let (columns, rows) = (9u32, 37u32);
     let side = 0.25 / f64::from(columns - 1);
@@ -57,40 +57,46 @@ fn triangles() -> Surface {
     surface
 }
 
-/// Strain of the whole, and how much narrower the middle is.
-fn hang(name: &str, surface: Surface, lists: ClothLists, poisson: f64) -> Result<Vec<Finding>, BuildError> {
+/// Sag, and Poisson's ratio.
+fn hang(
+    name: &str,
+    surface: Surface,
+    lists: ClothLists,
+    poisson: f64,
+) -> Result<Vec<Comparison>, BuildError> {
     let columns = 9;
     let rows = surface.positions.len() / columns;
     let height = -surface.positions[(rows - 1) * columns].y;
-    let mut rig = Rig::new(surface, lists, 1000.0)?;
-    rig.cloth().stiffness = membrane(STIFFNESS);
-    rig.slow_down(30.0);
-    rig.hold(0..columns);
-    rig.settle(1e-6, 48);
+    let mut fixture = Fixture::new(surface, lists, 1000.0)?;
+    fixture.cloth().stiffness = membrane(STIFFNESS);
+    fixture.damp_velocity(30.0);
+    fixture.pin(0..columns);
+    fixture.run_to_rest(1e-6, 48);
     let moved = |row: usize, column: usize| {
         let point = row * columns + column;
-        rig.point(point) - rig.surface.positions[point]
+        fixture.point(point) - fixture.surface.positions[point]
     };
     let down = (0..columns).map(|column| -moved(rows - 1, column).y).sum::<f64>() / columns as f64;
     let weight = DENSITY * GRAVITY;
     let sag = weight * height * height / (2.0 * STIFFNESS);
-    let mut findings = vec![Finding::new(format!("{name}: sag in m"), sag, down, Allowed::Share(0.01))];
+    let mut comparisons =
+        vec![Comparison::new(format!("{name}: sag in m"), sag, down, Tolerance::Relative(0.01))];
     if poisson > 0.0 {
-        // Two thirds down, far from the edge that cannot get narrower; over the inner half of the width, for free
-        // sides of triangles are ragged.
+        // At two thirds of the height, far from the pinned edge, and over the inner half of the width, because free sides of
+        // triangles are ragged.
         let (row, inner) = (rows * 2 / 3, [columns / 4, columns - 1 - columns / 4]);
-        let wide = |column: usize| rig.surface.positions[row * columns + column].x;
+        let wide = |column: usize| fixture.surface.positions[row * columns + column].x;
         let narrower = (moved(row, inner[0]).x - moved(row, inner[1]).x) / (wide(inner[1]) - wide(inner[0]));
-        let depth = -rig.surface.positions[row * columns].y;
+        let depth = -fixture.surface.positions[row * columns].y;
         let strain = weight * (height - depth) / STIFFNESS;
         let quantity = format!("{name}: narrowing over strain");
-        findings.push(Finding::new(quantity, poisson, narrower / strain, Allowed::Share(0.05)));
+        comparisons.push(Comparison::new(quantity, poisson, narrower / strain, Tolerance::Relative(0.05)));
     }
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Span over length, sag over length: of y = a cosh(x / a).
-fn catenary() -> Result<Vec<Finding>, BuildError> {
+fn catenary() -> Result<Vec<Comparison>, BuildError> {
     [0.5, 0.8, 0.95, 0.99].into_iter().map(chain).collect()
 }
 
@@ -104,25 +110,25 @@ fn exact_sag(span: f64) -> f64 {
     span / (2.0 * low) * (low.cosh() - 1.0)
 }
 
-fn chain(span: f64) -> Result<Finding, BuildError> {
-    // A ladder, folded to its span: a zigzag keeps every rung and link at its length.
+fn chain(span: f64) -> Result<Comparison, BuildError> {
+    // A ladder folded to its span as a zigzag, which preserves all lengths.
     let mut ladder = sheet([101, 2], Vec3::zeros(), Vec3::x(), Vec3::z() * 0.01);
     let rise = (1.0 - span * span).sqrt() * 0.01;
     for (k, p) in ladder.positions.iter_mut().enumerate() {
         *p = Vec3::new(p.x * span, if k % 101 % 2 == 1 { rise } else { 0.0 }, p.z);
     }
     let lists = ClothLists { stretch: true, air: true, ..ClothLists::NONE };
-    let mut rig = Rig::new(ladder, lists, 3000.0)?;
-    rig.cloth().stiffness = membrane(6e4);
-    rig.slow_down(8.0);
-    rig.hold([0, 100, 101, 201]);
-    rig.settle(1e-5, 120);
-    let found = -rig.point(50).y;
-    Ok(Finding::new(
+    let mut fixture = Fixture::new(ladder, lists, 3000.0)?;
+    fixture.cloth().stiffness = membrane(6e4);
+    fixture.damp_velocity(8.0);
+    fixture.pin([0, 100, 101, 201]);
+    fixture.run_to_rest(1e-5, 120);
+    let found = -fixture.point(50).y;
+    Ok(Comparison::new(
         format!("sag at a span of {span}, over the length"),
         exact_sag(span),
         found,
-        Allowed::Margin(1e-3),
+        Tolerance::Absolute(1e-3),
     ))
 }
 
@@ -131,7 +137,7 @@ mod tests {
     use super::exact_sag;
 
     #[test]
-    fn the_exact_catenary_agrees_with_a_table_computed_elsewhere() {
+    fn the_exact_catenary_agrees_with_an_independent_table() {
         for (span, sag) in [(0.5, 0.398_194), (0.8, 0.265_438), (0.95, 0.135_898), (0.99, 0.061_145)] {
             assert!((exact_sag(span) - sag).abs() < 2e-6, "{span}: {}", exact_sag(span));
         }

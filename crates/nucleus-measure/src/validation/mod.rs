@@ -1,13 +1,13 @@
-//! The solver against exact physics: cases with a closed form or a table, each with its error.
+//! Validation: the solver compared with closed-form and tabulated solutions.
 //!
-//! | You want to know… | Read |
+//! | Question | Read |
 //! |---|---|
-//! | how strips bend, buckle and stand | `bending.rs` |
-//! | the exact elastica | `elastica.rs` |
-//! | how sheets stretch and chains hang | `membrane.rs` |
-//! | falls, swings and what is conserved | `motion.rs` |
-//! | friction, bounce and ropes round a cylinder | `contact.rs` |
-//! | how a disc of cloth drapes | `drape.rs` |
+//! | bending and buckling of strips | `bending.rs` |
+//! | the elastica, by shooting | `elastica.rs` |
+//! | sag of sheets and chains | `membrane.rs` |
+//! | falls, swings and conserved quantities | `motion.rs` |
+//! | friction, restitution and the capstan equation | `contact.rs` |
+//! | the drape coefficient of a disc | `drape.rs` |
 
 mod bending;
 mod contact;
@@ -21,80 +21,79 @@ use nucleus_core::BuildError;
 
 pub use page::page;
 
-/// What is left of an error in double precision is the method's.
-type Rig = crate::rig::Rig<f64>;
+/// Double precision, so that the remaining error is that of the method.
+type Fixture = crate::fixture::Fixture<f64>;
 
-/// A body of physics that the solver is held against.
+/// A validation case.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
-    /// A word to ask for it by.
+    /// Name, for `--only`.
     pub name: &'static str,
-    /// What is built, and where the exact figure comes from.
-    pub about: &'static str,
-    /// Why figures of it are outside what is allowed, where they are known to be.
-    pub fails: Option<&'static str>,
-    run: fn() -> Result<Vec<Finding>, BuildError>,
+    /// The set-up, and the source of the reference solution.
+    pub description: &'static str,
+    /// Why figures are outside their tolerance, if they are known to be.
+    pub known_failure: Option<&'static str>,
+    run: fn() -> Result<Vec<Comparison>, BuildError>,
 }
 
-/// One figure of a case beside the exact one.
+/// A computed figure and its reference.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
-    /// What it is, with its unit.
+pub struct Comparison {
+    /// The figure, with its unit.
     pub quantity: String,
-    /// What it ought to be.
+    /// The reference, or the bound.
     pub exact: f64,
-    /// What the solver gives.
+    /// The figure of the solver.
     pub found: f64,
-    /// How the two are held against each other.
-    pub allowed: Allowed,
+    /// The tolerance.
+    pub tolerance: Tolerance,
 }
 
-/// What counts as right.
+/// Tolerance of a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Allowed {
-    /// The error over the exact figure is at most this.
-    Share(f64),
-    /// The error is at most this, in the unit of the figure.
-    Margin(f64),
-    /// The figure is at most the exact one.
+pub enum Tolerance {
+    /// Maximum relative error.
+    Relative(f64),
+    /// Maximum absolute error, in the unit of the figure.
+    Absolute(f64),
+    /// The reference is an upper bound.
     AtMost,
-    /// The figure is at least the exact one.
+    /// The reference is a lower bound.
     AtLeast,
 }
 
-impl Finding {
-    fn new(quantity: impl Into<String>, exact: f64, found: f64, allowed: Allowed) -> Self {
-        Self { quantity: quantity.into(), exact, found, allowed }
+impl Comparison {
+    fn new(quantity: impl Into<String>, exact: f64, found: f64, tolerance: Tolerance) -> Self {
+        Self { quantity: quantity.into(), exact, found, tolerance }
     }
 
-    /// The error: over the exact figure where that is what counts, else in the unit of the figure; nothing for a
-    /// bound.
+    /// The error: relative for [`Tolerance::Relative`], else in the unit of the figure; `None` for a bound.
     pub fn error(&self) -> Option<f64> {
-        match self.allowed {
-            Allowed::Share(_) => Some((self.found - self.exact) / self.exact),
-            Allowed::Margin(_) => Some(self.found - self.exact),
-            Allowed::AtMost | Allowed::AtLeast => None,
+        match self.tolerance {
+            Tolerance::Relative(_) => Some((self.found - self.exact) / self.exact),
+            Tolerance::Absolute(_) => Some(self.found - self.exact),
+            Tolerance::AtMost | Tolerance::AtLeast => None,
         }
     }
 
-    /// Whether it is right.
+    /// Whether the figure is within its tolerance.
     pub fn holds(&self) -> bool {
-        match self.allowed {
-            Allowed::Share(most) | Allowed::Margin(most) => {
+        match self.tolerance {
+            Tolerance::Relative(most) | Tolerance::Absolute(most) => {
                 self.error().is_some_and(|error| error.abs() <= most)
             }
-            Allowed::AtMost => self.found <= self.exact,
-            Allowed::AtLeast => self.found >= self.exact,
+            Tolerance::AtMost => self.found <= self.exact,
+            Tolerance::AtLeast => self.found >= self.exact,
         }
     }
 }
 
 impl Case {
-    /// Builds it, runs it and measures.
+    /// Runs the case.
     ///
     /// # Errors
-    /// When the solver refuses what is built.
-    pub fn run(&self) -> Result<Vec<Finding>, BuildError> {
+    /// When the solver rejects the mesh.
+    pub fn run(&self) -> Result<Vec<Comparison>, BuildError> {
         (self.run)()
     }
 }
@@ -112,28 +111,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_finding_is_right_within_what_is_allowed_and_wrong_beyond() {
-        let finding = |found, allowed| Finding::new("", 2.0, found, allowed).holds();
-        assert!(finding(2.019, Allowed::Share(0.01)) && !finding(2.03, Allowed::Share(0.01)));
-        assert!(finding(1.9, Allowed::Margin(0.11)) && !finding(1.9, Allowed::Margin(0.09)));
-        assert!(finding(1.0, Allowed::AtMost) && !finding(2.1, Allowed::AtMost));
-        assert!(!finding(1.0, Allowed::AtLeast) && finding(2.1, Allowed::AtLeast));
-        assert!(!finding(f64::NAN, Allowed::Share(1.0)) && !finding(f64::NAN, Allowed::AtMost));
+    fn a_comparison_holds_within_its_tolerance_only() {
+        let comparison = |found, tolerance| Comparison::new("", 2.0, found, tolerance).holds();
+        assert!(comparison(2.019, Tolerance::Relative(0.01)) && !comparison(2.03, Tolerance::Relative(0.01)));
+        assert!(comparison(1.9, Tolerance::Absolute(0.11)) && !comparison(1.9, Tolerance::Absolute(0.09)));
+        assert!(comparison(1.0, Tolerance::AtMost) && !comparison(2.1, Tolerance::AtMost));
+        assert!(!comparison(1.0, Tolerance::AtLeast) && comparison(2.1, Tolerance::AtLeast));
+        assert!(!comparison(f64::NAN, Tolerance::Relative(1.0)) && !comparison(f64::NAN, Tolerance::AtMost));
     }
 
     #[test]
-    fn falls_slopes_and_bounces_are_as_exact_as_the_page_allows() {
+    fn falls_slopes_and_bounces_are_within_tolerance() {
         for case in
             cases().filter(|case| ["terminal-velocity", "incline", "restitution"].contains(&case.name))
         {
-            for finding in case.run().expect("sheets of ours") {
-                assert!(finding.holds(), "{}: {finding:?}", case.name);
+            for comparison in case.run().expect("valid meshes") {
+                assert!(comparison.holds(), "{}: {comparison:?}", case.name);
             }
         }
     }
 
     #[test]
-    fn no_two_cases_have_one_name() {
+    fn cases_have_unique_names() {
         let mut names: Vec<_> = cases().map(|case| case.name).collect();
         names.sort_unstable();
         names.dedup();

@@ -1,72 +1,72 @@
-//! Falls and swings, and what is conserved.
+//! Falls and swings, and conserved quantities.
 
 use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
 
-use super::{Allowed, Case, Finding, Rig};
-use crate::rig::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, areas, membrane, sheet};
+use super::{Case, Comparison, Fixture, Tolerance};
+use crate::fixture::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet, vertex_areas};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "pendulum",
-        about: "A rod of 1 m swings about a hinge. Its period over that of small swings is 1 / agm(1, cos(α / 2)).",
-        fails: None,
+        description: "A rod of 1 m swings about a hinge. Its period over that of small swings is 1 / agm(1, cos(α / 2)).",
+        known_failure: None,
         run: pendulum,
     },
     Case {
         name: "terminal-velocity",
-        about: "A sheet falls flat through air whose drag is linear: v = g τ (1 - exp(-t / τ)), in m/s.",
-        fails: None,
+        description: "A sheet falls flat through air whose drag is linear: v = g τ (1 - exp(-t / τ)), in m/s.",
+        known_failure: None,
         run: terminal_velocity,
     },
     Case {
         name: "momentum",
-        about: "A sheet in empty space is pushed and turned, and then left alone for a second: the change of its \
-            momentum and of its angular momentum, over what they were. A link pulls along where it is at the end of a step, not \
-            where it was at its start; so a step takes spin away, in proportion to its length.",
-        fails: Some(
-            "Spin is lost in proportion to the length of a step: eight times the evaluations lose an eighth. 1e-4 takes \
-            some 2,000 evaluations.",
+        description: "A free sheet is pushed and rotated, then isolated for a second: relative change of linear and of angular \
+            momentum. A link acts along its direction at the end of a step, not at its start, so a step dissipates \
+            angular momentum in proportion to its length.",
+        known_failure: Some(
+            "The loss of angular momentum is proportional to the step: eight times the evaluations lose an \
+                eighth. 1e-4 needs about 2,000 evaluations.",
         ),
         run: momentum,
     },
     Case {
         name: "energy",
-        about: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: the most energy of motion and height \
-            that it ever has over what it had at first, in J.",
-        fails: None,
+        description: "A sheet swings down from two corners, undamped, 1 m wide, 0.2 kg: maximum of kinetic plus potential \
+            energy over the initial value, in J.",
+        known_failure: None,
         run: energy,
     },
 ];
 
-fn pendulum() -> Result<Vec<Finding>, BuildError> {
+fn pendulum() -> Result<Vec<Comparison>, BuildError> {
     [30.0, 60.0, 90.0, 120.0, 150.0].into_iter().map(swing).collect()
 }
 
-fn swing(degrees: f64) -> Result<Finding, BuildError> {
+fn swing(degrees: f64) -> Result<Comparison, BuildError> {
     let (sin, cos) = f64::to_radians(degrees).sin_cos();
     // Two parallel rods and a bar: a pendulum in the plane across the bar.
     let rods = sheet([2, 2], Vec3::zeros(), Vec3::z() * 0.5, Vec3::new(sin, -cos, 0.0));
-    let mut rig = Rig::new(rods, ClothLists { stretch: true, ..ClothLists::NONE }, 4000.0)?;
-    rig.cloth().stiffness = membrane(1e5);
-    rig.hold([0, 1]);
-    rig.frame.duration /= 4.0;
+    let mut fixture = Fixture::new(rods, ClothLists { stretch: true, ..ClothLists::NONE }, 4000.0)?;
+    fixture.cloth().stiffness = membrane(1e5);
+    fixture.pin([0, 1]);
+    fixture.frame.duration /= 4.0;
     let (mut crossings, mut before) = (Vec::new(), sin);
     for step in 1..4 * 24 * 8 {
-        rig.step();
-        let now = rig.point(2).x;
+        fixture.step();
+        let now = fixture.point(2).x;
         if before > 0.0 && now <= 0.0 {
-            crossings.push((f64::from(step) - now / (now - before)) * rig.frame.duration);
+            crossings.push((f64::from(step) - now / (now - before)) * fixture.frame.duration);
         }
         before = now;
     }
     let small = std::f64::consts::TAU / GRAVITY.sqrt();
     let found = crossings.get(1).map_or(f64::NAN, |second| (second - crossings[0]) / small);
     let exact = 1.0 / agm(1.0, (degrees.to_radians() / 2.0).cos());
-    Ok(Finding::new(
+    Ok(Comparison::new(
         format!("period at {degrees}°, over that of small swings"),
         exact,
         found,
-        Allowed::Share(0.005),
+        Tolerance::Relative(0.005),
     ))
 }
 
@@ -75,92 +75,93 @@ fn agm(a: f64, b: f64) -> f64 {
     (0..40).fold((a, b), |(a, b), _| ((a + b) / 2.0, (a * b).sqrt())).0
 }
 
-fn terminal_velocity() -> Result<Vec<Finding>, BuildError> {
+fn terminal_velocity() -> Result<Vec<Comparison>, BuildError> {
     let flat = sheet([5, 5], Vec3::zeros(), Vec3::x(), Vec3::z());
-    let mut rig = Rig::new(flat, STRIP, 96.0)?;
-    rig.cloth().stiffness = membrane(1e4);
+    let mut fixture = Fixture::new(flat, STRIP, 96.0)?;
+    fixture.cloth().stiffness = membrane(1e4);
     let rate = 4.0;
-    rig.slow_down(rate);
-    rig.cloth().tangential_drag = 0.0;
-    let mut findings = Vec::new();
+    fixture.damp_velocity(rate);
+    fixture.cloth().tangential_drag = 0.0;
+    let mut comparisons = Vec::new();
     let mut speeds = Vec::new();
     for (seconds, frames) in [(0.25f64, 6), (0.5, 6), (3.0, 60)] {
-        rig.run(frames);
-        rig.solver.velocities(CLOTH, 1.0, &mut speeds);
+        fixture.run(frames);
+        fixture.solver.velocities(CLOTH, 1.0, &mut speeds);
         let exact = GRAVITY / rate * (1.0 - (-rate * seconds).exp());
         let found = -f64::from(speeds[12][1]);
-        findings.push(Finding::new(
+        comparisons.push(Comparison::new(
             format!("speed after {seconds} s, m/s"),
             exact,
             found,
-            Allowed::Share(0.01),
+            Tolerance::Relative(0.01),
         ));
     }
-    Ok(findings)
+    Ok(comparisons)
 }
 
 /// Momentum in kg m/s and angular momentum in kg m²/s.
-fn momenta(rig: &Rig) -> (Vec3, Vec3) {
+fn momenta(fixture: &Fixture) -> (Vec3, Vec3) {
     let mut speeds = Vec::new();
-    rig.solver.velocities(CLOTH, 1.0, &mut speeds);
-    let masses = areas(&rig.surface).into_iter().map(|area| area * DENSITY);
-    let points = rig.points();
+    fixture.solver.velocities(CLOTH, 1.0, &mut speeds);
+    let masses = vertex_areas(&fixture.surface).into_iter().map(|area| area * DENSITY);
+    let points = fixture.points();
     let pushes = masses.zip(&speeds).map(|(mass, v)| Vec3::from(v.map(f64::from)) * mass);
     pushes
         .zip(&points)
         .fold((Vec3::zeros(), Vec3::zeros()), |(p, l), (push, x)| (p + push, l + x.cross(&push)))
 }
 
-fn momentum() -> Result<Vec<Finding>, BuildError> {
-    let mut findings = Vec::new();
+fn momentum() -> Result<Vec<Comparison>, BuildError> {
+    let mut comparisons = Vec::new();
     for evaluations in [96.0, 768.0, 3072.0] {
         let (push, turn) = drift(evaluations)?;
         let name = |what| format!("change of {what} in a second, {evaluations} evaluations");
-        findings.push(Finding::new(name("momentum"), 1e-6, push, Allowed::AtMost));
-        findings.push(Finding::new(name("angular momentum"), 1e-4, turn, Allowed::AtMost));
+        comparisons.push(Comparison::new(name("momentum"), 1e-6, push, Tolerance::AtMost));
+        comparisons.push(Comparison::new(name("angular momentum"), 1e-4, turn, Tolerance::AtMost));
     }
-    Ok(findings)
+    Ok(comparisons)
 }
 
 fn drift(evaluations: f64) -> Result<(f64, f64), BuildError> {
     let mut tilted = sheet([17, 17], Vec3::zeros(), Vec3::x(), Vec3::z());
     tilted.positions.iter_mut().for_each(|p| p.y = 0.1 * (5.0 * p.x).sin() * (4.0 * p.z).cos());
-    let mut rig = Rig::new(tilted, STRIP, evaluations)?;
-    rig.cloth().stiffness = Stiffness { bend: Some(1e-4), ..membrane(1e4) };
-    rig.frame.gravity = Vec3::zeros();
-    // Pushed while one corner is held, it turns about that, and then flies off.
-    rig.cloth().local_force = Vec3::new(0.002, 0.02, 0.004);
-    rig.hold([0]);
-    rig.run(12);
-    rig.cloth().local_force = Vec3::zeros();
-    rig.frame.pins.clear();
-    rig.run(1);
-    let (p, l) = momenta(&rig);
-    rig.run(24);
-    let (p1, l1) = momenta(&rig);
+    let mut fixture = Fixture::new(tilted, STRIP, evaluations)?;
+    fixture.cloth().stiffness = Stiffness { bend: Some(1e-4), ..membrane(1e4) };
+    fixture.frame.gravity = Vec3::zeros();
+    // Pushed while one corner is pinned, it rotates about that corner, then flies off.
+    fixture.cloth().local_force = Vec3::new(0.002, 0.02, 0.004);
+    fixture.pin([0]);
+    fixture.run(12);
+    fixture.cloth().local_force = Vec3::zeros();
+    fixture.frame.pins.clear();
+    fixture.run(1);
+    let (p, l) = momenta(&fixture);
+    fixture.run(24);
+    let (p1, l1) = momenta(&fixture);
     let change = |before: Vec3, after: Vec3| (after - before).norm() / before.norm();
     Ok((change(p, p1), change(l, l1)))
 }
 
-fn energy() -> Result<Vec<Finding>, BuildError> {
-    let mut findings = Vec::new();
+fn energy() -> Result<Vec<Comparison>, BuildError> {
+    let mut comparisons = Vec::new();
     for (name, cross_links) in [("squares", false), ("squares with cross links", true)] {
         for evaluations in [24.0, 96.0, 192.0] {
             let cloth = sheet([31, 31], Vec3::zeros(), Vec3::x(), Vec3::z());
             let lists = ClothLists { stretch: true, cross_links, ..ClothLists::NONE };
-            let mut rig = Rig::new(cloth, lists, evaluations)?;
-            rig.cloth().stiffness = membrane(1e4);
-            rig.hold([0, 30]);
-            let masses: Vec<f64> = areas(&rig.surface).into_iter().map(|area| area * DENSITY).collect();
+            let mut fixture = Fixture::new(cloth, lists, evaluations)?;
+            fixture.cloth().stiffness = membrane(1e4);
+            fixture.pin([0, 30]);
+            let masses: Vec<f64> =
+                vertex_areas(&fixture.surface).into_iter().map(|area| area * DENSITY).collect();
             let mut most = f64::NEG_INFINITY;
             for _ in 0..36 {
-                let kinetic = rig.step().kinetic_energy;
-                let height: f64 = rig.points().iter().zip(&masses).map(|(p, mass)| p.y * mass).sum();
+                let kinetic = fixture.step().kinetic_energy;
+                let height: f64 = fixture.points().iter().zip(&masses).map(|(p, mass)| p.y * mass).sum();
                 most = most.max(kinetic + GRAVITY * height);
             }
             let quantity = format!("{name}, {evaluations} evaluations: energy gained, J");
-            findings.push(Finding::new(quantity, 2e-5, most, Allowed::AtMost));
+            comparisons.push(Comparison::new(quantity, 2e-5, most, Tolerance::AtMost));
         }
     }
-    Ok(findings)
+    Ok(comparisons)
 }

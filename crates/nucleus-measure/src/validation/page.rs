@@ -1,76 +1,79 @@
-//! The results as a page of Markdown.
+//! The results as a Markdown page.
 
 use std::fmt::Write;
 
-use super::{Allowed, Case, Finding};
+use super::{Case, Comparison, Tolerance};
 
-/// The page: a section per case, with a table of what was found.
+/// The page: a section per case, with a table of its figures.
 ///
 /// # Errors
-/// Never in practice: text is written into memory.
-pub fn page(results: &[(Case, Vec<Finding>)]) -> Result<String, std::fmt::Error> {
-    let all: Vec<&Finding> = results.iter().flat_map(|(_, findings)| findings).collect();
-    let right = all.iter().filter(|finding| finding.holds()).count();
+/// Never: writing to a string does not fail.
+pub fn page(results: &[(Case, Vec<Comparison>)]) -> Result<String, std::fmt::Error> {
+    let all: Vec<&Comparison> = results.iter().flat_map(|(_, comparisons)| comparisons).collect();
+    let right = all.iter().filter(|comparison| comparison.holds()).count();
     let mut page = String::from(
-        "# Validation\n\n\
-         The solver against exact physics: `nucleus validate` runs this, and `--write` makes this page.\n\
-         Everything is in double precision and SI units, so that what is left is the error of the method.\n\n",
+        "# Validation\n\nThe solver compared with closed-form and tabulated solutions: `nucleus validate` runs the cases, and `--write` writes this page.\nRuns are in double precision and SI units, so that the remaining error is that of the method.\n\n",
     );
-    writeln!(page, "{right} of {} figures are within what is allowed.", all.len())?;
-    let wrong: Vec<String> = results.iter().filter_map(|(case, findings)| failures(case, findings)).collect();
+    writeln!(page, "{right} of {} figures are within their tolerance.", all.len())?;
+    let wrong: Vec<String> =
+        results.iter().filter_map(|(case, comparisons)| failures(case, comparisons)).collect();
     if !wrong.is_empty() {
         writeln!(page, "These are not:\n\n{}", wrong.join("\n"))?;
     }
-    for (case, findings) in results {
-        writeln!(page, "\n## {}\n\n{}\n", case.name, case.about)?;
-        page.push_str("| figure | exact | found | error | allowed | |\n|---|---:|---:|---:|---:|---|\n");
-        for finding in findings {
-            writeln!(page, "| {} |", finding.cells().join(" | "))?;
+    for (case, comparisons) in results {
+        writeln!(page, "\n## {}\n\n{}\n", case.name, case.description)?;
+        page.push_str(
+            "| figure | reference | computed | error | tolerance | |\n|---|---:|---:|---:|---:|---|\n",
+        );
+        for comparison in comparisons {
+            writeln!(page, "| {} |", comparison.cells().join(" | "))?;
         }
     }
     Ok(page)
 }
 
-/// What is wrong with a case, each figure with a line, and why.
-fn failures(case: &Case, findings: &[Finding]) -> Option<String> {
-    let line = |finding: &Finding| format!("- {}: {}, {}", case.name, finding.quantity, finding.verdict());
-    let lines: Vec<String> = findings.iter().filter(|finding| !finding.holds()).map(line).collect();
-    let reason = case.fails.unwrap_or("Not known to fail: something has changed.");
+/// The failures of a case, one line each, with the known reason.
+fn failures(case: &Case, comparisons: &[Comparison]) -> Option<String> {
+    let line = |comparison: &Comparison| {
+        format!("- {}: {}, {}", case.name, comparison.quantity, comparison.summary())
+    };
+    let lines: Vec<String> = comparisons.iter().filter(|comparison| !comparison.holds()).map(line).collect();
+    let reason = case.known_failure.unwrap_or("Not known to fail: something has changed.");
     (!lines.is_empty()).then(|| format!("{}\n  {reason}", lines.join("\n")))
 }
 
-impl Finding {
-    /// Figure, exact, found, error, what is allowed, and a word on the outcome.
+impl Comparison {
+    /// Figure, reference, computed, error, tolerance, status.
     pub fn cells(&self) -> [String; 6] {
-        let (exact, allowed) = match self.allowed {
-            Allowed::Share(most) => (figure(self.exact), format!("{} %", figure(100.0 * most))),
-            Allowed::Margin(most) => (figure(self.exact), figure(most)),
-            Allowed::AtMost => (String::new(), format!("≤ {}", figure(self.exact))),
-            Allowed::AtLeast => (String::new(), format!("≥ {}", figure(self.exact))),
+        let (exact, tolerance) = match self.tolerance {
+            Tolerance::Relative(most) => (figure(self.exact), format!("{} %", figure(100.0 * most))),
+            Tolerance::Absolute(most) => (figure(self.exact), figure(most)),
+            Tolerance::AtMost => (String::new(), format!("≤ {}", figure(self.exact))),
+            Tolerance::AtLeast => (String::new(), format!("≥ {}", figure(self.exact))),
         };
         let word = if self.holds() { "ok" } else { "**fails**" };
-        [self.quantity.clone(), exact, figure(self.found), self.error_in_words(), allowed, word.to_owned()]
+        [self.quantity.clone(), exact, figure(self.found), self.error_in_words(), tolerance, word.to_owned()]
     }
 
-    /// What was found against what is allowed.
-    fn verdict(&self) -> String {
-        let [_, exact, found, error, allowed, _] = self.cells();
+    /// Computed figure, reference and tolerance.
+    fn summary(&self) -> String {
+        let [_, exact, found, error, tolerance, _] = self.cells();
         match self.error() {
-            Some(_) => format!("{found} for {exact}: off by {error}, allowed {allowed}"),
-            None => format!("{found}, allowed {allowed}"),
+            Some(_) => format!("{found} instead of {exact}: error {error}, tolerance {tolerance}"),
+            None => format!("{found}, tolerance {tolerance}"),
         }
     }
 
     fn error_in_words(&self) -> String {
-        match (self.error(), self.allowed) {
-            (Some(error), Allowed::Share(_)) => format!("{} %", signed(100.0 * error)),
+        match (self.error(), self.tolerance) {
+            (Some(error), Tolerance::Relative(_)) => format!("{} %", signed(100.0 * error)),
             (Some(error), _) => signed(error),
             (None, _) => String::new(),
         }
     }
 }
 
-/// Five digits that matter.
+/// Five significant digits.
 fn figure(x: f64) -> String {
     match x.abs() {
         size if size == 0.0 || !size.is_finite() => format!("{x}"),
@@ -87,7 +90,7 @@ fn figure(x: f64) -> String {
     }
 }
 
-/// Two digits, with a sign.
+/// Two significant digits with a sign.
 fn signed(x: f64) -> String {
     let digits =
         if x == 0.0 || !x.is_finite() { 0 } else { (1 - x.abs().log10().floor() as i32).clamp(0, 6) };
@@ -100,16 +103,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_names_what_fails_with_its_figure() {
-        let case =
-            Case { fails: Some("A reason."), ..super::super::cases().next().expect("there are cases") };
-        let findings = vec![
-            Finding::new("right", 2.0, 2.01, Allowed::Share(0.01)),
-            Finding::new("wrong", 2.0, 2.5, Allowed::Margin(0.1)),
+    fn the_page_lists_failures_with_their_figures() {
+        let case = Case {
+            known_failure: Some("A reason."),
+            ..super::super::cases().next().expect("there are cases")
+        };
+        let comparisons = vec![
+            Comparison::new("right", 2.0, 2.01, Tolerance::Relative(0.01)),
+            Comparison::new("wrong", 2.0, 2.5, Tolerance::Absolute(0.1)),
         ];
-        let page = page(&[(case, findings)]).expect("memory takes text");
+        let page = page(&[(case, comparisons)]).expect("memory takes text");
         assert!(page.contains("1 of 2 figures"), "{page}");
-        assert!(page.contains("wrong, 2.5 for 2: off by +0.50, allowed 0.1\n  A reason.\n"), "{page}");
+        assert!(
+            page.contains("wrong, 2.5 instead of 2: error +0.50, tolerance 0.1\n  A reason.\n"),
+            "{page}"
+        );
         assert!(page.contains("| right | 2 | 2.01 | +0.50 % | 1 % | ok |"), "{page}");
     }
 }

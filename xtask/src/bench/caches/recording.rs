@@ -1,4 +1,4 @@
-//! Cost of recording a run: the processor time of the recorder beside that of the solver, and of checkpoints.
+//! Cost of recording: processor time of the recorder relative to the solver, and of checkpoints.
 
 use std::path::Path;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use nucleus_graph::compile::{self, compile};
 use nucleus_graph::scene::read_scene_text;
 use nucleus_measure::clock::Clock;
 
-use super::goal::Goal;
+use super::target::Target;
 use super::{Table, figure};
 
 /// A sheet of 129² points that falls on a ball, slips off and piles up on the floor.
@@ -22,25 +22,25 @@ const SCENE: &str = r#"Scene(time: (start: 1, end: 40, fps: 24), nodes: {
     "sphere": polySphere(radius: 0.25, translate: (0, 0.4, 0)),
     "ball": nRigid(inputMesh: "sphere"),
 })"#;
-/// Frames that are run before, until the cloth meets itself, and frames that are measured.
+/// Frames before the measurement, until self-contact starts, and measured frames.
 const FRAMES: [i32; 2] = [16, 8];
 
-/// What is recorded: its name, how finely, contacts, and strain with velocities.
-const WAYS: [(&str, Detail, bool, bool); 3] = [
+/// Recording modes: name, detail, contacts, strain and velocities.
+const MODES: [(&str, Detail, bool, bool); 3] = [
     ("frames, with contacts", Detail::Frames, true, false),
     ("substeps, with contacts", Detail::Substeps, true, false),
-    ("substeps, with all attributes", Detail::Substeps, true, true),
+    ("substeps, with all data", Detail::Substeps, true, true),
 ];
 
-/// A way to record, and what it has cost so far.
-struct Way {
+/// A recording mode and its cost so far.
+struct Mode {
     name: &'static str,
     detail: Detail,
     recorder: Recorder,
     spent: Duration,
 }
 
-/// Shows a frame to all recorders and counts the processor time of each.
+/// Passes a frame to all recorders and sums the processor time of each.
 struct Timed<'a>(Vec<(FrameRecorder<'a>, &'a mut Duration)>);
 
 impl StepObserver for Timed<'_> {
@@ -57,64 +57,66 @@ fn now() -> Duration {
     Clock::Thread.read().unwrap_or_default()
 }
 
-/// Recording every substep may cost so many hundredths of the solver's time.
+/// Limit of the cost of recording every substep, in percent of the solver's time.
 const MOST: f64 = 10.0;
-/// Frames from one checkpoint to the next, as the command has it if nobody says otherwise.
+/// Default interval of checkpoints, in frames.
 const PERIOD: f64 = 48.0;
 
-/// The tables of the page, and what was aimed at. One run is recorded in all ways at once.
-pub fn tables() -> anyhow::Result<[(Table, Vec<Goal>); 2]> {
-    let (scene, _) = read_scene_text(SCENE, "recorded.ron".as_ref()).map_err(|found| anyhow!("{found:?}"))?;
-    let program = compile(&scene).map_err(|found| anyhow!("{found:?}"))?;
+/// The tables of the page, and the targets. One run is recorded in all modes at once.
+pub fn tables() -> anyhow::Result<[(Table, Vec<Target>); 2]> {
+    let (scene, _) = read_scene_text(SCENE, "recorded.ron".as_ref()).map_err(|value| anyhow!("{value:?}"))?;
+    let program = compile(&scene).map_err(|value| anyhow!("{value:?}"))?;
     let mut simulation = Simulation::new(&program, 1);
     for _ in 0..FRAMES[0] {
         simulation.advance(&mut ());
     }
     let folder = tempfile::tempdir()?;
-    let mut ways = begin(&simulation, folder.path())?;
+    let mut modes = begin(&simulation, folder.path())?;
     let start = now();
     for frame in 1..=FRAMES[1] {
-        let recorders: Result<Vec<_>, _> = ways
+        let recorders: Result<Vec<_>, _> = modes
             .iter_mut()
-            .map(|way| way.recorder.frame(1 + FRAMES[0] + frame).map(|recorder| (recorder, &mut way.spent)))
+            .map(|mode| {
+                mode.recorder.frame(1 + FRAMES[0] + frame).map(|recorder| (recorder, &mut mode.spent))
+            })
             .collect();
         let report = simulation.advance(&mut Timed(recorders?));
-        let told = serde_json::json!({ "max_strain": report.report.max_strain });
-        for way in &mut ways {
+        let summary = serde_json::json!({ "max_strain": report.report.max_strain });
+        for mode in &mut modes {
             let begin = now();
-            way.recorder.end_frame(&told)?;
-            way.spent += now() - begin;
+            mode.recorder.end_frame(&summary)?;
+            mode.spent += now() - begin;
         }
     }
-    let spent: Duration = ways.iter().map(|way| way.spent).sum();
+    let spent: Duration = modes.iter().map(|mode| mode.spent).sum();
     let solver = (now() - start - spent).as_secs_f64() / f64::from(FRAMES[1]);
-    Ok([costs(ways, solver)?, checkpoint(&simulation, solver)?])
+    Ok([costs(modes, solver)?, checkpoint(&simulation, solver)?])
 }
 
-/// A recorder for each way, with the start recorded.
-fn begin(simulation: &Simulation, folder: &Path) -> anyhow::Result<Vec<Way>> {
+/// A recorder for each mode, with the start recorded.
+fn begin(simulation: &Simulation, folder: &Path) -> anyhow::Result<Vec<Mode>> {
     let start = 1 + FRAMES[0];
-    let way = |(name, detail, contacts, all): (&'static str, Detail, bool, bool)| {
+    let mode = |(name, detail, contacts, all): (&'static str, Detail, bool, bool)| {
         let end = start + FRAMES[1];
         let run =
             RunInfo { start, end, detail, contacts, strain: all, velocities: all, ..RunInfo::default() };
         let mut recorder = Recorder::create(folder.join(name), &run, objects(simulation))?;
         recorder.record_start(simulation.state())?;
-        Ok(Way { name, detail, recorder, spent: Duration::ZERO })
+        Ok(Mode { name, detail, recorder, spent: Duration::ZERO })
     };
-    WAYS.into_iter().map(way).collect()
+    MODES.into_iter().map(mode).collect()
 }
 
-fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
-    let head = ["recorded", "solver, ms per frame", "recorder, ms per frame", "overhead", "kB per frame"];
-    let mut table = Table::new("Cost of recording", &head);
-    let mut goals = Vec::new();
+fn costs(modes: Vec<Mode>, solver: f64) -> anyhow::Result<(Table, Vec<Target>)> {
+    let head = ["recorded", "solver, ms per frame", "recorder, ms per frame", "more", "kB per frame"];
+    let mut table = Table::new("What recording costs", &head);
+    let mut targets = Vec::new();
     let frames = f64::from(FRAMES[1]);
-    for Way { name, detail, recorder, spent } in ways {
+    for Mode { name, detail, recorder, spent } in modes {
         let (spent, bytes) = (spent.as_secs_f64() / frames, recorder.finish()?.bytes as f64 / frames);
         let share = 100.0 * spent / solver;
         if detail == Detail::Substeps {
-            goals.push(Goal::below(&format!("record {name}, % of a 129² run"), MOST, share));
+            targets.push(Target::below(&format!("recording {name}, % of a run of 129²"), MOST, share));
         }
         let more = format!("{} %", figure(share));
         let [solver, spent, bytes] = [1e3 * solver, 1e3 * spent, 1e-3 * bytes].map(figure);
@@ -126,18 +128,18 @@ fn costs(ways: Vec<Way>, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
         FRAMES[0] + 2,
         1 + FRAMES[0] + FRAMES[1]
     ));
-    Ok((table, goals))
+    Ok((table, targets))
 }
 
-/// What a checkpoint of the same run costs.
-fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Vec<Goal>)> {
+/// Cost of a checkpoint of the same run.
+fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Vec<Target>)> {
     let start = 1 + FRAMES[0] + FRAMES[1];
     let run = RunInfo { start, end: start + 1, checkpoint: 1, ..RunInfo::default() };
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
     recorder.record_start(simulation.state())?;
-    let length = || std::fs::metadata(nucleus_cache::part_path(&path)).map(|found| found.len());
+    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|value| value.len());
     let (before, begin) = (length()?, now());
     let state = simulation.save();
     let saved = now() - begin;
@@ -145,15 +147,9 @@ fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Ve
     let written = now() - begin - saved;
     let (packed, each) = (length()? - before, (saved + written).as_secs_f64() / PERIOD);
     let [saved, written] = [saved, written].map(|time| 1e3 * time.as_secs_f64());
-    let head = [
-        "serialise, ms",
-        "compress and write, ms",
-        "MB",
-        "compressed, MB",
-        "ms per frame at one in 48",
-        "overhead",
-    ];
-    let mut table = Table::new("Cost of a checkpoint", &head);
+    let head =
+        ["gathered, ms", "packed and written, ms", "MB", "packed, MB", "ms per frame at one in 48", "more"];
+    let mut table = Table::new("What a checkpoint costs", &head);
     let figures = [saved, written, 1e-6 * state.len() as f64, 1e-6 * packed as f64, 1e3 * each];
     table.row(figures.map(figure).into_iter().chain([format!("{} %", figure(100.0 * each / solver))]));
     table.note(format!("The same sheet after frame {start}; `nucleus resume` continues from a checkpoint."));

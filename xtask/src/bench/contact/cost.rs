@@ -1,39 +1,39 @@
-//! What self-collision costs beside the same cloth without it, and how that grows with the number of points.
+//! Cost of self-collision compared with the same cloth without it, and its scaling with the number of points.
 
-use super::heap;
-use super::scene::{Place, Setting};
-use super::trial::Trial;
+use super::pile;
+use super::run::RunSpec;
+use super::scene::Setting;
 use super::{TYPICAL, Workload};
 use crate::bench::report::Report;
 use crate::bench::stages;
 use crate::bench::table::{Table, figure};
 use crate::bench::timed::Timed;
 
-/// Points along the side of the sheets of W3 that are compared, and frames: the fall, and as long again on the ball.
+/// Points along the side of W3 sheets, and frames: the fall, and the same time on the ball.
 const SIZES: [u32; 2] = [65, 129];
 const FRAMES: u32 = 48;
 
-/// How many times the same cloth without self-collision one with it may take, and where.
+/// Target cost relative to the same cloth without self-collision, and its size.
 const MOST_COST: f64 = 3.0;
 const COST_SIZE: u32 = 129;
 
-/// The roots of the numbers of points that growth is measured on, up to 250,000 in all.
+/// Square roots of the numbers of points of the scaling test, up to 250,000 points.
 const GROWTH: [u32; 4] = [65, 129, 257, 500];
 
-/// What may be added to n log n by chance.
+/// Tolerance of n log n.
 const CHANCE: f64 = 1.1;
 
-/// With and without, on W3; and how it grows, on heaps.
+/// W3 with and without self-collision, and scaling on piles.
 ///
 /// # Errors
-/// When a scene is refused.
+/// When a scene is rejected.
 pub fn run(report: &mut Report) -> anyhow::Result<()> {
-    beside_without(report)?;
-    growth(report)
+    with_and_without(report)?;
+    scaling(report)
 }
 
 /// W3 with self-collision and without.
-fn beside_without(report: &mut Report) -> anyhow::Result<()> {
+fn with_and_without(report: &mut Report) -> anyhow::Result<()> {
     let head = ["points", "ms without", "ms with", "times", "pairs", "hash"];
     let title =
         format!("Self-collision: W3 with and without, the first {FRAMES} frames, {TYPICAL} evaluations");
@@ -41,8 +41,8 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
     for size in SIZES {
         let run = |self_collide| {
             let setting = Setting { evaluations: TYPICAL, self_collide };
-            let run = Trial { workload: Workload::Folds, size, setting, frames: FRAMES }.timed(1)?.timed;
-            eprintln!("W3 {size}², self-collision {self_collide}: {} ms a frame", figure(run.ms()));
+            let run = RunSpec { workload: Workload::Folds, size, setting, frames: FRAMES }.timed(1)?.timed;
+            eprintln!("W3 {size}², self-collision {self_collide}: {} ms per frame", figure(run.ms()));
             anyhow::Ok(run)
         };
         let [without, with] = [run(false)?, run(true)?];
@@ -51,7 +51,7 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
         table.row([format!("{size}²")].into_iter().chain(cells).chain([format!("{:016x}", with.hash)]));
         if size == COST_SIZE {
             let target = format!("self-collision at {size}²: at most {MOST_COST} times the same without");
-            report.judge(target, format!("{} times", figure(times)), times <= MOST_COST);
+            report.check_target(target, format!("{} times", figure(times)), times <= MOST_COST);
         }
     }
     report.show(table);
@@ -59,29 +59,30 @@ fn beside_without(report: &mut Report) -> anyhow::Result<()> {
 }
 
 /// Heaps of the same cloth, more and more of it.
-fn growth(report: &mut Report) -> anyhow::Result<()> {
+fn scaling(report: &mut Report) -> anyhow::Result<()> {
     let mut runs = Vec::new();
     for n in GROWTH {
-        let points = heap::sheet(n).positions.len() as f64;
+        let points = pile::sheet(n).positions.len() as f64;
         let setting = Setting { evaluations: TYPICAL, self_collide: true };
-        let run = Timed::run(&heap::program(n, setting, &Place::new()?)?, 1, Some(heap::FRAMES), |_| {});
-        eprintln!("heap of {points} points: {} ms a frame", figure(run.ms()));
+        let run =
+            Timed::run(&pile::program(n, setting, &tempfile::tempdir()?)?, 1, Some(pile::FRAMES), |_| {});
+        eprintln!("heap of {points} points: {} ms per frame", figure(run.ms()));
         runs.push((points, run));
     }
     report.show(growth_table(&runs));
     let rows: Vec<stages::Row> =
         runs.iter().map(|(points, run)| (vec![points.to_string()], run.ms(), run.shares)).collect();
-    report.show(stages::table("Heaps: milliseconds a frame by stage", &["points"], &rows));
+    report.show(stages::table("Piles: milliseconds per frame by stage", &["points"], &rows));
     if let (Some(first), Some(last)) = (runs.first(), runs.last()) {
         let ratio = nanoseconds(last) / nanoseconds(first);
         let target =
             format!("self-collision grows no worse than n log n from {} to {} points", first.0, last.0);
-        report.judge(target, format!("{} times n log n", figure(ratio)), ratio <= CHANCE);
+        report.check_target(target, format!("{} times n log n", figure(ratio)), ratio <= CHANCE);
     }
     Ok(())
 }
 
-/// Nanoseconds a frame for each n log n of a run of n points.
+/// Nanoseconds per frame over n log n, for n points.
 fn nanoseconds((points, run): &(f64, Timed)) -> f64 {
     1e6 * run.ms() / (points * points.ln())
 }
@@ -93,13 +94,13 @@ fn growth_table(runs: &[(f64, Timed)]) -> Table {
         "ms",
         "ns per n log n",
         "to the first",
-        "searches",
-        "pairs a point, a search",
-        "pushes a point",
+        "queries",
+        "pairs per point and query",
+        "contacts per point",
         "MB",
         "hash",
     ];
-    let title = format!("Self-collision: growth, heaps of the same cloth, {TYPICAL} evaluations");
+    let title = format!("Self-collision: scaling, piles of the same cloth, {TYPICAL} evaluations");
     let mut table = Table::new(&title, &head);
     for one in runs {
         let (points, run) = one;
@@ -108,8 +109,8 @@ fn growth_table(runs: &[(f64, Timed)]) -> Table {
             run.ms(),
             each,
             each / nanoseconds(&runs[0]),
-            run.searches,
-            run.pairs / run.searches / points,
+            run.queries,
+            run.pairs / run.queries / points,
             run.contacts / points,
             run.megabytes(),
         ];
@@ -126,10 +127,10 @@ mod tests {
     #[test]
     fn what_takes_n_log_n_has_the_same_figure_at_every_size() {
         let setting = Setting { evaluations: 1, self_collide: true };
-        let program = heap::program(20, setting, &Place::new().unwrap()).unwrap();
+        let program = pile::program(20, setting, &tempfile::tempdir().unwrap()).unwrap();
         let mut run = Timed::run(&program, 1, Some(1), |_| {});
         let mut taking = |points: f64| {
-            run.spent.processor = 1e-9 * points * points.ln();
+            run.timing.processor = 1e-9 * points * points.ln();
             (points, run.clone())
         };
         let table = growth_table(&[taking(1e3), taking(1e5)]);

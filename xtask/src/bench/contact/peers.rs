@@ -1,8 +1,8 @@
-//! The figures of other solvers on W3, W4 and W8, one core; see [`SOURCE`](crate::bench::peers::SOURCE).
+//! Figures of other solvers on W3, W4 and W8 on one core; see [`SOURCE`](crate::bench::peers::SOURCE).
 
 use super::Workload::{self, Folds, Layers, Shot};
 
-/// What another solver needs.
+/// A run of another solver.
 #[derive(Debug, Clone, Copy)]
 pub struct Peer {
     /// Its name, version and setting.
@@ -10,12 +10,12 @@ pub struct Peer {
     pub workload: Workload,
     /// Points along each side of a sheet.
     pub size: u32,
-    /// Milliseconds of processor time a frame.
+    /// Milliseconds of processor time per frame.
     pub ms: f64,
     /// RMS stretch at the last frame in percent, where it was noted.
     pub stretch: Option<f64>,
-    /// What had passed through: for W3 and W8 pairs of triangles at the last frame, for W4 points of those in the
-    /// ball's way that were behind its centre just after it, and a frame later.
+    /// Penetrations: for W3 and W8 pairs of triangles at the last frame, for W4 points in the ball's path that were behind
+    /// its centre just after it passed, and a frame later.
     pub left: &'static str,
 }
 

@@ -1,9 +1,7 @@
-//! The workloads as scenes: what is timed is what an artist would run. Metres.
+//! The workloads as scenes, run through the graph crate. Metres.
 
 use std::fmt::{self, Write};
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::{env, fs, io, process};
+use std::fs;
 
 use anyhow::bail;
 use nalgebra::{Rotation3, Vector3};
@@ -11,12 +9,14 @@ use nucleus_core::Surface;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
+use tempfile::TempDir;
+
 use super::Workload;
 use crate::bench::ball::Ball;
 use crate::bench::mesh::{self, Cells};
 use crate::bench::workload::{DENSITY, GRAVITY};
 
-/// What is set for a run.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// Evaluations in 1/24 s, over 3 substeps.
@@ -30,36 +30,12 @@ impl fmt::Display for Setting {
     }
 }
 
-/// A folder for meshes, removed when it is dropped.
-pub struct Place(PathBuf);
-
-impl Place {
-    /// A folder of its own.
-    ///
-    /// # Errors
-    /// When it cannot be made.
-    pub fn new() -> io::Result<Self> {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let name = format!("nucleus-bench-{}-{}", process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
-        let folder = env::temp_dir().join(name);
-        fs::create_dir_all(&folder)?;
-        Ok(Self(folder))
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        // What is left in a folder for what may be lost does no harm.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-/// The sheet that errors are measured on.
+/// The sheet whose errors are measured.
 pub fn lowest_sheet(workload: Workload, size: u32) -> Surface {
     sheet(workload, size, 0)
 }
 
-/// Sheet `k` of a workload, counted from below.
+/// Sheet `k` of a workload, from below.
 fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
     if workload == Workload::Shot {
@@ -68,46 +44,46 @@ fn sheet(workload: Workload, n: u32, k: u32) -> Surface {
     let corner = Vector3::new(-0.75, 0.90 + 0.05 * f64::from(k), -0.75);
     let mut sheet = mesh::sheet(n, Cells::Triangles, corner, x * 1.5, z * 1.5);
     let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), -0.2 * f64::from(k));
-    sheet.positions.iter_mut().for_each(|place| *place = turn * *place);
+    sheet.positions.iter_mut().for_each(|point| *point = turn * *point);
     sheet
 }
 
-/// The scene of a workload with `n` by `n` points a sheet, ready to run.
+/// The compiled scene of a workload with `n` by `n` points per sheet.
 ///
 /// # Errors
-/// When a mesh cannot be written or the scene is refused.
-pub fn program(workload: Workload, n: u32, setting: Setting, place: Place) -> anyhow::Result<Program> {
+/// When a mesh cannot be written or the scene is rejected.
+pub fn program(workload: Workload, n: u32, setting: Setting, folder: TempDir) -> anyhow::Result<Program> {
     let sheets = if workload == Workload::Layers { 5 } else { 1 };
     let draft = Draft {
         frames: workload.frames(),
         plane: workload != Workload::Shot,
         sheets: (0..sheets).map(|k| sheet(workload, n, k)).collect(),
-        others: others(workload, n, &place)?,
+        other_nodes: other_nodes(workload, n, &folder)?,
     };
-    draft.program(setting, &place)
+    draft.program(setting, &folder)
 }
 
-/// A scene that is yet to be written.
+/// Parts of a scene.
 pub struct Draft {
     pub frames: u32,
-    /// Whether there is a ground at height 0.
+    /// Whether there is a ground plane at height 0.
     pub plane: bool,
-    /// The cloths, as they start.
+    /// Initial meshes of the cloths.
     pub sheets: Vec<Surface>,
-    /// What they meet and what holds them, as nodes.
-    pub others: String,
+    /// Nodes of colliders and constraints.
+    pub other_nodes: String,
 }
 
 impl Draft {
-    /// Writes the scene and compiles it; both sides of a contact together keep 5 mm.
+    /// Writes the meshes and compiles the scene; the contact thickness of a pair is 5 mm.
     ///
     /// # Errors
-    /// When a mesh cannot be written or the scene is refused.
-    pub fn program(&self, setting: Setting, place: &Place) -> anyhow::Result<Program> {
+    /// When a mesh cannot be written or the scene is rejected.
+    pub fn program(&self, setting: Setting, folder: &TempDir) -> anyhow::Result<Program> {
         let Setting { evaluations, self_collide } = setting;
         let mut nodes = String::new();
         for (k, sheet) in self.sheets.iter().enumerate() {
-            fs::write(place.0.join(format!("sheet{k}.obj")), obj(sheet))?;
+            fs::write(folder.path().join(format!("sheet{k}.obj")), obj(sheet))?;
             write!(
                 nodes,
                 r#""mesh{k}": mesh(file: "sheet{k}.obj"),
@@ -116,16 +92,16 @@ impl Draft {
                     thickness: 0.0025, friction: 0.25, selfCollide: {self_collide}),"#
             )?;
         }
-        let Self { frames, plane, others, .. } = self;
+        let Self { frames, plane, other_nodes, .. } = self;
         let text = format!(
             r#"Scene(time: (start: 1, end: {}, fps: 24), nodes: {{
                 "nucleus1": nucleus(gravity: {GRAVITY}, usePlane: {plane}, planeFriction: 0.25, evaluations: {evaluations}),
                 {nodes}
-                {others}
+                {other_nodes}
             }})"#,
             frames + 1
         );
-        let file = place.0.join("workload.ron");
+        let file = folder.path().join("workload.ron");
         match read_scene_text(&text, &file).and_then(|(scene, _)| compile(&scene)) {
             Ok(program) => Ok(program),
             Err(mistakes) => bail!("a scene of the bench is refused: {mistakes:?}"),
@@ -133,10 +109,10 @@ impl Draft {
     }
 }
 
-/// What the sheets meet and what holds them.
-fn others(workload: Workload, n: u32, place: &Place) -> anyhow::Result<String> {
+/// Nodes of the ball and of constraints.
+fn other_nodes(workload: Workload, n: u32, folder: &TempDir) -> anyhow::Result<String> {
     let ball = workload.ball();
-    fs::write(place.0.join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
+    fs::write(folder.path().join("ball.obj"), obj(&mesh::sphere(ball.radius, ball.start.into())))?;
     let way = flight(&ball, workload.frames());
     let mut nodes = format!(
         r#""ballMesh": mesh(file: "ball.obj"{way}),
@@ -152,7 +128,7 @@ fn others(workload: Workload, n: u32, place: &Place) -> anyhow::Result<String> {
     Ok(nodes)
 }
 
-/// How a ball that flies is animated over so many frames; a ball that rests is not.
+/// Animation of a moving ball; empty for a ball at rest.
 fn flight(ball: &Ball, frames: u32) -> String {
     if ball.flight == [0.0; 3] {
         return String::new();
@@ -163,8 +139,8 @@ fn flight(ball: &Ball, frames: u32) -> String {
 
 fn obj(surface: &Surface) -> String {
     let mut text = String::new();
-    for place in &surface.positions {
-        text += &format!("v {} {} {}\n", place.x, place.y, place.z);
+    for point in &surface.positions {
+        text += &format!("v {} {} {}\n", point.x, point.y, point.z);
     }
     for face in surface.faces.iter() {
         let corners: Vec<String> = face.iter().map(|k| (k + 1).to_string()).collect();
@@ -182,17 +158,17 @@ mod tests {
 
     /// The middle of the poles of the ball of a run, in metres.
     fn centre(run: &Simulation<f32>) -> Vector3<f64> {
-        let mut places = Vec::new();
-        run.state().collider_positions(ColliderId(0), 1.0, &mut places);
-        let pole = |place: &[f32; 3]| Vector3::from(place.map(f64::from));
-        (pole(&places[0]) + pole(&places[places.len() - 1])) / 2.0
+        let mut positions = Vec::new();
+        run.state().collider_positions(ColliderId(0), 1.0, &mut positions);
+        let pole = |point: &[f32; 3]| Vector3::from(point.map(f64::from));
+        (pole(&positions[0]) + pole(&positions[positions.len() - 1])) / 2.0
     }
 
     #[test]
     fn the_ball_that_errors_are_measured_against_is_the_one_that_flies() {
         for workload in [Workload::Folds, Workload::Shot] {
             let setting = Setting { evaluations: 6, self_collide: false };
-            let program = program(workload, 5, setting, Place::new().unwrap()).unwrap();
+            let program = program(workload, 5, setting, tempfile::tempdir().unwrap()).unwrap();
             let mut run = Simulation::<f32>::new(&program, 1);
             for frame in 1..=workload.frames().min(24) {
                 run.advance(&mut ());

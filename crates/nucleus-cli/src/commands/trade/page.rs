@@ -4,9 +4,9 @@ use anyhow::Result;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::ObjectKind;
 use nucleus_measure::report::{self, Page, Picture, html};
-use nucleus_measure::store::Store;
-use nucleus_measure::trade::run::object_positions;
-use nucleus_measure::trade::{Found, Point, Subject, sweep};
+use nucleus_measure::result_cache::ResultCache;
+use nucleus_measure::trade::object_positions;
+use nucleus_measure::trade::{Benchmark, Point, SweepResult, sweep};
 use nucleus_view::{Bounds, Camera, Colouring, Ground, Kind, Object, Style, draw};
 
 /// Width and height of a picture in pixels.
@@ -21,9 +21,9 @@ type State = Vec<Vec<[f32; 3]>>;
 /// The page as HTML.
 pub fn of(
     scene: &str,
-    subject: &Subject,
-    store: &Store,
-    found: &Found,
+    subject: &Benchmark,
+    store: &ResultCache,
+    found: &SweepResult,
     recommended: Option<&Point>,
     wanted: f64,
 ) -> Result<String> {
@@ -48,11 +48,11 @@ pub fn of(
     let mut series: Vec<(String, Vec<f64>)> = Vec::new();
     for (name, point) in named {
         let twice = name != "recommended" && recommended.is_some_and(|best| best.setting == trade.own);
-        if let Some(apart) = point.filter(|_| !twice).and_then(|point| found.apart(&point.setting)) {
+        if let Some(apart) = point.filter(|_| !twice).and_then(|point| found.divergence(&point.setting)) {
             series.push((name.to_owned(), apart));
         }
     }
-    let machine = nucleus_measure::machine::describe().join(" ");
+    let machine = nucleus_measure::clock::describe_machine().join(" ");
     Ok(html(&Page {
         scene,
         trade,
@@ -71,7 +71,7 @@ fn caption(point: &Point) -> String {
 }
 
 /// Pictures of the last frame by one camera. Colours show strain, which makes errors visible.
-fn pictures(subject: &Subject, shown: Vec<(String, String, State)>) -> Result<Vec<Picture>> {
+fn pictures(subject: &Benchmark, shown: Vec<(String, String, State)>) -> Result<Vec<Picture>> {
     let rest = rest(subject);
     let (mut stage, mut all) = (Bounds::default(), Bounds::default());
     for (_, _, state) in &shown {
@@ -91,7 +91,7 @@ fn pictures(subject: &Subject, shown: Vec<(String, String, State)>) -> Result<Ve
 }
 
 /// Positions of all objects at the start.
-fn rest(subject: &Subject) -> State {
+fn rest(subject: &Benchmark) -> State {
     let start: Simulation = Simulation::new(subject.program(), 1);
     let mut rest: State = vec![Vec::new(); start.objects().len()];
     for (object, out) in start.objects().iter().zip(&mut rest) {
@@ -100,7 +100,7 @@ fn rest(subject: &Subject) -> State {
     rest
 }
 
-fn objects<'a>(subject: &'a Subject, rest: &'a State, state: &'a State) -> Vec<Object<'a>> {
+fn objects<'a>(subject: &'a Benchmark, rest: &'a State, state: &'a State) -> Vec<Object<'a>> {
     let all = subject.program().objects().iter().zip(rest).zip(state);
     // A state stored by another build may have other meshes; those objects are not drawn.
     let fitting = all.filter(|((_, rest), positions)| rest.len() == positions.len());

@@ -1,103 +1,110 @@
-//! What no scene can say and a program can: numbers that are none, in what a frame brings.
+//! Rows that inject faults into the input of frames: NaN, infinity and invalid durations, which a scene file cannot express.
 
 use nalgebra::Vector3;
 use nucleus_core::FrameInput;
 
-use super::{Extreme, NOTHING_CROSSES, RUNS, Recovery, Runs, at_least, at_most, banner, drape};
+use super::super::row::{Assertion, Expectation, Recovery, Runs, StressCase};
+use super::super::scene::TestScene;
+use super::scenes::{BANNER, banner, drape};
 
-/// A ball under a sheet that is carried slowly, so that every frame brings where its points are.
-const CARRIED: &str = "translate: keys([(0, (0, 0.3, 0)), (96, (0.1, 0.3, 0), linear)])";
-
-fn carried() -> super::Case {
-    drape("", "", CARRIED).scene(96)
+/// A sheet on a ball that moves slowly, so that every frame has positions of the collider.
+fn carried() -> TestScene {
+    drape()
+        .replace("translate: (0, 0.3, 0)", "translate: keys([(0, (0, 0.3, 0)), (96, (0.1, 0.3, 0), linear)])")
 }
 
 const RESTS: Option<Recovery> = Some(Recovery { from: 90, speed: 0.4, strain: 0.05 });
 
-/// How many things were refused.
+/// No pair of elements is unresolved.
+const NO_UNRESOLVED_PAIRS: Assertion = Assertion::at_most("pairs unresolved", 0.0, |run, _| {
+    run.sum(|record| record.report.pairs_unresolved) as f64
+});
+
+/// Minimum number of rejected inputs.
 macro_rules! refused {
     ($count:expr) => {
-        at_least("inputs refused", $count, |course, _| course.sum(|seen| seen.report.sanitized.count) as f64)
+        Assertion::at_least("inputs refused", $count, |run, _| {
+            run.sum(|record| record.report.sanitized.count) as f64
+        })
     };
 }
 
-/// How many more than these there were.
+/// Maximum number of rejected inputs.
 macro_rules! no_more_refused {
     ($count:expr) => {
-        at_most("inputs refused ", $count, |course, _| course.sum(|seen| seen.report.sanitized.count) as f64)
+        Assertion::at_most("inputs refused ", $count, |run, _| {
+            run.sum(|record| record.report.sanitized.count) as f64
+        })
     };
 }
 
-pub static ROWS: [Extreme; 7] = [
-    Extreme {
+pub static ROWS: [StressCase; 7] = [
+    StressCase {
         name: "nan-in-a-collider",
         group: "Input",
-        what: "one point of a moving ball is not a number in frame 10",
-        expect: "The point stays where it was for that frame, and is named; the sheet never knows.",
-        trial: Runs {
-            case: || carried().tamper(|frame, input| at_frame_10(frame, || collider_point(input, f64::NAN))),
-            nominal: carried,
+        summary: "one point of a moving ball is NaN in frame 10",
+        expected: "The point stays where it was for that frame, and the report names it; the sheet is unaffected.",
+        expectation: Expectation::Runs(Runs {
+            scene: || carried().inject(|frame, input| at_frame_10(frame, || collider_point(input, f64::NAN))),
+            baseline: carried,
             recovery: RESTS,
-            demands: &[
-                NOTHING_CROSSES,
+            assertions: &[
+                NO_UNRESOLVED_PAIRS,
                 refused!(1.0),
                 no_more_refused!(1.0),
-                at_most("farthest from the run without it (m)", 0.05, |course, nominal| {
-                    course.farthest_from(nominal)
+                Assertion::at_most("farthest from the run without it (m)", 0.05, |run, baseline| {
+                    run.farthest_from(baseline)
                 }),
             ],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "infinity-in-a-collider",
         group: "Input",
-        what: "one point of a moving ball is infinitely far away in frame 10",
-        expect: "As above.",
-        trial: Runs {
-            case: || {
-                carried().tamper(|frame, input| at_frame_10(frame, || collider_point(input, f64::INFINITY)))
+        summary: "one point of a moving ball is at infinity in frame 10",
+        expected: "As above.",
+        expectation: Expectation::Runs(Runs {
+            scene: || {
+                carried().inject(|frame, input| at_frame_10(frame, || collider_point(input, f64::INFINITY)))
             },
-            nominal: carried,
+            baseline: carried,
             recovery: RESTS,
-            demands: &[NOTHING_CROSSES, refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            assertions: &[NO_UNRESOLVED_PAIRS, refused!(1.0), no_more_refused!(1.0)],
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "nan-in-all-of-a-collider",
         group: "Input",
-        what: "every point of a moving ball is not a number from frame 10 to frame 20",
-        expect: "The ball stands still for ten frames, and goes on to where it should be.",
-        trial: Runs {
-            case: || {
-                carried().tamper(|frame, input| {
+        summary: "every point of a moving ball is NaN from frame 10 to frame 20",
+        expected: "The ball stands still for ten frames, then continues at its keyed position.",
+        expectation: Expectation::Runs(Runs {
+            scene: || {
+                carried().inject(|frame, input| {
                     if (10..=20).contains(&frame) {
                         let ends = input.colliders.iter_mut().flat_map(|collider| &mut collider.end);
                         ends.for_each(|end| *end = Vector3::repeat(f64::NAN));
                     }
                 })
             },
-            nominal: carried,
+            baseline: carried,
             recovery: RESTS,
-            demands: &[NOTHING_CROSSES, refused!(11.0)],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            assertions: &[NO_UNRESOLVED_PAIRS, refused!(11.0)],
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "nan-in-a-pin",
         group: "Input",
-        what: "where a held point goes is not a number in frame 10",
-        expect: "The point stays where it was for that frame, and is named.",
-        trial: Runs {
-            case: || {
-                banner("", "").scene(96).tamper(|frame, input| {
+        summary: "the target of a pinned point is NaN in frame 10",
+        expected: "The point stays where it was for that frame, and the report names it.",
+        expectation: Expectation::Runs(Runs {
+            scene: || {
+                banner().inject(|frame, input| {
                     at_frame_10(frame, || {
                         if let Some(pin) = input.pins.first_mut() {
                             pin.start.x = f64::NAN;
@@ -107,26 +114,25 @@ pub static ROWS: [Extreme; 7] = [
                 })
             },
             recovery: Some(Recovery { from: 84, speed: 0.2, strain: 0.02 }),
-            demands: &[
+            assertions: &[
                 refused!(1.0),
                 no_more_refused!(1.0),
-                at_most("farthest from the run without it (m)", 1e-9, |course, nominal| {
-                    course.farthest_from(nominal)
+                Assertion::at_most("farthest from the run without it (m)", 1e-9, |run, baseline| {
+                    run.farthest_from(baseline)
                 }),
             ],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "nan-in-gravity-and-wind",
         group: "Input",
-        what: "gravity and wind are not numbers in frame 10",
-        expect: "They are left out for that frame, and the report says so.",
-        trial: Runs {
-            case: || {
-                banner("", "").scene(96).tamper(|frame, input| {
+        summary: "gravity and wind are NaN in frame 10",
+        expected: "They are ignored for that frame, and the report says so.",
+        expectation: Expectation::Runs(Runs {
+            scene: || {
+                banner().inject(|frame, input| {
                     at_frame_10(frame, || {
                         input.gravity.y = f64::NAN;
                         input.wind.x = f64::NEG_INFINITY;
@@ -134,37 +140,33 @@ pub static ROWS: [Extreme; 7] = [
                 })
             },
             recovery: Some(Recovery { from: 84, speed: 0.2, strain: 0.02 }),
-            demands: &[refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            assertions: &[refused!(1.0), no_more_refused!(1.0)],
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "nan-in-attributes",
         group: "Input",
-        what: "resistances, thickness, friction and damping are not numbers in frame 10",
-        expect: "They take their defaults for that frame, and the report names the cloth.",
-        trial: Runs {
-            case: || {
-                drape("", "", "").scene(96).tamper(|frame, input| at_frame_10(frame, || attributes(input)))
-            },
-            nominal: || drape("", "", "").scene(96),
+        summary: "resistances, thickness, friction and damping are NaN in frame 10",
+        expected: "They take their defaults for that frame, and the report names the cloth.",
+        expectation: Expectation::Runs(Runs {
+            scene: || drape().inject(|frame, input| at_frame_10(frame, || attributes(input))),
+            baseline: drape,
             recovery: RESTS,
-            demands: &[NOTHING_CROSSES, refused!(1.0), no_more_refused!(1.0)],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            assertions: &[NO_UNRESOLVED_PAIRS, refused!(1.0), no_more_refused!(1.0)],
+            ..BANNER
+        }),
+        known_failure: None,
     },
-    Extreme {
+    StressCase {
         name: "no-duration",
         group: "Input",
-        what: "a frame of no length, one of a negative and one that is no number",
-        expect: "They are passed over: all stays as it is.",
-        trial: Runs {
-            case: || {
-                banner("", "").scene(96).tamper(|frame, input| match frame {
+        summary: "frames of zero, negative and NaN duration",
+        expected: "They are skipped: the state does not change.",
+        expectation: Expectation::Runs(Runs {
+            scene: || {
+                banner().inject(|frame, input| match frame {
                     10 => input.duration = 0.0,
                     11 => input.duration = -1.0,
                     12 => input.duration = f64::NAN,
@@ -172,17 +174,16 @@ pub static ROWS: [Extreme; 7] = [
                 })
             },
             recovery: Some(Recovery { from: 84, speed: 0.2, strain: 0.02 }),
-            demands: &[refused!(3.0), no_more_refused!(3.0)],
-            ..RUNS
-        }
-        .trial(),
-        fails: None,
+            assertions: &[refused!(3.0), no_more_refused!(3.0)],
+            ..BANNER
+        }),
+        known_failure: None,
     },
 ];
 
-fn at_frame_10(frame: i64, plant: impl FnOnce()) {
+fn at_frame_10(frame: i64, inject: impl FnOnce()) {
     if frame == 10 {
-        plant();
+        inject();
     }
 }
 

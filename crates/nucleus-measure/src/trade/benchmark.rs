@@ -1,0 +1,401 @@
+//! The scene of a sweep, its facts before a run, and the scene at another setting.
+
+use nalgebra::Vector3;
+use nucleus_core::{Mass, Real, ResistanceModel};
+use nucleus_graph::Simulation;
+use nucleus_graph::animation::Curve;
+use nucleus_graph::attributes::{Attribute, Choice, Key, Value, n_base, n_cloth, nucleus};
+use nucleus_graph::compile::{Object, ObjectKind, Program, compile};
+use nucleus_graph::graph::{Graph, NodeId, Setting as Held};
+use nucleus_graph::scene::edit::{Edit, NewValue};
+use nucleus_graph::scene::{Record, Scene, write_scene};
+
+use super::setting::{Reading, Setting};
+use crate::metrics::deformation::{Edges, size};
+use crate::result_cache::{Fingerprint, ResultCacheError};
+
+/// Minimum number of frames, the start included.
+const FEWEST_FRAMES: i64 = 3;
+
+/// In-plane resistances of cloth.
+static PLANE_RESISTANCES: [&Key<f64>; 3] =
+    [&n_cloth::STRETCH_RESISTANCE, &n_cloth::COMPRESSION_RESISTANCE, &n_cloth::SHEAR_RESISTANCE];
+
+/// References that do not resolve an error of this size are rejected.
+pub(super) const MAX_REFERENCE_UNCERTAINTY: f64 = 0.1;
+
+/// Why a sweep cannot be done.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TradeError {
+    /// The scene does not compile.
+    #[error("the scene cannot run: {message}")]
+    CannotRun {
+        /// The first error.
+        message: String,
+    },
+    /// The scene has no cloth.
+    #[error("there is nothing to compare: the scene has no cloth")]
+    NothingDynamic,
+    /// Fewer frames than [`FEWEST_FRAMES`].
+    #[error("there is nothing to compare in {frames} frame(s): at least {FEWEST_FRAMES} are needed")]
+    TooFewFrames {
+        /// Number of frames, the start included.
+        frames: i64,
+    },
+    /// A reference diverged.
+    #[error("the reference is not finite from frame {frame} on, so errors cannot be measured against it")]
+    ReferenceLost {
+        /// The first frame that is not finite.
+        frame: i64,
+    },
+    /// The two references differ too much.
+    #[error(
+        "the reference does not converge: with {} and with {} evaluations its strain differs by {:.1} %, \
+         which does not resolve an error of {:.0} %; more `--evaluations` make finer references",
+        evaluations[0], evaluations[1], 100.0 * uncertainty, 100.0 * MAX_REFERENCE_UNCERTAINTY
+    )]
+    ReferenceDoesNotConverge {
+        /// Evaluations of both.
+        evaluations: [f64; 2],
+        /// Difference in the 99th percentile of strain, RMS over frames.
+        uncertainty: f64,
+    },
+    /// No cloth moves.
+    #[error("there is nothing to compare: in frames {start} to {end} no cloth moves")]
+    NothingMoves {
+        /// The first frame.
+        start: i64,
+        /// The last frame.
+        end: i64,
+    },
+    /// Cancelled; finished runs are saved.
+    #[error("interrupted")]
+    Interrupted,
+    /// Results cannot be saved.
+    #[error(transparent)]
+    Cache(#[from] ResultCacheError),
+}
+
+/// A scene, and its facts before a run.
+pub struct Benchmark {
+    scene: Scene,
+    own: Setting,
+    program: Program,
+    cloths: Vec<ClothFacts>,
+    /// Diagonal of the bounding box of all cloth at the start, in metres.
+    pub size: f64,
+    /// Mass of each point, cloth after cloth, in kilograms.
+    pub masses: Vec<f64>,
+    /// Gravity in the first frame, in m/s².
+    pub gravity: Vector3<f64>,
+    /// Whether no wind and no animation adds energy.
+    pub is_closed: bool,
+}
+
+/// Facts of a cloth at the start.
+struct ClothFacts {
+    node: NodeId,
+    edges: Edges,
+    points: usize,
+    /// Area in m².
+    area: f64,
+}
+
+impl Benchmark {
+    /// Compiles a scene and collects its facts.
+    ///
+    /// # Errors
+    /// When it does not compile, or has nothing to compare.
+    pub fn new(scene: &Scene) -> Result<Self, TradeError> {
+        let program = compiled(scene)?;
+        let span = program.time();
+        let frames = span.end - span.start + 1;
+        if frames < FEWEST_FRAMES {
+            return Err(TradeError::TooFewFrames { frames });
+        }
+        let cloths = cloth_facts(scene, &program);
+        if cloths.is_empty() {
+            return Err(TradeError::NothingDynamic);
+        }
+        let cloth = program.model().cloths();
+        let size = size(cloth.iter().flat_map(|cloth| &cloth.surface.positions));
+        let masses = cloth.iter().flat_map(|cloth| cloth.point_masses()).collect();
+        let input = program.first_input();
+        let own = own_setting(scene, input.resistance);
+        let (gravity, is_closed) = (input.gravity, is_closed(scene));
+        Ok(Self { scene: scene.clone(), own, program, cloths, size, masses, gravity, is_closed })
+    }
+
+    /// The scene's own setting.
+    pub fn own(&self) -> Setting {
+        self.own
+    }
+
+    /// The unchanged scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene's own program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Number of solved frames: all but the first.
+    pub fn frames(&self) -> usize {
+        let span = self.program.time();
+        usize::try_from(span.end - span.start).unwrap_or(0)
+    }
+
+    /// The program of the scene at another setting.
+    ///
+    /// # Errors
+    /// When the scene does not compile at this setting.
+    pub fn at(&self, setting: &Setting) -> Result<Program, TradeError> {
+        compiled(&self.set(setting))
+    }
+
+    /// The scene at another setting, before it is compiled.
+    ///
+    /// The total mass stays the same: Physical reads `pointMass` per area, Classic per point.
+    pub fn set(&self, setting: &Setting) -> Scene {
+        let mut scene = self.scene.clone();
+        set_quality(&mut scene.graph, setting);
+        for cloth in &self.cloths {
+            let node = self.scene.graph.node(cloth.node);
+            let factor = self.mass_factor(cloth, setting);
+            if factor != 1.0 {
+                let mass = node.get(&n_base::POINT_MASS) * factor;
+                put(&mut scene.graph, cloth.node, &n_base::POINT_MASS.row, Held::Fixed(Value::Float(mass)));
+            }
+        }
+        if setting.reading == Reading::Classic && setting.resistance != 1.0 {
+            for cloth in &self.cloths {
+                scale_resistances(&mut scene.graph, cloth.node, setting.resistance);
+            }
+        }
+        scene
+    }
+
+    /// Edits of the scene file that apply a setting; none for its own.
+    pub fn edits(&self, setting: &Setting) -> Vec<Edit> {
+        let Some(id) = nucleus_of(&self.scene.graph) else { return Vec::new() };
+        let of = |node: NodeId, attribute: &'static str, to: NewValue| {
+            let node = self.scene.graph.node(node).name().to_owned();
+            Edit { node, attribute, to }
+        };
+        let text = |to: &dyn ToString| NewValue::Text(to.to_string());
+        let own = &self.own;
+        let mut edits = Vec::new();
+        if setting.reading != own.reading {
+            let word = if setting.reading == Reading::Classic { "classic" } else { "physical" };
+            edits.push(of(id, "resistanceModel", text(&word)));
+            let mass = |cloth: &ClothFacts| (cloth.node, self.mass_factor(cloth, setting));
+            for (node, factor) in self.cloths.iter().map(mass) {
+                edits.push(of(node, "pointMass", self.scaled_from(node, &n_base::POINT_MASS, factor)));
+            }
+        }
+        if setting.substeps != own.substeps {
+            edits.push(of(id, "subSteps", text(&setting.substeps)));
+        }
+        if setting.collision_iterations != own.collision_iterations {
+            edits.push(of(id, "maxCollisionIterations", text(&setting.collision_iterations)));
+        }
+        if setting.reading == Reading::Physical && setting.evaluations != own.evaluations {
+            let factor = setting.evaluations / own.evaluations;
+            let to = NewValue::Scaled { factor, least: 1.0, default: own.evaluations };
+            edits.push(of(id, "evaluations", to));
+        }
+        if setting.reading == Reading::Classic && setting.resistance != 1.0 {
+            for cloth in &self.cloths {
+                edits.extend(PLANE_RESISTANCES.map(|key| {
+                    of(cloth.node, key.row.name, self.scaled_from(cloth.node, key, setting.resistance))
+                }));
+            }
+        }
+        edits
+    }
+
+    fn scaled_from(&self, node: NodeId, key: &Key<f64>, factor: f64) -> NewValue {
+        NewValue::Scaled { factor, least: 0.0, default: self.scene.graph.node(node).get(key) }
+    }
+
+    /// Factor on `pointMass` that keeps the total mass of a cloth at a setting.
+    fn mass_factor(&self, cloth: &ClothFacts, setting: &Setting) -> f64 {
+        let points = cloth.points as f64;
+        match (self.own.reading, setting.reading) {
+            (Reading::Physical, Reading::Classic) => cloth.area / points,
+            (Reading::Classic, Reading::Physical) if cloth.area > 0.0 => points / cloth.area,
+            _ => 1.0,
+        }
+    }
+
+    /// Strain of all cloth in a state: the maximum of each figure over the cloths.
+    pub fn strain(&self, points: &[Vector3<f64>]) -> crate::metrics::deformation::Strain {
+        let mut all = crate::metrics::deformation::Strain::default();
+        let mut first = 0;
+        for cloth in &self.cloths {
+            let strain = cloth.edges.strain(&points[first..first + cloth.points]);
+            first += cloth.points;
+            all.rms = crate::metrics::max_or_nan(all.rms, strain.rms);
+            all.p99 = crate::metrics::max_or_nan(all.p99, strain.p99);
+            all.max = crate::metrics::max_or_nan(all.max, strain.max);
+        }
+        all
+    }
+
+    /// Fingerprints of the scene, without its quality settings, end frame and checks, and of the solver.
+    pub fn name(&self) -> String {
+        let mut scene = self.scene.clone();
+        let neutral = Setting {
+            reading: self.own.reading,
+            substeps: 1,
+            collision_iterations: 1,
+            evaluations: 100.0,
+            resistance: 1.0,
+        };
+        set_quality(&mut scene.graph, &neutral);
+        scene.checks.clear();
+        scene.record = Record::default();
+        scene.time.end = scene.time.start;
+        let text = write_scene(&scene);
+        let state: Simulation = Simulation::new(&self.program, 1);
+        let mut print = Fingerprint::default().bytes(text.as_bytes());
+        // Mesh files can change while the scene text does not.
+        for object in state.objects() {
+            let mut positions = Vec::new();
+            object_positions(&state, object, &mut positions);
+            let corners = object.faces.corners().iter().flat_map(|corner| corner.to_le_bytes());
+            let points = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
+            print = print.bytes(&corners.chain(points).collect::<Vec<u8>>());
+        }
+        format!("{}-{}", print.name(), crate::result_cache::solver_fingerprint().name())
+    }
+}
+
+/// Replaces `out` by the positions of an object in scene units.
+pub fn object_positions<R: Real>(simulation: &Simulation<R>, object: &Object, out: &mut Vec<[f32; 3]>) {
+    let (state, units) = (simulation.state(), simulation.units_per_metre());
+    match object.kind {
+        ObjectKind::Cloth(id) => state.positions(id, units, out),
+        ObjectKind::Collider(id) => state.collider_positions(id, units, out),
+    }
+}
+
+fn compiled(scene: &Scene) -> Result<Program, TradeError> {
+    compile(scene).map_err(|found| {
+        let first = found.into_iter().find(|one| one.severity == nucleus_graph::scene::Severity::Error);
+        TradeError::CannotRun { message: first.map(|first| first.message).unwrap_or_default() }
+    })
+}
+
+fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
+    let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
+    let cloths = program.objects().iter().filter(is_cloth).zip(program.model().cloths());
+    let facts = |(object, cloth): (&Object, &nucleus_core::Cloth)| {
+        let even = |mass: Mass| -> f64 {
+            let even = nucleus_core::Cloth::new(cloth.surface.clone(), mass, cloth.lists);
+            even.point_masses().iter().sum()
+        };
+        let area = match cloth.mass {
+            Mass::PerArea(density) => even(cloth.mass) / density,
+            Mass::PerPoint(_) => even(Mass::PerArea(1.0)),
+        };
+        Some(ClothFacts {
+            node: scene.graph.find(&object.name)?,
+            edges: Edges::of(&cloth.surface),
+            points: object.points,
+            area,
+        })
+    };
+    cloths.filter_map(facts).collect()
+}
+
+/// The solved nucleus.
+fn nucleus_of(graph: &Graph) -> Option<NodeId> {
+    graph.of_type(&nucleus::NUCLEUS).next().map(|(id, _)| id)
+}
+
+fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
+    let node = nucleus_of(&scene.graph).map(|id| scene.graph.node(id));
+    let most = |held: Option<&Held>, default: f64| match held {
+        Some(Held::Keyed(curve)) => curve.max_abs(),
+        Some(Held::Fixed(Value::Int(x))) => *x as f64,
+        Some(Held::Fixed(Value::Float(x))) => *x,
+        _ => default,
+    };
+    let number = |key: &Key<i64>, default: f64| most(node.and_then(|node| node.setting(key)), default);
+    Setting {
+        reading: match model {
+            ResistanceModel::Classic => Reading::Classic,
+            ResistanceModel::Physical { .. } => Reading::Physical,
+        },
+        substeps: number(&nucleus::SUB_STEPS, 3.0) as u32,
+        collision_iterations: number(&nucleus::MAX_COLLISION_ITERATIONS, 4.0) as u32,
+        evaluations: most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), 96.0),
+        resistance: 1.0,
+    }
+}
+
+/// Whether no animation, wind or force adds energy. Conservative: false if in doubt.
+fn is_closed(scene: &Scene) -> bool {
+    let blows =
+        |key: &Key<f64>| scene.graph.of_type(&nucleus::NUCLEUS).any(|(_, node)| node.is_ever_nonzero(key));
+    let moves = scene.graph.iter().any(|(_, node)| {
+        let quality = ["subSteps", "maxCollisionIterations", "evaluations"];
+        node.settings().iter().any(|(name, held)| held.changes() && !quality.contains(name))
+    });
+    let pushed = scene.graph.of_type(&n_cloth::N_CLOTH).any(|(_, node)| {
+        let vector = |key: &Key<[f64; 3]>| node.get(key) != [0.0; 3];
+        vector(&n_base::LOCAL_FORCE)
+            || vector(&n_base::LOCAL_WIND)
+            || node.get(&n_base::REST_LENGTH_SCALE) != 1.0
+    });
+    !(moves || pushed || blows(&nucleus::WIND_SPEED) && blows(&nucleus::AIR_DENSITY))
+}
+
+/// Applies a setting to the nucleus.
+fn set_quality(graph: &mut Graph, setting: &Setting) {
+    let Some(id) = nucleus_of(graph) else { return };
+    let choice = Choice(match setting.reading {
+        Reading::Classic => 0,
+        Reading::Physical => 1,
+    });
+    let evaluations = match graph.node(id).setting(&nucleus::EVALUATIONS) {
+        Some(Held::Keyed(curve)) => scaled(curve, setting.evaluations / curve.max_abs(), 1.0),
+        _ => Held::Fixed(Value::Float(setting.evaluations)),
+    };
+    let int = |x: u32| Held::Fixed(Value::Int(x.into()));
+    put(graph, id, &nucleus::RESISTANCE_MODEL.row, Held::Fixed(Value::Choice(choice)));
+    put(graph, id, &nucleus::SUB_STEPS.row, int(setting.substeps));
+    put(graph, id, &nucleus::MAX_COLLISION_ITERATIONS.row, int(setting.collision_iterations));
+    put(graph, id, &nucleus::EVALUATIONS.row, evaluations);
+}
+
+fn scale_resistances(graph: &mut Graph, cloth: NodeId, factor: f64) {
+    for key in PLANE_RESISTANCES {
+        let held = match graph.node(cloth).setting(key) {
+            Some(Held::Keyed(curve)) => scaled(curve, factor, 0.0),
+            _ => Held::Fixed(Value::Float(graph.node(cloth).get(key) * factor)),
+        };
+        put(graph, cloth, &key.row, held);
+    }
+}
+
+/// A curve with all values multiplied by a factor, none below `least`.
+fn scaled(curve: &Curve, factor: f64, least: f64) -> Held {
+    let keys = curve.keys().iter();
+    let keys =
+        keys.map(|key| nucleus_graph::animation::Key { value: (key.value * factor).max(least), ..*key });
+    match Curve::new(keys.collect()) {
+        Ok(curve) => Held::Keyed(curve),
+        // Only absurd values are rejected; those keep the curve unchanged.
+        Err(_) => Held::Keyed(curve.clone()),
+    }
+}
+
+/// Sets an attribute. A rejected value leaves the attribute unchanged, so that the scene still compiles.
+fn put(graph: &mut Graph, node: NodeId, attribute: &'static Attribute, held: Held) {
+    let _ = graph.set(node, attribute, held);
+}

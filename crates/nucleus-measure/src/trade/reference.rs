@@ -1,0 +1,265 @@
+//! References: the same model in double precision with many more and smaller steps; and the error against them.
+//!
+//! There are two, of steps h and h/2. The motion of cloth is chaotic: once the two diverge, because a fold falls to one
+//! side in one of them and to the other side in the other, the distance of positions measures nothing. The
+//! [`Horizon`] is the time until then.
+
+use serde::{Deserialize, Serialize};
+
+use super::benchmark::Benchmark;
+use super::run::{Run, RunStates, Trajectory, key};
+use super::setting::Setting;
+use crate::metrics::deformation::distance;
+use crate::metrics::root_mean_square;
+use crate::result_cache::{ResultCache, ResultCacheError};
+
+/// List of all references of a scene.
+const LIST: &str = "references.jsonl";
+
+/// A reference run.
+#[derive(Debug, Clone)]
+pub struct ReferenceRun {
+    /// Its figures per frame.
+    pub run: Run,
+    /// All frames, in metres.
+    pub trajectory: Trajectory,
+    /// All objects in the last frame, in scene units.
+    pub end: Vec<Vec<[f32; 3]>>,
+}
+
+/// The two references of a scene: step h and step h/2.
+#[derive(Debug, Clone)]
+pub struct References {
+    /// Step h.
+    pub coarse: ReferenceRun,
+    /// Step h/2: errors of runs are measured against it.
+    pub fine: ReferenceRun,
+    /// Predictability horizon of the two.
+    pub horizon: Horizon,
+}
+
+/// File format of the positions of all objects.
+#[derive(Serialize, Deserialize)]
+struct End(Vec<Vec<[f32; 3]>>);
+
+impl References {
+    /// Combines both; `size` is the size of the cloth in metres.
+    pub fn new(coarse: ReferenceRun, fine: ReferenceRun, size: f64) -> Self {
+        let frames = coarse.trajectory.frames().min(fine.trajectory.frames());
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        let mut divergence = Vec::with_capacity(frames);
+        for frame in 0..frames {
+            coarse.trajectory.frame(frame, &mut a);
+            fine.trajectory.frame(frame, &mut b);
+            divergence.push(distance(&a, &b, size).rms);
+        }
+        Self { coarse, fine, horizon: Horizon::of(divergence) }
+    }
+}
+
+impl ReferenceRun {
+    /// From a finished run.
+    pub fn of(run: Run, states: RunStates) -> Self {
+        Self { run, trajectory: states.trajectory.unwrap_or_default(), end: states.end }
+    }
+
+    /// Saves it for later commands.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn save(&self, cache: &ResultCache) -> Result<(), ResultCacheError> {
+        let key = self.run.key();
+        cache.write(&format!("{key}.path"), &self.trajectory.to_bytes())?;
+        save_end(cache, &key, &self.end)?;
+        cache.append(LIST, &self.run)
+    }
+}
+
+/// Loads a saved reference; `None` if it is missing or incomplete.
+///
+/// # Errors
+/// When a file exists and cannot be read.
+pub fn load(
+    cache: &ResultCache,
+    benchmark: &Benchmark,
+    setting: &Setting,
+) -> Result<Option<ReferenceRun>, ResultCacheError> {
+    let key = key(setting, 64, benchmark.frames());
+    let run = cache.list::<Run>(LIST)?.into_iter().find(|run| run.key() == key);
+    let trajectory = cache.read(&format!("{key}.path"))?.and_then(|bytes| Trajectory::from_bytes(&bytes));
+    let end = load_end(cache, &key)?;
+    Ok(run.zip(trajectory).zip(end).map(|((run, trajectory), end)| ReferenceRun { run, trajectory, end }))
+}
+
+/// Saves the last frame of a run.
+///
+/// # Errors
+/// When the file cannot be written.
+pub(crate) fn save_end(
+    cache: &ResultCache,
+    key: &str,
+    end: &[Vec<[f32; 3]>],
+) -> Result<(), ResultCacheError> {
+    let bytes = serde_json::to_vec(&End(end.to_vec())).unwrap_or_default();
+    cache.write(&format!("{key}.end.json"), &bytes)
+}
+
+/// Loads the last frame of a run, if it is saved.
+///
+/// # Errors
+/// When the file exists and cannot be read.
+pub(crate) fn load_end(
+    cache: &ResultCache,
+    key: &str,
+) -> Result<Option<Vec<Vec<[f32; 3]>>>, ResultCacheError> {
+    let bytes = cache.read(&format!("{key}.end.json"))?;
+    Ok(bytes.and_then(|bytes| serde_json::from_slice::<End>(&bytes).ok()).map(|End(end)| end))
+}
+
+/// Largest tolerated divergence of the references, RMS over frames and points, over the size of the cloth: half of 1 %,
+/// the error requested most often.
+pub const MAX_DIVERGENCE: f64 = 0.005;
+
+/// Positions are comparable if the horizon covers this share of the frames.
+const MIN_SHARE: f64 = 0.25;
+
+/// Predictability horizon: the time over which two references agree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Horizon {
+    /// Distance of the two references in each frame, RMS over the points and over the cloth's size.
+    pub divergence: Vec<f64>,
+    /// Number of comparable frames.
+    pub frames: usize,
+    /// RMS of the distance over these frames: the reference uncertainty. Smaller errors are indistinguishable from 0.
+    pub floor: f64,
+}
+
+impl Horizon {
+    /// From the distance in each frame: the longest time over which its RMS stays below [`MAX_DIVERGENCE`].
+    ///
+    /// A hard impact can separate the references for some frames; if they converge again, it is not chaos.
+    pub fn of(divergence: Vec<f64>) -> Self {
+        let mut squares = 0.0;
+        let (mut frames, mut floor) = (0, 0.0);
+        for (frame, divergence) in divergence.iter().enumerate() {
+            squares += divergence * divergence;
+            let so_far = (squares / (frame + 1) as f64).sqrt();
+            if so_far <= MAX_DIVERGENCE {
+                (frames, floor) = (frame + 1, so_far);
+            }
+        }
+        Self { divergence, frames, floor }
+    }
+
+    /// Whether enough frames are comparable for an error of positions.
+    pub fn is_usable(&self) -> bool {
+        self.frames > 0 && self.frames as f64 >= MIN_SHARE * self.divergence.len() as f64
+    }
+}
+
+/// Definition of the error of a run, the same for all runs of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "of")]
+pub enum ErrorMeasure {
+    /// Distance of the points from the reference, RMS over points and frames, over the cloth's size.
+    Position {
+        /// Frames up to the predictability horizon.
+        frames: usize,
+    },
+    /// Difference of the 99th percentile of strain from the reference's, RMS over frames. For scenes whose references
+    /// diverge early: the position of a fold is chaotic, the strain is not.
+    StrainAgainstReference,
+    /// The 99th percentile of strain, RMS over frames. For Classic, which has no reference and is meant not to stretch.
+    Strain,
+}
+
+impl ErrorMeasure {
+    /// The measure for a scene with these references.
+    pub fn choose(horizon: Option<&Horizon>) -> Self {
+        match horizon {
+            None => Self::Strain,
+            Some(horizon) if horizon.is_usable() => Self::Position { frames: horizon.frames },
+            Some(_) => Self::StrainAgainstReference,
+        }
+    }
+
+    /// The error of a run; infinite if a frame was not finite.
+    pub fn error(&self, run: &Run, reference: Option<&Run>) -> f64 {
+        if !run.is_finite() {
+            return f64::INFINITY;
+        }
+        let strain_of =
+            |frame: usize| reference.and_then(|run| run.frames.get(frame)).map_or(0.0, |f| f.strain);
+        let frames = run.frames.iter();
+        match self {
+            Self::Position { frames: count } => root_mean_square(
+                frames.take(*count).map(|frame| frame.divergence.map_or(f64::NAN, |[rms, _]| rms)),
+            ),
+            Self::StrainAgainstReference => {
+                root_mean_square(frames.enumerate().map(|(k, frame)| frame.strain - strain_of(k)))
+            }
+            Self::Strain => root_mean_square(frames.map(|frame| frame.strain)),
+        }
+    }
+
+    /// Label of an axis.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Position { .. } => "error of position",
+            Self::StrainAgainstReference => "error of strain",
+            Self::Strain => "strain",
+        }
+    }
+
+    /// Definition in one sentence.
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::Position { frames } => format!(
+                "The error is the distance of points from the reference's, RMS over all points and the first {frames} \
+                 frames, in percent of the cloth's size."
+            ),
+            Self::StrainAgainstReference => "The two references diverge too early for positions to be compared. The \
+                 error is the difference from the reference in strain (the strain that 99 % of the edges stay below), \
+                 RMS over all frames, in percentage points."
+                .to_owned(),
+            Self::Strain => "Read as Classic, cloth is a different material at every setting, so there is no reference. \
+                 The error is the strain that 99 % of the edges stay below, RMS over all frames: cloth is meant not to \
+                 stretch."
+                .to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn references_that_agree_are_comparable_to_the_last_frame() {
+        let horizon = Horizon::of(vec![1e-4; 48]);
+        assert_eq!((horizon.frames, horizon.is_usable()), (48, true));
+        assert!((horizon.floor - 1e-4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn exponential_divergence_ends_the_horizon_below_the_limit() {
+        let horizon = Horizon::of((0..48).map(|frame| 1e-7 * f64::from(frame).exp2()).collect());
+        assert!((10..20).contains(&horizon.frames), "{horizon:?}");
+        assert!(horizon.floor <= MAX_DIVERGENCE && horizon.is_usable());
+    }
+
+    #[test]
+    fn a_transient_separation_does_not_end_the_horizon() {
+        let horizon = Horizon::of((0..48).map(|frame| if frame == 8 { 0.02 } else { 1e-3 }).collect());
+        assert_eq!(horizon.frames, 48);
+        assert!(horizon.floor < MAX_DIVERGENCE, "{horizon:?}");
+    }
+
+    #[test]
+    fn references_that_differ_from_the_start_are_not_comparable() {
+        let horizon = Horizon::of(vec![0.1; 48]);
+        assert_eq!((horizon.frames, horizon.is_usable()), (0, false));
+        assert!(!Horizon::of(vec![f64::NAN; 4]).is_usable());
+        assert!(!Horizon::of(Vec::new()).is_usable());
+    }
+}
