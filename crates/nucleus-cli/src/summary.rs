@@ -259,7 +259,7 @@ fn audit_json(audit: &Audit) -> Value {
         "undecided": account.undecided,
         "below_ground": account.below_ground,
         "intersections_at_start": account.initial_intersections,
-        "intersections": account.tangled,
+        "intersections": account.remaining_initial_intersections,
         "inside": account.current_intersections,
         "first": audit.findings().next(),
     })

@@ -1,6 +1,6 @@
 //! Warnings at the end of a run. Unresolved contact fails the run; large strain only warns.
 
-use nucleus_graph::checks::{MAX_STRETCH, MAX_INTERSECTIONS, MAX_DEPENETRATING, MAX_UNRESOLVED, Outcome};
+use nucleus_graph::checks::{MAX_DEPENETRATING, MAX_INTERSECTIONS, MAX_STRETCH, MAX_UNRESOLVED, Outcome};
 
 use crate::figures;
 use crate::run_statistics::{Count, RunStatistics};

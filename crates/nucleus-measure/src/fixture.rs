@@ -121,6 +121,7 @@ pub fn gravity_only(evaluations: f64) -> FrameInput {
         cloths: vec![cloth],
         colliders: Vec::new(),
         pins: Vec::new(),
+        ..FrameInput::default()
     }
 }
 

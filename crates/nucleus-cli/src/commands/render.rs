@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::{ObjectKind, Playback};
-use nucleus_view::{Bounds, Camera, Colouring, Film, Image, Style};
+use nucleus_cache::Playback;
+use nucleus_view::{Camera, Colouring, Film, Image, Style};
 
 use super::film::{self, OutputKind};
 use crate::options::FrameRange;

@@ -148,7 +148,13 @@ impl Trade {
         }
     }
 
-    fn report(&self, subject: &Benchmark, store: &ResultCache, found: &SweepResult, text: &str) -> Result<Outcome> {
+    fn report(
+        &self,
+        subject: &Benchmark,
+        store: &ResultCache,
+        found: &SweepResult,
+        text: &str,
+    ) -> Result<Outcome> {
         let trade = &found.trade;
         let choice = match self.time {
             Some(ms) => for_time(trade, ms),

@@ -139,7 +139,7 @@ fn checkpoint(simulation: &Simulation, solver: f64) -> anyhow::Result<(Table, Ve
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &run, objects(simulation))?;
     recorder.record_start(simulation.state())?;
-    let length = || std::fs::metadata(nucleus_cache::unfinished(&path)).map(|value| value.len());
+    let length = || std::fs::metadata(nucleus_cache::part_path(&path)).map(|value| value.len());
     let (before, begin) = (length()?, now());
     let state = simulation.save();
     let saved = now() - begin;

@@ -1,7 +1,7 @@
 //! A run of a workload at a setting: timed, measured, and repeated under audit.
 
 use anyhow::ensure;
-use nucleus_audit::Account;
+use nucleus_audit::AuditCounts;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
@@ -34,7 +34,7 @@ pub struct RunResult {
     /// Maximum depth of its points in the ball in metres, at the last frame and over all frames.
     pub depths: [f64; 2],
     /// Result of the audit, if there was one.
-    pub audit: Option<Account>,
+    pub audit: Option<AuditCounts>,
 }
 
 impl RunResult {
