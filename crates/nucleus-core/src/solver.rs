@@ -2,13 +2,12 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::cloth::Mutual;
+use crate::contact::cloth::ClothContacts;
 use crate::contact::collider::ColliderState;
-use crate::contact::foresee::Cover;
+use crate::contact::collider::broad_phase::MotionBox;
+use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::ground::Ground;
-use crate::contact::maps::Maps;
-use crate::contact::pairs::PairList;
-use crate::contact::terms::Terms;
+use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::input::ids::{ClothId, ColliderId, PointId};
 use crate::math::{Real, Row4};
 use crate::model::builder::ModelBuilder;
@@ -24,26 +23,26 @@ pub struct Solver<R: Real = f32> {
     pub(crate) state: State<R>,
     pub(crate) collider_states: Vec<ColliderState>,
     /// Pairs that can touch, per cloth and collider.
-    pub(crate) pairs: Vec<PairList<R>>,
+    pub(crate) collider_contacts: Vec<ColliderContacts<R>>,
     /// The span that the pairs of each cloth hold for, and the window that the active ones do, as shares of
     /// the frame.
-    pub(crate) spans: Vec<[f64; 2]>,
-    pub(crate) windows: Vec<[f64; 2]>,
+    pub(crate) candidate_intervals: Vec<[f64; 2]>,
+    pub(crate) active_windows: Vec<[f64; 2]>,
     /// How far one goes in a frame to whom what is foreseen for each cloth is said, in metres.
-    pub(crate) drifts: Vec<[R; 3]>,
+    pub(crate) frame_travel: Vec<[R; 3]>,
     /// What is foreseen for each point in the window and in the span; empty where the scene has no collider.
-    pub(crate) near: Vec<Cover<R>>,
-    pub(crate) far: Vec<Cover<R>>,
+    pub(crate) window_bounds: Vec<MotionBox<R>>,
+    pub(crate) interval_bounds: Vec<MotionBox<R>>,
     /// Points for which something new is foreseen, so that their pairs are to be found again.
-    pub(crate) strayed: Vec<bool>,
+    pub(crate) bounds_violated: Vec<bool>,
     /// How each cloth meets each collider in this frame, by cloth and collider.
-    pub(crate) terms: Vec<Option<Terms<R>>>,
+    pub(crate) collider_materials: Vec<Option<ContactMaterial<R>>>,
     /// How each cloth meets the ground plane.
-    pub(crate) ground_terms: Vec<Option<Terms<R>>>,
+    pub(crate) ground_materials: Vec<Option<ContactMaterial<R>>>,
     /// What points bring into a contact beyond their cloth.
-    pub(crate) maps: Maps<R>,
+    pub(crate) material_maps: MaterialMaps<R>,
     /// ContactState among cloths; none where no two can ever meet.
-    pub(crate) mutual: Option<Mutual<R>>,
+    pub(crate) cloth_contacts: Option<ClothContacts<R>>,
     /// Whether anything touched anything in the last frame.
     pub(crate) touches: bool,
     /// The ground plane.
@@ -70,25 +69,25 @@ impl<R: Real> Solver<R> {
         let state = State::new(&cloths, &models);
         // What goes on from a state may lie on something; whether it does is only known after a frame.
         let touches = cloths.iter().any(|cloth| !cloth.start.positions.is_empty());
-        let maps = Maps::new(&cloths, &models, state.anchor.len());
-        let mutual = meets.then(|| Mutual::new(&models, &state.anchor));
+        let material_maps = MaterialMaps::new(&cloths, &models, state.anchor.len());
+        let cloth_contacts = meets.then(|| ClothContacts::new(&models, &state.anchor));
         drop(cloths);
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
         let covered = if collides { state.anchor.len() } else { 0 };
-        let both = |cloth| (0..colliders.len()).map(move |collider| PairList::new(cloth, collider));
+        let both = |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
         let mut solver = Self {
-            spans: vec![[0.0; 2]; models.len()],
-            windows: vec![[0.0; 2]; models.len()],
-            drifts: vec![[R::ZERO; 3]; models.len()],
-            near: vec![[Row4::ZERO; 2]; covered],
-            far: vec![[Row4::ZERO; 2]; covered],
-            strayed: vec![true; covered],
-            terms: Vec::new(),
-            ground_terms: Vec::new(),
-            pairs: (0..models.len()).flat_map(both).collect(),
+            candidate_intervals: vec![[0.0; 2]; models.len()],
+            active_windows: vec![[0.0; 2]; models.len()],
+            frame_travel: vec![[R::ZERO; 3]; models.len()],
+            window_bounds: vec![[Row4::ZERO; 2]; covered],
+            interval_bounds: vec![[Row4::ZERO; 2]; covered],
+            bounds_violated: vec![true; covered],
+            collider_materials: Vec::new(),
+            ground_materials: Vec::new(),
+            collider_contacts: (0..models.len()).flat_map(both).collect(),
             collider_states: colliders.iter().map(ColliderState::new).collect(),
-            maps,
-            mutual,
+            material_maps,
+            cloth_contacts,
             touches,
             cloths: models,
             colliders,

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use crate::constraints::damp::{self, Damping};
 use crate::constraints::sweep;
-use crate::contact::resolve::Tally;
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::input::validation::InvalidInput;
 use crate::integrate::aerodynamics::{self, AirForces};
@@ -53,13 +53,13 @@ impl<R: Real> Solver<R> {
     /// One frame of finite numbers.
     fn solve(&mut self, frame: &FrameInput, watch: &mut dyn StepObserver) -> StepReport {
         let schedule = Schedule::new(frame);
-        let mut tally = Tally::default();
-        if self.substeps(frame, &schedule, &mut tally, watch).is_break() {
+        let mut counters = ContactCounters::default();
+        if self.substeps(frame, &schedule, &mut counters, watch).is_break() {
             return StepReport { stopped: true, ..StepReport::default() };
         }
         watch.enter(Stage::Report);
-        self.touches = tally.contacts.load(Ordering::Relaxed) > 0;
-        self.report(frame, &schedule, &tally)
+        self.touches = counters.contacts.load(Ordering::Relaxed) > 0;
+        self.report(frame, &schedule, &counters)
     }
 
     /// All substeps of a frame, unless the observer ends it before.
@@ -67,7 +67,7 @@ impl<R: Real> Solver<R> {
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        tally: &mut Tally,
+        counters: &mut ContactCounters,
         watch: &mut dyn StepObserver,
     ) -> ControlFlow<()> {
         watch.enter(Stage::FrameStart);
@@ -83,17 +83,17 @@ impl<R: Real> Solver<R> {
             for step in (substep - 1) * schedule.steps..substep * schedule.steps {
                 let span = schedule.span(step);
                 let direction = if is_free { schedule.direction(step) } else { Direction::Forward };
-                let parts = self.parts(frame, schedule, span, &max_speed);
-                if parts == 1 {
+                let splits = self.splits(frame, schedule, span, &max_speed);
+                if splits == 1 {
                     let now = Step { schedule, index: step, span, direction };
-                    self.advance(frame, &now, &max_speed, tally, watch)?;
+                    self.advance(frame, &now, &max_speed, counters, watch)?;
                     continue;
                 }
-                let split = schedule.split(frame, parts);
-                for part in 0..parts {
-                    let (index, span) = (step * parts + part, span.part(part, parts));
+                let split = schedule.split(frame, splits);
+                for split_index in 0..splits {
+                    let (index, span) = (step * splits + split_index, span.part(split_index, splits));
                     let now = Step { schedule: &split, index, span, direction };
-                    self.advance(frame, &now, &max_speed, tally, watch)?;
+                    self.advance(frame, &now, &max_speed, counters, watch)?;
                 }
             }
             self.damp(frame, schedule);
@@ -110,7 +110,7 @@ impl<R: Real> Solver<R> {
         frame: &FrameInput,
         now: &Step<'_, R>,
         max_speed: &[f64],
-        tally: &mut Tally,
+        counters: &mut ContactCounters,
         watch: &mut dyn StepObserver,
     ) -> ControlFlow<()> {
         let Step { schedule, index, span, direction } = *now;
@@ -125,19 +125,19 @@ impl<R: Real> Solver<R> {
                     sweep::sweep(self, &schedule.sweeps[sweeps.clone()], direction);
                 }
                 Pass::ClothContact => {
-                    self.stick_to_cloth(frame, schedule, span, tally);
-                    self.meet(1.0, frame, schedule, span, tally, watch);
+                    self.apply_cloth_adhesion(frame, schedule, span, counters);
+                    self.resolve_cloth_contacts(1.0, frame, schedule, span, counters, watch);
                 }
                 Pass::ColliderContact => {
-                    self.stick_to_colliders(frame, schedule, span, tally);
-                    self.meet_colliders(1.0, frame, schedule, span, tally, watch);
+                    self.apply_collider_adhesion(frame, schedule, span, counters);
+                    self.resolve_collider_contacts(1.0, frame, schedule, span, counters, watch);
                 }
-                Pass::Safeguard => self.settle(frame, schedule, span, tally, watch), // the last word
+                Pass::Safeguard => self.safeguard(frame, schedule, span, counters, watch), // the last word
             }
         }
         watch.enter(Stage::Velocity);
         self.update_velocities(schedule);
-        self.bounce(frame, schedule, span);
+        self.apply_restitution(frame, schedule, span);
         watch.step(span.to, self);
         ControlFlow::Continue(())
     }
@@ -145,14 +145,15 @@ impl<R: Real> Solver<R> {
     /// Keeps the places that points have before a time step moves them, where they can meet anything.
     fn store_step_start(&mut self, frame: &FrameInput, h: f64) {
         // Of the last step, and of what may be no more: a plane that is keyed off.
-        self.state.led.clear();
-        self.state.parted.clear();
+        self.state.depenetration_by_collider.clear();
+        self.state.depenetration_by_cloth.clear();
         self.state.step_length = h;
-        if frame.plane.is_some() || !self.colliders.is_empty() || self.mutual.is_some() {
-            let State { start, led, parted, displacement, .. } = &mut self.state;
+        if frame.plane.is_some() || !self.colliders.is_empty() || self.cloth_contacts.is_some() {
+            let State { start, depenetration_by_collider, depenetration_by_cloth, displacement, .. } =
+                &mut self.state;
             start.clone_from(displacement);
-            led.resize(start.len(), Row4::ZERO);
-            parted.resize(start.len(), Row4::ZERO);
+            depenetration_by_collider.resize(start.len(), Row4::ZERO);
+            depenetration_by_cloth.resize(start.len(), Row4::ZERO);
         }
     }
 
@@ -226,7 +227,10 @@ impl<R: Real> Solver<R> {
         let Self { cloths, state, pool, .. } = self;
         let (displacement, predicted) =
             (DisjointSlice::new(&mut state.displacement), DisjointSlice::new(&mut state.predicted));
-        let (led, velocity) = ([&state.led[..], &state.parted[..]], DisjointSlice::new(&mut state.velocity));
+        let (depenetration_by_collider, velocity) = (
+            [&state.depenetration_by_collider[..], &state.depenetration_by_cloth[..]],
+            DisjointSlice::new(&mut state.velocity),
+        );
         let h = R::from_f64(schedule.h);
         for cloth in cloths.iter() {
             // SAFETY: blocks do not overlap.
@@ -234,7 +238,7 @@ impl<R: Real> Solver<R> {
             pool.parallel_for(cloth.blocks.len(), |block| unsafe {
                 velocities::update_velocities(
                     [displacement, predicted, velocity],
-                    led,
+                    depenetration_by_collider,
                     cloth.blocks.range(block),
                     h,
                 );

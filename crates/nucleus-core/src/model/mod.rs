@@ -12,23 +12,22 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use crate::constraints::hinge::{self, HingeGroup};
+use crate::constraints::shear;
+use crate::constraints::stretch::{LinkGroup, LinkRow};
+use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
+use crate::integrate::aerodynamics::AirFactors;
+use crate::math::Real;
+use crate::model::builder::{Cloth, Collider, Mass};
+use crate::model::surface::Surface;
+use crate::model::vertex_maps::mean;
+
 pub use order::{Order, by_halves};
 pub use row_maps::{Factors, Shares};
 pub use rows::{Blocks, Part, Row, RowList};
 pub use topology::{
     Link, Seam, fan_triangles, point_areas, seams, shear_links, stretch_links, triangle_area, triangle_edges,
 };
-
-use crate::constraints::hinge::{self, HingeGroup};
-use crate::constraints::shear;
-use crate::constraints::stretch::{LinkGroup, LinkRow};
-use crate::contact::pseudonormals::Outside;
-use crate::contact::skin::{Skin, by_place};
-use crate::integrate::aerodynamics::AirFactors;
-use crate::math::Real;
-use crate::model::builder::{Cloth, Collider, Mass};
-use crate::model::surface::Surface;
-use crate::model::vertex_maps::mean;
 
 /// One cloth: where its points are in the columns of the state, and its lists.
 #[derive(Debug, Clone)]
@@ -48,7 +47,7 @@ pub struct ClothModel<R> {
     /// The triangles that touch each block, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// What can touch; empty where the scene has no collider.
-    pub skin: Skin,
+    pub boundary: BoundaryElements,
     /// Whether its sweeps turn round from time to time: its links close rings of an odd number (triangles, or
     /// quads with cross links), and swept always in one order they would stir it.
     pub turns: bool,
@@ -79,7 +78,7 @@ impl<R: Real> ClothModel<R> {
             bend: RowList::default(),
             fold: RowList::default(),
             triangles: Vec::new(),
-            skin: Skin::default(),
+            boundary: BoundaryElements::default(),
             turns: cloth.lists.cross_links || surface.faces.iter().any(|face| face.len() % 2 == 1),
             weight,
             edge_length: 0.0,
@@ -119,8 +118,8 @@ impl<R: Real> ClothModel<R> {
         if collides {
             let triangles: Vec<_> = surface.faces.triangles().collect();
             let place_at = |point: u32| surface.positions[point as usize];
-            let triangles = by_place(&triangles, place_at).into_iter().map(|t| t.map(place)).collect();
-            model.skin = Skin::new(triangles, model.points());
+            let triangles = sort_spatially(&triangles, place_at).into_iter().map(|t| t.map(place)).collect();
+            model.boundary = BoundaryElements::new(triangles, model.points());
             model.edge_length = mean_length(surface);
         }
         model
@@ -154,19 +153,19 @@ pub struct ColliderModel {
     /// Where it starts, in metres.
     pub positions: Vec<Vector3<f64>>,
     /// What can touch.
-    pub skin: Skin,
-    /// Its outside, if it has one: every edge has two faces.
-    pub outside: Option<Outside>,
+    pub boundary: BoundaryElements,
+    /// Its pseudonormals, if it is closed: every edge has two faces.
+    pub pseudonormals: Option<Pseudonormals>,
 }
 
 impl ColliderModel {
     /// Compiles a collider.
     pub fn new(collider: Collider) -> Self {
         let triangles: Vec<_> = collider.surface.faces.triangles().collect();
-        let triangles = by_place(&triangles, |point| collider.surface.positions[point as usize]);
-        let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
-        let outside = Outside::of(&skin);
-        Self { positions: collider.surface.positions, skin, outside }
+        let triangles = sort_spatially(&triangles, |point| collider.surface.positions[point as usize]);
+        let boundary = BoundaryElements::new(triangles, 0..collider.surface.positions.len() as u32);
+        let pseudonormals = Pseudonormals::of(&boundary);
+        Self { positions: collider.surface.positions, boundary, pseudonormals }
     }
 }
 

@@ -5,10 +5,10 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::constraints::hinge::{HingeGroup, held};
 use crate::constraints::row_map::ShareGroup;
 use crate::constraints::stretch::LinkGroup;
-use crate::contact::cloth::Mutual;
-use crate::contact::cloth_pass::motion;
-use crate::contact::collider_pass::StepParts;
-use crate::contact::resolve::Tally;
+use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::pass::cloth_step;
+use crate::contact::collider::pass::ColliderStepArgs;
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::{Real, dot};
 use crate::model::ClothModel;
@@ -23,7 +23,12 @@ const BINS: usize = 10_000;
 
 impl<R: Real> Solver<R> {
     /// The account of the frame that has just ended.
-    pub(crate) fn report(&mut self, frame: &FrameInput, schedule: &Schedule<R>, tally: &Tally) -> StepReport {
+    pub(crate) fn report(
+        &mut self,
+        frame: &FrameInput,
+        schedule: &Schedule<R>,
+        counters: &ContactCounters,
+    ) -> StepReport {
         let (max_strain, strain_99) = self.strains(frame);
         let (kinetic_energy, finite) = self.kinetic_energy();
         StepReport {
@@ -32,13 +37,20 @@ impl<R: Real> Solver<R> {
             min_gap: self.smallest_gap(frame, schedule),
             min_cloth_gap: self.smallest_cloth_gap(),
             rest_limited: self.count_rest_limited(),
-            contacts: tally.contacts.load(Relaxed),
-            candidate_pairs: tally.pairs.load(Relaxed),
-            broad_phases: tally.broad_phases.load(Relaxed) as u32,
-            pairs_reverted: tally.pairs_reverted.load(Relaxed),
-            pairs_unresolved: tally.pairs_unresolved.load(Relaxed),
-            depenetrating: self.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
-            intersections: self.mutual.as_ref().map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
+            contacts: counters.contacts.load(Relaxed),
+            candidate_pairs: counters.candidate_pairs.load(Relaxed),
+            broad_phases: counters.broad_phases.load(Relaxed) as u32,
+            pairs_reverted: counters.pairs_reverted.load(Relaxed),
+            pairs_unresolved: counters.pairs_unresolved.load(Relaxed),
+            depenetrating: self
+                .collider_contacts
+                .iter()
+                .map(|list| list.depenetration.points.len() as u64)
+                .sum(),
+            intersections: self
+                .cloth_contacts
+                .as_ref()
+                .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
             kinetic_energy,
             finite,
             ..StepReport::default()
@@ -166,15 +178,17 @@ impl<R: Real> Solver<R> {
 
     /// The smallest distance between two elements of cloth, over the thickness kept there.
     fn smallest_cloth_gap(&mut self) -> f64 {
-        let Self { mutual: Some(mutual), state, maps, .. } = self else { return f64::INFINITY };
-        let Mutual { active, terms, .. } = mutual;
-        let closeness = active.closeness(&motion(state, terms, maps, 0.0));
-        closeness.map_or(f64::INFINITY, R::to_f64)
+        let Self { cloth_contacts: Some(cloth_contacts), state, material_maps, .. } = self else {
+            return f64::INFINITY;
+        };
+        let ClothContacts { cache, materials, .. } = cloth_contacts;
+        let gap_ratio = cache.min_gap_ratio(&cloth_step(state, materials, material_maps, 0.0));
+        gap_ratio.map_or(f64::INFINITY, R::to_f64)
     }
 
     fn count_rest_limited(&self) -> u64 {
-        let Some(mutual) = &self.mutual else { return 0 };
-        mutual.active.count_rest_limited()
+        let Some(cloth_contacts) = &self.cloth_contacts else { return 0 };
+        cloth_contacts.cache.count_rest_limited()
     }
 
     /// The smallest distance to a collider or the plane, over the thickness.
@@ -193,12 +207,21 @@ impl<R: Real> Solver<R> {
                 }
             }
         }
-        let Self { state, collider_states, pairs, terms, maps, .. } = self;
-        for list in pairs.iter() {
-            let Some(terms) = terms[list.cloth * collider_states.len() + list.collider] else { continue };
-            let view = StepParts { terms, maps, h: schedule.h, time: [1.0; 2], span: list.span };
+        let Self { state, collider_states, collider_contacts, collider_materials, material_maps, .. } = self;
+        for list in collider_contacts.iter() {
+            let Some(material) = collider_materials[list.cloth * collider_states.len() + list.collider]
+            else {
+                continue;
+            };
+            let view = ColliderStepArgs {
+                material,
+                material_maps,
+                h: schedule.h,
+                time: [1.0; 2],
+                interval: list.interval,
+            };
             let step = view.of(state, &collider_states[list.collider]);
-            let distances = list.point_face.iter().map(|pair| pair.closeness(&step));
+            let distances = list.point_face.iter().map(|pair| pair.gap_ratio(&step));
             least = distances.fold(least, f64::min);
         }
         least

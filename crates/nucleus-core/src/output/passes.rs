@@ -1,7 +1,7 @@
 //! The program that a scene compiles to: its passes, how long their lists are, and how often they run.
 
 use crate::constraints::damp::Damping;
-use crate::contact::terms::Terms;
+use crate::contact::material::ContactMaterial;
 use crate::input::frame::{ClothFrame, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::Real;
@@ -12,9 +12,9 @@ use crate::solver::Solver;
 /// One list of rows, or one pass over all points, and what a frame spends on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassCost {
-    /// The pass, named after what it does: `predict`, `stretch`, `bend`, `collide`, `meet` ...
+    /// The pass, named after what it does: `predict`, `stretch`, `bend`, `collider contact`, `cloth contact` ...
     pub name: &'static str,
-    /// Rows in its list; for `collide` and `meet`, what can touch (pairs are found as they arise).
+    /// Rows in its list; for `collider contact` and `cloth contact`, what can touch (pairs are found as they arise).
     pub rows: usize,
     /// Visits of the whole list in a frame.
     pub sweeps: f64,
@@ -56,7 +56,8 @@ impl<R: Real> Solver<R> {
         let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
         passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
         passes.extend(self.contact_passes(frame, &schedule));
-        let factors: usize = self.cloths.iter().map(ClothModel::factors).sum::<usize>() + self.maps.len();
+        let factors: usize =
+            self.cloths.iter().map(ClothModel::factors).sum::<usize>() + self.material_maps.len();
         passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
         passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
         passes
@@ -67,26 +68,30 @@ impl<R: Real> Solver<R> {
         let steps = f64::from(schedule.substeps * schedule.steps);
         let rounds =
             |wanted: Pass| schedule.passes.iter().filter(|round| **round == wanted).count() as f64 * steps;
-        let (cloths, thickest) = (&frame.cloths, &self.maps.thickest);
+        let (cloths, max_thickness_factor) = (&frame.cloths, &self.material_maps.max_thickness_factor);
         let at_colliders = |cloth: usize| {
-            let with = |collider| Terms::<R>::with_collider(&cloths[cloth], collider, thickest[cloth]);
+            let with = |collider| {
+                ContactMaterial::<R>::for_collider(&cloths[cloth], collider, max_thickness_factor[cloth])
+            };
             frame.colliders.iter().filter_map(with).collect::<Vec<_>>()
         };
         let on_ground = |cloth: usize| {
-            let with = |ground| Terms::<R>::with_ground(&cloths[cloth], ground, thickest[cloth]);
+            let with = |ground| {
+                ContactMaterial::<R>::for_ground(&cloths[cloth], ground, max_thickness_factor[cloth])
+            };
             frame.plane.as_ref().and_then(with)
         };
-        let each_other = |cloth: usize| match self.mutual {
-            Some(_) => self.mutual_terms(frame, cloth),
+        let each_other = |cloth: usize| match self.cloth_contacts {
+            Some(_) => self.cloth_materials_of(frame, cloth),
             None => Vec::new(),
         };
         let elements = |cloth: usize| {
-            let skin = &self.cloths[cloth].skin;
-            skin.points.len() + skin.edges.len() + skin.triangles.len()
+            let boundary = &self.cloths[cloth].boundary;
+            boundary.points.len() + boundary.edges.len() + boundary.triangles.len()
         };
         let points = |cloth: usize| self.cloths[cloth].points().len();
         let all = 0..cloths.len();
-        let with_any = |does: fn(&Terms<R>) -> bool| -> usize {
+        let with_any = |does: fn(&ContactMaterial<R>) -> bool| -> usize {
             let of = |cloth: &usize| {
                 let mut terms = at_colliders(*cloth);
                 terms.extend(on_ground(*cloth));
@@ -101,12 +106,12 @@ impl<R: Real> Solver<R> {
         let collide = rounds(Pass::ColliderContact);
         [
             PassCost {
-                name: "collide",
+                name: "collider contact",
                 rows: all.clone().map(|cloth| elements(cloth) * at_colliders(cloth).len()).sum(),
                 sweeps: collide,
             },
             PassCost {
-                name: "meet",
+                name: "cloth contact",
                 rows: all.clone().filter(|&cloth| !each_other(cloth).is_empty()).map(elements).sum(),
                 sweeps: rounds(Pass::ClothContact),
             },
@@ -115,8 +120,8 @@ impl<R: Real> Solver<R> {
                 rows: all.clone().filter(|&cloth| on_ground(cloth).is_some()).map(points).sum(),
                 sweeps: collide,
             },
-            PassCost { name: "stick", rows: with_any(Terms::sticks), sweeps: collide },
-            PassCost { name: "bounce", rows: with_any(Terms::bounces), sweeps: steps },
+            PassCost { name: "stick", rows: with_any(ContactMaterial::has_adhesion), sweeps: collide },
+            PassCost { name: "bounce", rows: with_any(ContactMaterial::has_restitution), sweeps: steps },
             PassCost {
                 name: "push out",
                 rows: if pushes { all.map(points).sum() } else { 0 },

@@ -10,15 +10,15 @@ use crate::solver::Solver;
 impl<R: Real> Solver<R> {
     /// Takes up what a frame brings.
     pub(crate) fn begin_frame(&mut self, frame: &FrameInput) {
-        self.take_over_pairs(frame);
+        self.begin_collider_contact(frame);
         self.begin_contact(frame);
         self.move_anchors();
         for pin in &frame.pins {
             self.hold(pin, frame.duration);
         }
         self.anchor_rows();
-        if let Some(mutual) = &mut self.mutual {
-            mutual.active.follow(&self.state.anchor);
+        if let Some(cloth_contacts) = &mut self.cloth_contacts {
+            cloth_contacts.cache.update_anchors(&self.state.anchor);
         }
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);

@@ -24,10 +24,10 @@ pub struct State<R> {
     pub start: Vec<Row4<R>>,
     /// How far colliders led the point in the time step, in metres: a motion without velocity. Empty where nothing can be
     /// met.
-    pub led: Vec<Row4<R>>,
+    pub depenetration_by_collider: Vec<Row4<R>>,
     /// How far contacts with cloth led the point in the time step, in metres: as little a velocity, but what a collider takes
     /// back of it is one, for what is between the two has to bear the load. Empty where nothing can be met.
-    pub parted: Vec<Row4<R>>,
+    pub depenetration_by_cloth: Vec<Row4<R>>,
     /// Length of the last time step in seconds.
     pub step_length: f64,
     /// Displacement before anything held the point. Written by predict, read by velocity.
@@ -48,8 +48,8 @@ impl<R: Real> State<R> {
             displacement: vec![Row4::ZERO; rows],
             velocity: vec![Row4::ZERO; rows],
             start: Vec::new(),
-            led: Vec::new(),
-            parted: Vec::new(),
+            depenetration_by_collider: Vec::new(),
+            depenetration_by_cloth: Vec::new(),
             step_length: 0.0,
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
@@ -80,8 +80,9 @@ impl<R: Real> State<R> {
     /// still has a velocity there that contacts undo in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
         let row = row as usize;
-        let is_led = |column: &[Row4<R>]| column.get(row).is_some_and(|led| led.xyz() != [R::ZERO; 3]);
-        if is_led(&self.led) || is_led(&self.parted) {
+        let is_depenetrated =
+            |column: &[Row4<R>]| column.get(row).is_some_and(|row| row.xyz() != [R::ZERO; 3]);
+        if is_depenetrated(&self.depenetration_by_collider) || is_depenetrated(&self.depenetration_by_cloth) {
             let moved = sub(self.displacement[row].xyz(), self.start[row].xyz());
             return moved.map(|x| x.to_f64() / self.step_length);
         }

@@ -15,21 +15,21 @@ impl<R: Real> Solver<R> {
             let rows = [cloth.stretch.len(), cloth.shear.len(), cloth.bend.len(), cloth.fold.len()];
             let lists = rows.map(|length| length as u64);
             let flags = [u64::from(cloth.damps), u64::from(cloth.turns), cloth.triangles.len() as u64];
-            let skin = words(&cloth.skin.triangles);
+            let boundary = words(&cloth.boundary.triangles);
             [cloth.blocks.len() as u64]
                 .into_iter()
                 .chain(order)
                 .chain(lists)
                 .chain(flags)
-                .chain(skin)
+                .chain(boundary)
                 .fold(SEED, mixed)
         };
         let cloths = self.cloths.iter().map(of_cloth);
         let colliders = self.colliders.iter().map(|collider| {
-            words(&collider.skin.triangles).chain([collider.positions.len() as u64]).fold(SEED, mixed)
+            words(&collider.boundary.triangles).chain([collider.positions.len() as u64]).fold(SEED, mixed)
         });
         let masses = self.state.inverse_mass.iter().map(|mass| mass.to_bits());
-        let rows = [self.mutual.is_some() as u64, self.far.len() as u64];
+        let rows = [self.cloth_contacts.is_some() as u64, self.interval_bounds.len() as u64];
         cloths.chain([0]).chain(colliders).chain(masses).chain(rows).fold(SEED, mixed)
     }
 }

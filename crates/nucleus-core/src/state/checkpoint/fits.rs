@@ -1,9 +1,9 @@
 //! Whether what was read names nothing that the model has not. Contacts are worked on without further looks at their
 //! points, so every one of them is looked at here.
 
-use crate::contact::cloth::Mutual;
-use crate::contact::pairs::PairList;
-use crate::contact::search::GROUP;
+use crate::contact::cloth::ClothContacts;
+use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::collider::query::GROUP_SIZE;
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
 use crate::solver::Solver;
@@ -11,46 +11,55 @@ use crate::solver::Solver;
 impl<R: Real> Solver<R> {
     /// Whether all points, faces and groups that are named are there.
     pub(super) fn fits(&self) -> bool {
-        let pairs = self
-            .pairs
-            .iter()
-            .all(|list| pairs_fit(list, &self.cloths[list.cloth], &self.colliders[list.collider]));
-        let mutual = self.mutual.as_ref().is_none_or(|mutual| mutual_fits(mutual, &self.cloths));
-        pairs && mutual && self.collider_states.iter().all(super::is_sound)
+        let collider_contacts = self.collider_contacts.iter().all(|list| {
+            collider_contacts_fit(list, &self.cloths[list.cloth], &self.colliders[list.collider])
+        });
+        let cloth_contacts =
+            self.cloth_contacts.as_ref().is_none_or(|contacts| cloth_contacts_fit(contacts, &self.cloths));
+        collider_contacts && cloth_contacts && self.collider_states.iter().all(super::is_sound)
     }
 }
 
-fn pairs_fit<R: Real>(list: &PairList<R>, cloth: &ClothModel<R>, collider: &ColliderModel) -> bool {
-    let (groups, points) = (cloth.skin.groups(GROUP).count(), cloth.points());
+fn collider_contacts_fit<R: Real>(
+    list: &ColliderContacts<R>,
+    cloth: &ClothModel<R>,
+    collider: &ColliderModel,
+) -> bool {
+    let (groups, points) = (cloth.boundary.groups(GROUP_SIZE).count(), cloth.points());
     let is_ours = |ours: &[u32]| ours.iter().all(|point| points.contains(point));
     let is_theirs = |theirs: &[u32]| theirs.iter().all(|&point| (point as usize) < collider.positions.len());
     let fits = |group: u32, ours: &[u32], theirs: &[u32]| {
         (group as usize) < groups && is_ours(ours) && is_theirs(theirs)
     };
-    let faces = collider.skin.triangles.len();
-    list.point_face.iter().all(|pair| fits(pair.group, &pair.points, &pair.collider_points))
-        && list.edge_edge.iter().all(|pair| fits(pair.group, &pair.points, &pair.collider_points))
-        && list.face_point.iter().all(|pair| fits(pair.group, &pair.points, &pair.collider_points))
-        && list.trapped.points.iter().all(|&(point, face)| is_ours(&[point]) && (face as usize) < faces)
-        && is_ours(&list.trapped.suspects)
+    let faces = collider.boundary.triangles.len();
+    list.point_face.iter().all(|contact| fits(contact.group, &contact.points, &contact.collider_points))
+        && list.edge_edge.iter().all(|contact| fits(contact.group, &contact.points, &contact.collider_points))
+        && list
+            .face_point
+            .iter()
+            .all(|contact| fits(contact.group, &contact.points, &contact.collider_points))
+        && list.depenetration.points.iter().all(|&(point, face)| is_ours(&[point]) && (face as usize) < faces)
+        && is_ours(&list.depenetration.suspects)
 }
 
-fn mutual_fits<R: Real>(mutual: &Mutual<R>, cloths: &[ClothModel<R>]) -> bool {
-    let Mutual { terms, tangle, bodies, active, .. } = mutual;
-    let rows = mutual.strayed.len();
+fn cloth_contacts_fit<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: &[ClothModel<R>]) -> bool {
+    let ClothContacts { materials, untangling, elements, cache, .. } = cloth_contacts;
+    let rows = cloth_contacts.bounds_violated.len();
     // Stand-ins are between the points of one cloth and those of the next.
     let mut is_point = vec![false; rows];
     cloths.iter().flat_map(ClothModel::points).for_each(|row| is_point[row as usize] = true);
     let are_points = |points: &[u32]| {
         points.iter().all(|&point| is_point.get(point as usize).is_some_and(|&is_point| is_point))
     };
-    (terms.is_empty() || terms.len() == cloths.len() * cloths.len())
-        && active.point_face.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.edge_edge.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.point_edge.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.point_point.iter().all(|near| near.fits(are_points, terms.len()))
-        && tangle.crossings.iter().all(|crossing| {
-            are_points(&crossing.edge) && are_points(&crossing.wings) && are_points(&crossing.face)
+    (materials.is_empty() || materials.len() == cloths.len() * cloths.len())
+        && cache.point_face.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.edge_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.point_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.point_point.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && untangling.intersections.iter().all(|intersection| {
+            are_points(&intersection.edge)
+                && are_points(&intersection.wings)
+                && are_points(&intersection.face)
         })
-        && bodies.tree.as_ref().is_none_or(|tree| tree.is_over(bodies.groups.len()))
+        && elements.bvh.as_ref().is_none_or(|bvh| bvh.covers(elements.groups.len()))
 }

@@ -24,9 +24,9 @@ pub use item::{Item, Reader};
 pub(crate) use kept::{Kept, kept, load_column};
 pub use seal::{RestoreError, sealed, unsealed};
 
-use crate::contact::cloth::Mutual;
+use crate::contact::cloth::ClothContacts;
 use crate::contact::collider::ColliderState;
-use crate::contact::pairs::PairList;
+use crate::contact::collider::contacts::ColliderContacts;
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::solver::Solver;
@@ -51,28 +51,28 @@ impl<R: Real> Solver<R> {
     }
 
     /// Pairs with a collider that moves hold for this frame alone: all are found anew in the next, but for the points that
-    /// are trapped.
+    /// are inside it.
     fn save_pairs(&self, out: &mut Vec<u8>) {
         let hold = !self.collider_states.iter().any(|collider| collider.moves);
         hold.put(out);
-        for list in &self.pairs {
+        for list in &self.collider_contacts {
             if hold {
                 list.save(out);
             } else {
-                list.span.put(out);
-                list.trapped.put(out);
+                list.interval.put(out);
+                list.depenetration.put(out);
             }
         }
     }
 
     fn load_pairs(&mut self, from: &mut Reader<'_>) -> Option<()> {
         let hold = bool::take(from)?;
-        for list in &mut self.pairs {
+        for list in &mut self.collider_contacts {
             if hold {
                 list.load(from)?;
             } else {
-                list.span = Item::take(from)?;
-                list.trapped = Item::take(from)?;
+                list.interval = Item::take(from)?;
+                list.depenetration = Item::take(from)?;
             }
         }
         Some(())
@@ -113,9 +113,9 @@ impl<R: Real> Solver<R> {
             collider.begin_frame(&start, &end);
             collider.now = now;
         }
-        self.pairs.iter_mut().for_each(PairList::sort_by_point);
-        if let Some(Mutual { bodies, .. }) = &mut self.mutual {
-            bodies.refit();
+        self.collider_contacts.iter_mut().for_each(ColliderContacts::sort_by_point);
+        if let Some(ClothContacts { elements, .. }) = &mut self.cloth_contacts {
+            elements.refit();
         }
         self.anchor_rows();
     }
@@ -123,34 +123,34 @@ impl<R: Real> Solver<R> {
 
 // Pairs are kept beside the rest, where they hold.
 kept!([R: Real] Solver<R> {
-    columns: [far, strayed],
-    values: [terms, ground_terms, touches],
-    parts: [state, collider_states, mutual, ground],
-    anew: [cloths, colliders, pairs, spans, windows, drifts, near, maps, pool],
+    columns: [interval_bounds, bounds_violated],
+    values: [collider_materials, ground_materials, touches],
+    parts: [state, collider_states, cloth_contacts, ground],
+    anew: [cloths, colliders, collider_contacts, candidate_intervals, active_windows, frame_travel, window_bounds, material_maps, pool],
 });
 
 kept!([R: Real] State<R> {
     columns: [anchor, displacement, velocity],
     values: [],
     parts: [],
-    anew: [start, led, parted, step_length, predicted, normal, inverse_mass],
+    anew: [start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, inverse_mass],
 });
 
-kept!([R: Real] PairList<R> {
+kept!([R: Real] ColliderContacts<R> {
     columns: [],
-    values: [span, point_face, edge_edge, face_point, trapped],
+    values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    anew: [cloth, collider, by_point, active, searched, again, tasks],
+    anew: [cloth, collider, by_point, active, is_searched, searched_groups, tasks],
 });
 
-kept!([R: Real] Mutual<R> {
-    columns: [strayed, began_at],
-    values: [terms, span],
-    parts: [bodies, paths, active, tangle],
-    anew: [room, held],
+kept!([R: Real] ClothContacts<R> {
+    columns: [bounds_violated, interval_start],
+    values: [materials, interval],
+    parts: [elements, trajectories, cache, untangling],
+    anew: [buffers, frozen],
 });
 
-impl<R: Real> PairList<R> {
+impl<R: Real> ColliderContacts<R> {
     /// Sets `by_point`.
     fn sort_by_point(&mut self) {
         let keys = (0..).zip(&self.point_face).map(|(index, pair)| u64::from(pair.points[0]) << 32 | index);
