@@ -80,8 +80,8 @@ fn solved_problems(root: &Path, name: &str, text: &str) -> Vec<String> {
     text.lines().enumerate().filter_map(of_line).collect()
 }
 
-/// The files that a module can be in, from the root: `nucleus_core::contact::stick` in
-/// `crates/nucleus-core/src/collision/stick.rs`.
+/// The files that a module can be in, from the root: `nucleus_core::contact::response` in
+/// `crates/nucleus-core/src/contact/response.rs`.
 fn module_files(module: &str) -> [String; 2] {
     let (package, path) = module.split_once("::").unwrap_or((module, ""));
     let stem = format!("crates/{}/src/{}", package.replace('_', "-"), path.replace("::", "/"));

@@ -18,12 +18,12 @@ use crate::bytes::{
 };
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::pressure::Chamber;
-use crate::contact::cloth::Mutual;
-use crate::contact::cloth::paths::Paths;
-use crate::contact::cloth::tangle::{Crossing, Remedy};
-use crate::contact::pairs::PairList;
-use crate::contact::search::GROUP;
-use crate::contact::terms::Terms;
+use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::motion_bounds::Trajectories;
+use crate::contact::cloth::untangling::{Correction, Intersection};
+use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::collider::query::GROUP_SIZE;
+use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;
 use crate::input::validation::is_in_range;
 use crate::math::Real;
@@ -80,41 +80,41 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     // The ignored fields are rebuilt, or every frame writes them before it reads them.
     let ContactSystem {
         collider_states,
-        pairs: _,
-        spans: _,
-        windows: _,
-        drifts: _,
-        near: _,
-        far,
-        strayed,
-        terms,
-        ground_terms,
-        maps: _,
-        mutual,
+        collider_contacts: _,
+        candidate_intervals: _,
+        active_windows: _,
+        frame_travel: _,
+        window_bounds: _,
+        interval_bounds,
+        bounds_violated,
+        collider_materials,
+        ground_materials,
+        material_maps: _,
+        cloth_contacts,
         touches,
         ground,
     } = contact;
-    far.encode(out);
-    strayed.encode(out);
-    terms.encode(out);
-    ground_terms.encode(out);
+    interval_bounds.encode(out);
+    bounds_violated.encode(out);
+    collider_materials.encode(out);
+    ground_materials.encode(out);
     touches.encode(out);
     state.save(out);
     collider_states.save(out);
-    mutual.save(out);
+    cloth_contacts.save(out);
     ground.save(out);
 }
 
 fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
     let Solver { state, contact, .. } = solver;
-    load_column(&mut contact.far, from)?;
-    load_column(&mut contact.strayed, from)?;
-    contact.terms = Encode::decode(from)?;
-    contact.ground_terms = Encode::decode(from)?;
+    load_column(&mut contact.interval_bounds, from)?;
+    load_column(&mut contact.bounds_violated, from)?;
+    contact.collider_materials = Encode::decode(from)?;
+    contact.ground_materials = Encode::decode(from)?;
     contact.touches = Encode::decode(from)?;
     state.load(from)?;
     contact.collider_states.load(from)?;
-    contact.mutual.load(from)?;
+    contact.cloth_contacts.load(from)?;
     contact.ground.load(from)
 }
 
@@ -123,24 +123,24 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
 fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     let are_valid = !solver.contact.collider_states.iter().any(|collider| collider.moves);
     are_valid.encode(out);
-    for list in &solver.contact.pairs {
+    for list in &solver.contact.collider_contacts {
         if are_valid {
             list.save(out);
         } else {
-            list.span.encode(out);
-            list.trapped.encode(out);
+            list.interval.encode(out);
+            list.depenetration.encode(out);
         }
     }
 }
 
 fn load_pairs<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
     let are_valid = bool::decode(from)?;
-    for list in &mut solver.contact.pairs {
+    for list in &mut solver.contact.collider_contacts {
         if are_valid {
             list.load(from)?;
         } else {
-            list.span = Encode::decode(from)?;
-            list.trapped = Encode::decode(from)?;
+            list.interval = Encode::decode(from)?;
+            list.depenetration = Encode::decode(from)?;
         }
     }
     Some(())
@@ -187,16 +187,16 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
         collider.begin_frame(&start, &end);
         collider.now = now;
     }
-    solver.contact.pairs.iter_mut().for_each(sort_by_point);
-    if let Some(Mutual { bodies, .. }) = &mut solver.contact.mutual {
-        bodies.refit();
+    solver.contact.collider_contacts.iter_mut().for_each(sort_by_point);
+    if let Some(ClothContacts { elements, .. }) = &mut solver.contact.cloth_contacts {
+        elements.refit();
     }
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
 }
 
 /// Rebuilds `by_point`.
-fn sort_by_point<R: Real>(list: &mut PairList<R>) {
-    let keys = (0..).zip(&list.point_face).map(|(index, pair)| u64::from(pair.points[0]) << 32 | index);
+fn sort_by_point<R: Real>(list: &mut ColliderContacts<R>) {
+    let keys = (0..).zip(&list.point_face).map(|(index, contact)| u64::from(contact.points[0]) << 32 | index);
     list.by_point = keys.collect();
     list.by_point.sort_unstable();
 }
@@ -210,21 +210,23 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
         let lists = rows.map(|length| length as u64);
         let flags =
             [u64::from(cloth.damps), u64::from(cloth.alternates_direction), cloth.triangles.len() as u64];
-        let skin = corners(&cloth.skin.triangles);
+        let boundary = corners(&cloth.boundary.triangles);
         [cloth.blocks.len() as u64]
             .into_iter()
             .chain(order)
             .chain(lists)
             .chain(flags)
-            .chain(skin)
+            .chain(boundary)
             .fold(HASH_SEED, hash_word)
     };
     let cloths = solver.model.cloths.iter().map(of_cloth);
     let colliders = solver.model.colliders.iter().map(|collider| {
-        corners(&collider.skin.triangles).chain([collider.positions.len() as u64]).fold(HASH_SEED, hash_word)
+        corners(&collider.boundary.triangles)
+            .chain([collider.positions.len() as u64])
+            .fold(HASH_SEED, hash_word)
     });
     let masses = solver.state.inverse_mass.iter().map(|mass| mass.to_bits());
-    let rows = [solver.contact.mutual.is_some() as u64, solver.contact.far.len() as u64];
+    let rows = [solver.contact.cloth_contacts.is_some() as u64, solver.contact.interval_bounds.len() as u64];
     cloths.chain([0]).chain(colliders).chain(masses).chain(rows).fold(HASH_SEED, hash_word)
 }
 
@@ -234,82 +236,100 @@ fn corners(triangles: &[[u32; 3]]) -> impl Iterator<Item = u64> + '_ {
 
 /// Whether the model has every point, face and group that the restored contacts refer to. Contacts use them unchecked.
 fn references_are_valid<R: Real>(solver: &Solver<R>) -> bool {
-    let pairs = solver.contact.pairs.iter().all(|list| {
+    let pairs = solver.contact.collider_contacts.iter().all(|list| {
         pairs_are_valid(list, &solver.model.cloths[list.cloth], &solver.model.colliders[list.collider])
     });
-    let mutual =
-        solver.contact.mutual.as_ref().is_none_or(|mutual| mutual_is_valid(mutual, &solver.model.cloths));
+    let cloth_contacts = solver
+        .contact
+        .cloth_contacts
+        .as_ref()
+        .is_none_or(|contacts| cloth_contacts_are_valid(contacts, &solver.model.cloths));
     let in_range = |column: &[Vector3<f64>]| column.iter().all(is_in_range);
     let mut colliders = solver.contact.collider_states.iter();
-    pairs && mutual && colliders.all(|collider| in_range(&collider.start) && in_range(&collider.end))
+    pairs && cloth_contacts && colliders.all(|collider| in_range(&collider.start) && in_range(&collider.end))
 }
 
-fn pairs_are_valid<R: Real>(list: &PairList<R>, cloth: &ClothModel<R>, collider: &ColliderModel) -> bool {
-    let (groups, points) = (cloth.skin.groups(GROUP).count(), cloth.points());
+fn pairs_are_valid<R: Real>(
+    list: &ColliderContacts<R>,
+    cloth: &ClothModel<R>,
+    collider: &ColliderModel,
+) -> bool {
+    let (groups, points) = (cloth.boundary.groups(GROUP_SIZE).count(), cloth.points());
     let is_ours = |ours: &[u32]| ours.iter().all(|point| points.contains(point));
     let is_theirs = |theirs: &[u32]| theirs.iter().all(|&point| (point as usize) < collider.positions.len());
     let is_valid = |group: u32, ours: &[u32], theirs: &[u32]| {
         (group as usize) < groups && is_ours(ours) && is_theirs(theirs)
     };
-    let faces = collider.skin.triangles.len();
-    list.point_face.iter().all(|pair| is_valid(pair.group, &pair.points, &pair.collider_points))
-        && list.edge_edge.iter().all(|pair| is_valid(pair.group, &pair.points, &pair.collider_points))
-        && list.face_point.iter().all(|pair| is_valid(pair.group, &pair.points, &pair.collider_points))
-        && list.trapped.points.iter().all(|&(point, face)| is_ours(&[point]) && (face as usize) < faces)
-        && is_ours(&list.trapped.suspects)
+    let faces = collider.boundary.triangles.len();
+    list.point_face.iter().all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
+        && list
+            .edge_edge
+            .iter()
+            .all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
+        && list
+            .face_point
+            .iter()
+            .all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
+        && list.depenetration.points.iter().all(|&(point, face)| is_ours(&[point]) && (face as usize) < faces)
+        && is_ours(&list.depenetration.suspects)
 }
 
-fn mutual_is_valid<R: Real>(mutual: &Mutual<R>, cloths: &[ClothModel<R>]) -> bool {
-    let Mutual { terms, tangle, bodies, active, .. } = mutual;
-    let rows = mutual.strayed.len();
+fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: &[ClothModel<R>]) -> bool {
+    let ClothContacts { materials, untangling, elements, cache, .. } = cloth_contacts;
+    let rows = cloth_contacts.bounds_violated.len();
     // Rows between the points of one cloth and those of the next are padding.
     let mut is_point = vec![false; rows];
     cloths.iter().flat_map(ClothModel::points).for_each(|row| is_point[row as usize] = true);
     let are_points = |points: &[u32]| {
         points.iter().all(|&point| is_point.get(point as usize).is_some_and(|&is_point| is_point))
     };
-    (terms.is_empty() || terms.len() == cloths.len() * cloths.len())
-        && active.point_face.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.edge_edge.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.point_edge.iter().all(|near| near.fits(are_points, terms.len()))
-        && active.point_point.iter().all(|near| near.fits(are_points, terms.len()))
-        && tangle.crossings.iter().all(|crossing| {
-            are_points(&crossing.edge) && are_points(&crossing.wings) && are_points(&crossing.face)
+    (materials.is_empty() || materials.len() == cloths.len() * cloths.len())
+        && cache.point_face.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.edge_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.point_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.point_point.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && untangling.intersections.iter().all(|intersection| {
+            are_points(&intersection.edge)
+                && are_points(&intersection.wings)
+                && are_points(&intersection.face)
         })
-        && bodies.tree.as_ref().is_none_or(|tree| tree.is_over(bodies.groups.len()))
+        && elements.bvh.as_ref().is_none_or(|bvh| bvh.covers(elements.groups.len()))
 }
 
 checkpoint_struct!([R: Real] State<R> {
     columns: [anchor, displacement, velocity, chambers, rotations],
     values: [wind_travel],
     parts: [],
-    rebuilt: [start, led, parted, step_length, predicted, normal, area, gust, inverse_mass],
+    rebuilt: [
+        start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, area, gust,
+        inverse_mass
+    ],
 });
 
 encode_struct!([] Chamber { start_volume: f64, volume: f64, amount: f64 });
 
-checkpoint_struct!([R: Real] PairList<R> {
+checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
-    values: [span, point_face, edge_edge, face_point, trapped],
+    values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, by_point, active, searched, again, tasks],
+    rebuilt: [cloth, collider, by_point, active, is_searched, searched_groups, tasks],
 });
 
-checkpoint_struct!([R: Real] Mutual<R> {
-    columns: [strayed, began_at],
-    values: [terms, span],
-    parts: [bodies, paths, active, tangle],
-    rebuilt: [room, held],
+checkpoint_struct!([R: Real] ClothContacts<R> {
+    columns: [bounds_violated, interval_start],
+    values: [materials, interval],
+    parts: [elements, trajectories, cache, untangling],
+    rebuilt: [buffers, frozen],
 });
 
-checkpoint_struct!([R: Real] Paths<R> { columns: [from, travel], values: [], parts: [], rebuilt: [] });
+checkpoint_struct!([R: Real] Trajectories<R> { columns: [origin, travel], values: [], parts: [], rebuilt: [] });
 
-encode_struct!([R: Real] Terms<R> {
-    thickness: f64, reach: f64, sides: [R; 2], friction: [R; 2], stickiness: [R; 2], bounce: [R; 2],
-    strength: [R; 2], untangling: f64, traps: bool, mobility: [R; 2], elements: [Elements; 2], edges: bool,
+encode_struct!([R: Real] ContactMaterial<R> {
+    thickness: f64, adhesion_range: f64, thicknesses: [R; 2], friction: [R; 2], stickiness: [R; 2], bounce: [R; 2],
+    strength: [R; 2], untangling_rate: f64, depenetrates: bool, mobility: [R; 2], elements: [Elements; 2], edges: bool,
 });
 
-encode_struct!([] Crossing { edge: [u32; 2], wings: [u32; 2], face: [u32; 3], remedy: Remedy });
+encode_struct!([] Intersection { edge: [u32; 2], wings: [u32; 2], face: [u32; 3], correction: Correction });
 
 impl Encode for Elements {
     const SIZE: usize = 1;
@@ -331,22 +351,22 @@ impl Encode for Elements {
     }
 }
 
-impl Encode for Remedy {
+impl Encode for Correction {
     const SIZE: usize = 1;
     fn encode(&self, out: &mut Vec<u8>) {
         let number: u8 = match self {
-            Self::Back(0) => 0,
-            Self::Back(_) => 1,
-            Self::Shorten => 2,
-            Self::Wait => 3,
+            Self::ReturnEnd(0) => 0,
+            Self::ReturnEnd(_) => 1,
+            Self::ShortenContour => 2,
+            Self::None => 3,
         };
         number.encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
         match u8::decode(from)? {
-            end @ (0 | 1) => Some(Self::Back(end.into())),
-            2 => Some(Self::Shorten),
-            3 => Some(Self::Wait),
+            end @ (0 | 1) => Some(Self::ReturnEnd(end.into())),
+            2 => Some(Self::ShortenContour),
+            3 => Some(Self::None),
             _ => None,
         }
     }

@@ -188,9 +188,9 @@ impl Default for StepReport {
 /// The cost of one pass over a list of rows or over all points, per frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassCost {
-    /// The name of the pass: `predict`, `stretch`, `bend`, `collide`, `meet` ...
+    /// The name of the pass: `predict`, `stretch`, `bend`, `collider contact`, `cloth contact` ...
     pub name: &'static str,
-    /// Rows in its list; for the contact passes `collide` and `meet`, the elements that can touch.
+    /// Rows in its list; for the contact passes, the elements that can touch.
     pub rows: usize,
     /// Sweeps over the whole list per frame.
     pub sweeps: f64,

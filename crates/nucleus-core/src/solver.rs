@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 use crate::bytes::RestoreError;
 use crate::constraints::whole;
-use crate::contact::cloth::Mutual;
+use crate::contact::cloth::ClothContacts;
 use crate::contact::collider::ColliderState;
-use crate::contact::foresee::Cover;
+use crate::contact::collider::broad_phase::MotionBox;
+use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::ground::Ground;
-use crate::contact::maps::Maps;
-use crate::contact::pairs::PairList;
-use crate::contact::terms::Terms;
+use crate::contact::material::ContactMaterial;
+use crate::contact::material::MaterialMaps;
 use crate::input::frame::FrameInput;
 use crate::input::validation::LastPositions;
 use crate::input::{ClothId, ColliderId, PointId};
@@ -45,26 +45,26 @@ pub struct ContactSystem<R: Real> {
     /// By collider.
     pub collider_states: Vec<ColliderState>,
     /// Candidate pairs, per cloth and collider.
-    pub pairs: Vec<PairList<R>>,
+    pub collider_contacts: Vec<ColliderContacts<R>>,
     /// By cloth: the candidate interval of its pairs, and that of its active pairs, as shares of the frame.
-    pub spans: Vec<[f64; 2]>,
-    pub windows: Vec<[f64; 2]>,
+    pub candidate_intervals: Vec<[f64; 2]>,
+    pub active_windows: Vec<[f64; 2]>,
     /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
-    pub drifts: Vec<[R; 3]>,
+    pub frame_travel: Vec<[R; 3]>,
     /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
     /// scene has no collider.
-    pub near: Vec<Cover<R>>,
-    pub far: Vec<Cover<R>>,
+    pub window_bounds: Vec<MotionBox<R>>,
+    pub interval_bounds: Vec<MotionBox<R>>,
     /// Points with new motion bounds, whose pairs are to be found again.
-    pub strayed: Vec<bool>,
+    pub bounds_violated: Vec<bool>,
     /// Contact material of each cloth with each collider in this frame, by cloth and collider.
-    pub terms: Vec<Option<Terms<R>>>,
+    pub collider_materials: Vec<Option<ContactMaterial<R>>>,
     /// Contact material of each cloth with the ground plane.
-    pub ground_terms: Vec<Option<Terms<R>>>,
-    /// Vertex maps of contact.
-    pub maps: Maps<R>,
+    pub ground_materials: Vec<Option<ContactMaterial<R>>>,
+    /// Vertex material_maps of contact.
+    pub material_maps: MaterialMaps<R>,
     /// Contact of cloth with itself and with other cloth; none where no two elements can ever touch.
-    pub mutual: Option<Mutual<R>>,
+    pub cloth_contacts: Option<ClothContacts<R>>,
     /// Whether the last frame had a contact.
     pub touches: bool,
     /// The ground plane.
@@ -196,20 +196,21 @@ impl<R: Real> ContactSystem<R> {
         self_collides: bool,
     ) -> Self {
         let bounded = if colliders.is_empty() { 0 } else { state.anchor.len() };
-        let with_each = |cloth| (0..colliders.len()).map(move |collider| PairList::new(cloth, collider));
+        let with_each =
+            |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
         Self {
             collider_states: colliders.iter().map(ColliderState::new).collect(),
-            pairs: (0..models.len()).flat_map(with_each).collect(),
-            spans: vec![[0.0; 2]; models.len()],
-            windows: vec![[0.0; 2]; models.len()],
-            drifts: vec![[R::ZERO; 3]; models.len()],
-            near: vec![[Row4::ZERO; 2]; bounded],
-            far: vec![[Row4::ZERO; 2]; bounded],
-            strayed: vec![true; bounded],
-            terms: Vec::new(),
-            ground_terms: Vec::new(),
-            maps: Maps::new(cloths, models, state.anchor.len()),
-            mutual: self_collides.then(|| Mutual::new(models, &state.anchor)),
+            collider_contacts: (0..models.len()).flat_map(with_each).collect(),
+            candidate_intervals: vec![[0.0; 2]; models.len()],
+            active_windows: vec![[0.0; 2]; models.len()],
+            frame_travel: vec![[R::ZERO; 3]; models.len()],
+            window_bounds: vec![[Row4::ZERO; 2]; bounded],
+            interval_bounds: vec![[Row4::ZERO; 2]; bounded],
+            bounds_violated: vec![true; bounded],
+            collider_materials: Vec::new(),
+            ground_materials: Vec::new(),
+            material_maps: MaterialMaps::new(cloths, models, state.anchor.len()),
+            cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
             // Cloth that starts from a saved state may be in contact; only a frame can tell.
             touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
             ground: Ground::default(),

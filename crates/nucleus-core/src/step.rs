@@ -17,7 +17,7 @@ use std::sync::atomic::Ordering;
 use crate::constraints::damp::damp;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
-use crate::contact::resolve::Tally;
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
@@ -56,21 +56,21 @@ fn solve_frame<R: CompiledReal>(
     observer: &mut dyn StepObserver,
 ) -> StepReport {
     let schedule = Schedule::new(frame);
-    let mut tally = Tally::default();
+    let mut counters = ContactCounters::default();
     observer.enter(Stage::FrameStart);
     begin_frame(solver, frame);
-    if solve_substeps(solver, frame, &schedule, &mut tally, observer).is_break() {
+    if solve_substeps(solver, frame, &schedule, &mut counters, observer).is_break() {
         return StepReport { stopped: true, ..StepReport::default() };
     }
     observer.enter(Stage::Report);
-    solver.contact.touches = tally.contacts.load(Ordering::Relaxed) > 0;
-    report(solver, frame, &schedule, &tally)
+    solver.contact.touches = counters.contacts.load(Ordering::Relaxed) > 0;
+    report(solver, frame, &schedule, &counters)
 }
 
 /// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
 /// is evaluated once per frame and interpolated inside it (§2.4).
 fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
-    solver.take_over_pairs(frame);
+    solver.begin_collider_contact(frame);
     solver.begin_contact(frame);
     solver.state.move_anchors();
     solver.state.carry_air(frame);
@@ -82,8 +82,8 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
         }
     }
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
-    if let Some(mutual) = &mut solver.contact.mutual {
-        mutual.active.follow(&solver.state.anchor);
+    if let Some(contacts) = &mut solver.contact.cloth_contacts {
+        contacts.cache.update_anchors(&solver.state.anchor);
     }
     for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
         collider.begin_frame(&motion.start, &motion.end);
@@ -96,7 +96,7 @@ fn solve_substeps<R: CompiledReal>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     schedule: &Schedule<R>,
-    tally: &mut Tally,
+    counters: &mut ContactCounters,
     observer: &mut dyn StepObserver,
 ) -> ControlFlow<()> {
     let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
@@ -110,13 +110,13 @@ fn solve_substeps<R: CompiledReal>(
         update_gusts(&solver.model.cloths, &mut solver.state, frame, time, &solver.pool);
         solver.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
-            let splits = solver.parts(frame, schedule, schedule.span(step), &max_speeds);
+            let splits = solver.splits(frame, schedule, schedule.span(step), &max_speeds);
             let direction = if alternates_direction { schedule.direction(step) } else { Direction::Forward };
             let schedule = schedule.split(frame, splits);
             for (index, span) in schedule.time_steps(step) {
                 let now =
                     TimeStep { frame, schedule: &schedule, index, span, direction, max_speeds: &max_speeds };
-                solve_time_step(solver, &now, tally, observer)?;
+                solve_time_step(solver, &now, counters, observer)?;
             }
         }
         let substep_length = schedule.h * f64::from(schedule.steps);
@@ -132,13 +132,14 @@ fn solve_substeps<R: CompiledReal>(
 fn solve_time_step<R: CompiledReal>(
     solver: &mut Solver<R>,
     now: &TimeStep<'_, R>,
-    tally: &mut Tally,
+    counters: &mut ContactCounters,
     observer: &mut dyn StepObserver,
 ) -> ControlFlow<()> {
     let TimeStep { frame, schedule, span, .. } = *now;
     observer.enter(Stage::Predict);
-    let can_touch =
-        frame.plane.is_some() || !solver.model.colliders.is_empty() || solver.contact.mutual.is_some();
+    let can_touch = frame.plane.is_some()
+        || !solver.model.colliders.is_empty()
+        || solver.contact.cloth_contacts.is_some();
     solver.state.store_step_start(schedule.h, can_touch);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
     predict(&solver.model.cloths, &mut solver.state, now, &solver.pool);
@@ -169,20 +170,20 @@ fn solve_time_step<R: CompiledReal>(
                 );
             }
             Pass::ClothContact => {
-                solver.stick_to_cloth(frame, schedule, span, tally);
-                solver.meet(1.0, frame, schedule, span, tally, observer);
+                solver.apply_cloth_adhesion(frame, schedule, span, counters);
+                solver.resolve_cloth_contacts(1.0, frame, schedule, span, counters, observer);
             }
             Pass::ColliderContact => {
-                solver.stick_to_colliders(frame, schedule, span, tally);
-                solver.meet_colliders(1.0, frame, schedule, span, tally, observer);
+                solver.apply_collider_adhesion(frame, schedule, span, counters);
+                solver.resolve_collider_contacts(1.0, frame, schedule, span, counters, observer);
             }
-            Pass::Safeguard => solver.settle(frame, schedule, span, tally, observer),
+            Pass::Safeguard => solver.safeguard(frame, schedule, span, counters, observer),
         }
     }
     whole::remember_deformation(&mut solver.model.cloths, &solver.state, frame, &solver.pool);
     observer.enter(Stage::Velocity);
     update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, &solver.pool);
-    solver.bounce(frame, schedule, span); // restitution
+    solver.apply_restitution(frame, schedule, span);
     observer.step(span.to, solver);
     ControlFlow::Continue(())
 }

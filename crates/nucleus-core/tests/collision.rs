@@ -1,4 +1,4 @@
-//! Contact: nothing passes, everything rests at its thickness.
+//! Contact with colliders and the ground: no penetration, rest at the thickness, friction, restitution.
 
 mod scenes;
 
@@ -61,7 +61,7 @@ fn cloth_rests_on_a_mesh_at_the_sum_of_the_thicknesses() {
 }
 
 #[test]
-fn points_over_a_table_touch_it_and_those_beyond_its_edge_are_free() {
+fn contact_states_are_touching_over_a_table_and_free_beyond_its_edge() {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(0.0, 0.031, -0.5));
     let mut builder = one_cloth(sheet.clone(), LINKS);
@@ -91,9 +91,9 @@ fn points_over_a_table_touch_it_and_those_beyond_its_edge_are_free() {
     }
 }
 
-/// Watches a ball of radius 0.15 m that flies along z. No point of the sheet may ever be inside it; and when its
-/// centre has just passed the sheet's plane, what was in its way must be before it, not behind. (Later the
-/// sheet wraps round it, and its rim trails behind with every right.)
+/// Watches a ball of radius 0.15 m that flies along z, and counts points on its wrong side. No point of the sheet may be
+/// inside it. When its centre has just passed the sheet's plane, points that were in its path must be in front of it.
+/// (Later the sheet wraps round the ball, and its rim may trail behind.)
 struct Wrong {
     from: f64,
     speed: f64,
@@ -172,7 +172,7 @@ fn a_fast_ball_never_gets_through_a_hanging_sheet() {
 
 // EVIDENCE: N2.3-4  a collision is the meeting of thickened elements in space and time
 #[test]
-fn cloth_that_is_stretched_a_thousandfold_holds_a_box_all_the_same() {
+fn cloth_that_is_stretched_a_thousandfold_still_holds_a_box() {
     // Four small faces are pulled to metres; then a box much smaller than any of them goes down on one.
     let sheet = grid(3, 3, Vec3::x() * 0.01, Vec3::z() * 0.01);
     let held = pins(&sheet, 0..9);
@@ -190,7 +190,7 @@ fn cloth_that_is_stretched_a_thousandfold_holds_a_box_all_the_same() {
             collide: true,
             ..Default::default()
         };
-        // In the first frame all are pulled wide; then the innermost corner of the face under it is let go.
+        // All points are pinned in the first frame; then the inner corner of the face under the box is free.
         let pins = held.iter().map(|pin| {
             let [start, end] = if step == 0 { [1.0, 1000.0] } else { [1000.0; 2] }.map(|by| wide(pin, by));
             Pin { start, end, ..*pin }
@@ -207,7 +207,7 @@ fn cloth_that_is_stretched_a_thousandfold_holds_a_box_all_the_same() {
         let report = solver.step(&input, &mut ());
         assert!(report.finite && report.pairs_unresolved == 0, "frame {step}: {report:?}");
     }
-    // The box is under where the sheet was; so is what it rests on.
+    // The box has pushed the corner below the sheet.
     let middle = solver.point(CLOTH, 4);
     assert!(middle.y < -0.9, "{middle}");
 }
@@ -224,7 +224,7 @@ fn a_sheet_draped_on_a_sphere_is_almost_unstretched_and_not_inside() {
     let report = last.expect("sixty frames");
     assert!(report.strain_99 < 0.01, "{report:?}");
     assert!(report.pairs_unresolved == 0 && report.pairs_reverted == 0, "{report:?}");
-    // A pass of resistance after the last of collision would press it in.
+    // A constraint sweep after the last contact pass would press it in.
     assert!(report.min_gap > 0.999, "{report:?}");
     assert!((0..1681).all(|k| solver.point(CLOTH, k).norm() > 0.31 * INSCRIBED), "a point is inside");
     println!("draped at 384 evaluations: {report:?}");
@@ -270,7 +270,7 @@ fn friction_holds_on_a_slope_up_to_its_angle_and_not_beyond() {
 }
 
 #[test]
-fn what_bounces_rises_to_the_square_of_its_bounce() {
+fn a_bounce_rises_to_the_square_of_the_restitution() {
     for on_mesh in [false, true] {
         let mut patch = grid(3, 3, Vec3::x() * 0.2, Vec3::z() * 0.2);
         patch.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.1, 1.01, -0.1));
@@ -285,7 +285,7 @@ fn what_bounces_rises_to_the_square_of_its_bounce() {
             input.plane = None;
         }
         let mut solver = Solver::<f32>::new(builder, 1);
-        // Let go 1 m above the thickness, it is back on its way down after the second half of a second.
+        // Released 1 m above the thickness, it falls again after the second half of a second.
         let fall = (2.0f64 / 9.81).sqrt();
         let frames = (24.0 * fall * (1.0 + 2.0 * 0.7)) as usize;
         let heights: Vec<f64> = (0..frames)
@@ -301,7 +301,7 @@ fn what_bounces_rises_to_the_square_of_its_bounce() {
 }
 
 #[test]
-fn cloth_that_starts_too_close_is_led_out_without_a_jump() {
+fn cloth_that_starts_too_close_separates_without_a_jump() {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| p.y = 0.002);
     let mut solver = Solver::<f32>::new(one_cloth(sheet, LINKS), 1);
@@ -316,11 +316,11 @@ fn cloth_that_starts_too_close_is_led_out_without_a_jump() {
 }
 
 #[test]
-fn a_cloth_that_does_not_collide_has_no_collision_pass() {
+fn a_cloth_that_does_not_collide_has_no_collider_contact_pass() {
     let (builder, mut input) = drape(9, 24.0);
     input.cloths[0].collide = false;
     let mut solver = Solver::<f32>::new(builder, 1);
-    assert!(solver.passes(&input).iter().all(|pass| pass.name != "collide"));
+    assert!(solver.passes(&input).iter().all(|pass| pass.name != "collider contact"));
     assert_eq!(solver.step(&input, &mut ()).broad_phases, 0);
     let lists = ClothLists { bend: false, ..LINKS };
     let bare = Solver::<f32>::new(one_cloth(grid(5, 5, Vec3::x(), Vec3::z()), lists), 1);
@@ -328,8 +328,8 @@ fn a_cloth_that_does_not_collide_has_no_collision_pass() {
     assert_eq!(names, ["predict", "stretch"]);
 }
 
-/// A sheet at rest on the ground, after `frames` frames in which the plane is where `plane_at` says for a share of them; the lowest height
-/// of any point above the plane, over the thickness, and the largest speed.
+/// Runs a sheet at rest on the ground for `frames` frames, with the plane of `plane_at` at a share of them. Returns the
+/// smallest height of any point above the plane over the thickness, and the largest vertical speed in m/s.
 fn carried_by_a_plane(frames: u32, plane_at: impl Fn(f64) -> GroundPlane) -> (f64, f64) {
     let thickness = 0.005;
     let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);

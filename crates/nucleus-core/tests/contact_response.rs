@@ -1,4 +1,4 @@
-//! What becomes of two that touch: they stick, bounce, collide in part, are pushed out.
+//! Contact response: adhesion, restitution, partial collision, push-out, vertex maps.
 
 mod scenes;
 
@@ -13,7 +13,7 @@ const FIRST: ClothId = ClothId(0);
 const SECOND: ClothId = ClothId(1);
 const THICKNESS: f64 = 0.01;
 
-/// Points that nothing links.
+/// Points without links.
 fn beads(positions: Vec<Vec3>) -> Surface {
     Surface { positions, faces: Faces::default() }
 }
@@ -62,7 +62,7 @@ fn head_on(masses: [f64; 2], speeds: [f64; 2], bounce: [f64; 2]) -> [f64; 2] {
 }
 
 #[test]
-fn two_beads_that_meet_head_on_bounce_as_newton_says() {
+fn two_beads_in_a_head_on_collision_follow_newtons_law_of_restitution() {
     for (masses, speeds, bounce) in [
         ([1.0, 1.0], [1.0, -1.0], [1.0, 1.0]),
         ([1.0, 3.0], [2.0, 0.0], [0.5, 0.0]),
@@ -119,7 +119,7 @@ fn hanging(stickiness: [f64; 2], frames: u32, resistance: ResistanceModel) -> f6
 }
 
 #[test]
-fn what_sticks_with_one_in_sum_never_comes_off_a_ceiling() {
+fn cloth_with_a_stickiness_of_one_in_sum_never_leaves_a_ceiling() {
     for resistance in [physical(96.0), ResistanceModel::Classic] {
         for stickiness in [[0.5, 0.5], [2.0, 0.0], [0.0, 1.0]] {
             let height = hanging(stickiness, 48, resistance);
@@ -130,7 +130,7 @@ fn what_sticks_with_one_in_sum_never_comes_off_a_ceiling() {
 }
 
 #[test]
-fn the_more_it_sticks_the_later_it_comes_off() {
+fn cloth_leaves_a_ceiling_later_with_more_stickiness() {
     for resistance in [physical(96.0), ResistanceModel::Classic] {
         let heights = [0.0, 0.5, 0.8, 0.9].map(|x| hanging([x, 0.0], 3, resistance));
         assert!(heights.is_sorted() && heights[3] > heights[0] + 0.01, "{heights:?}");
@@ -138,7 +138,7 @@ fn the_more_it_sticks_the_later_it_comes_off() {
 }
 
 #[test]
-fn how_fast_it_comes_off_hardly_depends_on_the_evaluations() {
+fn the_separation_speed_under_adhesion_hardly_depends_on_evaluations() {
     // Within reach of the ceiling it sinks at a speed that it soon has, g T (1 - s) / s, whatever the steps are.
     let heights = [48.0, 192.0, 768.0].map(|evaluations| hanging([0.9, 0.0], 2, physical(evaluations)));
     let way = heights[2] + THICKNESS;
@@ -149,7 +149,7 @@ fn how_fast_it_comes_off_hardly_depends_on_the_evaluations() {
 }
 
 #[test]
-fn sticky_cloth_hangs_from_sticky_cloth_and_slides_off_what_is_not() {
+fn sticky_cloth_hangs_from_sticky_cloth_and_leaves_other_cloth() {
     let hangs = |stickiness: f64| {
         let upper = grid(5, 5, Vec3::x() * 0.4, Vec3::z() * 0.4);
         let mut lower = grid(5, 5, Vec3::x() * 0.3, Vec3::z() * 0.3);
@@ -169,7 +169,7 @@ fn sticky_cloth_hangs_from_sticky_cloth_and_slides_off_what_is_not() {
 }
 
 #[test]
-fn the_ground_holds_what_sticks_to_it() {
+fn the_ground_holds_sticky_cloth() {
     let jump = |stickiness: f64| {
         let bead = moving(beads(vec![Vec3::y() * THICKNESS]), 1.0, Vec3::new(1.0, 2.0, 0.0));
         let mut solver = solver(vec![bead], Vec::new());
@@ -182,7 +182,7 @@ fn the_ground_holds_what_sticks_to_it() {
     assert!((jump(0.0) - Vec3::new(1.0 / 24.0, 2.0 / 24.0 + THICKNESS, 0.0)).norm() < 1e-9);
 }
 
-/// How far a bead has come that flies at a wall 0.1 m away, in half a second.
+/// The distance that a bead moves in half a second towards a wall 0.1 m away, in metres.
 fn past_a_wall(strength: [f64; 2]) -> f64 {
     let wall = cuboid(Vec3::new(0.1, -1.0, -1.0), Vec3::new(0.2, 1.0, 1.0));
     let bead = moving(beads(vec![Vec3::new(0.0, 0.11, 0.07)]), 0.1, Vec3::x());
@@ -207,7 +207,7 @@ fn a_collision_of_full_strength_stops_and_one_of_none_does_nothing() {
 }
 
 #[test]
-fn a_collision_in_part_lets_through_what_is_strong_enough() {
+fn partial_collide_strength_lets_cloth_pass_under_a_large_force() {
     let heavy = |strength: f64| {
         let sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
         let held = pins(&sheet, [0, 8, 72, 80]);
@@ -270,7 +270,7 @@ fn cloth_pushes_points_of_other_cloth_out_and_none_of_its_own() {
 }
 
 #[test]
-fn points_stay_in_a_collider_that_checks_no_trapped_ones() {
+fn points_stay_inside_a_collider_without_trapped_check() {
     let stays = |trapped_check: bool| {
         let cube = cuboid(Vec3::repeat(-0.5), Vec3::repeat(0.5));
         let bead = moving(beads(vec![Vec3::new(0.1, 0.03, 0.02)]), 0.1, Vec3::x() * 2.0);
@@ -386,8 +386,8 @@ fn stickiness_bounce_and_collide_strength_of_each_point_count() {
 }
 
 #[test]
-fn what_was_being_led_out_of_a_plane_falls_freely_once_there_is_none() {
-    // A tenth of its thickness above the plane: at 1 m/s it takes longer than a frame to be led out.
+fn a_point_in_depenetration_from_a_plane_falls_freely_once_the_plane_is_gone() {
+    // A tenth of its thickness above the plane: at 1 m/s depenetration takes longer than a frame.
     let bead = moving(beads(vec![Vec3::y() * 0.1]), 1.0, Vec3::zeros());
     let mut solver = solver(vec![bead], Vec::new());
     let cloths = vec![ClothFrame { thickness: 1.0, ..bead_settings() }];

@@ -97,11 +97,11 @@ fn each_contact_effect_is_a_pass_only_where_an_attribute_switches_it_on() {
     let alone = ClothLists { self_collision: true, ..ClothLists::NONE };
     assert_eq!(names(alone, &frame), ["predict"]);
     frame.cloths[0].self_collision.on = true;
-    assert_eq!(names(alone, &frame), ["predict", "meet"]);
+    assert_eq!(names(alone, &frame), ["predict", "cloth contact"]);
     frame.cloths[0].stickiness = 0.5;
-    assert_eq!(names(alone, &frame), ["predict", "meet", "stick"]);
+    assert_eq!(names(alone, &frame), ["predict", "cloth contact", "stick"]);
     frame.cloths[0].bounce = 0.5;
-    assert_eq!(names(alone, &frame), ["predict", "meet", "stick", "bounce"]);
+    assert_eq!(names(alone, &frame), ["predict", "cloth contact", "stick", "bounce"]);
     frame.cloths[0].collide_strength = 0.0;
     assert_eq!(names(alone, &frame), ["predict"]);
     frame.cloths[0].push_out.share = 1.0;
@@ -115,7 +115,7 @@ fn collider_contact_is_a_pass_only_where_both_sides_collide() {
     let names = |frame: &FrameInput| -> Vec<&str> {
         passes(ClothLists::NONE, frame).into_iter().map(|(name, _)| name).collect()
     };
-    assert_eq!(names(&frame), ["predict", "collide"]);
+    assert_eq!(names(&frame), ["predict", "collider contact"]);
     frame.colliders[0].collide = false;
     assert_eq!(names(&frame), ["predict"]);
     frame.colliders[0].collide = true;

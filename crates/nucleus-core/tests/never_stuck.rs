@@ -1,4 +1,4 @@
-//! What cannot be satisfied is gone on with, and recovers when it can be.
+//! Infeasible contact neither locks nor explodes, and recovers once it is feasible.
 
 mod scenes;
 
@@ -64,19 +64,19 @@ fn cloth_pinched_between_two_boxes_goes_on_and_recovers_when_they_part() {
         let reports = pinch(gap);
         assert!(reports.iter().all(|report| report.finite));
         let closed = &reports[30];
-        // With less than two thicknesses between the boxes there is no place to be in.
+        // Only boxes that touch or overlap leave no position for a point.
         assert_eq!(closed.depenetrating > 0, gap <= 0.0, "gap {gap}: {closed:?}");
         let last = reports.last().expect("frames");
-        // Where the boxes went into each other a fold may stay; it lies still.
+        // Where the boxes overlapped, a fold may stay; it is at rest.
         assert!(last.strain_99 < 0.01 || gap < 0.0, "gap {gap}: {last:?}");
         assert!(last.kinetic_energy < 1e-2, "gap {gap}: {last:?}");
         assert_eq!((last.depenetrating, last.pairs_reverted), (0, 0), "gap {gap}: {last:?}");
     }
 }
 
-// What has no room for its thickness is pushed from both sides in every step. It must not tremble for it.
+// Cloth without room for its thickness is pushed from both sides in every step. It must not tremble.
 #[test]
-fn cloth_with_room_for_less_than_its_thickness_lies_still() {
+fn cloth_with_room_for_less_than_its_thickness_rests() {
     for gap in [0.016, 0.012] {
         let reports = pinch(gap);
         let closed = &reports[30..46];
@@ -90,7 +90,7 @@ fn cloth_with_room_for_less_than_its_thickness_lies_still() {
 }
 
 #[test]
-fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
+fn cloth_that_starts_inside_a_ball_depenetrates_slowly() {
     let mut patch = grid(9, 9, Vec3::x() * 0.2, Vec3::z() * 0.2);
     patch.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.1, 0.2, -0.1));
     let mut builder = one_cloth(patch, LINKS);
@@ -101,7 +101,7 @@ fn cloth_that_starts_inside_a_ball_is_led_out_slowly() {
     let mut solver = Solver::<f32>::new(builder, 1);
     let first = solver.step(&input, &mut ());
     assert_eq!(first.depenetrating, 81, "{first:?}");
-    // Points are led at 1 m/s. What they pull along is of that speed too, and nothing may be much faster.
+    // Points move out at 1 m/s. Points that they pull along may have that speed, and none may be much faster.
     let energy = 0.2 * 0.2 * 0.2 * 2.0 * 2.0 / 2.0;
     for frame in 0..6 {
         let report = solver.step(&input, &mut ());
@@ -126,7 +126,7 @@ fn two_in_empty_space(surfaces: [Surface; 2], crossover_push: f64, strength: &[f
     (0..96).map(|_| solver.step(&input, &mut ())).collect()
 }
 
-/// Two sheets that cut each other at a slant; the second turned over where `flipped`.
+/// Two sheets that intersect at an angle; the second turned over if `flipped`.
 fn at_a_slant(flipped: bool, strength: &[f64]) -> Vec<StepReport> {
     let level = grid(13, 13, Vec3::x(), Vec3::z());
     let turn =
@@ -138,30 +138,30 @@ fn at_a_slant(flipped: bool, strength: &[f64]) -> Vec<StepReport> {
 }
 
 #[test]
-fn sheets_that_begin_inside_each_other_are_worked_apart_whichever_way_they_face() {
+fn sheets_that_start_intersecting_untangle_whichever_way_they_face() {
     for flipped in [false, true] {
         let reports = at_a_slant(flipped, &[]);
         assert!(reports[0].intersections > 20, "{:?}", reports[0]);
         let last = reports.last().expect("frames");
         assert_eq!((last.intersections, last.pairs_unresolved), (0, 0), "flipped {flipped}: {last:?}");
-        // They are led at a few decimetres a second, and nothing stops them here.
+        // They separate at a few decimetres per second, and nothing stops them here.
         assert!(reports.iter().all(|report| report.finite && report.kinetic_energy < 0.2 * 2.0 * 0.5 * 0.5));
         assert!(last.max_strain < 0.05, "flipped {flipped}: {last:?}");
     }
 }
 
 #[test]
-fn points_that_a_map_lets_pass_are_no_tangle() {
-    let tangled = |strength: f64| {
+fn points_of_partial_collide_strength_are_no_intersections() {
+    let intersections = |strength: f64| {
         let reports = at_a_slant(false, &[strength; 169]);
         [reports[0].intersections, reports[0].pairs_unresolved]
     };
-    assert_eq!([0.0, 0.5].map(tangled), [[0; 2]; 2]);
-    assert!(tangled(1.0)[0] > 20, "{:?}", tangled(1.0));
+    assert_eq!([0.0, 0.5].map(intersections), [[0; 2]; 2]);
+    assert!(intersections(1.0)[0] > 20, "{:?}", intersections(1.0));
 }
 
 #[test]
-fn crossover_push_works_sheets_apart_sooner() {
+fn crossover_push_untangles_sheets_sooner() {
     // A strip stands in a level sheet, four and a half of its edges deep.
     let apart_after = |push: f64| {
         let level = grid(13, 13, Vec3::x(), Vec3::z());
@@ -212,7 +212,7 @@ fn a_pair_that_pins_carry_through_each_other_is_one_unresolved_pair() {
 }
 
 #[test]
-fn a_pair_that_touches_from_the_start_is_unresolved_once_however_many_passes_meet_it() {
+fn an_inseparable_pair_is_counted_once_per_step_whatever_the_number_of_passes() {
     let report = carried_through_a_triangle(0.0, false);
     assert_eq!((report.pairs_unresolved, report.pairs_reverted), (1, 0), "{report:?}");
 }

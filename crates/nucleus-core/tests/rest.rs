@@ -1,4 +1,4 @@
-//! What lies on cloth lies still.
+//! Stacks and folds at rest do not creep.
 
 mod scenes;
 
@@ -13,8 +13,8 @@ const SHEETS: u32 = 5;
 const POINTS: usize = 36;
 const THICKNESS: f64 = 0.003;
 
-/// How far each point of five sheets of 10 cm goes down a slope of so many degrees in a second, from some frames after they
-/// were laid on it. They have a friction of 0.5 with each other and of 0.25 and the ground's with that.
+/// How far each point of five sheets of 10 cm slides down a slope in a second, in metres, starting `from` frames after
+/// they were laid on it. Their friction is 0.5 among each other, and 0.25 plus that of the ground with it.
 fn slid(degrees: f64, ground_friction: f64, from: usize) -> Vec<f64> {
     let (sin, cos) = f64::to_radians(degrees).sin_cos();
     let mut builder = ModelBuilder::new();
@@ -46,7 +46,7 @@ fn slid(degrees: f64, ground_friction: f64, from: usize) -> Vec<f64> {
 
 #[test]
 fn a_stack_of_sheets_holds_on_a_slope_that_its_friction_holds_on() {
-    // It would hold up to atan 0.5 = 26.57 degrees. As it is laid down, it slips by half a millimetre.
+    // Friction holds up to atan 0.5 = 26.57 degrees. While it settles, the stack slips by half a millimetre.
     let gone = [0, 24].map(|from| slid(20.0, 0.25, from));
     assert!(gone[0].iter().all(|x| x.abs() < 1e-3), "{gone:?}");
     assert!(gone[1].iter().all(|x| x.abs() < 1e-5), "{gone:?}");
@@ -61,7 +61,7 @@ fn a_stack_of_sheets_slides_down_a_smoother_slope_as_one() {
     assert!(gone.iter().all(|x| (x / exact - 1.0).abs() < 0.02), "{gone:?} for {exact}");
 }
 
-/// A strip of 9 by 45 cm that stands upright, lets itself down on the ground and folds onto itself.
+/// A strip of 9 by 45 cm that stands upright, sinks to the ground and folds onto itself.
 fn folding_strip() -> (Surface, FrameInput) {
     let mut strip = grid(7, 31, Vec3::x() * 0.09, Vec3::new(0.0, 0.45, 0.02));
     strip.positions.iter_mut().for_each(|p| p.y += 0.004);
@@ -79,7 +79,7 @@ fn folding_strip() -> (Surface, FrameInput) {
 }
 
 #[test]
-fn a_strip_that_folded_onto_itself_lies_still_for_a_thousand_frames() {
+fn a_strip_folded_onto_itself_rests_for_a_thousand_frames() {
     const SIZE: f64 = 0.45;
     let (strip, input) = folding_strip();
     let points = strip.positions.len();
@@ -92,12 +92,12 @@ fn a_strip_that_folded_onto_itself_lies_still_for_a_thousand_frames() {
         (contacts, (0..points).map(|k| solver.point(ClothId(0), k)).collect::<Vec<Vec3>>())
     };
     let farthest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    // The last of its folds comes over in the tenth second.
+    // The last fold turns over in the tenth second.
     (0..360).for_each(|_| {
         step();
     });
     let (contacts, settled) = step();
-    assert!(contacts > 0 && settled.iter().all(|p| p.y < 0.1), "it lies on itself");
+    assert!(contacts > 0 && settled.iter().all(|p| p.y < 0.1), "it touches itself");
     let mut last = settled.clone();
     for frame in 0..1000 {
         let (_, now) = step();
@@ -108,7 +108,7 @@ fn a_strip_that_folded_onto_itself_lies_still_for_a_thousand_frames() {
     }
     let crept = farthest(&settled, &last);
     assert!(crept < 1e-3 * SIZE, "a point of it crept {crept} m");
-    // Nor does a cache say that it moves: a picture would be blurred.
+    // The velocities for caches show no motion either: a picture would be blurred.
     let mut velocities = Vec::new();
     solver.velocities(ClothId(0), 1.0, &mut velocities);
     let squares = velocities.iter().flatten().map(|v| f64::from(*v).powi(2));

@@ -1,4 +1,4 @@
-//! Cloth against itself and other cloth: nothing passes, everything rests.
+//! Self-collision and contact between cloths: no penetration, rest.
 
 mod scenes;
 
@@ -53,9 +53,9 @@ fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
     (0..points).map(|k| solver.point(ClothId(cloth), k)).collect()
 }
 
-// Turned over, a face of four corners is cut along its other diagonal: the two lie across each other in one place.
+// A reversed quad is triangulated along its other diagonal: the two diagonals cross and coincide at rest.
 #[test]
-fn a_sheet_whose_faces_are_there_twice_is_in_no_contact_with_itself() {
+fn a_sheet_with_doubled_faces_has_no_self_contact() {
     let (u, v) = (Vec3::new(0.8, 0.1, 0.59), Vec3::new(-0.3, -0.9, 0.31));
     let mut sheet = grid(17, 17, u, v);
     let faces: Vec<Vec<u32>> = sheet.faces.iter().map(<[u32]>::to_vec).collect();
@@ -77,7 +77,7 @@ fn a_sheet_whose_faces_are_there_twice_is_in_no_contact_with_itself() {
 // EVIDENCE: N2.3-3  cloth against itself, in point and face and edge and edge
 #[test]
 fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
-    // In a step of Classic cloth points go farther than an edge is long; how the folds lie is chance.
+    // In a Classic step points move farther than an edge is long, so the folds differ by chance.
     let classic = [0.003, 0.004, 0.008].map(|wave| (ResistanceModel::Classic, wave, 12));
     for (resistance, wave, frames) in [(physical(96.0), 0.003, 30)].into_iter().chain(classic) {
         let mut sheet = grid(33, 33, Vec3::new(1.0, 0.0, 0.05), Vec3::new(0.0, 1.0, 0.1));
@@ -109,7 +109,7 @@ fn a_sheet_that_falls_on_its_edge_folds_and_never_passes_itself() {
 }
 
 #[test]
-fn a_flat_sheet_without_gravity_meets_nothing_and_stays_where_it_is() {
+fn a_flat_sheet_without_gravity_has_no_contact_and_does_not_move() {
     // Its points fill no whole number of blocks, and it lies about the origin.
     let mut sheet = grid(17, 17, Vec3::x(), Vec3::y());
     sheet.positions.iter_mut().for_each(|p| *p -= Vec3::new(0.5, 0.5, 0.0));

@@ -116,7 +116,7 @@ fn an_attribute_that_names_no_module_is_found_at_its_line() {
         found(&page, &more)
     };
     let good =
-        ["nucleus_core::integrate::aerodynamics", "nucleus_core::contact", "nucleus_core::contact::stick"];
+        ["nucleus_core::integrate::aerodynamics", "nucleus_core::contact", "nucleus_core::contact::response"];
     assert_eq!(with(good), [""; 0]);
     for bad in ["nucleus_core::contact::slip", "stick", "nucleus_cora::air"] {
         let problems = with([good[0], bad, good[2]]);

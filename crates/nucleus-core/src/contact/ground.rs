@@ -7,12 +7,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::friction::{Push, rub};
-use super::maps::Maps;
-use super::mover::Mover;
-use super::stick::Adhesion;
-use super::terms::Terms;
 use crate::bytes::{checkpoint_struct, encode_struct};
+use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::contact::response::{Adhesion, Push, coulomb_correction};
+use crate::contact::time_step::PositionWriter;
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::schedule::StepInterval;
@@ -33,7 +31,7 @@ impl Plane {
         Self { origin: ground.origin.into(), normal: normal.into() }
     }
 
-    /// Height of a place above it, in metres.
+    /// Height of a position above it, in metres.
     fn height(&self, place: [f64; 3]) -> f64 {
         dot(self.normal, sub(place, self.origin))
     }
@@ -59,8 +57,8 @@ impl<R: Real> Default for Ground<R> {
 }
 
 impl<R: Real> Ground<R> {
-    /// Takes up the plane of a frame. It starts where the last frame left it; one that appears, or turns over at once, is there
-    /// from the start.
+    /// Takes up the plane of a frame. It starts where the last frame left it; a plane that appears or turns over
+    /// at once does not move.
     pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]]) {
         let now = ground.map(Plane::new);
         let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
@@ -78,7 +76,7 @@ impl<R: Real> Ground<R> {
         self.end.is_some()
     }
 
-    /// Height of a place above the plane when the frame is over, in metres; `None` without a plane.
+    /// Height of a position above the plane at the end of the frame, in metres; `None` without a plane.
     pub fn height_at_end(&self, place: [f64; 3]) -> Option<f64> {
         self.end.map(|plane| plane.height(place))
     }
@@ -90,7 +88,7 @@ impl<R: Real> Ground<R> {
             let normal: [f64; 3] =
                 std::array::from_fn(|k| from.normal[k] * (1.0 - time) + to.normal[k] * time);
             let length = dot(normal, normal).sqrt();
-            // At rest it is where it is, to the last bit.
+            // At rest the height is exact to the last bit.
             let share = if from == to { [1.0, 0.0] } else { [(1.0 - time) / length, time / length] };
             let share = share.map(R::from_f64);
             End { normal: normal.map(|x| R::from_f64(x / length)), share }
@@ -100,7 +98,7 @@ impl<R: Real> Ground<R> {
     }
 }
 
-/// The plane at a moment: its normal, and shares of the heights at both ends of the frame.
+/// The plane at a time: its normal, and the weights of the heights at both ends of the frame.
 #[derive(Debug, Clone, Copy)]
 struct End<R> {
     normal: [R; 3],
@@ -145,27 +143,27 @@ impl<R: Real> GroundStep<'_, R> {
 /// Contact of one cloth with the plane in one time step.
 pub struct GroundContact<'a, R> {
     /// Positions of the points.
-    pub mover: Mover<'a, R>,
+    pub writer: PositionWriter<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
     /// The plane.
     pub plane: GroundStep<'a, R>,
-    /// The share of every thickness that is kept.
-    pub squeeze: R,
+    /// Factor on every thickness.
+    pub thickness_scale: R,
     /// The contact material of the two.
-    pub terms: Terms<R>,
+    pub material: ContactMaterial<R>,
     /// Vertex maps of contact attributes.
-    pub maps: &'a Maps<R>,
+    pub material_maps: &'a MaterialMaps<R>,
     /// Length of the step in seconds.
     pub h: R,
 }
 
 impl<R: Real> GroundContact<'_, R> {
-    /// Pushes the points of a range to the thickness; returns how many it pushed.
+    /// Pushes the points of a range to the thickness. Returns the number of pushes.
     pub fn resolve(&self, points: Range<u32>) -> u64 {
         let mut contacts = 0;
         for point in points {
-            let row = self.mover.row(point);
+            let row = self.writer.row(point);
             let gap = self.plane.height_now(point, row.xyz());
             let thickness = self.thickness(point);
             if gap < thickness && row.0[3] > R::ZERO {
@@ -176,51 +174,54 @@ impl<R: Real> GroundContact<'_, R> {
         contacts
     }
 
-    /// Holds the points of a range to the plane by adhesion.
+    /// Applies adhesion between the points of a range and the plane.
     pub fn adhere(&self, points: Range<u32>) {
-        let rows = points.map(|point| (self.mover.row(point), point));
+        let rows = points.map(|point| (self.writer.row(point), point));
         for (mut row, point) in rows.filter(|(row, _)| row.0[3] > R::ZERO) {
             let start = self.start[point as usize].xyz();
             let normal = self.plane.normal();
-            let terms = &self.terms;
+            let material = &self.material;
             let adhesion = Adhesion {
-                reach: self.thickness(point) * R::from_f64(terms.reach),
+                range: self.thickness(point) * R::from_f64(material.adhesion_range),
                 thickness: self.thickness(point),
-                stickiness: terms.stickiness_at(self.maps, ([point], [], &([R::ONE], []))),
-                friction: terms.friction_at(self.maps, ([point], [], &([R::ONE], []))),
+                stickiness: material.stickiness_at(self.material_maps, ([point], [], &([R::ONE], []))),
+                friction: material.friction_at(self.material_maps, ([point], [], &([R::ONE], []))),
             };
             let gaps = [self.plane.height(0, point, start), self.plane.height(1, point, row.xyz())];
             let motion = sub(sub(row.xyz(), start), self.plane.travel);
             let along = sub(motion, scale(normal, dot(normal, motion)));
             let [before, now] = gaps.map(|gap| scale(normal, gap));
-            let held = adhesion.hold(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
-            (0..3).for_each(|axis| row.0[axis] += held[axis]);
-            self.mover.push(point, row, [R::ZERO; 3]);
+            let correction =
+                adhesion.correction(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
+            (0..3).for_each(|axis| row.0[axis] += correction[axis]);
+            self.writer.push_by_collider(point, row, [R::ZERO; 3]);
         }
     }
 
-    /// The thickness that is kept at a point, in metres.
+    /// The contact thickness of a point, in metres.
     #[inline(always)]
     fn thickness(&self, point: u32) -> R {
-        let most = R::from_f64(self.terms.thickness);
-        self.terms.thickness_at(self.maps, ([point], [], &([R::ONE], [])), most) * self.squeeze
+        let most = R::from_f64(self.material.thickness);
+        self.material.thickness_at(self.material_maps, ([point], [], &([R::ONE], [])), most)
+            * self.thickness_scale
     }
 
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {
         let start = self.start[point as usize].xyz();
         let normal = self.plane.normal();
-        let led = self.mover.led(point);
+        let depenetration = self.writer.collider_depenetration(point);
         let before = self.plane.height(0, point, start);
-        let mut push = Push::new(thickness, [before, gap], dot(normal, led), self.h);
-        if self.terms.is_weak(self.maps) {
-            push = push.times(self.terms.strength_at(self.maps, ([point], [], &([R::ONE], []))));
+        let mut push = Push::new(thickness, [before, gap], dot(normal, depenetration), self.h);
+        if self.material.is_partial(self.material_maps) {
+            push = push.scaled(self.material.strength_at(self.material_maps, ([point], [], &([R::ONE], []))));
         }
         let motion = sub(sub(row.xyz(), start), self.plane.travel);
-        let friction = self.terms.friction_at(self.maps, ([point], [], &([R::ONE], [])));
-        let [rub, given_back] = rub([motion, led], normal, friction * push.length());
-        let moved = add(scale(normal, push.length()), rub);
+        let friction = self.material.friction_at(self.material_maps, ([point], [], &([R::ONE], [])));
+        let [friction_part, given_back] =
+            coulomb_correction([motion, depenetration], normal, friction * push.length());
+        let moved = add(scale(normal, push.length()), friction_part);
         (0..3).for_each(|axis| row.0[axis] += moved[axis]);
-        self.mover.push(point, row, add(scale(normal, push.led), given_back));
+        self.writer.push_by_collider(point, row, add(scale(normal, push.depenetration), given_back));
     }
 }
 
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_that_turns_over_is_there_at_once() {
+    fn a_plane_that_turns_over_does_not_sweep() {
         let mut ground = Ground::<f64>::default();
         ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &[[0.0, 1.0, 0.0]]);
         ground.begin_frame(Some(&plane([0.0; 3], [0.0, -1.0, 0.0])), &[[0.0, 1.0, 0.0]]);

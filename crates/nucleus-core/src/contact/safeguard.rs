@@ -1,121 +1,149 @@
-//! The last word of a time step: the proof that nothing passed anything.
+//! Penetration safeguard: certifies at the end of a time step that no pair passed through each other, else
+//! applies fallbacks in a fixed order.
 //!
-//! What is not proven is pushed apart again; then by less and less of its thickness, for between two bodies there may be
-//! no room for all of it; then held back on its way, each on its own side; then it goes nowhere in this step, except
-//! along with what carries it. The places at the start of the step were proven, so going nowhere is proven too: only
-//! between bodies that close on it, and pins that cross, is there no such way out, and what is there is let go and
-//! counted.
+//! 1. Contacts push again, four times.
+//! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
+//! all of it.
+//! 3. Motion is truncated at a division plane between the two elements, or, at a collider, reverted to the start
+//! of the step in the collider's moving frame (planar divide and truncate).
+//! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a frozen
+//! neighbour or collider.
+//! 5. The pair is accepted as unresolved, and counted.
+//!
+//! The positions at the start of the step are certified, so a pair that does not move is certified too. Only
+//! between colliders that close on cloth, and between pins that cross, does the fourth fallback fail.
 
-use crate::contact::cloth::Mutual;
-use crate::contact::cloth_pass::motion;
-use crate::contact::resolve::Tally;
+use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::pass::cloth_step;
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::Real;
 use crate::output::{Stage, StepObserver};
 use crate::schedule::{Schedule, StepInterval};
 use crate::solver::{ContactSystem, Solver};
 
-/// How often each remedy is tried before the next.
-const PUSHES: usize = 4;
-const SQUEEZES: usize = 6;
-const CLIPS: usize = 8;
-const STOPS: usize = 32;
+/// Attempts of each fallback.
+const PUSH_ATTEMPTS: usize = 4;
+const SCALED_ATTEMPTS: usize = 6;
+const TRUNCATE_ATTEMPTS: usize = 8;
+const FREEZE_ATTEMPTS: usize = 32;
 
-/// Attempts after which pushing is over.
-const SQUEEZED: usize = PUSHES + SQUEEZES;
+/// Attempts after which the safeguard no longer pushes.
+const PUSHING_ENDS: usize = PUSH_ATTEMPTS + SCALED_ATTEMPTS;
 
 impl<R: Real> Solver<R> {
-    /// Proves at the end of a time step that nothing passed anything, and sees to it that it is so.
-    pub(crate) fn settle(
+    /// Certifies all pairs at the end of a time step, and applies the fallbacks.
+    pub(crate) fn safeguard(
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: StepInterval,
-        tally: &mut Tally,
+        now: StepInterval,
+        counters: &mut ContactCounters,
         watch: &mut dyn StepObserver,
     ) {
-        let meets = self.contact.mutual.as_ref().is_some_and(Mutual::is_on);
-        for attempt in 0..=SQUEEZED + CLIPS + STOPS {
+        let has_cloth_contact = self.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
+        for attempt in 0..=PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS {
             watch.enter(Stage::BroadPhase);
-            if meets {
-                self.watch_contacts(frame, span, tally);
+            if has_cloth_contact {
+                self.update_cloth_candidates(frame, now, counters);
             }
             watch.enter(Stage::Contact);
-            let cloths = self.prove_cloths(schedule);
-            let [sides, inseparable] = self.prove_sides(frame, schedule, span, tally);
-            let open = [cloths, sides];
-            let is_last = attempt == SQUEEZED + CLIPS + STOPS;
-            if open == [0, 0] || is_last {
-                *tally.pairs_unresolved.get_mut() += open[0] + open[1] + inseparable;
+            let cloths = self.certify_cloth_contacts(schedule);
+            let [sides, inseparable] = self.certify_collider_contacts(frame, schedule, now, counters);
+            let unproven = [cloths, sides];
+            let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
+            if unproven == [0, 0] || is_last {
+                *counters.pairs_unresolved.get_mut() += unproven[0] + unproven[1] + inseparable;
             }
-            if open == [0, 0] {
+            if unproven == [0, 0] {
                 return;
             }
-            if attempt < SQUEEZED {
-                let squeeze = 0.5f64.powi((attempt + 1).saturating_sub(PUSHES) as i32);
-                if open[0] > 0 {
-                    self.meet(squeeze, frame, schedule, span, tally, watch);
+            if attempt < PUSHING_ENDS {
+                let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
+                if unproven[0] > 0 {
+                    self.resolve_cloth_contacts(thickness_scale, frame, schedule, now, counters, watch);
                 }
-                self.meet_colliders(squeeze, frame, schedule, span, tally, watch);
-            } else if attempt < SQUEEZED + CLIPS {
-                self.clip(schedule, tally);
-                self.hold_sides(frame, schedule, span, tally);
+                self.resolve_collider_contacts(thickness_scale, frame, schedule, now, counters, watch);
+            } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+                self.truncate(schedule, counters);
+                self.revert_collider_contacts(frame, schedule, now, counters);
             } else if !is_last {
-                if attempt == SQUEEZED + CLIPS {
-                    self.hold_none();
+                if attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+                    self.clear_frozen();
                 }
-                self.hold_sides(frame, schedule, span, tally);
-                self.stop(schedule, tally);
+                self.revert_collider_contacts(frame, schedule, now, counters);
+                self.freeze(schedule, counters);
             } else {
-                return self.let_go(frame, schedule, span, open[0] > 0, tally);
+                return self.accept_unresolved(frame, schedule, now, unproven[0] > 0, counters);
             }
         }
     }
 
-    fn prove_cloths(&mut self, schedule: &Schedule<R>) -> u64 {
-        let Self { state, pool, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+    fn certify_cloth_contacts(&mut self, schedule: &Schedule<R>) -> u64 {
+        let Self {
+            state,
+            pool,
+            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+            ..
+        } = self
+        else {
             return 0;
         };
-        let Mutual { active, terms, .. } = mutual;
-        active.prove(&motion(state, terms, maps, schedule.h), pool)
+        let ClothContacts { cache, materials, .. } = cloth_contacts;
+        cache.certify(&cloth_step(state, materials, material_maps, schedule.h), pool)
     }
 
-    fn clip(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let Self { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+    fn truncate(&mut self, schedule: &Schedule<R>, counters: &mut ContactCounters) {
+        let Self {
+            state,
+            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+            ..
+        } = self
+        else {
             return;
         };
-        let Mutual { active, terms, .. } = mutual;
-        *tally.pairs_reverted.get_mut() += active.clip(&motion(state, terms, maps, schedule.h));
+        let ClothContacts { cache, materials, .. } = cloth_contacts;
+        *counters.pairs_reverted.get_mut() +=
+            cache.truncate(&cloth_step(state, materials, material_maps, schedule.h));
     }
 
-    /// Lets contacts that are not proven go nowhere, or where one of their points is held already.
-    fn stop(&mut self, schedule: &Schedule<R>, tally: &mut Tally) {
-        let Self { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = self else {
+    /// Freezes pairs without a certificate, or moves them with a point that is frozen already.
+    fn freeze(&mut self, schedule: &Schedule<R>, counters: &mut ContactCounters) {
+        let Self {
+            state,
+            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+            ..
+        } = self
+        else {
             return;
         };
-        let Mutual { active, held, terms, .. } = mutual;
-        *tally.pairs_reverted.get_mut() += active.stop(&motion(state, terms, maps, schedule.h), held);
+        let ClothContacts { cache, frozen, materials, .. } = cloth_contacts;
+        *counters.pairs_reverted.get_mut() +=
+            cache.freeze(&cloth_step(state, materials, material_maps, schedule.h), frozen);
     }
 
-    /// Begins with no point held but those that are pinned.
-    fn hold_none(&mut self) {
-        let Self { state, contact: ContactSystem { mutual: Some(mutual), .. }, .. } = self else { return };
-        mutual.held.clear();
-        mutual.held.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
+    /// Only pinned points start out frozen.
+    fn clear_frozen(&mut self) {
+        let Self { state, contact: ContactSystem { cloth_contacts: Some(cloth_contacts), .. }, .. } = self
+        else {
+            return;
+        };
+        cloth_contacts.frozen.clear();
+        cloth_contacts.frozen.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
     }
 
-    /// Lets contacts that nothing helps be where they are. What they are then is looked at anew.
-    fn let_go(
+    /// Accepts pairs that no fallback resolves. Their contacts are searched anew.
+    fn accept_unresolved(
         &mut self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
-        span: StepInterval,
+        now: StepInterval,
         among_cloths: bool,
-        tally: &mut Tally,
+        counters: &mut ContactCounters,
     ) {
-        self.release_sides(frame, schedule, span, tally);
-        if let Some(mutual) = &mut self.contact.mutual {
-            mutual.tangle.is_suspected |= among_cloths;
+        self.accept_unresolved_collider_contacts(frame, schedule, now, counters);
+        if let Some(cloth_contacts) = &mut self.contact.cloth_contacts {
+            cloth_contacts.untangling.is_search_due |= among_cloths;
         }
     }
 }

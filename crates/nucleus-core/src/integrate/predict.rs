@@ -146,8 +146,11 @@ unsafe fn move_points<R: Real>(
 /// Adds the position corrections of the time step to the velocities, over `h` seconds. Motion that resolves a
 /// penetration is no velocity and is left out.
 pub fn update_velocities<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, h: f64, pool: &ThreadPool) {
-    let State { displacement, predicted, velocity, led, parted, .. } = state;
-    let (led, velocity) = ([&led[..], &parted[..]], DisjointSlice::new(velocity));
+    let State {
+        displacement, predicted, velocity, depenetration_by_collider, depenetration_by_cloth, ..
+    } = state;
+    let depenetration = [&depenetration_by_collider[..], &depenetration_by_cloth[..]];
+    let velocity = DisjointSlice::new(velocity);
     let h = R::from_f64(h);
     for cloth in cloths {
         pool.parallel_for(cloth.blocks.len(), |block| {
@@ -157,24 +160,29 @@ pub fn update_velocities<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>
             let velocity = unsafe { velocity.run(points.clone()) };
             let rows = points.start as usize..points.end as usize;
             let of_block = [&displacement[rows.clone()], &predicted[rows.clone()]];
-            add_corrections(of_block, led.map(|led| led.get(rows.clone()).unwrap_or_default()), velocity, h);
+            add_corrections(
+                of_block,
+                depenetration.map(|column| column.get(rows.clone()).unwrap_or_default()),
+                velocity,
+                h,
+            );
         });
     }
 }
 
-/// Both columns of `led` are empty where the scene has no contact.
+/// Both columns of `depenetration` are empty where the scene has no contact.
 fn add_corrections<R: Real>(
     [displacement, predicted]: [&[Row4<R>]; 2],
-    led: [&[Row4<R>]; 2],
+    depenetration: [&[Row4<R>]; 2],
     velocity: &mut [Row4<R>],
     h: R,
 ) {
     let per_h = R::Lanes::splat(R::ONE / h);
     for (k, ((d, p), v)) in displacement.iter().zip(predicted).zip(velocity).enumerate() {
         let corrected = d.lanes() - p.lanes();
-        let but_led =
-            |corrected, led: &[Row4<R>]| led.get(k).map_or(corrected, |led| corrected - led.lanes());
-        let corrected = led.into_iter().fold(corrected, but_led);
+        let without_depenetration =
+            |corrected, column: &[Row4<R>]| column.get(k).map_or(corrected, |row| corrected - row.lanes());
+        let corrected = depenetration.into_iter().fold(corrected, without_depenetration);
         *v = Row4((v.lanes() + corrected * per_h).to_array());
     }
 }

@@ -40,8 +40,7 @@ use crate::constraints::hinge::{self, HingeGroup, HingeRow};
 use crate::constraints::pressure::PressureModel;
 use crate::constraints::shape::ShapeModel;
 use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
-use crate::contact::pseudonormals::Outside;
-use crate::contact::skin::{Skin, by_place};
+use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
 use crate::model::builder::{Cloth, Collider, Mass, point_masses};
 use crate::model::surface::Surface;
@@ -77,7 +76,7 @@ pub struct ClothModel<R> {
     /// By block: the triangles with a point in it, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
     /// The elements of contact; empty where no contact is possible.
-    pub skin: Skin,
+    pub boundary: BoundaryElements,
     /// Whether its sweeps alternate their direction: its links form odd rings (triangles, or quads with cross links),
     /// and sweeps in one direction would stir it; see [`Schedule::direction`](crate::schedule::Schedule::direction).
     pub alternates_direction: bool,
@@ -114,7 +113,7 @@ impl<R: Real> ClothModel<R> {
             plastic: cloth.lists.plastic,
             attract: cloth.factors.input_attract.clone(),
             triangles: Vec::new(),
-            skin: Skin::default(),
+            boundary: BoundaryElements::default(),
             alternates_direction: cloth.lists.cross_links
                 || surface.faces.iter().any(|face| face.len() % 2 == 1),
             point_mass,
@@ -176,8 +175,8 @@ impl<R: Real> ClothModel<R> {
         if collides {
             let triangles: Vec<_> = surface.faces.triangles().collect();
             let place_at = |point: u32| surface.positions[point as usize];
-            let triangles = by_place(&triangles, place_at).into_iter().map(|t| t.map(place)).collect();
-            model.skin = Skin::new(triangles, model.points());
+            let triangles = sort_spatially(&triangles, place_at).into_iter().map(|t| t.map(place)).collect();
+            model.boundary = BoundaryElements::new(triangles, model.points());
             model.edge_length = mean_length(surface);
         }
         model
@@ -211,19 +210,19 @@ pub struct ColliderModel {
     /// Positions at the start, in metres.
     pub positions: Vec<Vector3<f64>>,
     /// The elements of contact.
-    pub skin: Skin,
+    pub boundary: BoundaryElements,
     /// Pseudonormals for the inside test, where every edge has two faces.
-    pub outside: Option<Outside>,
+    pub pseudonormals: Option<Pseudonormals>,
 }
 
 impl ColliderModel {
     /// Compiles a collider.
     pub fn new(collider: Collider) -> Self {
         let triangles: Vec<_> = collider.surface.faces.triangles().collect();
-        let triangles = by_place(&triangles, |point| collider.surface.positions[point as usize]);
-        let skin = Skin::new(triangles, 0..collider.surface.positions.len() as u32);
-        let outside = Outside::of(&skin);
-        Self { positions: collider.surface.positions, skin, outside }
+        let triangles = sort_spatially(&triangles, |point| collider.surface.positions[point as usize]);
+        let boundary = BoundaryElements::new(triangles, 0..collider.surface.positions.len() as u32);
+        let pseudonormals = Pseudonormals::of(&boundary);
+        Self { positions: collider.surface.positions, boundary, pseudonormals }
     }
 }
 

@@ -8,10 +8,10 @@ use nalgebra::Vector3;
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
-use crate::contact::cloth::Mutual;
-use crate::contact::cloth_pass::motion;
-use crate::contact::collider_pass::StepParts;
-use crate::contact::resolve::Tally;
+use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::pass::cloth_step;
+use crate::contact::collider::pass::ColliderStepArgs;
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::{Real, dot};
 use crate::model::ClothModel;
@@ -30,7 +30,7 @@ pub fn report<R: Real>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     schedule: &Schedule<R>,
-    tally: &Tally,
+    counters: &ContactCounters,
 ) -> StepReport {
     let (max_strain, strain_99) = strains(&solver.model.cloths, &solver.state, frame);
     let (kinetic_energy, finite) = kinetic_energy(&solver.model.cloths, &solver.state);
@@ -39,18 +39,27 @@ pub fn report<R: Real>(
         strain_99,
         min_gap: smallest_gap(solver, frame, schedule),
         min_cloth_gap: smallest_cloth_gap(solver),
-        rest_limited: solver.contact.mutual.as_ref().map_or(0, |mutual| mutual.active.count_rest_limited()),
-        contacts: tally.contacts.load(Relaxed),
-        candidate_pairs: tally.pairs.load(Relaxed),
-        broad_phases: tally.broad_phases.load(Relaxed) as u32,
-        pairs_reverted: tally.pairs_reverted.load(Relaxed),
-        pairs_unresolved: tally.pairs_unresolved.load(Relaxed),
-        depenetrating: solver.contact.pairs.iter().map(|list| list.trapped.points.len() as u64).sum(),
+        rest_limited: solver
+            .contact
+            .cloth_contacts
+            .as_ref()
+            .map_or(0, |contacts| contacts.cache.count_rest_limited()),
+        contacts: counters.contacts.load(Relaxed),
+        candidate_pairs: counters.candidate_pairs.load(Relaxed),
+        broad_phases: counters.broad_phases.load(Relaxed) as u32,
+        pairs_reverted: counters.pairs_reverted.load(Relaxed),
+        pairs_unresolved: counters.pairs_unresolved.load(Relaxed),
+        depenetrating: solver
+            .contact
+            .collider_contacts
+            .iter()
+            .map(|list| list.depenetration.points.len() as u64)
+            .sum(),
         intersections: solver
             .contact
-            .mutual
+            .cloth_contacts
             .as_ref()
-            .map_or(0, |mutual| mutual.tangle.crossings.len() as u64),
+            .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
         kinetic_energy,
         finite,
         ..StepReport::default()
@@ -169,12 +178,17 @@ fn kinetic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>) -> (f64, 
 
 /// The smallest gap ratio of two elements of cloth.
 fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
-    let Solver { state, contact: ContactSystem { mutual: Some(mutual), maps, .. }, .. } = solver else {
+    let Solver {
+        state,
+        contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+        ..
+    } = solver
+    else {
         return f64::INFINITY;
     };
-    let Mutual { active, terms, .. } = mutual;
-    let closeness = active.closeness(&motion(state, terms, maps, 0.0));
-    closeness.map_or(f64::INFINITY, R::to_f64)
+    let ClothContacts { cache, materials, .. } = cloth_contacts;
+    let gap_ratio = cache.min_gap_ratio(&cloth_step(state, materials, material_maps, 0.0));
+    gap_ratio.map_or(f64::INFINITY, R::to_f64)
 }
 
 /// The smallest gap ratio to a collider or the ground plane.
@@ -182,15 +196,23 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &
     let Solver {
         state,
         model: Model { cloths, .. },
-        contact: ContactSystem { collider_states, pairs, terms, maps, .. },
+        contact: ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. },
         ..
     } = solver;
     let mut least = smallest_ground_gap(cloths, state, frame);
-    for list in pairs.iter() {
-        let Some(terms) = terms[list.cloth * collider_states.len() + list.collider] else { continue };
-        let view = StepParts { terms, maps, h: schedule.h, time: [1.0; 2], span: list.span };
+    for list in collider_contacts.iter() {
+        let Some(material) = collider_materials[list.cloth * collider_states.len() + list.collider] else {
+            continue;
+        };
+        let view = ColliderStepArgs {
+            material,
+            material_maps,
+            h: schedule.h,
+            time: [1.0; 2],
+            interval: list.interval,
+        };
         let step = view.of(state, &collider_states[list.collider]);
-        let distances = list.point_face.iter().map(|pair| pair.closeness(&step));
+        let distances = list.point_face.iter().map(|pair| pair.gap_ratio(&step));
         least = distances.fold(least, f64::min);
     }
     least

@@ -2,7 +2,7 @@
 //! absent.
 
 use crate::constraints::damp::Damping;
-use crate::contact::terms::Terms;
+use crate::contact::material::ContactMaterial;
 use crate::input::frame::{BendSolver, Bending, ClothFrame, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
@@ -37,8 +37,8 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
     passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
     passes.extend(contact_passes(solver, frame, &schedule));
-    let factors: usize =
-        solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>() + solver.contact.maps.len();
+    let factors: usize = solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>()
+        + solver.contact.material_maps.len();
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes
@@ -89,26 +89,29 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
     let steps = f64::from(schedule.substeps * schedule.steps);
     let rounds =
         |wanted: Pass| schedule.passes.iter().filter(|round| **round == wanted).count() as f64 * steps;
-    let (cloths, thickest) = (&frame.cloths, &solver.contact.maps.thickest);
+    let (cloths, max_thickness_factor) = (&frame.cloths, &solver.contact.material_maps.max_thickness_factor);
     let at_colliders = |cloth: usize| {
-        let with = |collider| Terms::<R>::with_collider(&cloths[cloth], collider, thickest[cloth]);
+        let with = |collider| {
+            ContactMaterial::<R>::for_collider(&cloths[cloth], collider, max_thickness_factor[cloth])
+        };
         frame.colliders.iter().filter_map(with).collect::<Vec<_>>()
     };
     let on_ground = |cloth: usize| {
-        let with = |ground| Terms::<R>::with_ground(&cloths[cloth], ground, thickest[cloth]);
+        let with =
+            |ground| ContactMaterial::<R>::for_ground(&cloths[cloth], ground, max_thickness_factor[cloth]);
         frame.plane.as_ref().and_then(with)
     };
-    let each_other = |cloth: usize| match solver.contact.mutual {
-        Some(_) => solver.mutual_terms(frame, cloth),
+    let each_other = |cloth: usize| match solver.contact.cloth_contacts {
+        Some(_) => solver.cloth_materials_of(frame, cloth),
         None => Vec::new(),
     };
     let elements = |cloth: usize| {
-        let skin = &solver.model.cloths[cloth].skin;
-        skin.points.len() + skin.edges.len() + skin.triangles.len()
+        let boundary = &solver.model.cloths[cloth].boundary;
+        boundary.points.len() + boundary.edges.len() + boundary.triangles.len()
     };
     let points = |cloth: usize| solver.model.cloths[cloth].points().len();
     let all = 0..cloths.len();
-    let with_any = |does: fn(&Terms<R>) -> bool| -> usize {
+    let with_any = |does: fn(&ContactMaterial<R>) -> bool| -> usize {
         let of = |cloth: &usize| {
             let mut terms = at_colliders(*cloth);
             terms.extend(on_ground(*cloth));
@@ -123,12 +126,12 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
     let collide = rounds(Pass::ColliderContact);
     [
         PassCost {
-            name: "collide",
+            name: "collider contact",
             rows: all.clone().map(|cloth| elements(cloth) * at_colliders(cloth).len()).sum(),
             sweeps: collide,
         },
         PassCost {
-            name: "meet",
+            name: "cloth contact",
             rows: all.clone().filter(|&cloth| !each_other(cloth).is_empty()).map(elements).sum(),
             sweeps: rounds(Pass::ClothContact),
         },
@@ -137,8 +140,8 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
             rows: all.clone().filter(|&cloth| on_ground(cloth).is_some()).map(points).sum(),
             sweeps: collide,
         },
-        PassCost { name: "stick", rows: with_any(Terms::sticks), sweeps: collide },
-        PassCost { name: "bounce", rows: with_any(Terms::bounces), sweeps: steps },
+        PassCost { name: "stick", rows: with_any(ContactMaterial::has_adhesion), sweeps: collide },
+        PassCost { name: "bounce", rows: with_any(ContactMaterial::has_restitution), sweeps: steps },
         PassCost {
             name: "push out",
             rows: if pushes { all.map(points).sum() } else { 0 },

@@ -1,6 +1,7 @@
-//! Impact: a collider that goes farther in a time step than the cloth's faces are wide would leap over them, and one
-//! that takes cloth along faster than its links pull the rest of it after would stretch it beyond measure.
-//! While it is about to meet cloth, time steps are split so that it does neither.
+//! Adaptive substepping: splits time steps while a moving collider is near a cloth.
+//!
+//! A collider that moves farther in a time step than the cloth's faces are wide would jump over them. A collider
+//! that takes cloth along faster than its links can follow would stretch it without limit.
 
 use nalgebra::Vector3;
 
@@ -10,45 +11,46 @@ use crate::math::Real;
 use crate::schedule::{Schedule, StepInterval};
 use crate::solver::Solver;
 
-/// Edge lengths of a cloth that a collider may go in a time step.
-const LEAP: f64 = 1.0;
-/// Edge lengths that it has to go in a time step to tear at a cloth.
-const TUG: f64 = 1.0 / 64.0;
-/// Strain of a link from which on it is torn at. A sweep makes a link no stiffer than m / 2h², however stiff the cloth
-/// is: what it can hold grows with the square of the parts.
-const TORN: f64 = 0.25;
-/// Parts of a time step, at most: for a leap, and for what is torn at.
-const MOST_PARTS: f64 = 256.0;
-const MOST_PULLS: f64 = 8.0;
+/// Distance that a collider may move in a time step, in edge lengths of the cloth.
+const MAX_ADVANCE: f64 = 1.0;
+/// Distance in a time step below which a collider never splits it, in edge lengths.
+const MIN_ADVANCE: f64 = 1.0 / 64.0;
+/// Strain of a link above which the step is split. A sweep makes a link no stiffer than m / 2h², however stiff
+/// the cloth is: the load that it holds grows with the square of the number of splits.
+const STRAIN_LIMIT: f64 = 0.25;
+/// Splits of a time step, at most: for a fast collider, and for strain.
+const MAX_SPLITS: f64 = 256.0;
+const MAX_STRAIN_SPLITS: f64 = 8.0;
 
 impl<R: Real> Solver<R> {
-    /// Into how many parts a time step is to be split.
-    pub(crate) fn parts(
+    /// The number of parts a time step is split into.
+    pub(crate) fn splits(
         &self,
         frame: &FrameInput,
         schedule: &Schedule<R>,
         span: StepInterval,
         max_speed: &[f64],
     ) -> u32 {
-        let mut parts = 1.0f64;
+        let mut splits = 1.0f64;
         for (at, collider) in self.contact.collider_states.iter().enumerate() {
-            let leap = collider.way * (span.to - span.from);
-            if leap == 0.0 {
+            let advance = collider.max_travel * (span.to - span.from);
+            if advance == 0.0 {
                 continue;
             }
             for (index, cloth) in self.model.cloths.iter().enumerate() {
-                let Some(terms) = &self.terms_of(index)[at] else { continue };
-                let edges = leap / cloth.edge_length;
-                let room = terms.thickness + max_speed[index] * schedule.h;
-                // A cloth without edges is points, which nothing can leap over.
-                if edges.is_finite() && edges > TUG && self.is_near(index, collider, span, room) {
-                    let pulls = (self.largest_strain(index, frame.cloths[index].rest_length_scale) / TORN)
-                        .min(MOST_PULLS);
-                    parts = parts.max(edges / LEAP).max(pulls);
+                let Some(material) = &self.collider_materials_of(index)[at] else { continue };
+                let edges = advance / cloth.edge_length;
+                let room = material.thickness + max_speed[index] * schedule.h;
+                // A cloth without edges is points, which nothing can jump over.
+                if edges.is_finite() && edges > MIN_ADVANCE && self.is_near(index, collider, span, room) {
+                    let strain_splits = (self.largest_strain(index, frame.cloths[index].rest_length_scale)
+                        / STRAIN_LIMIT)
+                        .min(MAX_STRAIN_SPLITS);
+                    splits = splits.max(edges / MAX_ADVANCE).max(strain_splits);
                 }
             }
         }
-        parts.ceil().min(MOST_PARTS) as u32
+        splits.ceil().min(MAX_SPLITS) as u32
     }
 
     /// The largest strain of any link of a cloth.
@@ -59,7 +61,7 @@ impl<R: Real> Solver<R> {
         strains.fold(R::ZERO, |most, strain| if strain > most { strain } else { most }).to_f64()
     }
 
-    /// Whether a collider comes near a cloth in a time step, by the boxes round them.
+    /// Whether a collider comes near a cloth in a time step, by their bounding boxes.
     fn is_near(&self, cloth: usize, collider: &ColliderState, span: StepInterval, room: f64) -> bool {
         let place = |row: u32| Vector3::from(self.state.position(row));
         let points = self.model.cloths[cloth].points();

@@ -43,15 +43,15 @@ impl<R: Real> State<R> {
 
     /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
     pub fn store_step_start(&mut self, h: f64, can_touch: bool) {
-        let Self { start, led, parted, displacement, .. } = self;
+        let Self { start, depenetration_by_collider, depenetration_by_cloth, displacement, .. } = self;
         // Also where contact has just become impossible: a ground plane can be keyed off.
-        led.clear();
-        parted.clear();
+        depenetration_by_collider.clear();
+        depenetration_by_cloth.clear();
         self.step_length = h;
         if can_touch {
             start.clone_from(displacement);
-            led.resize(start.len(), Row4::ZERO);
-            parted.resize(start.len(), Row4::ZERO);
+            depenetration_by_collider.resize(start.len(), Row4::ZERO);
+            depenetration_by_cloth.resize(start.len(), Row4::ZERO);
         }
     }
 }

@@ -25,11 +25,11 @@ pub struct State<R> {
     pub start: Vec<Row4<R>>,
     /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where
     /// no contact is possible.
-    pub led: Vec<Row4<R>>,
+    pub depenetration_by_collider: Vec<Row4<R>>,
     /// Displacement by depenetration from cloth in the time step, in metres: a motion without velocity. The part that a
     /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
     /// is possible.
-    pub parted: Vec<Row4<R>>,
+    pub depenetration_by_cloth: Vec<Row4<R>>,
     /// Length of the last time step in seconds.
     pub step_length: f64,
     /// Displacement before constraints and contacts, in metres. Written by prediction, read by the velocity update.
@@ -60,8 +60,8 @@ impl<R: Real> State<R> {
             displacement: vec![Row4::ZERO; rows],
             velocity: vec![Row4::ZERO; rows],
             start: Vec::new(),
-            led: Vec::new(),
-            parted: Vec::new(),
+            depenetration_by_collider: Vec::new(),
+            depenetration_by_cloth: Vec::new(),
             step_length: 0.0,
             predicted: vec![Row4::ZERO; rows],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
@@ -98,8 +98,9 @@ impl<R: Real> State<R> {
     /// in the last time step. Resting cloth has a stored velocity there that contacts cancel in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
         let row = row as usize;
-        let is_led = |column: &[Row4<R>]| column.get(row).is_some_and(|led| led.xyz() != [R::ZERO; 3]);
-        if is_led(&self.led) || is_led(&self.parted) {
+        let is_depenetrated =
+            |column: &[Row4<R>]| column.get(row).is_some_and(|row| row.xyz() != [R::ZERO; 3]);
+        if is_depenetrated(&self.depenetration_by_collider) || is_depenetrated(&self.depenetration_by_cloth) {
             let moved = sub(self.displacement[row].xyz(), self.start[row].xyz());
             return moved.map(|x| x.to_f64() / self.step_length);
         }

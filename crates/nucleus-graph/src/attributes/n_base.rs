@@ -58,25 +58,25 @@ node_table! {
     }
     "Collisions" {
         /// How far the surface reaches out; two objects touch at the sum of theirs. Worked out from the size of the mesh when left out.
-        THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::contact::terms");
+        THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::contact::material");
         /// How much speed is kept in a contact; the larger of the two sides counts.
-        BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::bounce");
+        BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
         /// Resistance to sliding; the values of both sides are added.
-        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::friction");
+        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");
         /// Resistance to coming apart after a contact; the values of both sides are added, and at 1 they never part. With a friction of 1 they do not slide either.
-        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::stick");
+        STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::response");
         /// How much of a collision is carried out; the values of both sides are multiplied. 1 and above: all, nothing passes. Below 1 things may pass through each other; at 0 there is no collision.
-        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::terms");
+        COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::material");
         /// Up to which elements it collides: points, edges or faces.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::thickness");
         /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
         SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::thickness");
         /// Takes part in collisions with other objects.
-        COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::terms");
+        COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::material");
         /// Takes part in collisions with itself.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
         /// Which objects it meets, and which of the two gives way.
-        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::terms");
+        COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");
         /// Colour in which Maya draws the thickness.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]);
     }
@@ -128,13 +128,13 @@ node_table! {
         /// Classic: no resistance is given more iterations in 1/24 s than this.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0).solved("nucleus_graph::compile::soft_body");
         /// Share of the way by which points of other objects go, in a substep, to the outer side of the surface; below 0 to the inner. For scenes that start with one object in another.
-        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::push_out");
+        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::depenetration");
         /// Points farther from the surface than this are not pushed out. Left out, it is four times the thickness.
-        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::push_out");
+        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::depenetration");
         /// How much faster cloths are worked apart where they pass through each other: 0 half an edge length in 1/24 s, 1 ten times that. The values of both sides are added.
-        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::tangle");
+        CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::untangling");
         /// Brings points that got to the wrong side back. The solver always does so for cloth, whatever is set here.
-        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("nucleus_core::contact::cloth::tangle");
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("nucleus_core::contact::cloth::untangling");
     }
     "Initial State" {
         /// Initial positions in world space, in place of those of the input mesh; how the cloth is at rest is still the mesh's to say.

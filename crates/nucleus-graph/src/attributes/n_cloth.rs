@@ -98,9 +98,9 @@ node_table! {
         /// Links all corners of faces with more than three.
         ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("nucleus_core::constraints::stretch").fixed();
         /// `crossoverPush` of the object against itself.
-        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::tangle");
+        SELF_CROSSOVER_PUSH: f64 = float("selfCrossoverPush", "scpu", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::untangling");
         /// `trappedCheck` of the object against itself: always done, whatever is set here.
-        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("nucleus_core::contact::cloth::tangle");
+        SELF_TRAPPED_CHECK: bool = toggle("selfTrappedCheck", "stpc", false).solved("nucleus_core::contact::cloth::untangling");
     }
     "Nucleus (open)" {
         /// Physical: stiffness of the cloth against being stretched, Young's modulus times its thickness. Below 0 it comes from `stretchResistance`, 500 N/m for 1.

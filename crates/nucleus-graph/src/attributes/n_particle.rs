@@ -111,7 +111,7 @@ node_table! {
         /// What Maya draws of the solver's data.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness")]);
         /// Size in collisions, as a multiple of the radius.
-        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::terms");
+        COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::material");
         /// Size towards each other, as a multiple of the size in collisions.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::thickness");
         /// Factor on friction, by particle.
@@ -215,7 +215,7 @@ node_table! {
     }
     "Particle Size" {
         /// Radius of each particle: two touch at the sum of theirs.
-        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::contact::terms").fixed();
+        RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::contact::material").fixed();
         /// Factor on radius, by particle.
         RADIUS_SCALE: Cow<'static, [RampPoint]> = ramp("radiusScale", "rdc", FULL);
         /// What the radius ramp is read by.

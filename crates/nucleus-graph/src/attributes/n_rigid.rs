@@ -25,7 +25,7 @@ node_table! {
     }
     "Quality Settings" {
         /// Leads points that are inside it, where it is closed, to the nearest way out; off, they stay in.
-        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("nucleus_core::contact::trapped");
+        TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("nucleus_core::contact::depenetration");
         /// Cloth that starts in it is led out point by point, whatever is set here: there is nothing to work apart.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
     }

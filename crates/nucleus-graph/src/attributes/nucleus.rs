@@ -34,17 +34,17 @@ node_table! {
         /// The side of the ground plane on which things stay; its length does not matter.
         PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::contact::ground");
         /// How much speed is kept when something bounces off the ground plane.
-        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::bounce");
+        PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
         /// Friction of the ground plane, added to the other side's.
-        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::friction");
+        PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");
         /// Stickiness of the ground plane, added to the other side's.
-        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::stick");
+        PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::response");
     }
     "Solver Attributes" {
         /// Reads directions and the ground plane in the space of this node's own transform.
         USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("nucleus_graph::compile");
         /// Objects whose collision layers are this far apart, or farther, do not meet.
-        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::contact::terms");
+        COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::contact::material");
         /// Parts that a frame is solved in; the shortest time the solver knows.
         SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("nucleus_core::schedule");
         /// Collision passes in 1/24 s, shared among the substeps.

@@ -2,8 +2,8 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothFrame, ClothId, ColliderFrame, Elements, FrameInput, PointId, PushOut, ResistanceModel,
-    SelfCollision, Stiffness,
+    BendSolver, Bending, ClothFrame, ClothId, ColliderFrame, Elements, FrameInput, InputAttract, PointId,
+    Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
 };
 use proptest::prelude::*;
 
@@ -146,7 +146,10 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         ignoreSolverGravity: true, ignoreSolverWind: true, localForce: (11, 12, 13), localWind: (14, 15, 16), \
         collide: false, thickness: 17, friction: 18, bounce: 19, collisionFlag: Edge, collisionLayer: 20, \
         stickiness: 22, collideStrength: 23, pushOut: 24, pushOutRadius: 25, crossoverPush: 26, \
-        selfCrossoverPush: 27, \
+        selfCrossoverPush: 27, bendAngleScale: 0.5, bendAngleDropoff: 0.25, bendSolver: flipTracking, \
+        restitutionAngle: 60, restitutionTension: 2, pressureMethod: volumeTrackingModel, startPressure: 0.1, \
+        incompressibility: 2, pumpRate: 0.3, airTightness: 0.4, pressureDamping: 0.5, sealHoles: false, \
+        rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
@@ -181,6 +184,25 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             elements: Elements::Faces,
             edges: false,
         },
+        bending: Bending {
+            angle_scale: 0.5,
+            angle_dropoff: 0.25,
+            solver: BendSolver::FlipTracking,
+            yield_sine: 0.5,
+        },
+        // Tension 2 of a resistance of 1.
+        yield_strain: 2.0,
+        pressure: Pressure::Gas {
+            start: 0.1,
+            bulk: 2000.0,
+            pump: 0.3,
+            tightness: 0.4,
+            damping: 500.0 / 24.0,
+            sealed: false,
+        },
+        rigidity: 28.0,
+        deform_resistance: 29.0,
+        input_attract: InputAttract { strength: 30.0, damp: 31.0, motion_drag: 32.0 },
     };
     assert_eq!(program(&sheet("", set)).first_input().cloths, [expected]);
 }
@@ -191,7 +213,11 @@ fn a_cloth_without_settings_has_the_defaults_of_the_core() {
     let thickness = cloths[0].thickness;
     // The core's defaults leave out thickness and self-collision, which Maya derives from the mesh.
     let self_collision = SelfCollision { on: true, thickness, ..ClothFrame::default().self_collision };
-    assert_eq!(cloths, [ClothFrame { thickness, self_collision, ..ClothFrame::default() }]);
+    // Maya's default damp of the attraction, and its signed angles, matter only where there is attraction or a bent mesh.
+    let defaults = ClothFrame::default();
+    let input_attract = InputAttract { damp: 0.5, ..defaults.input_attract };
+    let bending = Bending { solver: BendSolver::Signed, ..defaults.bending };
+    assert_eq!(cloths, [ClothFrame { thickness, self_collision, input_attract, bending, ..defaults }]);
     // Two sides of 2 by 2; one face. 0.5 % of sqrt(8).
     assert!((cloths[0].thickness - 0.005 * 8f64.sqrt()).abs() < 1e-15);
 }

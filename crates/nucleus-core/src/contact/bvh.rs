@@ -1,0 +1,247 @@
+//! Axis-aligned boxes, and a bounding volume hierarchy over them.
+//!
+//! The hierarchy is built once, by splitting the elements at the median along their longest side, four to a leaf.
+//! A moving object only refits it. Nodes stand in heap order: the children of node k are 2k + 1 and 2k + 2.
+
+use nalgebra::Vector3;
+
+use crate::bytes::{checkpoint_struct, encode_struct};
+use crate::math::{Lanes as _, Real};
+use crate::model::by_halves;
+
+/// An axis-aligned box in metres, relative to an origin of the caller. In single precision, rounded outwards. The
+/// fourth number is always zero, so that a box is two aligned loads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(16))]
+pub struct Aabb {
+    low: [f32; 4],
+    high: [f32; 4],
+}
+
+impl Aabb {
+    /// The empty box, which overlaps nothing.
+    pub const EMPTY: Self = Self {
+        low: [f32::INFINITY, f32::INFINITY, f32::INFINITY, 0.0],
+        high: [f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY, 0.0],
+    };
+
+    /// The box between two corners, rounded outwards.
+    pub fn new(low: Vector3<f64>, high: Vector3<f64>) -> Self {
+        let down = |x: f64| (x - x.abs() * 1e-7) as f32;
+        let up = |x: f64| (x + x.abs() * 1e-7) as f32;
+        Self {
+            low: [down(low.x), down(low.y), down(low.z), 0.0],
+            high: [up(high.x), up(high.y), up(high.z), 0.0],
+        }
+    }
+
+    /// The smallest box around some points, rounded outwards.
+    pub fn of(points: impl Iterator<Item = Vector3<f64>>) -> Self {
+        points.map(|point| Self::new(point, point)).fold(Self::EMPTY, Self::union)
+    }
+
+    /// The box around a ball.
+    #[inline(always)]
+    pub fn ball(centre: [f32; 3], radius: f32) -> Self {
+        let [x, y, z] = centre;
+        let low = [x - radius, y - radius, z - radius, 0.0];
+        Self { low, high: [x + radius, y + radius, z + radius, 0.0] }
+    }
+
+    /// The smallest box around two.
+    #[inline(always)]
+    pub fn union(self, other: Self) -> Self {
+        let low =
+            std::array::from_fn(|k| if other.low[k] < self.low[k] { other.low[k] } else { self.low[k] });
+        let high =
+            std::array::from_fn(|k| if other.high[k] > self.high[k] { other.high[k] } else { self.high[k] });
+        Self { low, high }
+    }
+
+    /// The box with `margin` added on every side.
+    #[inline(always)]
+    pub fn inflate(self, margin: f32) -> Self {
+        let margin = [margin, margin, margin, 0.0];
+        Self {
+            low: std::array::from_fn(|k| self.low[k] - margin[k]),
+            high: std::array::from_fn(|k| self.high[k] + margin[k]),
+        }
+    }
+
+    /// Whether two moving elements may overlap, each given by its boxes at the start and at the end of linear
+    /// motion. Boxes that are separated along one axis at both ends are separated throughout.
+    #[inline(always)]
+    pub fn may_overlap(ours: &[Self; 2], theirs: &[Self; 2]) -> bool {
+        // Compares all four numbers, so that the comparison vectorises; the last is always equal.
+        let mut apart = [false; 4];
+        for (k, apart) in apart.iter_mut().enumerate() {
+            let above = (ours[0].low[k] > theirs[0].high[k]) & (ours[1].low[k] > theirs[1].high[k]);
+            let below = (ours[0].high[k] < theirs[0].low[k]) & (ours[1].high[k] < theirs[1].low[k]);
+            *apart = above | below;
+        }
+        apart == [false; 4]
+    }
+
+    /// Whether two boxes have a point in common.
+    #[inline(always)]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let mut overlaps = [false; 4];
+        for (k, overlaps) in overlaps.iter_mut().enumerate() {
+            *overlaps = (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k]);
+        }
+        overlaps == [true; 4]
+    }
+}
+
+encode_struct!([] Aabb { low: [f32; 4], high: [f32; 4] });
+
+/// The boxes of an element at the start and at the end of linear motion.
+pub type SweptBox = [Aabb; 2];
+
+type Lanes = <f32 as Real>::Lanes;
+
+/// Four swept boxes in a structure of arrays: one box is tested against all four at once.
+#[derive(Debug, Clone, Copy)]
+pub struct Aabb4 {
+    /// Corners by end and axis.
+    low: [[[f32; 4]; 3]; 2],
+    high: [[[f32; 4]; 3]; 2],
+}
+
+impl Aabb4 {
+    /// Transposes four boxes.
+    #[inline(always)]
+    pub fn of([a, b, c, d]: &[SweptBox; 4]) -> Self {
+        let axes = |a: [f32; 4], b: [f32; 4], c: [f32; 4], d: [f32; 4]| {
+            let [x, y, z, _] = Lanes::transpose([a, b, c, d].map(Lanes::from_array));
+            [x.to_array(), y.to_array(), z.to_array()]
+        };
+        Self {
+            low: [0, 1].map(|end| axes(a[end].low, b[end].low, c[end].low, d[end].low)),
+            high: [0, 1].map(|end| axes(a[end].high, b[end].high, c[end].high, d[end].high)),
+        }
+    }
+
+    /// A bit for each of the four that `ours` may overlap, as [`Aabb::may_overlap`] says.
+    #[inline(always)]
+    pub fn overlap_mask(&self, ours: &SweptBox) -> u32 {
+        let mut gap = Lanes::splat(f32::NEG_INFINITY);
+        for axis in 0..3 {
+            let [low, high] = [ours.map(|one| one.low[axis]), ours.map(|one| one.high[axis])];
+            let above = |end: usize| Lanes::splat(low[end]) - Lanes::from_array(self.high[end][axis]);
+            let below = |end: usize| Lanes::from_array(self.low[end][axis]) - Lanes::splat(high[end]);
+            gap = gap.most(above(0).least(above(1))).most(below(0).least(below(1)));
+        }
+        !gap.above_zero() & 0b1111
+    }
+}
+
+/// Elements to a leaf.
+const LEAF_SIZE: usize = 4;
+
+/// A bounding volume hierarchy over triangles, or over groups of elements.
+#[derive(Debug, Clone)]
+pub struct Bvh {
+    /// Elements in the order of the leaves.
+    triangles: Vec<u32>,
+    /// Boxes in heap order; leaves last.
+    nodes: Vec<Aabb>,
+    leaves: usize,
+}
+
+checkpoint_struct!([] Bvh { columns: [triangles], values: [], parts: [], rebuilt: [nodes, leaves] });
+
+impl Bvh {
+    /// A hierarchy over elements with these centres. The boxes are empty until [`Bvh::refit`].
+    pub fn new(centres: &[Vector3<f64>]) -> Self {
+        let triangles = by_halves(centres, LEAF_SIZE);
+        let leaves = triangles.len().div_ceil(LEAF_SIZE).next_power_of_two();
+        Self { triangles, nodes: vec![Aabb::EMPTY; 2 * leaves - 1], leaves }
+    }
+
+    /// Whether it holds each of `triangles` elements exactly once.
+    pub fn covers(&self, triangles: usize) -> bool {
+        let mut seen = vec![false; triangles];
+        let is_new = |triangle: &u32| {
+            seen.get_mut(*triangle as usize).is_some_and(|seen| !std::mem::replace(seen, true))
+        };
+        self.triangles.len() == triangles && self.triangles.iter().all(is_new)
+    }
+
+    /// Sets every box from the boxes of the elements.
+    pub fn refit(&mut self, bounds: impl Fn(usize) -> Aabb) {
+        for (leaf, triangles) in self.triangles.chunks(LEAF_SIZE).enumerate() {
+            let all = triangles.iter().map(|&triangle| bounds(triangle as usize));
+            self.nodes[self.leaves - 1 + leaf] = all.fold(Aabb::EMPTY, Aabb::union);
+        }
+        for node in (0..self.leaves - 1).rev() {
+            self.nodes[node] = self.nodes[2 * node + 1].union(self.nodes[2 * node + 2]);
+        }
+    }
+
+    /// Calls `found` with each element whose leaf overlaps the box, in an order that depends on the hierarchy
+    /// alone.
+    pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {
+        // Deeper than any hierarchy: one level for each bit of the number of leaves.
+        let mut stack = [0usize; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = stack[depth];
+            if !self.nodes[node].overlaps(target) {
+                continue;
+            }
+            if node >= self.leaves - 1 {
+                let leaf = node - (self.leaves - 1);
+                let end = ((leaf + 1) * LEAF_SIZE).min(self.triangles.len());
+                self.triangles[leaf * LEAF_SIZE..end].iter().for_each(|&triangle| found(triangle));
+            } else {
+                stack[depth] = 2 * node + 2;
+                stack[depth + 1] = 2 * node + 1;
+                depth += 2;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn ways() -> impl Strategy<Value = SweptBox> {
+        let corner = || proptest::array::uniform3(-2.0..2.0f64).prop_map(Vector3::from);
+        let one = (corner(), corner()).prop_map(|(a, b)| Aabb::new(a.inf(&b), a.sup(&b)));
+        proptest::array::uniform2(one)
+    }
+
+    proptest! {
+        #[test]
+        fn four_boxes_at_once_overlap_as_each_alone(ours in ways(), theirs in proptest::array::uniform4(ways())) {
+            let alone = (0..).zip(&theirs).map(|(lane, boxes)| u32::from(Aabb::may_overlap(&ours, boxes)) << lane);
+            prop_assert_eq!(Aabb4::of(&theirs).overlap_mask(&ours), alone.sum::<u32>());
+        }
+    }
+
+    fn boxes() -> impl Strategy<Value = Vec<[Vector3<f64>; 2]>> {
+        let corner = || proptest::array::uniform3(-5.0..5.0f64).prop_map(Vector3::from);
+        let size = || proptest::array::uniform3(0.0..0.5f64).prop_map(Vector3::from);
+        proptest::collection::vec((corner(), size()).prop_map(|(low, size)| [low, low + size]), 1..100)
+    }
+
+    proptest! {
+        #[test]
+        fn the_hierarchy_finds_every_box_that_overlaps(corners in boxes(), target in 0usize..100) {
+            let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();
+            let mut bvh = Bvh::new(&corners.iter().map(|[low, high]| (low + high) / 2.0).collect::<Vec<_>>());
+            bvh.refit(|triangle| boxes[triangle]);
+            let [low, high] = corners[target % corners.len()];
+            let mut found = Vec::new();
+            bvh.query(&Aabb::new(low, high).inflate(0.5), |triangle| found.push(triangle));
+            let meets = |[l, h]: &[Vector3<f64>; 2]| (0..3).all(|k| l[k] <= high[k] + 0.5 && low[k] - 0.5 <= h[k]);
+            let all = (0..corners.len()).filter(|&k| meets(&corners[k]));
+            prop_assert!(all.into_iter().all(|k| found.contains(&(k as u32))));
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! The contact cache: all contacts among cloths, by kind, over a candidate interval.
+
+use std::sync::{Mutex, RwLock};
+
+use crate::bytes::checkpoint_struct;
+use crate::contact::cloth::batches::{Blocks, ContactList};
+use crate::contact::cloth::broad_phase::{RefreshKind, SearchTask};
+use crate::contact::cloth::contact::{ClothContact, ClothStep};
+use crate::contact::restitution::Restitution;
+use crate::math::{Real, Row4};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+/// All contacts that can touch within the candidate interval.
+#[derive(Debug)]
+pub struct ContactCache<R> {
+    /// Points and faces.
+    pub point_face: ContactList<R, 1, 3>,
+    /// Edges and edges.
+    pub edge_edge: ContactList<R, 2, 2>,
+    /// Points and edges.
+    pub point_edge: ContactList<R, 1, 2>,
+    /// Points and points.
+    pub point_point: ContactList<R, 1, 1>,
+}
+
+/// The contacts that a search task finds.
+#[derive(Debug)]
+pub struct FoundContacts<R> {
+    /// Points and faces.
+    pub point_face: Vec<ClothContact<R, 1, 3>>,
+    /// Edges and edges.
+    pub edge_edge: Vec<ClothContact<R, 2, 2>>,
+    /// Points and edges.
+    pub point_edge: Vec<ClothContact<R, 1, 2>>,
+    /// Points and points.
+    pub point_point: Vec<ClothContact<R, 1, 1>>,
+}
+
+checkpoint_struct!([R: Real] ContactCache<R> {
+    columns: [], values: [], parts: [point_face, edge_edge, point_edge, point_point], rebuilt: [],
+});
+
+impl<R> Default for ContactCache<R> {
+    fn default() -> Self {
+        Self {
+            point_face: ContactList::default(),
+            edge_edge: ContactList::default(),
+            point_edge: ContactList::default(),
+            point_point: ContactList::default(),
+        }
+    }
+}
+
+impl<R> Default for FoundContacts<R> {
+    fn default() -> Self {
+        Self {
+            point_face: Vec::new(),
+            edge_edge: Vec::new(),
+            point_edge: Vec::new(),
+            point_point: Vec::new(),
+        }
+    }
+}
+
+impl<R> FoundContacts<R> {
+    /// Removes all, keeps the capacity.
+    pub fn clear(&mut self) {
+        self.point_face.clear();
+        self.edge_edge.clear();
+        self.point_edge.clear();
+        self.point_point.clear();
+    }
+}
+
+/// The result of a search, and the contacts that it replaces.
+struct CacheUpdate<'a, R> {
+    tasks: &'a [RwLock<SearchTask<R>>],
+    bounds_violated: &'a [bool],
+    refresh: RefreshKind,
+    blocks: Blocks<'a>,
+}
+
+impl<R: Real> CacheUpdate<'_, R> {
+    /// Updates the contacts of a kind, in the order of the tasks.
+    fn update<const N: usize, const M: usize>(
+        &self,
+        contacts: &mut ContactList<R, N, M>,
+        of: impl Fn(&FoundContacts<R>) -> &[ClothContact<R, N, M>],
+    ) {
+        contacts.remove_violated(self.bounds_violated, self.refresh);
+        for task in self.tasks.iter().filter_map(|task| task.read().ok()) {
+            contacts.add(of(&task.found));
+        }
+        contacts.assign_batches(self.refresh, self.blocks);
+    }
+}
+
+impl<R: Real> ContactCache<R> {
+    /// Updates the local anchors of all contacts.
+    pub fn update_anchors(&mut self, anchors: &[[f64; 3]]) {
+        self.point_face.update_anchors(anchors);
+        self.edge_edge.update_anchors(anchors);
+        self.point_edge.update_anchors(anchors);
+        self.point_point.update_anchors(anchors);
+    }
+
+    /// Adds the contacts that tasks found, in their order, and removes those of points that violated their
+    /// bounds.
+    pub(super) fn update(
+        &mut self,
+        tasks: &[RwLock<SearchTask<R>>],
+        bounds_violated: &[bool],
+        refresh: RefreshKind,
+        blocks: Blocks<'_>,
+        pool: &ThreadPool,
+    ) {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        // Two tasks of about the same length, with separate lists.
+        let of_points = Mutex::new((point_face, point_point));
+        let of_edges = Mutex::new((edge_edge, point_edge));
+        let update = CacheUpdate { tasks, bounds_violated, refresh, blocks };
+        pool.parallel_for(2, |half| match half {
+            0 => {
+                let Ok(mut lists) = of_points.lock() else { return };
+                update.update(lists.0, |found| &found.point_face);
+                update.update(lists.1, |found| &found.point_point);
+            }
+            _ => {
+                let Ok(mut lists) = of_edges.lock() else { return };
+                update.update(lists.0, |found| &found.edge_edge);
+                update.update(lists.1, |found| &found.point_edge);
+            }
+        });
+    }
+
+    /// The number of contacts.
+    pub fn len(&self) -> u64 {
+        let lists = [self.point_face.iter().count(), self.edge_edge.iter().count()];
+        let lesser = [self.point_edge.iter().count(), self.point_point.iter().count()];
+        lists.iter().chain(&lesser).sum::<usize>() as u64
+    }
+
+    /// The number of contacts that keep less than the cloth's thickness, because their elements are neighbours at
+    /// rest.
+    pub fn count_rest_limited(&self) -> u64 {
+        let limited = self.point_face.iter().filter(|contact| contact.is_rest_limited()).count()
+            + self.edge_edge.iter().filter(|contact| contact.is_rest_limited()).count()
+            + self.point_edge.iter().filter(|contact| contact.is_rest_limited()).count();
+        limited as u64
+    }
+
+    /// The smallest ratio of distance to contact thickness.
+    pub fn min_gap_ratio(&self, step: &ClothStep<'_, R>) -> Option<R> {
+        let pairs = self.point_face.iter().map(|contact| contact.gap_ratio(step));
+        let pairs = pairs.chain(self.edge_edge.iter().map(|contact| contact.gap_ratio(step)));
+        let pairs = pairs.chain(self.point_edge.iter().map(|contact| contact.gap_ratio(step)));
+        let pairs = pairs.chain(self.point_point.iter().map(|contact| contact.gap_ratio(step)));
+        pairs.reduce(|least, x| if x < least { x } else { least })
+    }
+
+    /// One sweep. Point-face contacts go last, because they carry cloth on cloth most smoothly. Returns the
+    /// number of contacts that pushed.
+    pub fn sweep(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
+        self.edge_edge.sweep(step, pool)
+            + self.point_point.sweep(step, pool)
+            + self.point_edge.sweep(step, pool)
+            + self.point_face.sweep(step, pool)
+    }
+
+    /// Applies adhesion between points and the elements that they touch.
+    pub fn adhere(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) {
+        self.point_point.count(pool, |contact| contact.adhere(step));
+        self.point_edge.count(pool, |contact| contact.adhere(step));
+        self.point_face.count(pool, |contact| contact.adhere(step));
+    }
+
+    /// Applies restitution at all contacts.
+    pub fn apply_restitution(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        velocities: DisjointSlice<'_, Row4<R>>,
+        restitution: Restitution<R>,
+        pool: &ThreadPool,
+    ) {
+        self.edge_edge.count(pool, |contact| contact.apply_restitution(step, velocities, restitution));
+        self.point_point.count(pool, |contact| contact.apply_restitution(step, velocities, restitution));
+        self.point_edge.count(pool, |contact| contact.apply_restitution(step, velocities, restitution));
+        self.point_face.count(pool, |contact| contact.apply_restitution(step, velocities, restitution));
+    }
+
+    /// Carries friction anchors over into a candidate interval that begins at `start`; the last one began at
+    /// `interval_start`.
+    pub fn carry_anchors(&mut self, start: &[Row4<R>], interval_start: &[Row4<R>]) {
+        self.point_face.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
+        self.edge_edge.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
+        self.point_edge.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
+        self.point_point.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
+    }
+
+    /// The number of contacts without certificate.
+    pub fn certify(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
+        self.edge_edge.certify(step, pool) + self.point_face.certify(step, pool)
+    }
+
+    /// Truncates the motion of every contact without certificate, one after the other. Returns their number.
+    pub fn truncate(&mut self, step: &ClothStep<'_, R>) -> u64 {
+        self.correct_unproven(step, |contact| contact.truncate(step), |contact| contact.truncate(step))
+    }
+
+    /// Freezes the points of every contact without certificate, one after the other. Returns their number.
+    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [bool]) -> u64 {
+        let frozen = std::cell::RefCell::new(frozen);
+        self.correct_unproven(
+            step,
+            |contact| contact.freeze(step, &mut frozen.borrow_mut()),
+            |contact| contact.freeze(step, &mut frozen.borrow_mut()),
+        )
+    }
+
+    /// Applies a fallback to every contact without certificate.
+    fn correct_unproven(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        edges: impl Fn(&mut ClothContact<R, 2, 2>),
+        faces: impl Fn(&mut ClothContact<R, 1, 3>),
+    ) -> u64 {
+        let mut corrected = 0;
+        for contact in self.edge_edge.iter_mut() {
+            if !contact.certify(step) {
+                edges(contact);
+                corrected += 1;
+            }
+        }
+        for contact in self.point_face.iter_mut() {
+            if !contact.certify(step) {
+                faces(contact);
+                corrected += 1;
+            }
+        }
+        corrected
+    }
+}

@@ -1,0 +1,237 @@
+//! One contact of two elements that can both move.
+//!
+//! Its normal separated the two at the start of the time step. While it separates them at the end too, they have
+//! not passed through each other; otherwise the certificate tries other directions.
+
+use crate::bytes::{Encode, Reader, encode_struct};
+use crate::contact::cloth::element_bounds::ElementPoints;
+use crate::contact::cloth::response::FrictionAnchors;
+use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
+use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
+use crate::contact::time_step::PositionWriter;
+use crate::math::{Real, Row4, add};
+
+/// A time step of all cloths.
+#[derive(Clone, Copy)]
+pub struct ClothStep<'a, R> {
+    /// The positions of all points.
+    pub writer: PositionWriter<'a, R>,
+    /// Displacements at the start of the step.
+    pub start: &'a [Row4<R>],
+    /// Friction anchors; `None` outside of contact passes.
+    pub anchors: Option<FrictionAnchors<'a, R>>,
+    /// Contact materials, by cloth and cloth.
+    pub materials: &'a [Option<ContactMaterial<R>>],
+    /// Vertex maps of contact attributes.
+    pub material_maps: &'a MaterialMaps<R>,
+    /// Length of the step in seconds.
+    pub h: R,
+    /// Factor on every thickness: below one where there is too little room.
+    pub thickness_scale: R,
+}
+
+impl<R: Real> ClothStep<'_, R> {
+    #[inline(always)]
+    pub(super) fn row(&self, point: u32) -> Row4<R> {
+        self.writer.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
+    }
+
+    #[inline(always)]
+    pub(super) fn start(&self, point: u32) -> [R; 3] {
+        self.start[point as usize].xyz()
+    }
+}
+
+/// The parameters of a contact.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactParams<R> {
+    /// Contact thickness in metres: the largest value under the vertex maps.
+    pub thickness: R,
+    /// Index of the contact material.
+    pub material: u32,
+    /// Whether the thickness is reduced, because the two are neighbours at rest.
+    pub rest_limited: bool,
+    /// Whether motion bounds certify that the two keep a gap.
+    pub certified: bool,
+    /// Whether one side is a free point, which can move many times its size in a step.
+    pub has_free_point: bool,
+    /// Whether it has a friction anchor.
+    pub has_anchor: bool,
+}
+
+/// A contact: `N` points of one element, `M` of the other.
+#[derive(Debug, Clone, Copy)]
+pub struct ClothContact<R, const N: usize, const M: usize> {
+    /// Points of the one element, as rows of the solver.
+    pub ours: [u32; N],
+    /// Points of the other.
+    pub theirs: [u32; M],
+    /// The points' anchors, in metres relative to the anchor of the first.
+    local_anchors: ([[R; 3]; N], [[R; 3]; M]),
+    /// From theirs to ours; it separated the two at the start of the step. Zero if no direction held throughout
+    /// the last one.
+    pub(super) normal: [R; 3],
+    /// Friction anchor: the slip of ours along theirs at the start of the candidate interval, in metres, that
+    /// friction is still to reverse. Valid only with `has_anchor`.
+    pub(super) friction_anchor: [R; 3],
+    pub(super) params: ContactParams<R>,
+}
+
+encode_struct!([R: Real] ContactParams<R> { thickness: R, material: u32, rest_limited: bool, certified: bool, has_free_point: bool, has_anchor: bool });
+
+impl<R: Real, const N: usize, const M: usize> Encode for ClothContact<R, N, M> {
+    const SIZE: usize = <ElementPoints<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + ContactParams::<R>::SIZE;
+    fn encode(&self, out: &mut Vec<u8>) {
+        // Local anchors are set anew in the next frame.
+        let Self { ours, theirs, local_anchors: _, normal, friction_anchor, params } = self;
+        (*ours, *theirs).encode(out);
+        [*normal, *friction_anchor].encode(out);
+        params.encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        let (ours, theirs) = Encode::decode(from)?;
+        let local_anchors = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
+        let [normal, friction_anchor] = Encode::decode(from)?;
+        Some(Self { ours, theirs, local_anchors, normal, friction_anchor, params: Encode::decode(from)? })
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
+    /// A contact along the shortest line at the start of a time step. `start` holds displacements.
+    #[inline]
+    pub fn new(
+        (ours, theirs): ElementPoints<N, M>,
+        params: ContactParams<R>,
+        anchors: &[[f64; 3]],
+        start: &[Row4<R>],
+    ) -> Self {
+        let local_anchors = local_anchors((ours, theirs), anchors);
+        let [normal, friction_anchor] = [[R::ZERO; 3]; 2];
+        let mut contact = Self { ours, theirs, local_anchors, normal, friction_anchor, params };
+        contact.normal = shortest_line(contact.positions(|point| start[point as usize].xyz())).0;
+        contact
+    }
+
+    #[inline(always)]
+    pub(super) fn positions(&self, displacement: impl Fn(u32) -> [R; 3]) -> ElementPositions<R, N, M> {
+        let ours = std::array::from_fn(|k| add(self.local_anchors.0[k], displacement(self.ours[k])));
+        (ours, std::array::from_fn(|k| add(self.local_anchors.1[k], displacement(self.theirs[k]))))
+    }
+
+    #[inline(always)]
+    pub(super) fn end_positions(&self, step: &ClothStep<'_, R>) -> ElementPositions<R, N, M> {
+        self.positions(|point| step.row(point).xyz())
+    }
+
+    #[inline(always)]
+    pub(super) fn start_positions(&self, step: &ClothStep<'_, R>) -> ElementPositions<R, N, M> {
+        self.positions(|point| step.start(point))
+    }
+
+    /// The contact material of the two cloths.
+    #[inline(always)]
+    pub(super) fn material<'a>(&self, step: &ClothStep<'a, R>) -> Option<&'a ContactMaterial<R>> {
+        step.materials.get(self.params.material as usize)?.as_ref()
+    }
+
+    /// The points of the two and their weights.
+    #[inline(always)]
+    pub(super) fn contact_points<'a>(&self, weights: &'a ([R; N], [R; M])) -> ContactPoints<'a, R, N, M> {
+        (self.ours, self.theirs, weights)
+    }
+
+    /// The distance to keep at the contact, in metres.
+    #[inline(always)]
+    pub(super) fn rest_gap(&self, step: &ClothStep<'_, R>, weights: &([R; N], [R; M])) -> R {
+        self.thickness_at(step.materials, step.material_maps, weights) * step.thickness_scale
+    }
+
+    /// The distance to keep at the closest points, in metres.
+    pub(super) fn rest_gap_at(&self, step: &ClothStep<'_, R>, at: &ElementPositions<R, N, M>) -> R {
+        self.rest_gap(step, &shortest_line(*at).1)
+    }
+
+    /// The contact thickness at the contact, in metres.
+    #[inline(always)]
+    pub fn thickness_at(
+        &self,
+        materials: &[Option<ContactMaterial<R>>],
+        material_maps: &MaterialMaps<R>,
+        weights: &([R; N], [R; M]),
+    ) -> R {
+        let most = self.params.thickness;
+        let there = |materials: &ContactMaterial<R>| {
+            materials.thickness_at(material_maps, self.contact_points(weights), most)
+        };
+        if material_maps.thickness.is_empty() {
+            return most;
+        }
+        materials[self.params.material as usize].as_ref().map_or(most, there)
+    }
+
+    /// The gap along the normal.
+    #[inline(always)]
+    pub(super) fn gap(&self, at: &ElementPositions<R, N, M>) -> R {
+        gap_along(self.normal, at)
+    }
+    /// Whether one side is a free point.
+    pub fn has_free_point(&self) -> bool {
+        self.params.has_free_point
+    }
+
+    /// Its points, first ours, then theirs; the rest repeats the first.
+    pub fn points(&self) -> [u32; 4] {
+        let mut points = [self.ours[0]; 4];
+        points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
+        points
+    }
+
+    /// Updates the local anchors.
+    pub fn update_anchors(&mut self, anchors: &[[f64; 3]]) {
+        self.local_anchors = local_anchors((self.ours, self.theirs), anchors);
+    }
+
+    /// Whether the thickness is reduced, because the two are neighbours at rest.
+    pub fn is_rest_limited(&self) -> bool {
+        self.params.rest_limited
+    }
+
+    /// Disables the contact.
+    pub fn disable(&mut self) {
+        // No gap is below this thickness, and no material has this index.
+        self.params.thickness = -R::ONE / R::MIN_DENOMINATOR;
+        self.params.material = u32::MAX;
+    }
+
+    /// Whether it refers to existing points and to an existing material.
+    pub fn is_valid(&self, are_points: impl Fn(&[u32]) -> bool, materials: usize) -> bool {
+        are_points(&self.ours)
+            && are_points(&self.theirs)
+            && (self.is_disabled() || (self.params.material as usize) < materials)
+    }
+
+    /// Whether it is disabled.
+    pub fn is_disabled(&self) -> bool {
+        self.params.material == u32::MAX
+    }
+
+    /// The distance between the two, over their contact thickness.
+    pub fn gap_ratio(&self, step: &ClothStep<'_, R>) -> R {
+        let (_, weights, distance) = shortest_line(self.end_positions(step));
+        distance / self.rest_gap(step, &weights)
+    }
+}
+
+/// The anchors of some points, in metres relative to the anchor of our first.
+#[inline(always)]
+fn local_anchors<R: Real, const N: usize, const M: usize>(
+    (ours, theirs): ElementPoints<N, M>,
+    anchors: &[[f64; 3]],
+) -> ElementPositions<R, N, M> {
+    let origin = anchors[ours[0] as usize];
+    let place = |point: u32| {
+        let anchor = anchors[point as usize];
+        std::array::from_fn(|axis| R::from_f64(anchor[axis] - origin[axis]))
+    };
+    (ours.map(place), theirs.map(place))
+}

@@ -1,0 +1,207 @@
+//! The elements of all cloths, in groups of neighbours, under one BVH.
+
+use nalgebra::Vector3;
+
+use crate::bytes::checkpoint_struct;
+use crate::contact::boundary::ElementGroup;
+use crate::contact::bvh::{Aabb, Bvh, SweptBox};
+use crate::contact::cloth::element_bounds::ElementBounds;
+use crate::math::Real;
+use crate::model::ClothModel;
+
+/// Triangles in a group.
+const GROUP_SIZE: usize = 8;
+
+/// A group of elements and the cloth it belongs to.
+#[derive(Debug, Clone)]
+pub struct ClothGroup {
+    /// The cloth, by its index.
+    pub cloth: u32,
+    /// Its elements, in the cloth's boundary.
+    pub group: ElementGroup,
+}
+
+/// All element groups.
+#[derive(Debug, Clone, Default)]
+pub struct ElementGroups {
+    /// The groups, cloth by cloth.
+    pub groups: Vec<ClothGroup>,
+    /// A hierarchy over the groups.
+    pub bvh: Option<Bvh>,
+    /// The swept box of each group.
+    pub swept_boxes: Vec<SweptBox>,
+    /// The groups that contain an element of each point; empty for padding rows.
+    pub groups_of_point: CsrLists,
+    /// Whether each point belongs to no face.
+    pub is_free_point: Vec<bool>,
+    /// The points of each group, and the end of each group's run.
+    pub points: Vec<u32>,
+    ends: Vec<u32>,
+    /// The block of each point, counted over all cloths.
+    pub block: Vec<u32>,
+    /// The cloth of each point.
+    pub cloth: Vec<u32>,
+    /// Mean edge length at rest of the cloth with the shortest edges, in metres.
+    pub edge_length: f64,
+    /// The number of blocks.
+    pub blocks: u32,
+    /// Position of each point at rest, in metres relative to the first of its cloth.
+    pub rest_positions: Vec<[f32; 3]>,
+}
+
+checkpoint_struct!([] ElementGroups {
+    columns: [rest_positions],
+    values: [],
+    parts: [bvh],
+    rebuilt: [groups, swept_boxes, points, ends, block, cloth, edge_length, blocks, groups_of_point, is_free_point],
+});
+
+impl ElementGroups {
+    /// The elements of these cloths, with `anchors` as their shape at rest.
+    pub fn new<R: Real>(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
+        let rows = anchors.len();
+        let mut all = Self {
+            block: vec![0; rows],
+            cloth: vec![0; rows],
+            rest_positions: vec![[0.0; 3]; rows],
+            is_free_point: vec![true; rows],
+            ..Self::default()
+        };
+        for (cloth, model) in (0..).zip(cloths) {
+            all.groups.extend(model.boundary.groups(GROUP_SIZE).map(|group| ClothGroup { cloth, group }));
+            let corners = model.boundary.triangles.iter().flatten();
+            corners.for_each(|&corner| all.is_free_point[corner as usize] = false);
+            let points = model.points();
+            all.cloth[points.start as usize..points.end as usize].fill(cloth);
+            for block in 0..model.blocks.len() {
+                let range = model.blocks.range(block);
+                all.block[range.start as usize..range.end as usize].fill(all.blocks);
+                all.blocks += 1;
+            }
+        }
+        let lengths = cloths.iter().map(|cloth| cloth.edge_length).filter(|&length| length > 0.0);
+        all.edge_length = lengths.fold(f64::INFINITY, f64::min);
+        all.build(cloths, anchors);
+        all
+    }
+
+    /// All points of a group.
+    pub fn points_of(&self, group: usize) -> &[u32] {
+        let from = group.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.points[from as usize..self.ends[group] as usize]
+    }
+
+    /// Writes the groups that contain any of these points, sorted.
+    pub fn groups_of(&self, points: impl Iterator<Item = u32>, groups: &mut Vec<u32>) {
+        groups.clear();
+        points.for_each(|point| groups.extend(self.groups_of_point.of(point)));
+        groups.sort_unstable();
+        groups.dedup();
+    }
+
+    /// Sets the swept box of a group.
+    pub fn set_bound(&mut self, group: u32, bounds: &ElementBounds, margin: f32) {
+        self.swept_boxes[group as usize] = bounds.bound(self.points_of(group as usize), margin);
+    }
+
+    /// Refits the hierarchy to the swept boxes.
+    pub fn refit(&mut self) {
+        let Self { bvh, swept_boxes, .. } = self;
+        if let Some(bvh) = bvh {
+            bvh.refit(|group| swept_boxes[group][0].union(swept_boxes[group][1]));
+        }
+    }
+
+    /// The union of a group's boxes at both ends.
+    pub fn swept_bound(&self, group: u32) -> Aabb {
+        let [start, end] = self.swept_boxes[group as usize];
+        start.union(end)
+    }
+
+    /// Takes up the shape at rest, and builds the hierarchy over it.
+    fn build<R: Real>(&mut self, cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) {
+        for model in cloths {
+            let points = model.points();
+            let first = Vector3::from(anchors[points.start as usize]);
+            for row in points.map(|row| row as usize) {
+                let away = Vector3::from(anchors[row]) - first;
+                self.rest_positions[row] = [away.x as f32, away.y as f32, away.z as f32];
+            }
+        }
+        for ClothGroup { cloth, group } in &self.groups {
+            let boundary = &cloths[*cloth as usize].boundary;
+            let corners = boundary.triangles[group.triangles.clone()].iter().flatten();
+            let from = self.points.len();
+            self.points.extend(corners.chain(&boundary.points[group.points.clone()]));
+            self.points[from..].sort_unstable();
+            let mut end = from;
+            for at in from..self.points.len() {
+                if at == from || self.points[at] != self.points[end - 1] {
+                    self.points[end] = self.points[at];
+                    end += 1;
+                }
+            }
+            self.points.truncate(end);
+            self.ends.push(end as u32);
+        }
+        let groups = 0..self.groups.len();
+        let pairs =
+            groups.flat_map(|group| self.points_of(group).iter().map(move |&point| (point, group as u32)));
+        self.groups_of_point = CsrLists::new(anchors.len(), pairs);
+        let centre = |group: usize| {
+            let points = self.points_of(group);
+            let sum: Vector3<f64> = points.iter().map(|&point| Vector3::from(anchors[point as usize])).sum();
+            sum / f64::max(points.len() as f64, 1.0)
+        };
+        let centres: Vec<_> = (0..self.groups.len()).map(centre).collect();
+        self.bvh = (!centres.is_empty()).then(|| Bvh::new(&centres));
+        self.swept_boxes = vec![[Aabb::EMPTY; 2]; self.groups.len()];
+    }
+}
+
+/// Lists of numbers in compressed sparse rows: a list for each point.
+#[derive(Debug, Clone, Default)]
+pub struct CsrLists {
+    numbers: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl CsrLists {
+    /// Lists for `points` points, from pairs of point and number.
+    pub fn new(points: usize, all: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let mut ends = vec![0; points];
+        all.clone().for_each(|(point, _)| ends[point as usize] += 1);
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += std::mem::replace(end, sum);
+        }
+        // `ends` holds the starts now, and the ends once all is filled in.
+        let mut numbers = vec![0; sum as usize];
+        for (point, number) in all {
+            numbers[ends[point as usize] as usize] = number;
+            ends[point as usize] += 1;
+        }
+        Self { numbers, ends }
+    }
+
+    /// The list of one point.
+    pub fn of(&self, point: u32) -> &[u32] {
+        let from = (point as usize).checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.numbers[from as usize..self.ends[point as usize] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_row_holds_exactly_the_numbers_given_for_its_point() {
+        let given = [(0, 7), (2, 8), (1, 7), (2, 9), (2, 7)];
+        let lists = CsrLists::new(4, given.into_iter());
+        let expected: [&[u32]; 4] = [&[7], &[7], &[8, 9, 7], &[]];
+        for (point, expected) in (0..).zip(expected) {
+            assert_eq!(lists.of(point), expected, "{point}");
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! Detection of intersections: finds the edges that pierce faces, groups them into contours by union-find, and
+//! chooses a correction for each.
+
+use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::broad_phase::SearchInput;
+use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
+use crate::contact::material::ContactMaterial;
+use crate::math::{Real, Row4, add, cross, dot, scale, sub};
+use crate::model::ClothModel;
+
+/// Finds all intersections at the present positions. Valid while the boxes of the last search are.
+pub fn find_intersections<R: Real>(cloth_contacts: &mut ClothContacts<R>, input: &SearchInput<'_, R>) {
+    let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
+    untangling.is_search_due = false;
+    untangling.intersections.clear();
+    let Some(bvh) = &elements.bvh else { return };
+    let SearchInput { cloths, anchors, displacement: [_, displacement], strength, .. } = *input;
+    let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength };
+    for group in 0..elements.groups.len() as u32 {
+        bvh.query(&elements.swept_bound(group), |other| {
+            search.find_between(group, other, &mut untangling.intersections)
+        });
+    }
+    if untangling.any() {
+        untangling.mark_neighbourhood(cloths);
+        untangling.choose_corrections(cloths);
+        search.choose_sides(untangling);
+    } else {
+        untangling.is_on_wrong_side.fill(false);
+        untangling.sides.clear();
+    }
+}
+
+struct IntersectionSearch<'a, R> {
+    elements: &'a ElementGroups,
+    materials: &'a [Option<ContactMaterial<R>>],
+    cloths: &'a [ClothModel<R>],
+    anchors: &'a [[f64; 3]],
+    displacement: &'a [Row4<R>],
+    strength: &'a [R],
+}
+
+impl<R: Real> IntersectionSearch<'_, R> {
+    /// All edges of one group that pierce a face of another.
+    fn find_between(&self, group: u32, other: u32, found: &mut Vec<Intersection>) {
+        let [ours, theirs] = [group, other].map(|group| &self.elements.groups[group as usize]);
+        let material = &self.materials[ours.cloth as usize * self.cloths.len() + theirs.cloth as usize];
+        let collides = material.as_ref().is_some_and(|material| material.strength == [R::ONE; 2]);
+        if !collides || !self.elements.swept_bound(other).overlaps(&self.elements.swept_bound(group)) {
+            return;
+        }
+        let position = |point: u32| self.position(point);
+        let has_full_strength = |points: &[u32]| {
+            self.strength.is_empty() || points.iter().all(|&p| self.strength[p as usize] >= R::ONE)
+        };
+        let edges = &self.cloths[ours.cloth as usize].boundary.edges[ours.group.edges.clone()];
+        let faces = &self.cloths[theirs.cloth as usize].boundary.triangles[theirs.group.triangles.clone()];
+        for &edge in edges.iter().filter(|edge| has_full_strength(*edge)) {
+            for &face in faces.iter().filter(|face| has_full_strength(*face)) {
+                let is_joined = face.iter().any(|point| edge.contains(point));
+                if !is_joined && pierces(edge.map(position), face.map(position)) {
+                    found.push(Intersection {
+                        edge,
+                        wings: [edge[0]; 2],
+                        face,
+                        correction: Correction::None,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Chooses corrections between two cloths: the first belongs on the side of the second where most of it is.
+    fn choose_sides(&self, untangling: &mut Untangling) {
+        let Untangling { intersections, sides, cloth_pairs, wings, .. } = untangling;
+        cloth_pairs.clear();
+        let cloth = |point: u32| self.elements.cloth[point as usize];
+        for at in 0..intersections.len() {
+            let Intersection { edge, face, .. } = intersections[at];
+            let (ours, theirs) = (cloth(edge[0]), cloth(face[0]));
+            let pair = [ours.min(theirs), ours.max(theirs)];
+            if !cloth_pairs.contains(&pair) {
+                cloth_pairs.push(pair);
+            }
+            if ours == theirs {
+                continue;
+            }
+            let previous = sides.iter().find(|side| side.0 == pair).map(|side| side.1);
+            let is_first_outside = previous.unwrap_or_else(|| self.is_above(pair, intersections));
+            if previous.is_none() {
+                sides.push((pair, is_first_outside));
+            }
+            let [p, q, r] = face.map(|point| self.position(point));
+            let normal = cross(sub(q, p), sub(r, p));
+            // The second is above the first where the first's outer side faces it.
+            let along = || dot(normal, self.normal_at(wings, edge)) > 0.0;
+            let is_above = if ours < theirs { is_first_outside } else { is_first_outside != along() };
+            let is_first_above = dot(normal, sub(self.position(edge[0]), p)) > 0.0;
+            intersections[at].correction = Correction::ReturnEnd(usize::from(is_first_above == is_above));
+        }
+    }
+
+    /// Whether most of a cloth is on the outer side of another, by the mean plane of the faces it pierces.
+    fn is_above(&self, [ours, theirs]: [u32; 2], intersections: &[Intersection]) -> bool {
+        let cloth = |point: u32| self.elements.cloth[point as usize];
+        let between = |intersection: &&Intersection| {
+            [cloth(intersection.edge[0]), cloth(intersection.face[0])] == [ours, theirs]
+        };
+        let faces = || {
+            intersections
+                .iter()
+                .filter(between)
+                .map(|intersection| intersection.face.map(|point| self.position(point)))
+        };
+        let normal = faces().map(|[p, q, r]| cross(sub(q, p), sub(r, p))).fold([0.0; 3], add);
+        let middle =
+            scale(faces().map(|[p, _, _]| p).fold([0.0; 3], add), 1.0 / faces().count().max(1) as f64);
+        let points = self.cloths[ours as usize].points();
+        let above =
+            points.clone().filter(|&point| dot(normal, sub(self.position(point), middle)) > 0.0).count();
+        2 * above > points.len()
+    }
+
+    /// The sum of the normals of the faces at an edge.
+    fn normal_at(&self, wings: &[Wing], edge: [u32; 2]) -> [f64; 3] {
+        let of_face = |&([p, q], wing, is_forward): &Wing| {
+            let [p, q, wing] = [p, q, wing].map(|point| self.position(point));
+            scale(cross(sub(q, p), sub(wing, p)), if is_forward { 1.0 } else { -1.0 })
+        };
+        beside(wings, edge).map(of_face).fold([0.0; 3], add)
+    }
+
+    fn position(&self, point: u32) -> [f64; 3] {
+        add(self.anchors[point as usize], self.displacement[point as usize].xyz().map(R::to_f64))
+    }
+}
+
+/// The faces at an edge.
+fn beside(wings: &[Wing], [p, q]: [u32; 2]) -> impl Iterator<Item = &Wing> {
+    let edge = [p.min(q), p.max(q)];
+    let from = wings.partition_point(|wing| wing.0 < edge);
+    wings[from..].iter().take_while(move |wing| wing.0 == edge)
+}
+
+impl Untangling {
+    /// Chooses corrections within one cloth. Points on the wrong side stay marked until they are back: a piece
+    /// that shrinks must not become the right side half-way.
+    fn choose_corrections<R: Real>(&mut self, cloths: &[ClothModel<R>]) {
+        let Self { intersections, near_contour: points, is_on_wrong_side, .. } = self;
+        let mut cut: Vec<[u32; 2]> = intersections.iter().map(|intersection| intersection.edge).collect();
+        cut.sort_unstable();
+        let mut pieces = UnionFind::new(points.len());
+        for &[a, b] in cloths.iter().flat_map(|cloth| &cloth.boundary.edges) {
+            if cut.binary_search(&[a, b]).is_err() {
+                pieces.union(a, b);
+            }
+        }
+        pieces.take_majority(is_on_wrong_side);
+        let mut contours = UnionFind::new(points.len());
+        for Intersection { edge, face, .. } in intersections.iter() {
+            edge.iter().chain(face).for_each(|&point| contours.union(edge[0], point));
+        }
+        // For each contour without marked points, the smallest piece that it cuts off; by size, then by first
+        // point.
+        let mut smallest = vec![Some((u32::MAX, u32::MAX)); points.len()];
+        for [a, b] in intersections.iter().map(|intersection| intersection.edge) {
+            let contour = &mut smallest[contours.find(a) as usize];
+            let [here, there] = [a, b].map(|point| pieces.find(point));
+            if is_on_wrong_side[a as usize] != is_on_wrong_side[b as usize] {
+                *contour = None;
+            } else if here != there {
+                let least = (pieces.size(here), here).min((pieces.size(there), there));
+                *contour = contour.map(|before| before.min(least));
+            }
+        }
+        for (_, piece) in smallest.into_iter().flatten().filter(|&(size, _)| size < u32::MAX) {
+            (0..points.len() as u32).filter(|&point| pieces.find(point) == piece).for_each(|point| {
+                is_on_wrong_side[point as usize] = true;
+            });
+        }
+        for intersection in intersections {
+            let [a, b] = intersection.edge.map(|point| pieces.find(point));
+            intersection.correction = match intersection.edge.map(|point| is_on_wrong_side[point as usize]) {
+                [true, false] => Correction::ReturnEnd(0),
+                [false, true] => Correction::ReturnEnd(1),
+                _ if a == b => Correction::ShortenContour,
+                _ => Correction::None,
+            };
+        }
+    }
+
+    /// Sets the wings of every intersection, and marks the points near a contour.
+    fn mark_neighbourhood<R: Real>(&mut self, cloths: &[ClothModel<R>]) {
+        let Self { intersections, near_contour: points, wings, .. } = self;
+        let faces = || cloths.iter().flat_map(|cloth| &cloth.boundary.triangles);
+        if wings.is_empty() {
+            let sides = |&[a, b, c]: &[u32; 3]| [(a, b, c), (b, c, a), (c, a, b)];
+            wings.extend(faces().flat_map(sides).map(|(p, q, wing)| ([p.min(q), p.max(q)], wing, p < q)));
+            wings.sort_unstable();
+        }
+        points.fill(false);
+        for intersection in intersections {
+            let wing_slots = intersection.wings.iter_mut();
+            wing_slots.zip(beside(wings, intersection.edge)).for_each(|(slot, &(_, wing, _))| *slot = wing);
+            let Intersection { edge, wings, face, .. } = *intersection;
+            edge.iter().chain(&wings).chain(&face).for_each(|&point| points[point as usize] = true);
+        }
+        let near: Vec<bool> = points.clone();
+        for face in faces().filter(|face| face.iter().any(|&point| near[point as usize])) {
+            face.iter().for_each(|&point| points[point as usize] = true);
+        }
+    }
+}
+
+/// Disjoint sets of points. A set is named by its lowest point.
+pub struct UnionFind {
+    /// A point of the same set that is no higher; a root points to itself.
+    parent: Vec<u32>,
+    /// The size of each root's set.
+    sizes: Vec<u32>,
+}
+
+impl UnionFind {
+    /// `points` sets of one point each.
+    pub fn new(points: usize) -> Self {
+        Self { parent: (0..points as u32).collect(), sizes: vec![1; points] }
+    }
+
+    /// The set of a point.
+    pub fn find(&mut self, mut point: u32) -> u32 {
+        while self.parent[point as usize] != point {
+            let next = self.parent[point as usize];
+            self.parent[point as usize] = self.parent[next as usize];
+            point = next;
+        }
+        point
+    }
+
+    /// The number of points in a set.
+    pub fn size(&self, set: u32) -> u32 {
+        self.sizes[set as usize]
+    }
+
+    /// Gives all points of a set the value that most of them have.
+    pub fn take_majority(&mut self, values: &mut [bool]) {
+        let mut yes = vec![0u32; values.len()];
+        for point in 0..values.len() as u32 {
+            yes[self.find(point) as usize] += u32::from(values[point as usize]);
+        }
+        for point in 0..values.len() as u32 {
+            let set = self.find(point);
+            values[point as usize] = yes[set as usize] * 2 > self.size(set);
+        }
+    }
+
+    /// Joins the sets of two points.
+    pub fn union(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        if a != b {
+            self.parent[a.max(b) as usize] = a.min(b);
+            self.sizes[a.min(b) as usize] += self.sizes[a.max(b) as usize];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_is_named_by_its_lowest_point_and_counts_its_points() {
+        let mut sets = UnionFind::new(6);
+        [(5, 3), (1, 2), (3, 2), (4, 4)].into_iter().for_each(|(a, b)| sets.union(a, b));
+        let of: Vec<u32> = (0..6).map(|point| sets.find(point)).collect();
+        assert_eq!(of, [0, 1, 1, 1, 4, 1]);
+        assert_eq!((sets.size(0), sets.size(1), sets.size(4)), (1, 4, 1));
+    }
+}

@@ -1,0 +1,177 @@
+//! Motion bounds: a line and a radius that contain a point over a candidate interval. The contacts found for them
+//! are complete as long as all points stay inside.
+//!
+//! The line follows the point's own motion, so neighbours that move together keep their distance: a sheet that
+//! falls or swings finds no contact with itself.
+
+use crate::math::{Real, Row4, add, clamp_length, dot, scale, sub};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::schedule::StepInterval;
+
+/// The trajectory of each point over a candidate interval.
+#[derive(Debug, Clone, Default)]
+pub struct Trajectories<R> {
+    /// Displacement at the start of the interval in metres, and the radius.
+    pub origin: Vec<Row4<R>>,
+    /// Motion over the whole interval, in metres.
+    pub travel: Vec<Row4<R>>,
+}
+
+/// The motion bound of one point.
+#[derive(Debug, Clone, Copy)]
+pub struct Trajectory<R> {
+    /// Displacement at the start of the interval, in metres.
+    pub origin: [R; 3],
+    /// Motion over the whole interval, in metres.
+    pub travel: [R; 3],
+    /// Radius around the line, in metres.
+    pub radius: R,
+}
+
+impl<R: Real> Trajectory<R> {
+    /// The line at a share of the interval.
+    #[inline(always)]
+    pub fn at(&self, share: R) -> [R; 3] {
+        add(self.origin, scale(self.travel, share))
+    }
+
+    /// Whether a displacement is within the radius at a share of the interval.
+    #[inline(always)]
+    pub fn contains(&self, share: R, displacement: [R; 3]) -> bool {
+        let away = sub(displacement, self.at(share));
+        dot(away, away) <= self.radius * self.radius
+    }
+}
+
+impl<R: Real> Trajectories<R> {
+    /// Empty trajectories.
+    pub fn new(rows: usize) -> Self {
+        Self { origin: vec![Row4::ZERO; rows], travel: vec![Row4::ZERO; rows] }
+    }
+
+    /// The trajectory of one point.
+    #[inline(always)]
+    pub fn of(&self, point: u32) -> Trajectory<R> {
+        let origin = self.origin[point as usize];
+        Trajectory { origin: origin.xyz(), travel: self.travel[point as usize].xyz(), radius: origin.0[3] }
+    }
+
+    /// Rebases on anchors that move to the points' positions: the end of the last interval becomes the start of
+    /// the next.
+    pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
+        for ((origin, travel), moved) in self.origin.iter_mut().zip(&mut self.travel).zip(moved) {
+            let [x, y, z] = sub(add(origin.xyz(), travel.xyz()), moved.xyz());
+            *origin = Row4([x, y, z, origin.0[3]]);
+            *travel = Row4::ZERO;
+        }
+    }
+
+    /// Lends the columns to the tasks of a phase.
+    pub fn shared(&mut self) -> SharedTrajectories<'_, R> {
+        SharedTrajectories {
+            origin: DisjointSlice::new(&mut self.origin),
+            travel: DisjointSlice::new(&mut self.travel),
+        }
+    }
+}
+
+/// Trajectories, lent to the tasks of a phase.
+#[derive(Clone, Copy)]
+pub struct SharedTrajectories<'a, R> {
+    origin: DisjointSlice<'a, Row4<R>>,
+    travel: DisjointSlice<'a, Row4<R>>,
+}
+
+#[allow(unsafe_code)]
+impl<R: Real> SharedTrajectories<'_, R> {
+    /// Reads a trajectory.
+    ///
+    /// # Safety
+    /// No other task of the phase writes it.
+    #[inline(always)]
+    pub unsafe fn of(&self, point: u32) -> Trajectory<R> {
+        let (origin, travel) = unsafe { (self.origin.get(point), self.travel.get(point)) };
+        Trajectory { origin: origin.xyz(), travel: travel.xyz(), radius: origin.0[3] }
+    }
+
+    /// Writes a trajectory.
+    ///
+    /// # Safety
+    /// No other task of the phase touches it.
+    #[inline(always)]
+    pub unsafe fn set(&self, point: u32, trajectory: Trajectory<R>) {
+        let ([a, b, c], [x, y, z]) = (trajectory.origin, trajectory.travel);
+        unsafe {
+            self.origin.set(point, Row4([a, b, c, trajectory.radius]));
+            self.travel.set(point, Row4([x, y, z, R::ZERO]));
+        }
+    }
+}
+
+/// Share of its radius within which a point keeps its bound in the next interval without a search.
+const KEEP_SHARE: f64 = 0.8;
+
+/// Predicts the trajectories of one cloth.
+pub struct BoundPredictor<R> {
+    /// Start of the step, as a share of the interval.
+    step_start: R,
+    /// Time steps in the interval.
+    steps: R,
+    /// Mean motion of the cloth's points in a step, in metres.
+    mean_step: [R; 3],
+}
+
+impl<R: Real> BoundPredictor<R> {
+    /// For a step of an interval of the frame.
+    pub fn new(now: StepInterval, interval: [f64; 2], mean_step: [R; 3]) -> Self {
+        let (step, length) = (now.to - now.from, interval[1] - interval[0]);
+        Self {
+            step_start: R::from_f64((now.from - interval[0]) / length),
+            steps: R::from_f64(length / step),
+            mean_step,
+        }
+    }
+
+    /// Extrapolates the line at `rate` per step, but no farther than `farthest` from the mean motion. The radius
+    /// has room for this step's own motion.
+    #[inline(always)]
+    pub fn extrapolate(
+        &self,
+        before: [R; 3],
+        [motion, rate]: [[R; 3]; 2],
+        radius: R,
+        farthest: R,
+    ) -> Trajectory<R> {
+        let most = farthest / (R::ONE - self.step_start + R::EPSILON);
+        let travel = clamp_difference(scale(rate, self.steps), scale(self.mean_step, self.steps), most);
+        let residual = sub(motion, scale(travel, R::ONE / self.steps));
+        let radius = radius + dot(residual, residual).sqrt();
+        Trajectory { origin: sub(before, scale(travel, self.step_start)), travel, radius }
+    }
+
+    /// Whether a point with this motion per step stays well within a bound until the interval ends.
+    #[inline(always)]
+    pub fn stays_within(&self, rest: &Trajectory<R>, before: [R; 3], motion: [R; 3]) -> bool {
+        let most = rest.radius * R::from_f64(KEEP_SHARE);
+        let off = sub(before, rest.origin);
+        let last = add(off, scale(motion, self.steps));
+        dot(off, off) <= most * most && dot(last, last) <= most * most
+    }
+}
+
+/// The mean motion of some points in a step. A common motion brings no point nearer to another.
+pub fn mean_motion<R: Real>(start: &[Row4<R>], now: &[Row4<R>]) -> [R; 3] {
+    let mut sum = [0.0f64; 3];
+    for (start, now) in start.iter().zip(now) {
+        let motion = sub(now.xyz(), start.xyz());
+        for axis in 0..3 {
+            sum[axis] += motion[axis].to_f64();
+        }
+    }
+    sum.map(|x| R::from_f64(x / start.len().max(1) as f64))
+}
+
+/// A motion that differs from the mean by `most` at most.
+fn clamp_difference<R: Real>(motion: [R; 3], mean_step: [R; 3], most: R) -> [R; 3] {
+    add(mean_step, clamp_length(sub(motion, mean_step), most))
+}

@@ -1,0 +1,359 @@
+//! Response of one contact among cloths: push, friction with a persistent anchor, adhesion, restitution.
+//!
+//! A Gauss-Seidel sweep leaves some layers of a stack slightly displaced: each push moves points over those
+//! pushed before. The friction anchor accumulates that slip, and the next step reverses it without velocity, as
+//! it does for depth. Without it, resting layers creep downhill by about g h² in each step.
+
+use crate::contact::ccd::{first_contact_normal, passing_direction};
+use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
+use crate::contact::cloth::contact::{ClothContact, ClothStep};
+use crate::contact::material::ContactMaterial;
+use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
+use crate::contact::response::{Adhesion, Push};
+use crate::contact::restitution::{Impact, Restitution};
+use crate::math::{Real, Row4, add, clamp_length, dot, max, scale, sub};
+use crate::parallel::disjoint::DisjointSlice;
+
+/// Share of the thickness that counts as touching: without a tolerance a contact at rest would push for ever at
+/// its last bit.
+const TOUCH_TOLERANCE: f64 = 1e-6;
+
+impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
+    /// Pushes the two apart if they are nearer than their thickness. Returns whether they were.
+    #[inline]
+    pub fn resolve(&mut self, step: &ClothStep<'_, R>) -> bool {
+        let now = self.end_positions(step);
+        let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
+        let gap = self.gap(&now);
+        if gap >= self.params.thickness * step.thickness_scale * touching {
+            return false;
+        }
+        let before = self.start_positions(step);
+        if self.params.has_free_point
+            && let Some(normal) = first_contact_normal(&before, &now, self.rest_gap_at(step, &before))
+        {
+            self.normal = normal;
+            self.push_to_start_side(step, &before, &now);
+            return true;
+        }
+        let (normal, weights, distance) = shortest_line(now);
+        if distance > R::ZERO
+            && gap_along(normal, &before) > rounding_error(&now) * R::from_f64(START_TOLERANCE)
+        {
+            // Separated along this line at both ends of the step.
+            self.normal = normal;
+            let rest_gap = self.rest_gap(step, &weights);
+            if distance >= rest_gap * touching {
+                return false;
+            }
+            self.push(step, &weights, &before, [rest_gap, rest_gap - distance]);
+            return true;
+        }
+        if self.params.has_free_point
+            && let Some(normal) = passing_direction(&before, &now, self.rest_gap_at(step, &before))
+        {
+            self.normal = normal;
+            return false;
+        }
+        if self.separated_throughout(&before, &now) {
+            self.normal = normal;
+            let rest_gap = self.rest_gap(step, &weights);
+            if distance < rest_gap * touching {
+                self.push(step, &weights, &before, [rest_gap, rest_gap - distance]);
+            }
+            self.clear_normal();
+            return distance < rest_gap * touching;
+        }
+        if self.may_interpenetrate(step) {
+            // They may pass through each other, and are on the other side from now on.
+            self.normal = normal;
+            let rest_gap = self.rest_gap(step, &weights);
+            self.push(step, &weights, &before, [rest_gap, max(rest_gap - distance, R::ZERO)]);
+            return true;
+        }
+        // Not separated: back to the side of the start of the step.
+        self.push_to_start_side(step, &before, &now);
+        true
+    }
+
+    /// Pushes the two apart along the contact normal, at the closest points of the start of the step.
+    fn push_to_start_side(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        before: &ElementPositions<R, N, M>,
+        now: &ElementPositions<R, N, M>,
+    ) {
+        let (first, weights, _) = shortest_line(*before);
+        if self.normal == [R::ZERO; 3] {
+            self.normal = first;
+        }
+        let rest_gap = self.rest_gap(step, &weights);
+        let depth = rest_gap - dot(self.normal, self.contact_line(now, &weights));
+        if depth > R::ZERO {
+            self.push(step, &weights, before, [rest_gap, depth]);
+        }
+    }
+
+    /// Moves the two sides apart by `depth` in total, each by its mobility, with friction. `rest_gap` is the
+    /// distance to keep.
+    fn push(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        weights: &([R; N], [R; M]),
+        before: &ElementPositions<R, N, M>,
+        [rest_gap, depth]: [R; 2],
+    ) {
+        let Some(material) = self.material(step) else { return };
+        let line_before = self.contact_line(before, weights);
+        // Two movable sides balance by their velocities, so no depenetration by other contacts is reversed here.
+        let mut push =
+            Push::new(rest_gap, [dot(self.normal, line_before), rest_gap - depth], R::ZERO, step.h);
+        if material.is_partial(step.material_maps) {
+            push = push.scaled(material.strength_at(step.material_maps, self.contact_points(weights)));
+        }
+        let along = [push.length(), push.depenetration].map(|length| scale(self.normal, length));
+        let friction = material.friction_at(step.material_maps, self.contact_points(weights));
+        let friction_part = if friction > R::ZERO {
+            self.friction_correction(
+                step,
+                weights,
+                line_before,
+                along[0],
+                [push.pressed, push.depenetration].map(|most| most * friction),
+            )
+        } else {
+            [[R::ZERO; 3]; 2]
+        };
+        self.push_apart(
+            step,
+            material,
+            weights,
+            add(along[0], friction_part[0]),
+            add(along[1], friction_part[1]),
+        );
+    }
+
+    /// Moves the two apart by `moved`, each side by its mobility; `depenetration` is the part of it without
+    /// velocity.
+    pub(super) fn push_apart(
+        &self,
+        step: &ClothStep<'_, R>,
+        material: &ContactMaterial<R>,
+        (b, c): &([R; N], [R; M]),
+        moved: [R; 3],
+        depenetration: [R; 3],
+    ) {
+        let mobile =
+            |point: u32, weight: R, side: usize| step.row(point).0[3] * weight * material.mobility[side];
+        let ours: [R; N] = std::array::from_fn(|k| mobile(self.ours[k], b[k], 0));
+        let theirs: [R; M] = std::array::from_fn(|k| mobile(self.theirs[k], c[k], 1));
+        let all = (0..N).map(|k| ours[k] * b[k]).sum::<R>() + (0..M).map(|k| theirs[k] * c[k]).sum::<R>();
+        if all <= R::MIN_DENOMINATOR {
+            return;
+        }
+        let part = R::ONE / all;
+        for k in 0..N {
+            self.move_point(step, self.ours[k], ours[k] * part, moved, depenetration);
+        }
+        for k in 0..M {
+            self.move_point(step, self.theirs[k], -(theirs[k] * part), moved, depenetration);
+        }
+    }
+
+    #[inline(always)]
+    fn move_point(&self, step: &ClothStep<'_, R>, point: u32, part: R, moved: [R; 3], depenetration: [R; 3]) {
+        let mut row = step.row(point);
+        for axis in 0..3 {
+            row.0[axis] += moved[axis] * part;
+        }
+        step.writer.push_by_cloth(point, row, scale(depenetration, part));
+    }
+
+    /// The line from the contact point on theirs to that on ours.
+    #[inline(always)]
+    pub(super) fn contact_line(&self, at: &ElementPositions<R, N, M>, (b, c): &([R; N], [R; M])) -> [R; 3] {
+        sub(interpolate(at.0, *b), interpolate(at.1, *c))
+    }
+}
+
+/// The reference of friction anchors.
+#[derive(Clone, Copy)]
+pub struct FrictionAnchors<'a, R> {
+    /// Displacements at the start of the candidate interval.
+    pub interval_start: &'a [Row4<R>],
+    /// Pairs of intersecting cloths, the lower index first. They are to separate, so they have no anchors.
+    pub intersecting: &'a [[u32; 2]],
+}
+
+impl<R> FrictionAnchors<'_, R> {
+    /// Whether two cloths intersect, given the index of their material among all.
+    #[inline(always)]
+    fn are_intersecting(&self, material: u32, materials: usize) -> bool {
+        if self.intersecting.is_empty() {
+            return false;
+        }
+        let cloths = materials.isqrt() as u32;
+        let [a, b] = [material / cloths, material % cloths];
+        self.intersecting.contains(&[a.min(b), a.max(b)])
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
+    /// The correction along the surfaces in metres, and the part of it without velocity: against the relative
+    /// motion of this step, and against the offset from the anchor. Coulomb's law bounds both: `most` holds
+    /// friction times the pressed part of the push, and friction times its depenetration. `along` is the push
+    /// itself.
+    pub(super) fn friction_correction(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        weights: &([R; N], [R; M]),
+        line_before: [R; 3],
+        along: [R; 3],
+        most: [R; 2],
+    ) -> [[R; 3]; 2] {
+        let normal = self.normal;
+        let flat = |x: [R; 3]| sub(x, scale(normal, dot(x, normal)));
+        let motion =
+            flat(add(sub(self.contact_line(&self.end_positions(step), weights), line_before), along));
+        let offset = self.anchor_offset(step, weights, line_before, most[1]);
+        let total = add(motion, offset);
+        let depenetration = part_along(offset, total);
+        let pressed = clamp_length(sub(total, depenetration), most[0]);
+        [add(pressed, depenetration), depenetration].map(|x| scale(x, -R::ONE))
+    }
+
+    /// The offset from the friction anchor at the start of the step, `most` at most: the anchor moves by the
+    /// rest.
+    #[inline(always)]
+    fn anchor_offset(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        weights: &([R; N], [R; M]),
+        line_before: [R; 3],
+        most: R,
+    ) -> [R; 3] {
+        let Some(anchors) = step.anchors else { return [R::ZERO; 3] };
+        let start = self.positions(|point| anchors.interval_start[point as usize].xyz());
+        let in_interval = sub(line_before, self.contact_line(&start, weights));
+        let is_valid =
+            self.params.has_anchor && !anchors.are_intersecting(self.params.material, step.materials.len());
+        let offset = if is_valid { add(self.friction_anchor, in_interval) } else { [R::ZERO; 3] };
+        let offset = clamp_length(sub(offset, scale(self.normal, dot(offset, self.normal))), most);
+        self.friction_anchor = sub(offset, in_interval);
+        self.params.has_anchor = true;
+        offset
+    }
+
+    /// Carries the friction anchor over into a candidate interval that begins at `start`; the last one began at
+    /// `interval_start`.
+    pub(super) fn carry_anchor(&mut self, start: &[Row4<R>], interval_start: &[Row4<R>]) {
+        if !self.params.has_anchor {
+            return;
+        }
+        let now = self.positions(|point| start[point as usize].xyz());
+        let weights = shortest_line(now).1;
+        let line = |at: &ElementPositions<R, N, M>| self.contact_line(at, &weights);
+        let in_interval =
+            sub(line(&now), line(&self.positions(|point| interval_start[point as usize].xyz())));
+        self.friction_anchor = add(self.friction_anchor, in_interval);
+    }
+}
+
+/// The part of `offset` that a motion reverses.
+fn part_along<R: Real>(offset: [R; 3], motion: [R; 3]) -> [R; 3] {
+    let square = dot(offset, offset);
+    if square <= R::MIN_DENOMINATOR {
+        return [R::ZERO; 3];
+    }
+    let share = dot(motion, offset) / square;
+    match share {
+        share if share <= R::ZERO => [R::ZERO; 3],
+        share if share < R::ONE => scale(offset, share),
+        _ => offset,
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
+    /// Applies adhesion between the two. Returns whether it acted.
+    pub fn adhere(&self, step: &ClothStep<'_, R>) -> bool {
+        let Some(material) = self.material(step).filter(|material| material.has_adhesion()) else {
+            return false;
+        };
+        let (now, before) = (self.end_positions(step), self.start_positions(step));
+        let (normal, weights, _) = shortest_line(before);
+        let thickness = self.thickness_at(step.materials, step.material_maps, &weights);
+        let adhesion = Adhesion {
+            range: thickness * R::from_f64(material.adhesion_range),
+            thickness,
+            stickiness: material.stickiness_at(step.material_maps, self.contact_points(&weights)),
+            friction: material.friction_at(step.material_maps, self.contact_points(&weights)),
+        };
+        let [before, now] = [self.contact_line(&before, &weights), self.contact_line(&now, &weights)];
+        let correction = adhesion.correction(before, now, normal, step.h);
+        correction.inspect(|&moved| self.push_apart(step, material, &weights, moved, [R::ZERO; 3])).is_some()
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
+    /// Applies restitution if the two touch at the end of the step. Momentum is conserved. Returns whether it
+    /// acted.
+    pub fn apply_restitution(
+        &self,
+        step: &ClothStep<'_, R>,
+        velocities: DisjointSlice<'_, Row4<R>>,
+        restitution: Restitution<R>,
+    ) -> bool {
+        let Some(material) = self.material(step).filter(|material| material.has_restitution()) else {
+            return false;
+        };
+        let (normal, weights, distance) = shortest_line(self.end_positions(step));
+        let thickness = self.thickness_at(step.materials, step.material_maps, &weights);
+        let bounce = material.bounce_at(step.material_maps, self.contact_points(&weights));
+        if bounce <= R::ZERO || !Restitution::touches(distance, thickness) {
+            return false;
+        }
+        #[allow(unsafe_code)]
+        // SAFETY: tasks of a colour share no block, and a contact's points are in its task's blocks.
+        let velocity = |point: u32| unsafe { velocities.get(point) };
+        let predicted = |point: u32| step.writer.predicted(point);
+        let impact = Impact {
+            predicted: self.relative(&weights, predicted),
+            displacement: self.relative(&weights, |point| step.row(point).xyz()),
+            velocity: self.relative(&weights, |point| velocity(point).xyz()),
+        };
+        let gained = sub(
+            Restitution { coefficient: bounce, ..restitution }.velocity_after(&impact, normal, [R::ZERO; 3]),
+            impact.velocity,
+        );
+        if gained == [R::ZERO; 3] {
+            return false;
+        }
+        let (b, c) = &weights;
+        let ours = (0..N).map(|k| (self.ours[k], b[k], b[k] * material.mobility[0]));
+        let theirs = (0..M).map(|k| (self.theirs[k], c[k], -(c[k] * material.mobility[1])));
+        let each = ours
+            .chain(theirs)
+            .map(|(point, weight, mobility)| (point, weight, mobility * step.row(point).0[3]));
+        let magnitude = |x: R| if x < R::ZERO { -x } else { x };
+        let all: R = each.clone().map(|(_, weight, mobility)| weight * magnitude(mobility)).sum();
+        if all <= R::MIN_DENOMINATOR {
+            return false;
+        }
+        for (point, _, mobility) in each {
+            let row = velocity(point);
+            let [x, y, z] = add(row.xyz(), scale(gained, mobility / all));
+            // SAFETY: as above.
+            #[allow(unsafe_code)]
+            unsafe {
+                velocities.set(point, Row4([x, y, z, row.0[3]]));
+            }
+        }
+        true
+    }
+
+    /// A column at our contact point minus that at theirs.
+    fn relative(&self, (b, c): &([R; N], [R; M]), of: impl Fn(u32) -> [R; 3]) -> [R; 3] {
+        let ours = (0..N).map(|k| scale(of(self.ours[k]), b[k])).fold([R::ZERO; 3], add);
+        (0..M).map(|k| scale(of(self.theirs[k]), c[k])).fold(ours, sub)
+    }
+}

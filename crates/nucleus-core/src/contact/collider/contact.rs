@@ -1,0 +1,328 @@
+//! One contact of a cloth element and a collider element: its separating plane, and its certificate.
+//!
+//! The plane is a direction `n`, and for each cloth point the gap n·x - max n·q over the collider's points. Both
+//! sides move along straight lines within a step, and the maximum of linear functions is convex, so the gap is a
+//! concave function of time. A positive gap at both ends of the step, for one `n`, *proves* that nothing passed
+//! in between. Where the contact's own plane proves nothing, others are tried. Where none does, the element
+//! returns to its side of the plane that held at the start of the step.
+
+use nalgebra::Vector3;
+
+use crate::bytes::encode_struct;
+use crate::contact::ccd::separated_throughout;
+use crate::contact::collider::broad_phase::{MotionBounds, diagonal};
+use crate::contact::narrow_phase;
+use crate::contact::time_step::ColliderStep;
+use crate::math::{Real, Row4, dot};
+
+pub(super) type Point = Vector3<f64>;
+
+/// Motion along the plane for which it stays valid, as a share of the thickness: around an edge or a corner the
+/// error is below 1e-5 of the thickness, and on a face it is zero.
+const PLANE_VALIDITY: f64 = 1.0 / 256.0;
+
+/// A contact of a cloth element of `N` points and a collider element of `M` points. Point and face: 1 and 3; edge
+/// and edge: 2 and 2; face and point: 3 and 1.
+#[derive(Debug, Clone, Copy)]
+pub struct ColliderContact<R, const N: usize, const M: usize> {
+    /// The cloth's points, as rows of the solver.
+    pub points: [u32; N],
+    /// The collider's points.
+    pub collider_points: [u32; M],
+    /// The element group of the cloth that it was found for.
+    pub group: u32,
+    pub(super) normal: [R; 3],
+    /// n·q less n·anchor for each cloth point, at the start and at the end of the candidate interval.
+    plane: [[R; N]; 2],
+    /// Weights of the cloth points at the contact.
+    pub(super) weights: [R; N],
+    /// Motion of the collider at the contact over the whole frame, in metres.
+    pub(super) surface_motion: [R; 3],
+    /// Displacement of the contact when the plane was set.
+    plane_origin: [R; 3],
+}
+
+encode_struct!([R: Real, const N: usize, const M: usize] ColliderContact<R, N, M> {
+    points: [u32; N], collider_points: [u32; M], group: u32, normal: [R; 3], plane: [[R; N]; 2], weights: [R; N],
+    surface_motion: [R; 3], plane_origin: [R; 3],
+});
+
+/// The outcome of resolving a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It keeps its thickness.
+    Separated,
+    /// It was pushed to its thickness.
+    Pushed,
+    /// It would have passed, and was reverted to its side.
+    Reverted,
+    /// The two touched at the start of the step: no plane separates them, and they are left as they are.
+    Inseparable,
+}
+
+/// Whether a pair provably did not pass through each other in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Certificate {
+    /// It is certified.
+    Separated,
+    /// It is not certified: the safeguard acts.
+    Unproven,
+    /// The two touched at the start of the step, and one is behind the other's plane now: nothing tells their
+    /// sides.
+    Inseparable,
+}
+
+impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// A contact with its plane across the shortest line at the start of the step. `None` if the motion bounds
+    /// exclude contact within the candidate interval.
+    #[inline]
+    pub fn candidate(
+        points: [u32; N],
+        collider_points: [u32; M],
+        group: u32,
+        step: &ColliderStep<'_, R>,
+        bounds: &MotionBounds<'_, R>,
+    ) -> Option<Self> {
+        let (x, q) = (step.cloth_start_positions(points), step.collider_positions(collider_points)[0]);
+        let (b, c) = closest(x, q);
+        let line = interpolate(x, b) - interpolate(q, c);
+        // Neither side moves farther than the diagonal of its bound.
+        let ours = points.map(|point| diagonal(&bounds.of(point)).to_f64()).into_iter().fold(0.0, f64::max);
+        let theirs =
+            collider_points.map(|q| step.travel(q, bounds.frame_travel)).into_iter().fold(0.0, f64::max);
+        let range = step.interaction_range();
+        if line.norm() > range.to_f64() + ours + theirs {
+            return None;
+        }
+        let touching = || cross_direction(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
+        let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
+        let zero = [R::ZERO; 3];
+        let mut contact = Self {
+            points,
+            collider_points,
+            group,
+            normal: zero,
+            plane: [[R::ZERO; N]; 2],
+            weights: [R::ZERO; N],
+            surface_motion: zero,
+            plane_origin: zero,
+        };
+        contact.set_plane(normal, (b, c), step);
+        let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
+        let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
+        (gap < range).then_some(contact)
+    }
+
+    /// Whether the contact is in the interior of the cloth's element, and on the far side of the surface. `outward` is the
+    /// pseudonormal there.
+    pub fn is_behind_surface(&self, outward: Point) -> bool {
+        let interior = R::from_f64(1e-4);
+        let normal = Point::from(self.normal.map(R::to_f64));
+        self.weights.iter().all(|&weight| weight > interior) && normal.dot(&outward) < 0.0
+    }
+
+    /// The smallest gap along the plane over the motion bounds of the cloth's points, within a window. The window
+    /// is given by shares of the candidate interval and the motion of the moving frame. A contact with a gap
+    /// above the thickness cannot touch.
+    #[inline(always)]
+    pub fn min_gap(&self, window: [(R, [R; 3]); 2], bounds: &MotionBounds<'_, R>) -> R {
+        let window = window.map(|(share, frame_motion)| (share, dot(self.normal, frame_motion)));
+        let mut least = R::from_f64(f64::from(f32::MAX));
+        for k in 0..N {
+            let [low, high] = bounds.of(self.points[k]);
+            let corner = |axis: usize| if self.normal[axis] > R::ZERO { low.0[axis] } else { high.0[axis] };
+            let lowest = dot(self.normal, [corner(0), corner(1), corner(2)]);
+            for (share, frame_motion) in window {
+                let gap = lowest + frame_motion - self.plane_at(k, share);
+                least = if gap < least { gap } else { least };
+            }
+        }
+        least
+    }
+
+    /// Rebases the plane on anchors that move to the points' positions; the collider is at rest.
+    pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
+        for k in 0..N {
+            let by = moved[self.points[k] as usize].xyz();
+            let along = dot(self.normal, by);
+            self.plane[0][k] -= along;
+            self.plane[1][k] -= along;
+            for axis in 0..3 {
+                self.plane_origin[axis] -= self.weights[k] * by[axis];
+            }
+        }
+    }
+
+    /// The plane's offset for a point, at a share of the candidate interval.
+    #[inline(always)]
+    fn plane_at(&self, k: usize, share: R) -> R {
+        self.plane[0][k] + (self.plane[1][k] - self.plane[0][k]) * share
+    }
+
+    /// The distance between the two elements at the end of the step, over their contact thickness.
+    pub fn gap_ratio(&self, step: &ColliderStep<'_, R>) -> f64 {
+        let (x, q) = (step.cloth_positions(self.points)[1], step.collider_positions(self.collider_points)[1]);
+        let (b, c) = closest(x, q);
+        (interpolate(x, b) - interpolate(q, c)).norm()
+            / step.rest_gap(self.points, b.map(R::from_f64)).to_f64()
+    }
+
+    /// The gap at the contact, and the smallest gap of any point, at a share of the candidate interval.
+    #[inline(always)]
+    pub(super) fn gaps(&self, displacement: [[R; 3]; N], share: R) -> (R, R) {
+        let mut at_contact = R::ZERO;
+        let mut least = R::ZERO;
+        for k in 0..N {
+            let gap = dot(self.normal, displacement[k]) - self.plane_at(k, share);
+            at_contact += self.weights[k] * gap;
+            least = if k == 0 || gap < least { gap } else { least };
+        }
+        (at_contact, least)
+    }
+
+    /// The gap at the start of the step.
+    #[inline(always)]
+    pub(super) fn gap_at_start(&self, step: &ColliderStep<'_, R>) -> R {
+        self.gaps(self.points.map(|point| step.start(point)), step.interval_share(step.time[0])).0
+    }
+
+    /// Depenetration by colliders at the contact in this step, in metres.
+    #[inline(always)]
+    pub(super) fn collider_depenetration(&self, step: &ColliderStep<'_, R>) -> [R; 3] {
+        self.contact_displacement(self.points.map(|point| step.writer.collider_depenetration(point)))
+    }
+
+    /// Whether the contact is still where its plane was set.
+    #[inline(always)]
+    pub(super) fn plane_is_valid(&self, displacement: [[R; 3]; N], step: &ColliderStep<'_, R>) -> bool {
+        let time = R::from_f64(step.time[1]);
+        let away: [R; 3] = std::array::from_fn(|axis| {
+            self.contact_displacement(displacement)[axis]
+                - self.surface_motion[axis] * time
+                - self.plane_origin[axis]
+        });
+        let most = step.thickness * R::from_f64(PLANE_VALIDITY);
+        dot(away, away) <= most * most
+    }
+
+    /// Displacement of the contact on the cloth.
+    #[inline(always)]
+    pub(super) fn contact_displacement(&self, displacement: [[R; 3]; N]) -> [R; 3] {
+        std::array::from_fn(|axis| (0..N).map(|k| self.weights[k] * displacement[k][axis]).sum())
+    }
+
+    /// Sets the plane through a contact, given by its normal and its weights.
+    pub(super) fn set_plane(
+        &mut self,
+        normal: Point,
+        (b, c): ([f64; N], [f64; M]),
+        step: &ColliderStep<'_, R>,
+    ) {
+        self.normal = [normal.x, normal.y, normal.z].map(R::from_f64);
+        // Rounds first, so that offset and direction belong together to the last bit.
+        let normal = Point::from(self.normal.map(R::to_f64));
+        for (end, time) in step.interval.into_iter().enumerate() {
+            let support = self.collider_points.iter().map(|&q| normal.dot(&step.collider_position(q, time)));
+            let support = support.fold(f64::NEG_INFINITY, f64::max);
+            self.plane[end] = self
+                .points
+                .map(|point| R::from_f64(support - normal.dot(&Point::from(step.anchors[point as usize]))));
+        }
+        let ends =
+            step.collider.map(|points| interpolate(self.collider_points.map(|q| points[q as usize]), c));
+        let motion = ends[1] - ends[0];
+        self.weights = b.map(R::from_f64);
+        self.surface_motion = [motion.x, motion.y, motion.z].map(R::from_f64);
+        let contact = self.contact_displacement(self.points.map(|point| step.row(point).xyz()));
+        let time = R::from_f64(step.time[1]);
+        self.plane_origin = std::array::from_fn(|axis| contact[axis] - self.surface_motion[axis] * time);
+    }
+}
+
+/// The closest points of two elements, as weights.
+pub(super) fn closest<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> ([f64; N], [f64; M]) {
+    narrow_phase::closest(x.map(Into::into), q.map(Into::into))
+}
+
+/// A direction across two elements, of any length.
+pub(super) fn cross_direction<const N: usize, const M: usize>(x: [Point; N], q: [Point; M]) -> Point {
+    narrow_phase::cross_direction(x.map(Into::into), q.map(Into::into)).into()
+}
+
+pub(super) fn interpolate<const K: usize>(points: [Point; K], weights: [f64; K]) -> Point {
+    (0..K).map(|k| points[k] * weights[k]).sum()
+}
+
+impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// Certifies the contact in this step; may set another plane that proves it.
+    #[inline]
+    pub fn certify(&mut self, step: &ColliderStep<'_, R>) -> Certificate {
+        let moved = self.points.map(|point| step.row(point).xyz());
+        let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
+        // Gaps within rounding error are computed in double precision.
+        let rounding = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
+        let (_, at_end) = self.gaps(moved, step.interval_share(step.time[1]));
+        // The plane may have been set at the end of this step, and prove nothing at its start.
+        let (_, at_start) =
+            self.gaps(self.points.map(|point| step.start(point)), step.interval_share(step.time[0]));
+        if (at_end > rounding && at_start > rounding) || self.may_interpenetrate(step) {
+            return Certificate::Separated;
+        }
+        self.certify_with_other_plane(step, at_end)
+    }
+
+    /// Whether the scene lets the two pass through each other, because collisions are carried out in part.
+    #[cold]
+    pub(super) fn may_interpenetrate(&self, step: &ColliderStep<'_, R>) -> bool {
+        let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
+        let all = step.material.strength.iter().any(|&side| side < R::ONE);
+        step.material.is_partial(step.material_maps) && (all || of_points(&step.material_maps.strength))
+    }
+
+    #[cold]
+    fn certify_with_other_plane(&mut self, step: &ColliderStep<'_, R>, at_end: R) -> Certificate {
+        let (cloth, surface) =
+            (step.cloth_positions(self.points), step.collider_positions(self.collider_points));
+        let ([x0, x1], [q0, q1]) = (cloth, surface);
+        let at_start = closest(x0, q0);
+        let line = |x, q, (b, c)| interpolate(x, b) - interpolate(q, c);
+        let directions = [
+            line(x0, q0, at_start),
+            cross_direction(x1, q1),
+            cross_direction(x0, q0),
+            line(x1, q1, closest(x1, q1)),
+        ];
+        match best_plane(directions, cloth, surface) {
+            Some((gap, normal)) if gap > 0.0 => self.set_plane(normal, at_start, step),
+            Some(_) if !separated(cloth, surface) => return Certificate::Unproven,
+            None if at_end < R::ZERO => return Certificate::Inseparable,
+            _ => {}
+        }
+        Certificate::Separated
+    }
+}
+
+/// Whether the two are separated throughout the step, by subdivision.
+pub(super) fn separated<const N: usize, const M: usize>(
+    [x0, x1]: [[Point; N]; 2],
+    [q0, q1]: [[Point; M]; 2],
+) -> bool {
+    let at = |x: [Point; N], q: [Point; M]| (x.map(Into::into), q.map(Into::into));
+    separated_throughout([&at(x0, q0), &at(x1, q1)], [0.0; 2]).is_some()
+}
+
+/// Among some directions and their opposites, the one that separates the two at the start of the step with the
+/// largest gap at its end.
+pub(super) fn best_plane<const N: usize, const M: usize>(
+    directions: [Point; 4],
+    [x0, x1]: [[Point; N]; 2],
+    [q0, q1]: [[Point; M]; 2],
+) -> Option<(f64, Point)> {
+    let gap = |n: Point, x: &[Point], q: &[Point]| {
+        let least = x.iter().map(|x| n.dot(x)).fold(f64::INFINITY, f64::min);
+        least - q.iter().map(|q| n.dot(q)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let units = directions.into_iter().filter_map(|direction| direction.try_normalize(1e-12));
+    let planes = units.flat_map(|n| [n, -n]).filter(|&n| gap(n, &x0, &q0) > 0.0);
+    planes.map(|n| (gap(n, &x1, &q1), n)).max_by(|a, b| a.0.total_cmp(&b.0))
+}

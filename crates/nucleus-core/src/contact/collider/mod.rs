@@ -1,0 +1,160 @@
+//! A collider within a frame, and contact of cloth with it.
+//!
+//! A collider's points move along straight lines from their positions at the start of the frame to those at its end (§2.4).
+//! So even a single substep includes its velocity and its change of shape.
+//!
+//! | You want to know... | Read |
+//! |---|---|
+//! | broad phase: motion bounds of cloth, and when contacts are searched | [`broad_phase`] |
+//! | which elements can touch, group by group | [`query`] |
+//! | the contacts of one cloth with one collider, the active ones, and a sweep over them | [`contacts`] |
+//! | one contact: its separating plane, and its certificate | [`contact`] |
+//! | its push, friction, adhesion and restitution | [`response`] |
+//! | the passes of a time step | [`pass`] |
+
+pub mod broad_phase;
+pub mod contact;
+pub mod contacts;
+pub mod pass;
+pub mod query;
+mod response;
+
+use nalgebra::Vector3;
+
+use crate::bytes::checkpoint_struct;
+use crate::contact::bvh::{Aabb, Bvh};
+use crate::model::ColliderModel;
+
+/// A collider in the current frame, and the boxes of its elements over an interval of it.
+#[derive(Debug, Clone)]
+pub struct ColliderState {
+    /// Positions at the start of the frame in metres.
+    pub start: Vec<Vector3<f64>>,
+    /// Positions at the end of the frame in metres.
+    pub end: Vec<Vector3<f64>>,
+    /// Whether any point moves in this frame.
+    pub moves: bool,
+    /// The largest motion of any point in this frame, in metres.
+    pub max_travel: f64,
+    /// The mean motion of its points in this frame, in metres.
+    pub mean_travel: Vector3<f64>,
+    /// Low and high corner of the bounding box at the start and at the end of the frame.
+    corners: [[Vector3<f64>; 2]; 2],
+    /// The time that the solver has reached, as a share of the frame.
+    pub now: f64,
+    /// A box for each boundary triangle, edge and point.
+    pub boxes: Boxes,
+    /// Boxes over triangles.
+    pub bvh: Bvh,
+    /// The interval that the boxes cover; `None` if they are out of date.
+    fitted_interval: Option<[f64; 2]>,
+}
+
+checkpoint_struct!([] ColliderState {
+    columns: [start, end],
+    values: [now],
+    parts: [],
+    rebuilt: [moves, max_travel, mean_travel, corners, boxes, bvh, fitted_interval],
+});
+
+/// The boxes of an object's elements.
+#[derive(Debug, Clone, Default)]
+pub struct Boxes {
+    /// One per triangle.
+    pub triangles: Vec<Aabb>,
+    /// One per edge.
+    pub edges: Vec<Aabb>,
+    /// One per point.
+    pub points: Vec<Aabb>,
+}
+
+impl ColliderState {
+    /// A collider at rest.
+    pub fn new(model: &ColliderModel) -> Self {
+        let third = |t: &[u32; 3]| t.iter().map(|&p| model.positions[p as usize]).sum::<Vector3<f64>>() / 3.0;
+        let centres: Vec<_> = model.boundary.triangles.iter().map(third).collect();
+        Self {
+            start: model.positions.clone(),
+            end: model.positions.clone(),
+            moves: false,
+            max_travel: 0.0,
+            mean_travel: Vector3::zeros(),
+            corners: [corners(&model.positions); 2],
+            now: 0.0,
+            boxes: Boxes::default(),
+            bvh: Bvh::new(&centres),
+            fitted_interval: None,
+        }
+    }
+
+    /// Takes up a frame's motion. Without positions at the start, it starts as the frame before ended; without
+    /// any at the end, it is at rest.
+    pub fn begin_frame(&mut self, start: &[Vector3<f64>], end: &[Vector3<f64>]) {
+        self.now = 0.0;
+        if self.moves || !start.is_empty() || !end.is_empty() {
+            std::mem::swap(&mut self.start, &mut self.end);
+            if !start.is_empty() {
+                self.start.clone_from_slice(start);
+            }
+            let next = if end.is_empty() { &self.start } else { end };
+            self.end.clone_from_slice(next);
+            self.fitted_interval = None;
+            self.moves = self.start != self.end;
+            let travels = self.start.iter().zip(&self.end).map(|(start, end)| (end - start).norm());
+            self.max_travel = travels.fold(0.0, f64::max);
+            let sum: Vector3<f64> = self.start.iter().zip(&self.end).map(|(start, end)| end - start).sum();
+            self.mean_travel = sum / self.start.len().max(1) as f64;
+            self.corners = [corners(&self.start), corners(&self.end)];
+        }
+    }
+
+    /// Low and high corner of its bounding box at a time of the frame, in metres.
+    pub fn bounds(&self, time: f64) -> [Vector3<f64>; 2] {
+        let [start, end] = self.corners;
+        [0, 1].map(|corner| start[corner] + (end[corner] - start[corner]) * time)
+    }
+
+    /// Origin of the boxes at a time of the frame, in metres.
+    pub fn origin(&self, time: f64) -> Vector3<f64> {
+        self.start.first().copied().unwrap_or_default() + self.mean_travel * time
+    }
+
+    /// Position of a point at a time of the frame, in metres.
+    pub fn point(&self, point: u32, time: f64) -> Vector3<f64> {
+        let [start, end] = [self.start[point as usize], self.end[point as usize]];
+        start + (end - start) * time
+    }
+
+    /// Fits the boxes to an interval of the frame, relative to [`origin`](Self::origin). Those of a collider at
+    /// rest stay valid.
+    pub fn fit_boxes(&mut self, model: &ColliderModel, interval: [f64; 2]) {
+        if self.fitted_interval == Some(interval) || (self.fitted_interval.is_some() && !self.moves) {
+            return;
+        }
+        let mut boxes = std::mem::take(&mut self.boxes);
+        let bound = |points: &[u32]| {
+            let path = points
+                .iter()
+                .flat_map(|&point| interval.map(|time| self.point(point, time) - self.origin(time)));
+            Aabb::of(path)
+        };
+        let boundary = &model.boundary;
+        refill(&mut boxes.triangles, boundary.triangles.iter().map(|triangle| bound(triangle)));
+        refill(&mut boxes.edges, boundary.edges.iter().map(|edge| bound(edge)));
+        refill(&mut boxes.points, boundary.points.iter().map(|&point| bound(&[point])));
+        self.bvh.refit(|triangle| boxes.triangles[triangle]);
+        self.boxes = boxes;
+        self.fitted_interval = Some(interval);
+    }
+}
+
+/// The low and the high corner of the bounding box of some points.
+fn corners(points: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+    let first = points.first().copied().unwrap_or_default();
+    points.iter().fold([first, first], |[low, high], point| [low.inf(point), high.sup(point)])
+}
+
+fn refill(column: &mut Vec<Aabb>, boxes: impl Iterator<Item = Aabb>) {
+    column.clear();
+    column.extend(boxes);
+}

@@ -1,0 +1,217 @@
+//! Response of one contact with a collider: push, friction, adhesion, and the surface for restitution.
+
+use crate::contact::collider::contact::{
+    ColliderContact, Outcome, Point, best_plane, closest, cross_direction, interpolate, separated,
+};
+use crate::contact::material::ContactPoints;
+use crate::contact::response::{Adhesion, Push, coulomb_correction};
+use crate::contact::restitution::Restitution;
+use crate::contact::time_step::ColliderStep;
+use crate::math::{Real, add, dot, scale};
+
+/// Share of the thickness that counts as touching: without a tolerance a contact at rest would push for ever at
+/// its last bit.
+const TOUCH_TOLERANCE: f64 = 1e-6;
+/// Smallest mobility of an element, relative to that of its most mobile point: no point moves farther than 1 /
+/// this times the depth of a contact.
+const MIN_MOBILITY: f64 = 0.25;
+
+impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// Pushes the contact to its thickness. The caller passes points that no other task of the phase touches.
+    #[inline]
+    pub fn resolve(&mut self, step: &ColliderStep<'_, R>) -> Outcome {
+        let moved = self.points.map(|point| step.row(point).xyz());
+        let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
+        let (gap, least) = self.gaps(moved, step.interval_share(step.time[1]));
+        if least >= step.thickness * touching {
+            return Outcome::Separated;
+        }
+        if least < R::ZERO || !self.plane_is_valid(moved, step) {
+            return self.resolve_exact(step, least);
+        }
+        let rest_gap = step.rest_gap(self.points, self.weights);
+        if gap >= rest_gap * touching {
+            return Outcome::Separated;
+        }
+        self.push(step, rest_gap, [self.gap_at_start(step), gap]);
+        Outcome::Pushed
+    }
+
+    /// Repeats the test with exact closest points, and sets the plane that belongs to them. `least` is the
+    /// smallest gap along the old plane.
+    #[cold]
+    fn resolve_exact(&mut self, step: &ColliderStep<'_, R>, least: R) -> Outcome {
+        let [x0, x1] = step.cloth_positions(self.points);
+        let [q0, q1] = step.collider_positions(self.collider_points);
+        let at_start = closest(x0, q0);
+        let start_line = interpolate(x0, at_start.0) - interpolate(q0, at_start.1);
+        let at_end = closest(x1, q1);
+        let thickness = step.rest_gap(self.points, at_end.0.map(R::from_f64)).to_f64();
+        let line = interpolate(x1, at_end.0) - interpolate(q1, at_end.1);
+        let distance = line.norm();
+        let mut proof = None;
+        if least < R::ZERO {
+            let directions = [start_line, cross_direction(x1, q1), cross_direction(x0, q0), line];
+            let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
+                return Outcome::Inseparable;
+            };
+            let passes = gap < 0.0 && !separated([x0, x1], [q0, q1]);
+            if passes && self.may_interpenetrate(step) {
+                return Outcome::Separated; // It is on the other side from now on.
+            }
+            if passes {
+                self.set_plane(normal, at_start, step);
+                let rest_gap = R::from_f64(thickness);
+                let (gaps, depenetration) = (
+                    [self.gap_at_start(step), R::from_f64(gap)],
+                    dot(self.normal, self.collider_depenetration(step)),
+                );
+                self.push_rigidly(step, Push::new(rest_gap, gaps, depenetration, step.h));
+                return Outcome::Reverted;
+            }
+            proof = (gap >= 0.0).then_some(normal);
+        }
+        let old = Point::new(self.normal[0].to_f64(), self.normal[1].to_f64(), self.normal[2].to_f64());
+        let normal = line.try_normalize(1e-9).or(proof).unwrap_or(old);
+        self.set_plane(normal, at_end, step);
+        if distance >= thickness * (1.0 - TOUCH_TOLERANCE) {
+            return Outcome::Separated;
+        }
+        self.push(step, R::from_f64(thickness), [start_line.norm(), distance].map(R::from_f64));
+        Outcome::Pushed
+    }
+
+    /// Moves the cloth's points along the normal until the contact keeps `rest_gap`, with friction. `gaps` are
+    /// those at the start of the step and now.
+    pub(super) fn push(&self, step: &ColliderStep<'_, R>, rest_gap: R, gaps: [R; 2]) {
+        let rows = self.points.map(|point| step.row(point));
+        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
+        // Beside a pinned point the effective mobility is small, and the free points would move too far.
+        let least = rows.iter().fold(R::ZERO, |most, row| if row.0[3] > most { row.0[3] } else { most });
+        let least = least * R::from_f64(MIN_MOBILITY);
+        let mobility = if mobility < least { least } else { mobility };
+        if mobility <= R::ZERO {
+            return;
+        }
+        let depenetration = self.collider_depenetration(step);
+        let mut push = Push::new(rest_gap, gaps, dot(self.normal, depenetration), step.h);
+        if step.material.is_partial(step.material_maps) {
+            push = push.scaled(
+                step.material.strength_at(step.material_maps, self.contact_points(&(self.weights, []))),
+            );
+        }
+        let (along, depenetration_along) =
+            (scale(self.normal, push.length()), scale(self.normal, push.depenetration));
+        let [friction_part, given_back] = self.friction(step, depenetration, along, push.length());
+        let (moved, depenetration) = (add(along, friction_part), add(depenetration_along, given_back));
+        for k in 0..N {
+            let mobile = rows[k].0[3] * self.weights[k] / mobility;
+            let mut row = rows[k];
+            for axis in 0..3 {
+                row.0[axis] += mobile * moved[axis];
+            }
+            step.writer.push_by_collider(self.points[k], row, scale(depenetration, mobile));
+        }
+    }
+
+    /// The points of the cloth's element and their weights; the collider has no vertex maps.
+    pub(super) fn contact_points<'a>(&self, weights: &'a ([R; N], [R; 0])) -> ContactPoints<'a, R, N, 0> {
+        (self.points, [], weights)
+    }
+
+    /// Moves all points of the cloth's element along the normal, so that none of them is behind the plane.
+    pub(super) fn push_rigidly(&self, step: &ColliderStep<'_, R>, push: Push<R>) {
+        for point in self.points {
+            let mut row = step.row(point);
+            if row.0[3] > R::ZERO {
+                for axis in 0..3 {
+                    row.0[axis] += self.normal[axis] * push.length();
+                }
+                step.writer.push_by_collider(point, row, self.normal.map(|n| n * push.depenetration));
+            }
+        }
+    }
+
+    /// Moves the cloth's element with the surface, from its position at the start of the step.
+    pub fn move_with_surface(&self, step: &ColliderStep<'_, R>) {
+        let elapsed = R::from_f64(step.time[1] - step.time[0]);
+        for point in self.points {
+            let mut row = step.row(point);
+            if row.0[3] > R::ZERO {
+                let start = step.start(point);
+                for axis in 0..3 {
+                    row.0[axis] = start[axis] + self.surface_motion[axis] * elapsed;
+                }
+                step.writer.place(point, row);
+            }
+        }
+    }
+
+    /// The correction along the surface, and the part of it without velocity.
+    fn friction(
+        &self,
+        step: &ColliderStep<'_, R>,
+        depenetration: [R; 3],
+        along: [R; 3],
+        pushed: R,
+    ) -> [[R; 3]; 2] {
+        let limit =
+            step.material.friction_at(step.material_maps, self.contact_points(&(self.weights, []))) * pushed;
+        if limit <= R::ZERO {
+            return [[R::ZERO; 3]; 2];
+        }
+        let start = self.contact_displacement(self.points.map(|point| step.start(point)));
+        let now = self.contact_displacement(self.points.map(|point| step.row(point).xyz()));
+        let elapsed = R::from_f64(step.time[1] - step.time[0]);
+        let motion: [R; 3] = std::array::from_fn(|axis| {
+            now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * elapsed
+        });
+        coulomb_correction([motion, depenetration], self.normal, limit)
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// The gap at the end of the step.
+    pub fn gap(&self, step: &ColliderStep<'_, R>) -> R {
+        self.gaps(self.points.map(|point| step.row(point).xyz()), step.interval_share(step.time[1])).0
+    }
+
+    /// Applies adhesion between the cloth's element and the surface.
+    pub fn adhere(&self, step: &ColliderStep<'_, R>) {
+        let weights = &(self.weights, []);
+        let adhesion = Adhesion {
+            range: step.interaction_range(),
+            thickness: step.rest_gap(self.points, self.weights),
+            stickiness: step.material.stickiness_at(step.material_maps, self.contact_points(weights)),
+            friction: step.material.friction_at(step.material_maps, self.contact_points(weights)),
+        };
+        let rows = self.points.map(|point| step.row(point));
+        let start = self.points.map(|point| step.start(point));
+        let (gap, _) = self.gaps(start, step.interval_share(step.time[0]));
+        let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time[1] - step.time[0]));
+        let [from, to] =
+            [self.contact_displacement(start), self.contact_displacement(rows.map(|row| row.xyz()))];
+        let now = std::array::from_fn(|axis| {
+            before[axis] + to[axis] - from[axis] - self.surface_motion[axis] * elapsed
+        });
+        let Some(correction) = adhesion.correction(before, now, self.normal, step.h) else { return };
+        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
+        if mobility > R::ZERO {
+            for (k, mut row) in rows.into_iter().enumerate() {
+                let part = row.0[3] * self.weights[k] / mobility;
+                (0..3).for_each(|axis| row.0[axis] += part * correction[axis]);
+                step.writer.push_by_collider(self.points[k], row, [R::ZERO; 3]);
+            }
+        }
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// The normal, and the collider's velocity at the contact in m/s, if the two touch at the end of the step.
+    pub fn touching_surface(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
+        let moved = self.points.map(|point| step.row(point).xyz());
+        let (gap, _) = self.gaps(moved, step.interval_share(step.time[1]));
+        let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
+        Restitution::touches(gap, step.rest_gap(self.points, self.weights)).then_some((self.normal, velocity))
+    }
+}

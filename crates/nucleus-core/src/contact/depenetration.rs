@@ -1,0 +1,274 @@
+//! Depenetration: points inside a closed collider, and push-out.
+//!
+//! Points that the scene puts into a collider, or that another collider presses into it, move out to the nearest
+//! face, slowly and without velocity. Until then no other contact with that collider acts on them (Maya's
+//! `trappedCheck`).
+//!
+//! Push-out moves points of other objects that are near a surface to the side that it specifies. It looks only at
+//! present positions, for scenes that start with one object inside another. Points that it moves pass through
+//! surfaces; contact starts anew from there (Maya's `pushOut` and `pushOutRadius`).
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::bytes::encode_struct;
+use crate::contact::bvh::{Aabb, Bvh};
+use crate::contact::collider::ColliderState;
+use crate::contact::narrow_phase::closest_on_triangle;
+use crate::contact::time_step::ColliderStep;
+use crate::input::frame::{FrameInput, PushOut};
+use crate::math::Real;
+use crate::model::ColliderModel;
+use crate::solver::Solver;
+
+type Point = Vector3<f64>;
+
+/// Speed in m/s at which a point moves out.
+const DEPENETRATION_SPEED: f64 = 1.0;
+/// Length of the inside-test ray, in metres.
+const RAY_LENGTH: f64 = 1e7;
+
+/// The points of one cloth inside one collider.
+#[derive(Debug, Clone, Default)]
+pub struct Depenetration {
+    /// Each with its exit face.
+    pub points: Vec<(u32, u32)>,
+    /// Points found behind a face since the last inside test.
+    pub suspects: Vec<u32>,
+    /// Whether the starting positions have been tested, where a point may be far from any face.
+    has_begun: bool,
+}
+
+encode_struct!([] Depenetration { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
+
+impl Depenetration {
+    /// Whether a point is inside.
+    pub fn contains(&self, point: u32) -> bool {
+        self.points.binary_search_by_key(&point, |&(point, _)| point).is_ok()
+    }
+
+    /// Forgets all points: they stay where they are.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.suspects.clear();
+    }
+
+    /// Suspects all points that start in the bounding box of a closed collider.
+    pub fn suspect_start<R: Real>(
+        &mut self,
+        points: Range<u32>,
+        collider: &ColliderModel,
+        state: &ColliderState,
+        step: &ColliderStep<'_, R>,
+    ) {
+        if std::mem::replace(&mut self.has_begun, true) || collider.pseudonormals.is_none() {
+            return;
+        }
+        let [low, high] = state.bounds(step.time[0]);
+        let is_in = |place: Point| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis]);
+        self.suspects.extend(points.filter(|&point| is_in(step.start_position(point))));
+    }
+
+    /// Runs the inside test for all points that are inside or suspected, at the start of the step. Calls `freed`
+    /// with each point that was inside and is outside now.
+    pub fn update<R: Real>(
+        &mut self,
+        collider: &ColliderModel,
+        state: &ColliderState,
+        step: &ColliderStep<'_, R>,
+        mut freed: impl FnMut(u32),
+    ) {
+        let Self { points, suspects, .. } = self;
+        suspects.extend(points.iter().map(|&(point, _)| point));
+        suspects.sort_unstable();
+        suspects.dedup();
+        let before = std::mem::take(points);
+        for point in suspects.drain(..).filter(|&point| step.has_full_strength(point)) {
+            let place = step.start_position(point);
+            if is_inside(place, collider, state, step.time[0]) {
+                points.extend(nearest_face(place, collider, state, step.time[0]).map(|face| (point, face)));
+            } else if before.binary_search_by_key(&point, |&(point, _)| point).is_ok() {
+                freed(point);
+            }
+        }
+    }
+
+    /// Moves every point at least a step farther out, along its face's normal. Along the face it is free.
+    pub fn push_outward<R: Real>(&self, collider: &ColliderModel, step: &ColliderStep<'_, R>) {
+        for &(point, face) in &self.points {
+            let [from, to] = step.collider_positions(collider.boundary.triangles[face as usize]);
+            let normal = |corners: [Point; 3]| {
+                let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+                normal.try_normalize(0.0).unwrap_or_default()
+            };
+            let outward = normal(to);
+            let before = normal(from).dot(&(step.start_position(point) - from[0]));
+            let now = outward.dot(&(step.end_position(point) - to[0]));
+            let target = (before + DEPENETRATION_SPEED * step.h.to_f64()).min(step.thickness.to_f64());
+            if now < target {
+                step.push_point(
+                    point,
+                    outward * (target - now),
+                    outward * (target - now).min(target - before),
+                );
+            }
+        }
+    }
+}
+
+/// Inside test: whether a ray from a position leaves a closed mesh an odd number of times. A ray through an edge
+/// meets one of its two faces, because each edge belongs to one side.
+fn is_inside(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> bool {
+    let mut crossings = 0;
+    let from = place - state.origin(time);
+    let ray = Aabb::new(from, from + Point::x() * RAY_LENGTH);
+    state.bvh.query(&ray, |face| {
+        let corners =
+            collider.boundary.triangles[face as usize].map(|point| state.point(point, time) - place);
+        crossings += usize::from(ray_crosses(corners));
+    });
+    crossings % 2 == 1
+}
+
+/// Whether the ray from the origin along x crosses a triangle.
+fn ray_crosses(corners: [Point; 3]) -> bool {
+    let mut inside = false;
+    for k in 0..3 {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        // One order for both faces of an edge, so that both get the same bits.
+        let (a, b) = if (a.y, a.z, a.x) < (b.y, b.z, b.x) { (a, b) } else { (b, a) };
+        if (a.y > 0.0) != (b.y > 0.0) {
+            let z = a.z + (b.z - a.z) * (-a.y / (b.y - a.y));
+            inside ^= z > 0.0;
+        }
+    }
+    let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+    // Where the ray meets the plane; a plane parallel to the ray is never met.
+    inside && normal.x != 0.0 && normal.dot(&corners[0]) / normal.x > 0.0
+}
+
+/// The face nearest to a position.
+fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> Option<u32> {
+    let distance = |face: u32| {
+        let corners = collider.boundary.triangles[face as usize].map(|point| state.point(point, time));
+        let weights = closest_on_triangle(place.into(), corners.map(Into::into));
+        (0..3).map(|k| corners[k] * weights[k]).sum::<Point>() - place
+    };
+    let from = place - state.origin(time);
+    let size = state.bounds(time)[1] - state.bounds(time)[0];
+    // The box grows until it holds a face that is no farther than its radius.
+    let mut radius = size.norm() / 64.0;
+    loop {
+        let search_box = Aabb::new(from.add_scalar(-radius), from.add_scalar(radius));
+        let mut best: Option<(f64, u32)> = None;
+        state.bvh.query(&search_box, |face| {
+            let found = (distance(face).norm(), face);
+            if best.is_none_or(|best| found < best) {
+                best = Some(found);
+            }
+        });
+        match best {
+            Some((nearest, face)) if nearest <= radius => return Some(face),
+            _ if radius > 4.0 * size.norm() => return best.map(|(_, face)| face),
+            _ => radius *= 2.0,
+        }
+    }
+}
+
+/// A surface that pushes out, at its present position.
+struct PushOutSurface {
+    /// Its triangles in metres, facing the side that points are pushed to.
+    triangles: Vec<[Point; 3]>,
+    bvh: Bvh,
+    /// The origin of the boxes.
+    origin: Point,
+    /// Its own thickness in metres.
+    thickness: f64,
+    /// Share of the correction in each substep.
+    share: f64,
+    radius: f64,
+}
+
+impl<R: Real> Solver<R> {
+    /// Pushes points out of all surfaces that do so, at the start of a substep, at time `time` as a share of the
+    /// frame.
+    pub(crate) fn push_out(&mut self, frame: &FrameInput, time: f64) {
+        let pushes = |push_out: &PushOut| push_out.share != 0.0 && push_out.radius > 0.0;
+        for at in (0..self.model.colliders.len()).filter(|&at| pushes(&frame.colliders[at].push_out)) {
+            let state = &self.contact.collider_states[at];
+            let faces = self.model.colliders[at].boundary.triangles.iter();
+            let triangles = faces.map(|face| face.map(|point| state.point(point, time))).collect();
+            let surface =
+                PushOutSurface::new(triangles, frame.colliders[at].push_out, frame.colliders[at].thickness);
+            (0..self.model.cloths.len()).for_each(|cloth| self.push_out_of(&surface, frame, cloth));
+        }
+        for at in (0..self.model.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
+            let place = |row: u32| Point::from(self.state.position(row));
+            let triangles =
+                self.model.cloths[at].boundary.triangles.iter().map(|face| face.map(place)).collect();
+            let surface =
+                PushOutSurface::new(triangles, frame.cloths[at].push_out, frame.cloths[at].thickness);
+            let others = (0..self.model.cloths.len()).filter(|&cloth| cloth != at);
+            others.for_each(|cloth| self.push_out_of(&surface, frame, cloth));
+        }
+    }
+
+    /// Moves the free points of a cloth, and invalidates their motion bounds.
+    fn push_out_of(&mut self, surface: &PushOutSurface, frame: &FrameInput, cloth: usize) {
+        let thickness = surface.thickness + frame.cloths[cloth].thickness;
+        let mut is_moved = false;
+        for row in self.model.cloths[cloth].points() {
+            let mut moved = self.state.displacement[row as usize];
+            let correction = surface.correction(Point::from(self.state.position(row)), thickness);
+            let Some(correction) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
+            (0..3).for_each(|axis| moved.0[axis] += R::from_f64(correction[axis]));
+            self.state.displacement[row as usize] = moved;
+            is_moved = true;
+            self.invalidate_bounds(row as usize);
+        }
+        if is_moved {
+            self.contact.active_windows.fill([0.0; 2]);
+            if let Some(cloth_contacts) = &mut self.contact.cloth_contacts {
+                cloth_contacts.interval = [0.0; 2];
+                cloth_contacts.untangling.is_search_due = true;
+            }
+        }
+    }
+}
+
+impl PushOutSurface {
+    fn new(mut triangles: Vec<[Point; 3]>, push_out: PushOut, thickness: f64) -> Self {
+        if push_out.share < 0.0 {
+            triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        let centres: Vec<Point> = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+        let origin = centres.first().copied().unwrap_or_default();
+        let mut bvh = Bvh::new(&centres);
+        bvh.refit(|at| Aabb::of(triangles[at].into_iter().map(|corner| corner - origin)));
+        let share = push_out.share.abs().min(1.0);
+        Self { triangles, bvh, origin, thickness, share, radius: push_out.radius }
+    }
+
+    /// The correction of a point in this substep, if it is within the radius and closer to the surface than
+    /// `thickness`, or behind it.
+    fn correction(&self, place: Point, thickness: f64) -> Option<Point> {
+        let away = place - self.origin;
+        let radius = Point::repeat(self.radius);
+        let mut nearest: Option<(f64, u32, Point)> = None;
+        self.bvh.query(&Aabb::new(away - radius, away + radius), |at| {
+            let corners = self.triangles[at as usize];
+            let weights = closest_on_triangle(place.into(), corners.map(Into::into));
+            let there: Point = corners.iter().zip(weights).map(|(corner, weight)| corner * weight).sum();
+            let found = ((place - there).norm(), at);
+            if nearest.is_none_or(|(distance, other, _)| found < (distance, other)) {
+                nearest = Some((found.0, found.1, there));
+            }
+        });
+        let (distance, at, there) = nearest.filter(|&(distance, _, _)| distance <= self.radius)?;
+        let [a, b, c] = self.triangles[at as usize];
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        let is_clear = normal.dot(&(place - there)) >= 0.0 && distance >= thickness;
+        (!is_clear).then(|| (there + normal * thickness - place) * self.share)
+    }
+}

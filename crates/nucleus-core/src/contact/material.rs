@@ -1,0 +1,311 @@
+//! Contact materials: thickness, friction, stickiness, bounce, strength, layers and element types of a pair of
+//! objects in a frame; and vertex maps of them.
+
+use crate::contact::response::ADHESION_RANGE;
+use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane};
+use crate::math::Real;
+use crate::model::ClothModel;
+use crate::model::builder::Cloth;
+use crate::model::vertex_maps::VertexMaps;
+
+/// Smallest contact thickness in metres: certificates need a gap above rounding error.
+pub const MIN_THICKNESS: f64 = 1e-5;
+
+/// The contact material of two objects, or of a cloth with itself. Of a cloth and a collider the cloth comes
+/// first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactMaterial<R> {
+    /// The contact thickness of the pair in metres: the largest value under its vertex maps.
+    pub thickness: f64,
+    /// Interaction range of the pair, in thicknesses: 1 without adhesion.
+    pub adhesion_range: f64,
+    /// The thickness of each side, in metres.
+    pub thicknesses: [R; 2],
+    /// The friction of each side.
+    pub friction: [R; 2],
+    /// The stickiness of each side.
+    pub stickiness: [R; 2],
+    /// The coefficient of restitution of each side.
+    pub bounce: [R; 2],
+    /// The share of a collision that is carried out, as a factor of each side (`collideStrength`).
+    pub strength: [R; 2],
+    /// Factor on the speed of untangling where the two intersect.
+    pub untangling_rate: f64,
+    /// Whether points inside the other object are pushed out of it.
+    pub depenetrates: bool,
+    /// Factor on the mobility of each side: the lower layer is heavier.
+    pub mobility: [R; 2],
+    /// The element type of each side that collides with points of the other.
+    pub elements: [Elements; 2],
+    /// Whether edges collide with edges.
+    pub edges: bool,
+}
+
+/// The points of the two elements of a contact, and the weight of each of them.
+pub type ContactPoints<'a, R, const N: usize, const M: usize> = ([u32; N], [u32; M], &'a ([R; N], [R; M]));
+
+impl<R: Real> ContactMaterial<R> {
+    /// A cloth with itself; `None` without self-collision. `max_thickness_factor` is the largest factor of its
+    /// thickness map.
+    pub fn for_self_collision(cloth: &ClothFrame, max_thickness_factor: f64) -> Option<Self> {
+        let own = &cloth.self_collision;
+        let both = |x: f64| [R::from_f64(x); 2];
+        (own.on && cloth.collide_strength > 0.0).then(|| Self {
+            thickness: (2.0 * own.thickness * max_thickness_factor).max(MIN_THICKNESS),
+            adhesion_range: adhesion_range(2.0 * cloth.stickiness),
+            thicknesses: both(own.thickness),
+            friction: both(cloth.friction),
+            stickiness: both(cloth.stickiness),
+            bounce: both(cloth.bounce),
+            strength: [R::from_f64(cloth.collide_strength.min(1.0)), R::ONE],
+            untangling_rate: untangling_rate(cloth.self_crossover_push),
+            depenetrates: false,
+            mobility: [R::ONE; 2],
+            elements: [own.elements; 2],
+            edges: own.edges,
+        })
+    }
+
+    /// Two cloths; `None` where they do not collide. From a difference of `range` layers on they pass through
+    /// each other. `max_thickness_factor` holds the largest factor of each thickness map.
+    pub fn for_cloths([a, b]: [&ClothFrame; 2], max_thickness_factor: [f64; 2], range: f64) -> Option<Self> {
+        let above = a.layer - b.layer;
+        let strength = [a, b].map(|side| side.collide_strength.min(1.0));
+        if !a.collide || !b.collide || above.abs() >= range || strength.iter().any(|&side| side <= 0.0) {
+            return None;
+        }
+        // At a difference of one layer the lower layer does not move.
+        let heavier = (1.0 - above.abs()).max(0.0);
+        let mobility = if above < 0.0 { [heavier, 1.0] } else { [1.0, heavier] };
+        let flat = |side: &ClothFrame| side.elements != Elements::Points;
+        let per_side = |of: fn(&ClothFrame) -> f64| [a, b].map(|side| R::from_f64(of(side)));
+        let thickness = a.thickness * max_thickness_factor[0] + b.thickness * max_thickness_factor[1];
+        Some(Self {
+            thickness: thickness.max(MIN_THICKNESS),
+            adhesion_range: adhesion_range(a.stickiness + b.stickiness),
+            thicknesses: per_side(|side| side.thickness),
+            friction: per_side(|side| side.friction),
+            stickiness: per_side(|side| side.stickiness),
+            bounce: per_side(|side| side.bounce),
+            strength: strength.map(R::from_f64),
+            untangling_rate: untangling_rate(a.crossover_push + b.crossover_push),
+            depenetrates: false,
+            mobility: mobility.map(R::from_f64),
+            elements: [a.elements, b.elements],
+            edges: flat(a) && flat(b),
+        })
+    }
+
+    /// A cloth with a collider; `None` where they do not collide. `max_thickness_factor` is the largest factor of
+    /// the cloth's thickness map.
+    pub fn for_collider(
+        cloth: &ClothFrame,
+        collider: &ColliderFrame,
+        max_thickness_factor: f64,
+    ) -> Option<Self> {
+        let strength = [cloth.collide_strength, collider.collide_strength].map(|side| side.min(1.0));
+        if !cloth.collide || !collider.collide || strength.iter().any(|&side| side <= 0.0) {
+            return None;
+        }
+        let per_side = |sides: [f64; 2]| sides.map(R::from_f64);
+        let thickness = cloth.thickness * max_thickness_factor + collider.thickness;
+        Some(Self {
+            thickness: thickness.max(MIN_THICKNESS),
+            adhesion_range: adhesion_range(cloth.stickiness + collider.stickiness),
+            thicknesses: per_side([cloth.thickness, collider.thickness]),
+            friction: per_side([cloth.friction, collider.friction]),
+            stickiness: per_side([cloth.stickiness, collider.stickiness]),
+            bounce: per_side([cloth.bounce, collider.bounce]),
+            strength: per_side(strength),
+            untangling_rate: 1.0,
+            depenetrates: collider.trapped_check,
+            mobility: [R::ONE, R::ZERO],
+            elements: [cloth.elements, Elements::Faces],
+            edges: true,
+        })
+    }
+
+    /// A cloth with the ground plane, which has no thickness; `None` where they do not collide.
+    pub fn for_ground(cloth: &ClothFrame, ground: &GroundPlane, max_thickness_factor: f64) -> Option<Self> {
+        let plane = ColliderFrame {
+            collide: true,
+            friction: ground.friction,
+            stickiness: ground.stickiness,
+            bounce: ground.bounce,
+            ..ColliderFrame::default()
+        };
+        let material = Self::for_collider(cloth, &plane, max_thickness_factor)?;
+        Some(Self { thickness: cloth.thickness * max_thickness_factor, ..material })
+    }
+
+    /// Whether two sets of materials give the same candidates.
+    pub fn same_candidates(now: &[Option<Self>], before: &[Option<Self>]) -> bool {
+        let of = |material: &Self| {
+            (
+                material.thickness,
+                material.adhesion_range,
+                material.depenetrates,
+                material.elements,
+                material.edges,
+            )
+        };
+        let found = |material: &[Option<Self>]| {
+            material.iter().map(|material| material.as_ref().map(of)).collect::<Vec<_>>()
+        };
+        found(now) == found(before)
+    }
+
+    /// Whether the pair has adhesion.
+    pub fn has_adhesion(&self) -> bool {
+        self.adhesion_range > 1.0
+    }
+
+    /// Whether the pair has restitution.
+    pub fn has_restitution(&self) -> bool {
+        self.bounce.iter().any(|&side| side > R::ZERO)
+    }
+
+    /// Whether collisions are carried out in part only: the two may then pass through each other.
+    #[inline(always)]
+    pub fn is_partial(&self, maps: &MaterialMaps<R>) -> bool {
+        !maps.strength.is_empty() || self.strength[0] < R::ONE || self.strength[1] < R::ONE
+    }
+
+    /// The contact thickness at a contact in metres, `max_thickness` at most.
+    #[inline(always)]
+    pub fn thickness_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+        max_thickness: R,
+    ) -> R {
+        if maps.thickness.is_empty() {
+            return max_thickness;
+        }
+        let [ours, theirs] = per_side(&maps.thickness, self.thicknesses, points);
+        let (there, least) = (ours + theirs, R::from_f64(MIN_THICKNESS));
+        let there = if there < least { least } else { there };
+        if there < max_thickness { there } else { max_thickness }
+    }
+
+    /// The sum of both frictions at a contact.
+    #[inline(always)]
+    pub fn friction_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+    ) -> R {
+        let [ours, theirs] = per_side(&maps.friction, self.friction, points);
+        ours + theirs
+    }
+
+    /// The sum of both stickinesses at a contact.
+    #[inline(always)]
+    pub fn stickiness_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+    ) -> R {
+        let [ours, theirs] = per_side(&maps.stickiness, self.stickiness, points);
+        ours + theirs
+    }
+
+    /// The larger coefficient of restitution at a contact.
+    #[inline(always)]
+    pub fn bounce_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+    ) -> R {
+        let [ours, theirs] = per_side(&maps.bounce, self.bounce, points);
+        if ours > theirs { ours } else { theirs }
+    }
+
+    /// The share of a collision that is carried out at a contact.
+    #[inline(always)]
+    pub fn strength_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+    ) -> R {
+        let [ours, theirs] = per_side(&maps.strength, self.strength, points);
+        let strength = ours * theirs;
+        if strength > R::ONE { R::ONE } else { strength }
+    }
+}
+
+/// An attribute of both sides at a contact.
+#[inline(always)]
+fn per_side<R: Real, const N: usize, const M: usize>(
+    map: &[R],
+    [ours, theirs]: [R; 2],
+    (points, others, (b, c)): ContactPoints<'_, R, N, M>,
+) -> [R; 2] {
+    [ours * factor_at(map, points, *b), theirs * factor_at(map, others, *c)]
+}
+
+/// Factor on the speed of untangling: ten for a push of 1.
+fn untangling_rate(push: f64) -> f64 {
+    1.0 + 9.0 * push.max(0.0)
+}
+
+/// Interaction range in thicknesses.
+fn adhesion_range(stickiness: f64) -> f64 {
+    if stickiness > 0.0 { ADHESION_RANGE } else { 1.0 }
+}
+
+/// A factor for each row of the solver. A column that no cloth has a map of is empty, and costs nothing.
+#[derive(Debug, Clone, Default)]
+pub struct MaterialMaps<R> {
+    /// On the thickness.
+    pub thickness: Vec<R>,
+    /// On the friction.
+    pub friction: Vec<R>,
+    /// On the stickiness.
+    pub stickiness: Vec<R>,
+    /// On the bounce.
+    pub bounce: Vec<R>,
+    /// On the collide strength.
+    pub strength: Vec<R>,
+    /// The largest factor on the thickness of each cloth.
+    pub max_thickness_factor: Vec<f64>,
+}
+
+impl<R: Real> MaterialMaps<R> {
+    /// The number of factors.
+    pub fn len(&self) -> usize {
+        let columns = [&self.thickness, &self.friction, &self.stickiness, &self.bounce, &self.strength];
+        columns.iter().map(|column| column.len()).sum()
+    }
+
+    /// The maps of all cloths, over `places` rows.
+    pub fn new(cloths: &[Cloth], models: &[ClothModel<R>], places: usize) -> Self {
+        let column = |of: fn(&VertexMaps) -> &Vec<f64>| {
+            if cloths.iter().all(|cloth| of(&cloth.factors).is_empty()) {
+                return Vec::new();
+            }
+            let mut column = vec![R::ONE; places];
+            for (cloth, model) in cloths.iter().zip(models) {
+                for (point, &factor) in of(&cloth.factors).iter().enumerate() {
+                    column[model.place(point) as usize] = R::from_f64(factor);
+                }
+            }
+            column
+        };
+        let largest = |map: &Vec<f64>| map.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        Self {
+            thickness: column(|factors| &factors.thickness),
+            friction: column(|factors| &factors.friction),
+            stickiness: column(|factors| &factors.stickiness),
+            bounce: column(|factors| &factors.bounce),
+            strength: column(|factors| &factors.collide_strength),
+            max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.factors.thickness)).collect(),
+        }
+    }
+}
+
+/// The factor at a contact, interpolated over the element; 1 without a map or points.
+#[inline(always)]
+pub fn factor_at<R: Real, const N: usize>(map: &[R], points: [u32; N], weights: [R; N]) -> R {
+    if map.is_empty() || N == 0 { R::ONE } else { (0..N).map(|k| weights[k] * map[points[k] as usize]).sum() }
+}

@@ -1,0 +1,235 @@
+//! A time step as contacts read and write it: positions, collider motion, and counters.
+
+use std::sync::atomic::AtomicU64;
+
+use nalgebra::Vector3;
+
+use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::math::{Real, Row4, add};
+use crate::parallel::disjoint::DisjointSlice;
+
+type Point = Vector3<f64>;
+
+/// Counters of a frame. Whole numbers, so that the order of addition does not matter.
+#[derive(Debug, Default)]
+pub struct ContactCounters {
+    /// Contacts that pushed, over all passes.
+    pub contacts: AtomicU64,
+    /// Pairs whose motion was undone or truncated, once for each time.
+    pub pairs_reverted: AtomicU64,
+    /// Pairs without a certificate at the end of a time step, once for each time step.
+    pub pairs_unresolved: AtomicU64,
+    /// Candidate pairs found by the broad phase, over all its runs.
+    pub candidate_pairs: AtomicU64,
+    /// Runs of the broad phase.
+    pub broad_phases: AtomicU64,
+}
+
+/// Writes positions, and records depenetration: the part of a push that does not become velocity.
+#[derive(Clone, Copy)]
+pub struct PositionWriter<'a, R> {
+    displacement: DisjointSlice<'a, Row4<R>>,
+    by_collider: DisjointSlice<'a, Row4<R>>,
+    by_cloth: DisjointSlice<'a, Row4<R>>,
+    predicted: &'a [Row4<R>],
+}
+
+#[allow(unsafe_code)]
+impl<'a, R: Real> PositionWriter<'a, R> {
+    /// Borrows the columns displacement (with inverse mass), depenetration by colliders and depenetration by
+    /// cloth. `predicted` holds displacements before any constraint or contact.
+    pub fn new(columns: [&'a mut Vec<Row4<R>>; 3], predicted: &'a [Row4<R>]) -> Self {
+        let [displacement, by_collider, by_cloth] = columns.map(|column| DisjointSlice::new(column));
+        Self { displacement, by_collider, by_cloth, predicted }
+    }
+
+    /// The displacement of a point without constraints and contacts, but with its depenetration.
+    #[inline(always)]
+    pub fn predicted(&self, point: u32) -> [R; 3] {
+        // SAFETY: as below.
+        let by_cloth = unsafe { self.by_cloth.get(point) }.xyz();
+        add(self.predicted[point as usize].xyz(), add(self.collider_depenetration(point), by_cloth))
+    }
+
+    /// A point's displacement in metres, and its inverse mass in 1/kg.
+    #[inline(always)]
+    pub fn row(&self, point: u32) -> Row4<R> {
+        // SAFETY: the tasks of a phase share no point.
+        unsafe { self.displacement.get(point) }
+    }
+
+    /// How far colliders have depenetrated a point in this step, in metres.
+    #[inline(always)]
+    pub fn collider_depenetration(&self, point: u32) -> [R; 3] {
+        // SAFETY: as above.
+        unsafe { self.by_collider.get(point) }.xyz()
+    }
+
+    /// Moves a point off a collider; `depenetration` is the part of the push without velocity.
+    #[inline(always)]
+    pub fn push_by_collider(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
+        let [x, y, z] = add(self.collider_depenetration(point), depenetration);
+        // SAFETY: as above.
+        unsafe {
+            self.displacement.set(point, row);
+            self.by_collider.set(point, Row4([x, y, z, R::ZERO]));
+        }
+    }
+
+    /// Moves a point off another movable point. `depenetration` is the part of the push without velocity, but
+    /// where a collider reverses it it becomes velocity: cloth between the two has to bear the load.
+    #[inline(always)]
+    pub fn push_by_cloth(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
+        // SAFETY: as above.
+        unsafe {
+            let mut by_cloth = self.by_cloth.get(point);
+            (0..3).for_each(|axis| by_cloth.0[axis] += depenetration[axis]);
+            self.displacement.set(point, row);
+            self.by_cloth.set(point, by_cloth);
+        }
+    }
+
+    /// Sets a point's displacement, and clears its depenetration.
+    #[inline(always)]
+    pub fn place(&self, point: u32, row: Row4<R>) {
+        // SAFETY: as above.
+        unsafe {
+            self.displacement.set(point, row);
+            self.by_collider.set(point, Row4::ZERO);
+            self.by_cloth.set(point, Row4::ZERO);
+        }
+    }
+}
+
+/// A time step of one cloth and one collider.
+pub struct ColliderStep<'a, R> {
+    /// The cloth's positions.
+    pub writer: PositionWriter<'a, R>,
+    /// Displacements at the start of the step, in metres.
+    pub start: &'a [Row4<R>],
+    /// Anchors in metres.
+    pub anchors: &'a [[f64; 3]],
+    /// The collider's points at the start and at the end of the frame.
+    pub collider: [&'a [Point]; 2],
+    /// Start and end of the step, as shares of the frame.
+    pub time: [f64; 2],
+    /// The candidate interval, as shares of the frame.
+    pub interval: [f64; 2],
+    /// Length of the step in seconds.
+    pub h: R,
+    /// Contact thickness in metres: the largest value under the vertex maps.
+    pub thickness: R,
+    /// Factor on every thickness: below one where there is too little room.
+    pub thickness_scale: R,
+    /// The contact material of the two.
+    pub material: ContactMaterial<R>,
+    /// Vertex maps of contact attributes.
+    pub material_maps: &'a MaterialMaps<R>,
+}
+
+impl<R: Real> ColliderStep<'_, R> {
+    /// The same step at a share of every thickness.
+    pub fn with_thickness_scale(self, share: f64) -> Self {
+        let share = R::from_f64(share);
+        Self { thickness: self.thickness * share, thickness_scale: self.thickness_scale * share, ..self }
+    }
+
+    /// Distance in metres up to which contact or adhesion acts.
+    pub fn interaction_range(&self) -> R {
+        R::from_f64(self.material.thickness * self.material.adhesion_range)
+    }
+
+    /// The distance to keep at a contact, in metres.
+    #[inline(always)]
+    pub(in crate::contact) fn rest_gap<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
+        if self.material_maps.thickness.is_empty() {
+            return self.thickness;
+        }
+        let most = R::from_f64(self.material.thickness);
+        self.material.thickness_at(self.material_maps, (points, [], &(weights, [])), most)
+            * self.thickness_scale
+    }
+
+    /// The cloth's points at the start and at the end of the step.
+    #[inline]
+    pub(in crate::contact) fn cloth_positions<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
+        let end = std::array::from_fn(|k| self.position(points[k], self.row(points[k]).xyz()));
+        [self.cloth_start_positions(points), end]
+    }
+
+    #[inline]
+    pub(in crate::contact) fn cloth_start_positions<const N: usize>(&self, points: [u32; N]) -> [Point; N] {
+        std::array::from_fn(|k| self.position(points[k], self.start(points[k])))
+    }
+
+    /// Whether collisions of a point are carried out in full.
+    pub fn has_full_strength(&self, point: u32) -> bool {
+        self.material.strength_at(self.material_maps, ([point], [], &([R::ONE], []))) >= R::ONE
+    }
+
+    /// Position of a point at the start of the step, in metres.
+    pub fn start_position(&self, point: u32) -> Point {
+        self.position(point, self.start(point))
+    }
+
+    /// Position of a point at the end of the step, in metres.
+    pub fn end_position(&self, point: u32) -> Point {
+        self.position(point, self.row(point).xyz())
+    }
+
+    /// Pushes a point, unless it is pinned; `depenetration` is the part of the push without velocity.
+    pub fn push_point(&self, point: u32, push: Point, depenetration: Point) {
+        let mut row = self.row(point);
+        if row.0[3] > R::ZERO {
+            (0..3).for_each(|axis| row.0[axis] += R::from_f64(push[axis]));
+            self.writer.push_by_collider(
+                point,
+                row,
+                [depenetration.x, depenetration.y, depenetration.z].map(R::from_f64),
+            );
+        }
+    }
+
+    #[inline(always)]
+    pub(in crate::contact) fn position(&self, point: u32, [x, y, z]: [R; 3]) -> Point {
+        Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
+    }
+
+    /// How far a point of the collider moves in the candidate interval, in metres, relative to a frame that moves
+    /// by `frame_travel` metres in a frame.
+    #[inline]
+    pub(in crate::contact) fn travel(&self, point: u32, frame_travel: [R; 3]) -> f64 {
+        let [start, end] = self.collider.map(|points| points[point as usize]);
+        (end - start - Point::from(frame_travel.map(R::to_f64))).norm()
+            * (self.interval[1] - self.interval[0])
+    }
+
+    #[inline(always)]
+    pub(in crate::contact) fn row(&self, point: u32) -> Row4<R> {
+        self.writer.row(point)
+    }
+
+    #[inline(always)]
+    pub(in crate::contact) fn start(&self, point: u32) -> [R; 3] {
+        self.start[point as usize].xyz()
+    }
+
+    /// The collider's points at the start and at the end of the step.
+    #[inline]
+    pub fn collider_positions<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
+        std::array::from_fn(|end| std::array::from_fn(|k| self.collider_position(points[k], self.time[end])))
+    }
+
+    /// A point of the collider at a time of the frame.
+    #[inline]
+    pub(in crate::contact) fn collider_position(&self, point: u32, time: f64) -> Point {
+        let [start, end] = self.collider.map(|points| points[point as usize]);
+        start + (end - start) * time
+    }
+
+    /// A time as a share of the candidate interval.
+    pub(in crate::contact) fn interval_share(&self, time: f64) -> R {
+        let [from, to] = self.interval;
+        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
+    }
+}
