@@ -23,6 +23,7 @@ impl<R: Real> Solver<R> {
         for (state, motion) in self.collider_states.iter_mut().zip(&frame.colliders) {
             state.begin_frame(&motion.start, &motion.end);
         }
+        self.find_near_colliders(frame);
         self.ground.begin_frame(frame.plane.as_ref(), &self.state.anchor);
     }
 

@@ -125,8 +125,9 @@ impl<R: Real> Solver<R> {
         });
         for point in released {
             self.bounds_violated[point as usize] = true;
+            let cloth = self.cloths.partition_point(|cloth| cloth.points().end <= point);
+            self.active_windows[cloth] = [0.0, 0.0];
         }
-        self.active_windows.fill([0.0, 0.0]);
     }
 
     /// Calls `work` with the contacts of each cloth and each collider.

@@ -61,5 +61,5 @@ fn cloth_contacts_fit<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: &[Clot
                 && are_points(&intersection.wings)
                 && are_points(&intersection.face)
         })
-        && elements.bvh.as_ref().is_none_or(|bvh| bvh.covers(elements.groups.len()))
+        && elements.are_covered()
 }

@@ -33,7 +33,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// What the bytes are; counted up whenever their layout changes.
-const KIND: [u8; 8] = *b"solver 4";
+const KIND: [u8; 8] = *b"solver 5";
 
 impl<R: Real> Solver<R> {
     /// All that the next frame depends on, besides the model and what the frame brings.
@@ -50,13 +50,17 @@ impl<R: Real> Solver<R> {
         sealed(KIND, &bytes)
     }
 
-    /// Pairs with a collider that moves hold for this frame alone: all are found anew in the next, but for the points that
-    /// are inside it.
+    /// Contacts of a cloth near a collider that moves are valid in this frame alone: all but its points inside colliders
+    /// are searched anew in the next.
     fn save_pairs(&self, out: &mut Vec<u8>) {
-        let hold = !self.collider_states.iter().any(|collider| collider.moves);
-        hold.put(out);
         for list in &self.collider_contacts {
-            if hold {
+            let of_cloth =
+                self.collider_contacts.iter().filter(|other| other.cloth == list.cloth && other.is_near);
+            let is_valid =
+                !of_cloth.map(|list| list.collider).any(|collider| self.collider_states[collider].moves);
+            is_valid.put(out);
+            list.is_near.put(out);
+            if is_valid {
                 list.save(out);
             } else {
                 list.interval.put(out);
@@ -66,9 +70,10 @@ impl<R: Real> Solver<R> {
     }
 
     fn load_pairs(&mut self, from: &mut Reader<'_>) -> Option<()> {
-        let hold = bool::take(from)?;
         for list in &mut self.collider_contacts {
-            if hold {
+            let is_valid = bool::take(from)?;
+            list.is_near = Item::take(from)?;
+            if is_valid {
                 list.load(from)?;
             } else {
                 list.interval = Item::take(from)?;
@@ -140,7 +145,7 @@ kept!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    anew: [cloth, collider, by_point, active, is_searched, searched_groups, tasks],
+    anew: [cloth, collider, is_near, by_point, active, is_searched, searched_groups, tasks],
 });
 
 kept!([R: Real] ClothContacts<R> {
