@@ -81,8 +81,8 @@ fn by_hand(frames: u32) -> u64 {
             ..ColliderFrame::default()
         }],
         pins: vec![Pin { cloth: ClothId(0), point: PointId(0), start: corner, end: corner }],
-                    ..FrameInput::default()
-                };
+        ..FrameInput::default()
+    };
     for _ in 0..frames {
         solver.step(&input, &mut ());
     }

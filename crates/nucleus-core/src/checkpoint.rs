@@ -34,7 +34,7 @@ use crate::state::State;
 use crate::state::kinematics::update_anchors;
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver 5";
+const KIND: [u8; 8] = *b"solver 6";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -118,13 +118,16 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     contact.ground.load(from)
 }
 
-/// Pairs with a collider that moves are valid for one frame only, so the checkpoint omits them; it keeps their trapped
-/// points.
+/// Contacts of a cloth near a collider that moves are valid for one frame only: the checkpoint keeps of them the points
+/// inside colliders.
 fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
-    let are_valid = !solver.contact.collider_states.iter().any(|collider| collider.moves);
-    are_valid.encode(out);
-    for list in &solver.contact.collider_contacts {
-        if are_valid {
+    let lists = &solver.contact.collider_contacts;
+    for list in lists {
+        let mut near = lists.iter().filter(|other| other.cloth == list.cloth && other.is_near);
+        let is_valid = !near.any(|list| solver.contact.collider_states[list.collider].moves);
+        is_valid.encode(out);
+        list.is_near.encode(out);
+        if is_valid {
             list.save(out);
         } else {
             list.interval.encode(out);
@@ -134,9 +137,10 @@ fn save_pairs<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 }
 
 fn load_pairs<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
-    let are_valid = bool::decode(from)?;
     for list in &mut solver.contact.collider_contacts {
-        if are_valid {
+        let is_valid = bool::decode(from)?;
+        list.is_near = Encode::decode(from)?;
+        if is_valid {
             list.load(from)?;
         } else {
             list.interval = Encode::decode(from)?;
@@ -293,7 +297,7 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
                 && are_points(&intersection.wings)
                 && are_points(&intersection.face)
         })
-        && elements.bvh.as_ref().is_none_or(|bvh| bvh.covers(elements.groups.len()))
+        && elements.are_covered()
 }
 
 checkpoint_struct!([R: Real] State<R> {
@@ -312,7 +316,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, by_point, active, is_searched, searched_groups, tasks],
+    rebuilt: [cloth, collider, is_near, by_point, active, is_searched, searched_groups, tasks],
 });
 
 checkpoint_struct!([R: Real] ClothContacts<R> {

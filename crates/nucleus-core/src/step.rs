@@ -88,6 +88,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
         collider.begin_frame(&motion.start, &motion.end);
     }
+    solver.find_near_colliders(frame);
     solver.contact.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
 }
 

@@ -78,6 +78,7 @@ fn input() -> FrameInput {
         cloths: vec![ClothFrame::default()],
         colliders: Vec::new(),
         pins: Vec::new(),
+        ..FrameInput::default()
     }
 }
 

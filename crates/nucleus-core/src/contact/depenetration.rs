@@ -228,7 +228,7 @@ impl<R: Real> Solver<R> {
             self.invalidate_bounds(row as usize);
         }
         if is_moved {
-            self.contact.active_windows.fill([0.0; 2]);
+            self.contact.active_windows[cloth] = [0.0; 2];
             if let Some(cloth_contacts) = &mut self.contact.cloth_contacts {
                 cloth_contacts.interval = [0.0; 2];
                 cloth_contacts.untangling.is_search_due = true;

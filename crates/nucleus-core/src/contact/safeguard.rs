@@ -3,11 +3,11 @@
 //!
 //! 1. Contacts push again, four times.
 //! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
-//! all of it.
+//!    all of it.
 //! 3. Motion is truncated at a division plane between the two elements, or, at a collider, reverted to the start
-//! of the step in the collider's moving frame (planar divide and truncate).
+//!    of the step in the collider's moving frame (planar divide and truncate).
 //! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a frozen
-//! neighbour or collider.
+//!    neighbour or collider.
 //! 5. The pair is accepted as unresolved, and counted.
 //!
 //! The positions at the start of the step are certified, so a pair that does not move is certified too. Only

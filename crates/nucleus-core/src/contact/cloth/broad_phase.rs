@@ -156,10 +156,9 @@ impl<R: Real> ClothContacts<R> {
 impl<R: Real> ClothSearch<'_, R> {
     /// Finds all contacts of the elements of a group that have a new bound.
     fn search_group(&self, group: u32, task: &mut SearchTask<R>) {
-        let Some(bvh) = &self.elements.bvh else { return };
         let SearchTask { found, query, group_bounds } = task;
         let all = query.fill(self, group);
-        bvh.query(&all[0].union(all[1]), |other| {
+        self.elements.query(&all[0].union(all[1]), |other| {
             if Aabb::may_overlap(&all, &self.elements.swept_boxes[other as usize]) {
                 query.find_contacts(self, other, group_bounds.of(self, other), found);
             }

@@ -1,4 +1,6 @@
-//! The elements of all cloths, in groups of neighbours, under one BVH.
+//! The elements of all cloths, in groups of neighbours, under a BVH for each cloth.
+
+use std::ops::Range;
 
 use nalgebra::Vector3;
 
@@ -26,8 +28,10 @@ pub struct ClothGroup {
 pub struct ElementGroups {
     /// The groups, cloth by cloth.
     pub groups: Vec<ClothGroup>,
-    /// A hierarchy over the groups.
-    pub bvh: Option<Bvh>,
+    /// A hierarchy over the groups of each cloth: one for all would make the order of contacts in a cloth depend on others.
+    pub bvhs: Vec<Bvh>,
+    /// The first group of each cloth.
+    first_groups: Vec<u32>,
     /// The swept box of each group.
     pub swept_boxes: Vec<SweptBox>,
     /// The groups that contain an element of each point; empty for padding rows.
@@ -52,8 +56,8 @@ pub struct ElementGroups {
 checkpoint_struct!([] ElementGroups {
     columns: [rest_positions],
     values: [],
-    parts: [bvh],
-    rebuilt: [groups, swept_boxes, points, ends, block, cloth, edge_length, blocks, groups_of_point, is_free_point],
+    parts: [bvhs],
+    rebuilt: [groups, first_groups, swept_boxes, points, ends, block, cloth, edge_length, blocks, groups_of_point, is_free_point],
 });
 
 impl ElementGroups {
@@ -68,6 +72,7 @@ impl ElementGroups {
             ..Self::default()
         };
         for (cloth, model) in (0..).zip(cloths) {
+            all.first_groups.push(all.groups.len() as u32);
             all.groups.extend(model.boundary.groups(GROUP_SIZE).map(|group| ClothGroup { cloth, group }));
             let corners = model.boundary.triangles.iter().flatten();
             corners.for_each(|&corner| all.is_free_point[corner as usize] = false);
@@ -106,10 +111,28 @@ impl ElementGroups {
 
     /// Refits the hierarchy to the swept boxes.
     pub fn refit(&mut self) {
-        let Self { bvh, swept_boxes, .. } = self;
-        if let Some(bvh) = bvh {
-            bvh.refit(|group| swept_boxes[group][0].union(swept_boxes[group][1]));
+        let Self { bvhs, first_groups, swept_boxes, .. } = self;
+        for (bvh, &first) in bvhs.iter_mut().zip(&*first_groups) {
+            bvh.refit(|group| {
+                let [start, end] = swept_boxes[first as usize + group];
+                start.union(end)
+            });
         }
+    }
+
+    /// Calls `found` with each group whose leaf overlaps a box, cloth by cloth.
+    #[inline]
+    pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {
+        for (bvh, &first) in self.bvhs.iter().zip(&self.first_groups) {
+            bvh.query(target, |group| found(first + group));
+        }
+    }
+
+    /// Whether each hierarchy holds each group of its cloth exactly once.
+    pub fn are_covered(&self) -> bool {
+        let ends = self.first_groups.iter().skip(1).copied().chain([self.groups.len() as u32]);
+        let counts = self.first_groups.iter().zip(ends).map(|(&first, end)| (end - first) as usize);
+        self.bvhs.iter().zip(counts).all(|(bvh, count)| bvh.covers(count))
     }
 
     /// The union of a group's boxes at both ends.
@@ -153,8 +176,10 @@ impl ElementGroups {
             let sum: Vector3<f64> = points.iter().map(|&point| Vector3::from(anchors[point as usize])).sum();
             sum / f64::max(points.len() as f64, 1.0)
         };
-        let centres: Vec<_> = (0..self.groups.len()).map(centre).collect();
-        self.bvh = (!centres.is_empty()).then(|| Bvh::new(&centres));
+        let ends = self.first_groups.iter().skip(1).copied().chain([self.groups.len() as u32]);
+        let of_cloths: Vec<_> = self.first_groups.iter().zip(ends).map(|(&first, end)| first..end).collect();
+        let bvh = |groups: Range<u32>| Bvh::new(&groups.map(|k| centre(k as usize)).collect::<Vec<_>>());
+        self.bvhs = of_cloths.into_iter().map(bvh).collect();
         self.swept_boxes = vec![[Aabb::EMPTY; 2]; self.groups.len()];
     }
 }

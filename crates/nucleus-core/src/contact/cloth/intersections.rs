@@ -14,11 +14,10 @@ pub fn find_intersections<R: Real>(cloth_contacts: &mut ClothContacts<R>, input:
     let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
     untangling.is_search_due = false;
     untangling.intersections.clear();
-    let Some(bvh) = &elements.bvh else { return };
     let SearchInput { cloths, anchors, displacement: [_, displacement], strength, .. } = *input;
     let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength };
     for group in 0..elements.groups.len() as u32 {
-        bvh.query(&elements.swept_bound(group), |other| {
+        elements.query(&elements.swept_bound(group), |other| {
             search.find_between(group, other, &mut untangling.intersections)
         });
     }

@@ -3,7 +3,7 @@
 //! | You want to know... | Read |
 //! |---|---|
 //! | which cloths are in contact, at which thickness and friction | [`material`](super::material) |
-//! | the elements of all cloths in groups, under one BVH | [`elements`] |
+//! | the elements of all cloths in groups, under a BVH for each cloth | [`elements`] |
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: which elements can touch while all points keep their bounds | [`broad_phase`], [`query`], [`element_bounds`] |
 //! | the contacts by kind, in batches that threads share | [`cache`], [`batches`] |

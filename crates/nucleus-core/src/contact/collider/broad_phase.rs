@@ -10,14 +10,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::Vector3;
 
-use crate::contact::collider::ColliderState;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::pass::ColliderStepArgs;
 use crate::contact::collider::query::ColliderQuery;
 use crate::contact::material::{ContactMaterial, MIN_THICKNESS};
 use crate::contact::time_step::ContactCounters;
-use crate::input::frame::{ColliderFrame, FrameInput};
-use crate::math::{Real, Row4, dot, scale, sub};
+use crate::input::frame::FrameInput;
+use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::{Schedule, StepInterval};
 use crate::solver::{ContactSystem, Model, Solver};
@@ -45,15 +44,24 @@ impl<R: Real> Solver<R> {
         if step[1] <= self.contact.active_windows[cloth][1] + 1e-9 && !self.has_violations(cloth, step[1]) {
             return;
         }
-        if step[1] > self.contact.candidate_intervals[cloth][1] + 1e-9 {
-            self.begin_candidate_interval(frame, cloth, times);
-        }
-        let rest =
-            [step[0], self.contact.candidate_intervals[cloth][1].min(self.interval_end(frame, cloth, times))];
-        let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW_STEPS)];
-        if self.predict_bounds(frame, cloth, schedule, step, [window, rest]) {
-            self.find_candidates(cloth, schedule, step[0], counters);
-        }
+        let window = loop {
+            if step[1] > self.contact.candidate_intervals[cloth][1] + 1e-9 {
+                self.begin_candidate_interval(frame, cloth, times);
+            }
+            let rest = [
+                step[0],
+                self.contact.candidate_intervals[cloth][1].min(self.interval_end(frame, cloth, times)),
+            ];
+            let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW_STEPS)];
+            let has_new_bounds = self.predict_bounds(frame, cloth, schedule, step, [window, rest]);
+            if self.find_approaching_colliders(cloth, window) {
+                continue;
+            }
+            if has_new_bounds {
+                self.find_candidates(cloth, schedule, step[0], counters);
+            }
+            break window;
+        };
         self.contact.active_windows[cloth] = window;
         let Self {
             pool,
@@ -80,9 +88,7 @@ impl<R: Real> Solver<R> {
     /// Starts a candidate interval. Around a moving collider it ends after a few edge lengths of motion; around
     /// colliders at rest contacts stay valid for as long as their points keep their bounds.
     fn begin_candidate_interval(&mut self, frame: &FrameInput, cloth: usize, times: StepInterval) {
-        let touching = |(_, theirs): &(&ColliderState, &ColliderFrame)| theirs.collide;
-        let mut colliders = self.contact.collider_states.iter().zip(&frame.colliders).filter(touching);
-        if colliders.any(|(collider, _)| collider.moves) {
+        if self.near_colliders(cloth).any(|collider| self.contact.collider_states[collider].moves) {
             self.contact.candidate_intervals[cloth] = [times.from, self.interval_end(frame, cloth, times)];
             self.contact.frame_travel[cloth] = self.moving_frame(cloth).map(R::from_f64);
             let points = self.model.cloths[cloth].points();
@@ -93,17 +99,18 @@ impl<R: Real> Solver<R> {
         }
     }
 
-    /// The mean motion in a frame of the fastest collider that a cloth can touch, in metres: the moving frame of
-    /// its bounds.
+    /// The colliders that a cloth can touch in this frame.
+    fn near_colliders(&self, cloth: usize) -> impl Iterator<Item = usize> + '_ {
+        let lists =
+            self.contact.collider_contacts.iter().filter(move |list| list.cloth == cloth && list.is_near);
+        lists.map(|list| list.collider).filter(move |&at| self.collider_materials_of(cloth)[at].is_some())
+    }
+
+    /// The mean motion in a frame of the fastest collider near a cloth, in metres: the moving frame of its bounds.
     fn moving_frame(&self, cloth: usize) -> [f64; 3] {
-        let colliding = self
-            .contact
-            .collider_states
-            .iter()
-            .zip(self.collider_materials_of(cloth))
-            .filter(|(_, material)| material.is_some());
-        let fastest = colliding
-            .map(|(collider, _)| collider.mean_travel)
+        let fastest = self
+            .near_colliders(cloth)
+            .map(|collider| self.contact.collider_states[collider].mean_travel)
             .reduce(|most, travel| if travel.norm_squared() > most.norm_squared() { travel } else { most });
         fastest.unwrap_or_default().into()
     }
@@ -117,9 +124,9 @@ impl<R: Real> Solver<R> {
         let rows = &self.state.velocity[points.start as usize..points.end as usize];
         let squares = rows.iter().map(|row| dot(row.xyz(), row.xyz()).to_f64());
         let max_speed = squares.fold(0.0, f64::max).sqrt() * frame.duration;
-        let colliding =
-            self.contact.collider_states.iter().zip(&frame.colliders).filter(|(_, theirs)| theirs.collide);
-        let farthest = colliding.map(|(collider, _)| collider.max_travel).fold(max_speed, f64::max);
+        let near =
+            self.near_colliders(cloth).map(|collider| self.contact.collider_states[collider].max_travel);
+        let farthest = near.fold(max_speed, f64::max);
         let length = step[1] - step[0];
         let steps = (MAX_TRAVEL * model.edge_length / (farthest * length)).floor().max(1.0);
         // Rounds to the end of the substep.
@@ -161,11 +168,12 @@ impl<R: Real> Solver<R> {
         let mut freed = Vec::new();
         for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
             let collider = list.collider;
-            let Some(material) = collider_materials[cloth * colliders.len() + collider] else {
+            list.interval = interval;
+            let material = collider_materials[cloth * colliders.len() + collider];
+            let Some(material) = material.filter(|_| list.is_near) else {
                 list.clear();
                 continue;
             };
-            list.interval = interval;
             collider_states[collider].fit_boxes(&colliders[collider], interval);
             let state_of = &collider_states[collider];
             let view = ColliderStepArgs { material, material_maps, h: schedule.h, time: [now; 2], interval };
@@ -271,49 +279,126 @@ impl<R: Real> Solver<R> {
         any.into_inner()
     }
 
-    /// Takes contacts over into a new frame, before anchors move. They are searched anew if a collider moved or
-    /// will move, or if the materials change the candidates.
+    /// Takes contacts over into a new frame, before anchors move. Those of a cloth are searched anew if a collider near
+    /// it has moved, or if its materials change the candidates.
     pub(crate) fn begin_collider_contact(&mut self, frame: &FrameInput) {
         self.contact.active_windows.fill([0.0, 0.0]);
         self.contact.candidate_intervals.fill([0.0, 0.0]);
         let is_same = self.update_materials(frame);
-        let moves =
-            frame.colliders.iter().any(|collider| !collider.start.is_empty() || !collider.end.is_empty());
-        let moved = self.contact.collider_states.iter().any(|collider| collider.moves);
-        if !is_same || moves || moved {
-            self.contact.bounds_violated.fill(true);
-            for cloth in 0..self.model.cloths.len() {
-                if !self.has_collider_material(cloth) {
-                    self.contact
-                        .collider_contacts
-                        .iter_mut()
-                        .filter(|list| list.cloth == cloth)
-                        .for_each(ColliderContacts::clear);
-                }
+        for (cloth, is_same) in is_same.into_iter().enumerate() {
+            if !self.has_collider_material(cloth) {
+                let lists = self.contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth);
+                lists.for_each(ColliderContacts::clear);
             }
-            return;
+            let moved =
+                self.near_colliders(cloth).any(|collider| self.contact.collider_states[collider].moves);
+            if is_same && !moved {
+                self.rebase_contacts(cloth);
+            } else {
+                self.invalidate_cloth(cloth);
+            }
         }
+    }
+
+    /// Rebases the contacts and interval bounds of a cloth on anchors that move to the points' positions.
+    fn rebase_contacts(&mut self, cloth: usize) {
         let Self {
             state,
+            model: Model { cloths, .. },
             contact: ContactSystem { collider_contacts, interval_bounds, bounds_violated, .. },
             ..
         } = self;
-        // Points inside a collider are tested in every frame.
-        for &(point, _) in collider_contacts.iter().flat_map(|list| &list.depenetration.points) {
-            bounds_violated[point as usize] = true;
+        for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+            // Points inside a collider are tested in every frame.
+            list.depenetration.points.iter().for_each(|&(point, _)| bounds_violated[point as usize] = true);
+            list.shift_anchors(&state.displacement);
         }
-        for ([low, high], moved) in interval_bounds.iter_mut().zip(&state.displacement) {
+        let rows = cloths[cloth].points().start as usize..cloths[cloth].points().end as usize;
+        let bounds = interval_bounds.get_mut(rows.clone()).unwrap_or_default();
+        for ([low, high], moved) in bounds.iter_mut().zip(&state.displacement[rows]) {
             for axis in 0..3 {
                 low.0[axis] -= moved.0[axis];
                 high.0[axis] -= moved.0[axis];
             }
         }
-        collider_contacts.iter_mut().for_each(|list| list.shift_anchors(&state.displacement));
     }
 
-    /// Sets the contact materials of every cloth with colliders and the ground. Returns whether the candidates
-    /// stay the same.
-    fn update_materials(&mut self, frame: &FrameInput) -> bool {
+    /// Invalidates all interval bounds of a cloth.
+    fn invalidate_cloth(&mut self, cloth: usize) {
+        let rows =
+            self.model.cloths[cloth].points().start as usize..self.model.cloths[cloth].points().end as usize;
+        self.contact.bounds_violated.get_mut(rows).unwrap_or_default().fill(true);
+    }
+
+    /// Finds the colliders that each cloth can touch in this frame, once they have taken up their motion. A moving
+    /// collider whose bounding box stays away from the cloth is far, and has no influence on it. Should the cloth approach
+    /// it within the frame, [`find_approaching_colliders`](Self::find_approaching_colliders) makes it near.
+    pub(crate) fn find_near_colliders(&mut self, frame: &FrameInput) {
+        for index in 0..self.contact.collider_contacts.len() {
+            let ColliderContacts { cloth, collider, is_near: was_near, .. } =
+                self.contact.collider_contacts[index];
+            let motion = &frame.colliders[collider];
+            let is_renewed = !motion.start.is_empty() || !motion.end.is_empty();
+            let is_near =
+                !is_renewed || self.can_touch_in_frame(cloth, collider, frame.duration, frame.gravity.norm());
+            self.contact.collider_contacts[index].is_near = is_near;
+            if is_near && (is_renewed || !was_near) {
+                self.invalidate_cloth(cloth);
+            }
+            if !is_near {
+                self.contact.collider_contacts[index].clear();
+            }
+        }
+    }
+
+    /// Whether the bounding box of a cloth, inflated by its interaction range and by free flight for a frame, overlaps the
+    /// box that a collider sweeps in the frame.
+    fn can_touch_in_frame(&self, cloth: usize, collider: usize, duration: f64, gravity: f64) -> bool {
+        let Some(material) = &self.collider_materials_of(cloth)[collider] else { return false };
+        let model = &self.model.cloths[cloth];
+        let squares = model.points().map(|row| self.state.velocity[row as usize].xyz());
+        let speed = squares.map(|v| dot(v, v).to_f64()).fold(0.0, f64::max).sqrt();
+        let flight = (speed + gravity * duration) * duration;
+        let room = material.thickness * material.adhesion_range + flight + MAX_TRAVEL * model.edge_length;
+        let cloth_box = bounding_box(model.points().map(|row| self.state.position(row)));
+        overlaps(cloth_box, room, self.contact.collider_states[collider].swept_bounds())
+    }
+
+    /// Makes colliders near whose swept box overlaps the window bounds of a cloth. Returns whether there were any: all
+    /// bounds must then be predicted anew.
+    fn find_approaching_colliders(&mut self, cloth: usize, window: [f64; 2]) -> bool {
+        if self.contact.collider_contacts.iter().all(|list| list.cloth != cloth || list.is_near) {
+            return false;
+        }
+        let frame_motion =
+            window.map(|time| travel_at(self.contact.frame_travel[cloth], time).map(R::to_f64));
+        let corners = self.model.cloths[cloth].points().flat_map(|row| {
+            let anchor = self.state.anchor[row as usize];
+            let bound = self.contact.window_bounds[row as usize].map(|corner| corner.xyz().map(R::to_f64));
+            bound.into_iter().flat_map(move |corner| frame_motion.map(|by| add(add(anchor, corner), by)))
+        });
+        let cloth_box = bounding_box(corners);
+        let mut any = false;
+        for index in 0..self.contact.collider_contacts.len() {
+            let ColliderContacts { cloth: of, collider, is_near, .. } = self.contact.collider_contacts[index];
+            let material = self.collider_materials_of(cloth)[collider].filter(|_| of == cloth && !is_near);
+            let Some(material) = material else { continue };
+            let room = material.thickness * material.adhesion_range;
+            if overlaps(cloth_box, room, self.contact.collider_states[collider].swept_bounds()) {
+                self.contact.collider_contacts[index].is_near = true;
+                any = true;
+            }
+        }
+        if any {
+            self.invalidate_cloth(cloth);
+            self.contact.candidate_intervals[cloth] = [0.0; 2];
+        }
+        any
+    }
+
+    /// Sets the contact materials of every cloth with colliders and the ground. Returns for each cloth whether its
+    /// candidates stay the same.
+    fn update_materials(&mut self, frame: &FrameInput) -> Vec<bool> {
         let settings = || frame.cloths.iter().zip(&self.contact.material_maps.max_thickness_factor);
         let for_ground = |(cloth, &max_thickness_factor)| {
             frame
@@ -330,10 +415,28 @@ impl<R: Real> Solver<R> {
             })
             .collect();
         self.contact.ground_materials = settings().map(for_ground).collect();
-        let is_same = ContactMaterial::same_candidates(&materials, &self.contact.collider_materials);
-        self.contact.collider_materials = materials;
-        is_same
+        let before = std::mem::replace(&mut self.contact.collider_materials, materials);
+        let colliders = self.model.colliders.len();
+        let is_same = |cloth: usize| {
+            let of_cloth = cloth * colliders..(cloth + 1) * colliders;
+            let before = before.get(of_cloth.clone()).unwrap_or_default();
+            ContactMaterial::same_candidates(&self.contact.collider_materials[of_cloth], before)
+        };
+        (0..self.model.cloths.len()).map(is_same).collect()
     }
+}
+
+/// The bounding box of some positions, in metres.
+fn bounding_box(positions: impl Iterator<Item = [f64; 3]>) -> [Vector3<f64>; 2] {
+    let empty = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
+    positions
+        .map(Vector3::from)
+        .fold(empty, |[low, high], position| [low.inf(&position), high.sup(&position)])
+}
+
+/// Whether a box, inflated by `room`, overlaps another.
+fn overlaps(ours: [Vector3<f64>; 2], room: f64, theirs: [Vector3<f64>; 2]) -> bool {
+    (0..3).all(|k| ours[0][k] - room <= theirs[1][k] && theirs[0][k] <= ours[1][k] + room)
 }
 
 /// Motion bound: low and high corner of a point's displacement in metres, relative to the moving frame.

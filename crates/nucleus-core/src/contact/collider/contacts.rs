@@ -22,6 +22,8 @@ pub struct ColliderContacts<R> {
     pub cloth: usize,
     /// The collider, by its index.
     pub collider: usize,
+    /// Whether the two can touch in this frame. A collider that cannot has no contacts, and no influence on the cloth.
+    pub is_near: bool,
     /// The candidate interval, as shares of the frame.
     pub interval: [f64; 2],
     /// Points of the cloth near faces of the collider.
@@ -70,6 +72,7 @@ impl<R: Real> ColliderContacts<R> {
         Self {
             cloth,
             collider,
+            is_near: true,
             interval,
             point_face: Vec::new(),
             edge_edge: Vec::new(),

@@ -114,6 +114,12 @@ impl ColliderState {
         [0, 1].map(|corner| start[corner] + (end[corner] - start[corner]) * time)
     }
 
+    /// Low and high corner of the box that it sweeps over the whole frame, in metres.
+    pub fn swept_bounds(&self) -> [Vector3<f64>; 2] {
+        let [start, end] = self.corners;
+        [start[0].inf(&end[0]), start[1].sup(&end[1])]
+    }
+
     /// Origin of the boxes at a time of the frame, in metres.
     pub fn origin(&self, time: f64) -> Vector3<f64> {
         self.start.first().copied().unwrap_or_default() + self.mean_travel * time

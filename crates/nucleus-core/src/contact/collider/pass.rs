@@ -127,8 +127,9 @@ impl<R: Real> Solver<R> {
         });
         for point in released {
             self.contact.bounds_violated[point as usize] = true;
+            let cloth = self.model.cloths.partition_point(|cloth| cloth.points().end <= point);
+            self.contact.active_windows[cloth] = [0.0, 0.0];
         }
-        self.contact.active_windows.fill([0.0, 0.0]);
     }
 
     /// Calls `work` with the contacts of each cloth and each collider.

@@ -1,0 +1,200 @@
+//! Contact is local: no cloth or collider far away changes a bit of a cloth in contact, and neither does the number of
+//! threads. The order of vertices changes rounding and the order of sweeps, and nothing else.
+
+mod scenes;
+
+use nucleus_core::{
+    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
+    ModelBuilder, SelfCollision, Solver, StateView, Surface,
+};
+use proptest::prelude::*;
+use scenes::{Vec3, frame, grid, physical, sphere, still};
+
+const THICKNESS: f64 = 0.004;
+const FRAMES: usize = 6;
+
+/// A sheet that lies on a ball from the first frame on, and a second sheet that lies on it.
+#[derive(Debug, Clone)]
+struct Heap {
+    points: u32,
+    sheets: usize,
+    place: Vec3,
+    slope: f64,
+    friction: f64,
+    /// Velocity of the ball in m/s.
+    ball: Vec3,
+}
+
+fn heaps() -> impl Strategy<Value = Heap> {
+    let place = proptest::array::uniform3(-0.02..0.02f64);
+    (6u32..14, 1usize..3, place, -0.1..0.1f64, 0.0..0.5f64).prop_map(
+        |(points, sheets, place, slope, friction)| Heap {
+            points,
+            sheets,
+            place: place.into(),
+            slope,
+            friction,
+            ball: Vec3::zeros(),
+        },
+    )
+}
+
+/// A solver of some heaps, with the settings of all frames but for the motion of balls.
+struct Scene {
+    heaps: Vec<Heap>,
+    builder: ModelBuilder,
+    input: FrameInput,
+}
+
+impl Scene {
+    fn new(heaps: &[Heap]) -> Self {
+        let mut scene = Self {
+            heaps: heaps.to_vec(),
+            builder: ModelBuilder::new(),
+            input: FrameInput { cloths: Vec::new(), ..frame(3, physical(48.0)) },
+        };
+        heaps.iter().for_each(|heap| scene.add(heap));
+        scene
+    }
+
+    fn add(&mut self, heap: &Heap) {
+        let lists = ClothLists { stretch: true, bend: true, self_collision: true, ..ClothLists::NONE };
+        for sheet in 0..heap.sheets {
+            let height = 0.3 + THICKNESS + 2.0 * THICKNESS * sheet as f64;
+            let mut surface =
+                grid(heap.points, heap.points, Vec3::new(0.6, 0.6 * heap.slope, 0.0), Vec3::z() * 0.6);
+            surface.positions.iter_mut().for_each(|p| *p += heap.place + Vec3::new(-0.3, height, -0.3));
+            self.builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
+            let own =
+                SelfCollision { on: true, thickness: THICKNESS, elements: Elements::Faces, edges: true };
+            self.input.cloths.push(ClothFrame {
+                thickness: THICKNESS,
+                friction: heap.friction,
+                bend_resistance: 0.1,
+                self_collision: own,
+                ..still()
+            });
+        }
+        self.builder.collider(Collider { surface: ball(heap) }).expect("a good mesh");
+        let at_rest = ColliderFrame { collide: true, friction: 0.3, ..ColliderFrame::default() };
+        self.input.colliders.push(at_rest);
+    }
+
+    /// Positions of all points of each cloth after each frame, and the contacts of the run.
+    fn run(self, threads: usize) -> (Vec<Vec<Vec<Vec3>>>, u64) {
+        let Self { heaps, builder, mut input } = self;
+        let counts: Vec<usize> =
+            heaps.iter().flat_map(|heap| vec![(heap.points * heap.points) as usize; heap.sheets]).collect();
+        let mut solver = Solver::<f32>::new(builder, threads);
+        let mut contacts = 0;
+        let mut one = |index: usize| {
+            for (heap, collider) in heaps.iter().zip(&mut input.colliders) {
+                if heap.ball != Vec3::zeros() {
+                    let at = |frame: usize| {
+                        ball(heap).positions.iter().map(|p| p + heap.ball * (frame as f64 / 24.0)).collect()
+                    };
+                    (collider.start, collider.end) = (at(index), at(index + 1));
+                }
+            }
+            contacts += solver.step(&input, &mut ()).contacts;
+            let cloth = |(cloth, &count): (usize, &usize)| {
+                (0..count).map(|k| solver.point(ClothId(cloth as u32), k)).collect()
+            };
+            counts.iter().enumerate().map(cloth).collect()
+        };
+        ((0..FRAMES).map(&mut one).collect(), contacts)
+    }
+}
+
+fn ball(heap: &Heap) -> Surface {
+    sphere(0.3, heap.place)
+}
+
+/// The trajectories of some cloths of a run.
+fn cloths(run: &[Vec<Vec<Vec3>>], range: std::ops::Range<usize>) -> Vec<Vec<Vec<Vec3>>> {
+    run.iter().map(|frame| frame[range.clone()].to_vec()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, max_shrink_iters: 0, ..ProptestConfig::default() })]
+
+    #[test]
+    fn two_heaps_far_apart_do_not_change_a_bit_of_each_other(near in heaps(), far in heaps()) {
+        let far = Heap { place: far.place + Vec3::new(40.0, 0.0, 3.0), ..far };
+        let (alone, contacts) = Scene::new(std::slice::from_ref(&near)).run(1);
+        prop_assert!(contacts > 0);
+        let (far_alone, contacts) = Scene::new(std::slice::from_ref(&far)).run(1);
+        prop_assert!(contacts > 0);
+        let (both, _) = Scene::new(&[near.clone(), far.clone()]).run(1);
+        prop_assert!(cloths(&both, 0..near.sheets) == alone, "the far heap changes the near one");
+        let all = near.sheets + far.sheets;
+        prop_assert!(cloths(&both, near.sheets..all) == far_alone, "the near heap changes the far one");
+    }
+
+    #[test]
+    fn a_fast_collider_far_away_does_not_change_a_bit(near in heaps(), speed in 1.0..100.0f64) {
+        // No cloth lies on the far ball, so that no time step is split.
+        let far = Heap { sheets: 0, place: Vec3::new(40.0, 0.0, 3.0), ball: Vec3::new(0.0, 0.6, 0.8) * speed, ..near.clone() };
+        let (alone, _) = Scene::new(std::slice::from_ref(&near)).run(1);
+        let (both, _) = Scene::new(&[near, far]).run(1);
+        prop_assert!(both == alone);
+    }
+
+    #[test]
+    fn a_collider_that_arrives_within_the_run_is_found(near in heaps(), speed in 5.0..50.0f64) {
+        // It is far in the first frames, and then pushes through the place of the heap.
+        let from = near.place + Vec3::x() * (speed * (FRAMES as f64 - 1.5) / 24.0);
+        let fast = Heap { sheets: 0, place: from, ball: -Vec3::x() * speed, ..near.clone() };
+        let (alone, _) = Scene::new(std::slice::from_ref(&near)).run(1);
+        let scene = Scene::new(&[near, fast.clone()]);
+        let (both, _) = scene.run(1);
+        prop_assert!(both != alone, "it passes without effect");
+        let centre = fast.place + fast.ball * (FRAMES as f64 / 24.0);
+        let inside = both[FRAMES - 1].iter().flatten().filter(|p| (*p - centre).norm() < 0.3 * scenes::INSCRIBED);
+        prop_assert_eq!(inside.count(), 0);
+    }
+
+    #[test]
+    fn heaps_in_contact_have_the_same_bits_on_any_number_of_threads(heap in heaps()) {
+        // More than one block of points.
+        let heap = Heap { points: heap.points + 30, ..heap };
+        let (one, _) = Scene::new(std::slice::from_ref(&heap)).run(1);
+        let (three, _) = Scene::new(std::slice::from_ref(&heap)).run(3);
+        prop_assert!(one == three);
+    }
+
+    #[test]
+    fn the_order_of_vertices_changes_a_drape_by_less_than_a_hundredth_of_its_size(heap in heaps(), seed: u64) {
+        let heap = Heap { sheets: 1, friction: 0.0, ..heap };
+        let drape = |permutation: &[u32]| {
+            let mut scene = Scene::new(&[heap.clone()]);
+            let surface = grid(heap.points, heap.points, Vec3::new(0.6, 0.6 * heap.slope, 0.0), Vec3::z() * 0.6);
+            let place = heap.place + Vec3::new(-0.3, 0.3 + THICKNESS, -0.3);
+            let mut positions = surface.positions.clone();
+            permutation.iter().zip(&surface.positions).for_each(|(&to, p)| positions[to as usize] = p + place);
+            let mut permuted = Surface { positions, ..Surface::default() };
+            for face in surface.faces.iter() {
+                permuted.faces.push(&face.iter().map(|&k| permutation[k as usize]).collect::<Vec<_>>());
+            }
+            let lists = ClothLists { stretch: true, bend: true, self_collision: true, ..ClothLists::NONE };
+            scene.builder = ModelBuilder::new();
+            scene.builder.cloth(Cloth::new(permuted, Mass::PerArea(0.2), lists)).expect("a good mesh");
+            scene.builder.collider(Collider { surface: ball(&heap) }).expect("a good mesh");
+            let (run, contacts) = scene.run(1);
+            assert!(contacts > 0);
+            let last = run[FRAMES - 1][0].clone();
+            permutation.iter().map(|&k| last[k as usize]).collect::<Vec<Vec3>>()
+        };
+        let count = heap.points * heap.points;
+        let identity: Vec<u32> = (0..count).collect();
+        let mut shuffled = identity.clone();
+        // Fisher and Yates, by a linear congruential generator.
+        let mut state = seed;
+        for k in (1..count).rev() {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            shuffled.swap(k as usize, ((state >> 33) % u64::from(k + 1)) as usize);
+        }
+        let largest = drape(&identity).iter().zip(drape(&shuffled)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        prop_assert!(largest < 0.006, "{largest} m");
+    }
+}
