@@ -39,7 +39,7 @@ pub fn own(workload: Workload, runs: &[RunResult]) -> Table {
             depth,
             worst_depth,
             report.found() as f64,
-            report.inside as f64,
+            report.current_intersections as f64,
         ];
         let setting = [run.spec.setting.to_string(), format!("{:016x}", run.timed.hash)];
         table.row([format!("{}²", run.spec.size)].into_iter().chain(cells.map(figure)).chain(setting));
