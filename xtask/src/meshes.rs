@@ -14,6 +14,7 @@ use std::path::Path;
 use anyhow::Context;
 
 mod knot;
+mod soft;
 
 /// Points and polygons, counted from 0.
 #[derive(Debug, Default)]
@@ -26,7 +27,7 @@ pub struct Mesh {
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 8] = [
+const ALL: [Entry; 10] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -35,6 +36,8 @@ const ALL: [Entry; 8] = [
     ("plunger", plunger),
     ("needles", needles),
     ("fifty_layers", fifty_layers),
+    ("balloon", soft::balloon),
+    ("trampoline", soft::trampoline),
 ];
 
 /// Writes all of them.

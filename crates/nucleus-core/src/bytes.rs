@@ -296,7 +296,7 @@ pub fn verify_checksum(kind: [u8; 8], whole: &[u8]) -> Result<&[u8], RestoreErro
     }
 }
 
-/// FNV-1a over words, with the length as the last word.
+/// FNV-1a over words, and over the length at the end.
 fn checksum(bytes: &[u8]) -> u64 {
     let words = bytes.chunks(8).map(|chunk| {
         let mut word = [0; 8];

@@ -400,7 +400,7 @@ fn a_point_in_depenetration_from_a_plane_falls_freely_once_the_plane_is_gone() {
         f64::from(velocities[0][1])
     };
     let led = speed(&with_plane);
-    assert!((led - 1.0).abs() < 1e-5, "led out at {led} m/s");
+    assert!((led - 1.0).abs() < 1e-5, "depenetrated at {led} m/s");
     let fallen = speed(&without);
     let free = without.gravity.y * without.duration;
     assert!((fallen / free - 1.0).abs() < 1e-5, "{fallen} m/s, free fall is {free} m/s");

@@ -186,6 +186,7 @@ fn sealed_gas_keeps_its_law_however_hard_it_is_and_pushes_nothing_as_a_whole() {
     }
 }
 
+// EVIDENCE: N1.2-4  a balloon that is full of gas empties through its opening, and flies
 #[test]
 fn an_open_balloon_is_driven_away_from_its_opening_and_empties() {
     let whole = icosphere(0.3);

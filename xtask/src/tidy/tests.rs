@@ -98,7 +98,7 @@ fn this_repository_is_tidy() {
 #[test]
 fn an_attribute_that_names_no_module_is_found_at_its_line() {
     let page = format!(
-        "{PAGE}### `crates/nucleus-graph`\n| `attributes` | tables |\n### `crates/nucleus-core`\n| `air` | drag |\n| `collision` | contact |\n"
+        "{PAGE}### `crates/nucleus-graph`\n| `attributes` | tables |\n### `crates/nucleus-core`\n| `integrate` | drag |\n| `contact` | contact |\n"
     );
     let table = |modules: [&str; 3]| {
         modules.map(|module| format!("X: f64 = float().solved(\"{module}\");\n")).concat()
@@ -109,9 +109,9 @@ fn an_attribute_that_names_no_module_is_found_at_its_line() {
             ("crates/nucleus-graph/Cargo.toml", ""),
             ("crates/nucleus-graph/src/attributes/n_cloth.rs", table.as_str()),
             ("crates/nucleus-core/Cargo.toml", ""),
-            ("crates/nucleus-core/src/air.rs", ""),
-            ("crates/nucleus-core/src/collision/mod.rs", ""),
-            ("crates/nucleus-core/src/collision/stick.rs", ""),
+            ("crates/nucleus-core/src/integrate/aerodynamics.rs", ""),
+            ("crates/nucleus-core/src/contact/mod.rs", ""),
+            ("crates/nucleus-core/src/contact/response.rs", ""),
         ];
         found(&page, &more)
     };
@@ -124,4 +124,14 @@ fn an_attribute_that_names_no_module_is_found_at_its_line() {
         assert!(problems.len() == 1 && problems[0].starts_with(&place), "{problems:?}");
         assert!(problems[0].contains("write the path of the module"), "{problems:?}");
     }
+}
+
+#[test]
+fn a_retired_word_is_found_at_its_line_but_not_inside_another() {
+    let [word, longer] = [concat!("bro", "om"), concat!("bro", "omstick")];
+    let page = |text: &str| super::retired_words("docs/page.md", text);
+    assert_eq!(page(longer), [""; 0]);
+    let problems = page(&format!("a\na {word}."));
+    assert!(problems.len() == 1 && problems[0].starts_with("docs/page.md:2: "), "{problems:?}");
+    assert_eq!(super::retired_words("docs/claims.md", word), [""; 0], "the paper keeps its words");
 }

@@ -22,8 +22,8 @@ pub(crate) const CONTACTS: Attribute = Attribute {
     encoding: "nucleus.contacts.v1",
     schema: "\
 Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then a byte
-for each point: 0 free, 1 touching, 2 pinched (nearer than nine tenths of its thickness), 3 trapped (inside a closed
-collider, being led out), 4 tangled (at an edge of cloth that goes through a face of cloth, being worked apart).
+for each point: 0 free, 1 touching, 2 compressed (nearer than nine tenths of its thickness), 3 depenetrating (inside
+a closed collider), 4 intersecting (at an edge of cloth that intersects a face of cloth, being untangled).
 ",
     width: 1,
 };

@@ -179,7 +179,7 @@ fn a_cache_that_has_lost_its_start_is_recovered_with_the_meshes_of_its_scene() {
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
     let path = folder.path().join("drape.mcap");
     let bytes = fs::read(&path).unwrap();
-    // The file keeps only what lies between the first copy and the second: not the start, the last copy and the index.
+    // The file keeps only the bytes between the first copy and the second: not the start, the last copy and the index.
     let mark = b"nucleus.copy";
     let copies: Vec<usize> = (0..bytes.len()).filter(|&at| bytes[at..].starts_with(mark)).collect();
     let mut damaged = bytes[..copies[1] - 33].to_vec();

@@ -82,11 +82,14 @@ fn warnings_alone_do_not_fail() {
     let folder = folder();
     scene(folder.path(), 3, "finite");
     let path = folder.path().join("drape.ron");
-    fs::write(&path, fs::read_to_string(&path).unwrap().replace("thickness: 1", "thickness: 1, rigidity: 2"))
-        .unwrap();
+    fs::write(
+        &path,
+        fs::read_to_string(&path).unwrap().replace("thickness: 1", "thickness: 1, windShadowDistance: 2"),
+    )
+    .unwrap();
     let output = nucleus(folder.path(), &["check", "drape.ron"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("`rigidity`") && stderr(&output).ends_with("1 warning\n"));
+    assert!(stderr(&output).contains("`windShadowDistance`") && stderr(&output).ends_with("1 warning\n"));
 }
 
 #[test]

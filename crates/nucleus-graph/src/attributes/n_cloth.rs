@@ -89,7 +89,7 @@ node_table! {
     "Quality Settings" {
         /// Simple: the size of the angle. High Quality: the angle with its sign, for cloth that is bent at rest. Flip Tracking: also beyond 180°.
         BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]).solved("nucleus_core::constraints::angle");
-        /// Whether collision has the last word in a step where shape attraction is in use. It always has, as at 1, whatever is set here.
+        /// Whether contact comes last in a step with shape attraction. It always does here, as at 1 in Maya.
         COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("nucleus_core::schedule");
         /// Solves links in the order of their distance from contacts and constraints.
         SORT_LINKS: bool = toggle("sortLinks", "stlk", false);

@@ -24,9 +24,9 @@ node_table! {
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", false);
     }
     "Quality Settings" {
-        /// Leads points that are inside it, where it is closed, to the nearest way out; off, they stay in.
+        /// Depenetrates points inside a closed collider, to the nearest surface; off, they stay inside.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("nucleus_core::contact::depenetration");
-        /// Cloth that starts in it is led out point by point, whatever is set here: there is nothing to work apart.
+        /// Cloth that starts inside it is depenetrated point by point, whatever is set here: a collider has no intersection contours.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Collision Properties Maps" {

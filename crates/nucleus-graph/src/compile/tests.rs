@@ -370,3 +370,39 @@ fn a_camera_moves_with_its_keys_and_with_its_parent() {
     let still = program(&format!(r#"{}"shot": camera(translate: (0, 1, 5)),"#, sheet("", ""))).cameras();
     assert_eq!(still[0].views.len(), 1);
 }
+
+// EVIDENCE: N2.2-9  Object Space raises counts with the number of faces, Link is the default
+#[test]
+fn a_scaling_relation_other_than_link_raises_classic_counts_with_the_faces() {
+    let resistance = |set: &str, side: u32| {
+        let scene = format!(
+            r#""nucleus1": nucleus(resistanceModel: classic),
+               "p": polyPlane(width: 2, height: 2, subdivisions: ({side}, {side})),
+               "c": nCloth(inputMesh: "p", stretchResistance: 3{set}),"#
+        );
+        program(&scene).first_input().cloths[0].stretch_resistance
+    };
+    for (set, few, many) in [
+        ("", 3.0, 3.0),
+        (", scalingRelation: link", 3.0, 3.0),
+        (", scalingRelation: objectSpace", 3.0, 12.0),
+        // A sheet of four square metres.
+        (", scalingRelation: worldSpace", 0.75, 3.0),
+        (", scalingRelation: objectSpace, maxIterations: 5", 3.0, 5.0),
+    ] {
+        let found = [10, 20].map(|side| resistance(set, side));
+        assert!((found[0] - few).abs() + (found[1] - many).abs() < 1e-9, "{set}: {found:?}");
+    }
+}
+
+#[test]
+fn a_rest_shape_mesh_is_the_model_and_the_input_mesh_the_start() {
+    let scene = r#""nucleus1": nucleus(),
+        "p": polyPlane(width: 2, height: 2, subdivisions: (1, 1)),
+        "r": polyPlane(width: 4, height: 2, subdivisions: (1, 1)),
+        "c": nCloth(inputMesh: "p", restShapeMesh: "r"),"#;
+    let program = program(scene);
+    let cloth = &program.nuclei()[0].model.cloths()[0];
+    let width = |points: &[Vector3<f64>]| (points[1] - points[0]).norm();
+    assert_eq!((width(&cloth.surface.positions), width(cloth.positions())), (4.0, 2.0));
+}
