@@ -203,7 +203,11 @@ fn unused_settings_of_a_map_give_a_warning() {
             "`bendMap` of `c` has no effect: `bendMapType` is none",
             r#"texture("a.png")"#,
         ),
-        ("rigidityMapType: perVertex", "`rigidityMapType` of `c` has no effect yet", "rigidityMapType"),
+        (
+            "restitutionAngleMapType: perVertex",
+            "`restitutionAngleMapType` of `c` has no effect yet",
+            "restitutionAngleMapType",
+        ),
     ] {
         let text = hanging(fields);
         let warnings = messages(&text, file);
