@@ -1,5 +1,7 @@
 //! The solver: its data in four groups (model, state, contact, threads), and its public methods.
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::Vector3;
 
 use crate::bytes::RestoreError;
@@ -55,6 +57,8 @@ pub struct ContactSystem<R: Real> {
     /// scene has no collider.
     pub window_bounds: Vec<MotionBox<R>>,
     pub interval_bounds: Vec<MotionBox<R>>,
+    /// How far the window bounds of each point have grown in this frame, in metres.
+    pub bound_growth: Vec<R>,
     /// Points with new motion bounds, whose pairs are to be found again.
     pub bounds_violated: Vec<bool>,
     /// Contact material of each cloth with each collider in this frame, by cloth and collider.
@@ -65,6 +69,10 @@ pub struct ContactSystem<R: Real> {
     pub material_maps: MaterialMaps<R>,
     /// Contact of cloth with itself and with other cloth; none where no two elements can ever touch.
     pub cloth_contacts: Option<ClothContacts<R>>,
+    /// The cloths whose contacts a pass resolves; all where it is empty.
+    pub contact_mask: Vec<bool>,
+    /// Whether each cloth has a contact without certificate.
+    pub has_unproven: Vec<AtomicBool>,
     /// Whether the last frame had a contact.
     pub touches: bool,
     /// The ground plane.
@@ -206,11 +214,14 @@ impl<R: Real> ContactSystem<R> {
             frame_travel: vec![[R::ZERO; 3]; models.len()],
             window_bounds: vec![[Row4::ZERO; 2]; bounded],
             interval_bounds: vec![[Row4::ZERO; 2]; bounded],
+            bound_growth: vec![R::ZERO; bounded],
             bounds_violated: vec![true; bounded],
             collider_materials: Vec::new(),
             ground_materials: Vec::new(),
             material_maps: MaterialMaps::new(cloths, models, state.anchor.len()),
             cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
+            contact_mask: Vec::with_capacity(models.len()),
+            has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
             // Cloth that starts from a saved state may be in contact; only a frame can tell.
             touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
             ground: Ground::default(),

@@ -27,6 +27,9 @@
 //! pairs that can touch while every point keeps its bound. Each step checks the bounds, and searches again only for points
 //! that violate them. A pair whose bounds keep it above 2 % of its thickness needs no certificate.
 //!
+//! **Locality.** A cloth in contact depends on the colliders near it and on the cloths in its island alone. Splits of a
+//! time step and the direction of sweeps are the exceptions: they are chosen for the whole nucleus.
+//!
 //! | You want to know... | Read |
 //! |---|---|
 //! | boxes, and the bounding volume hierarchy | [`bvh`] |

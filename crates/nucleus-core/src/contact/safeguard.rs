@@ -10,8 +10,12 @@
 //!    neighbour or collider.
 //! 5. The pair is accepted as unresolved, and counted.
 //!
+//! Only islands of cloths with a failed certificate push again.
+//!
 //! The positions at the start of the step are certified, so a pair that does not move is certified too. Only
 //! between colliders that close on cloth, and between pins that cross, does the fourth fallback fail.
+
+use std::sync::atomic::Ordering;
 
 use crate::contact::cloth::ClothContacts;
 use crate::contact::cloth::pass::cloth_step;
@@ -48,6 +52,7 @@ impl<R: Real> Solver<R> {
                 self.update_cloth_candidates(frame, now, counters);
             }
             watch.enter(Stage::Contact);
+            self.contact.has_unproven.iter().for_each(|mark| mark.store(false, Ordering::Relaxed));
             let cloths = self.certify_cloth_contacts(schedule);
             let [sides, inseparable] = self.certify_collider_contacts(frame, schedule, now, counters);
             let unproven = [cloths, sides];
@@ -59,11 +64,13 @@ impl<R: Real> Solver<R> {
                 return;
             }
             if attempt < PUSHING_ENDS {
+                self.mask_islands();
                 let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
                 if unproven[0] > 0 {
                     self.resolve_cloth_contacts(thickness_scale, frame, schedule, now, counters, watch);
                 }
                 self.resolve_collider_contacts(thickness_scale, frame, schedule, now, counters, watch);
+                self.contact.contact_mask.clear();
             } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
                 self.truncate(schedule, counters);
                 self.revert_collider_contacts(frame, schedule, now, counters);
@@ -83,14 +90,33 @@ impl<R: Real> Solver<R> {
         let Self {
             state,
             pool,
-            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, has_unproven, .. },
             ..
         } = self
         else {
             return 0;
         };
         let ClothContacts { cache, materials, .. } = cloth_contacts;
-        cache.certify(&cloth_step(state, materials, material_maps, schedule.h), pool)
+        cache.certify(&cloth_step(state, materials, material_maps, schedule.h), has_unproven, pool)
+    }
+
+    /// Masks the islands of cloths in contact with each other that have a contact without certificate: only their contacts
+    /// push again, so that no cloth elsewhere is changed.
+    fn mask_islands(&mut self) {
+        let Self { contact: ContactSystem { cloth_contacts, contact_mask, has_unproven, .. }, .. } = self;
+        contact_mask.clear();
+        contact_mask.extend(has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed)));
+        let Some(ClothContacts { cache, materials, .. }) = cloth_contacts else { return };
+        let mut has_grown = true;
+        while has_grown {
+            has_grown = false;
+            for [a, b] in cache.cloth_pairs(materials.len()) {
+                if contact_mask[a] != contact_mask[b] {
+                    (contact_mask[a], contact_mask[b]) = (true, true);
+                    has_grown = true;
+                }
+            }
+        }
     }
 
     fn truncate(&mut self, schedule: &Schedule<R>, counters: &mut ContactCounters) {

@@ -115,6 +115,8 @@ pub struct ColliderStep<'a, R> {
     pub time: [f64; 2],
     /// The candidate interval, as shares of the frame.
     pub interval: [f64; 2],
+    /// Start and end of the step, as shares of the candidate interval.
+    pub shares: [R; 2],
     /// Length of the step in seconds.
     pub h: R,
     /// Contact thickness in metres: the largest value under the vertex maps.
@@ -225,11 +227,5 @@ impl<R: Real> ColliderStep<'_, R> {
     pub(in crate::contact) fn collider_position(&self, point: u32, time: f64) -> Point {
         let [start, end] = self.collider.map(|points| points[point as usize]);
         start + (end - start) * time
-    }
-
-    /// A time as a share of the candidate interval.
-    pub(in crate::contact) fn interval_share(&self, time: f64) -> R {
-        let [from, to] = self.interval;
-        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
     }
 }

@@ -46,7 +46,9 @@ pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLis
     let below = |key: &Key<f64>, limit: f64| graph.changes(cloth, key) || node.get(key) < limit;
     let yields_bends = below(&RESTITUTION_ANGLE, NO_ANGLE);
     let scaled = graph.changes(cloth, &BEND_ANGLE_SCALE) || node.get(&BEND_ANGLE_SCALE) != 1.0;
+    let shape = used(&RIGIDITY) || used(&DEFORM_RESISTANCE);
     let by_volume = graph.changes(cloth, &PRESSURE_METHOD) || node.get(&PRESSURE_METHOD) != MANUAL;
+    let pressure = by_volume || used(&PRESSURE);
     ClothLists {
         signed_bend: lists.bend && node.get(&BEND_SOLVER) != SIMPLE,
         bend_angles: lists.bend
@@ -55,10 +57,10 @@ pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLis
                 || yields_bends
                 || graph.changes(cloth, &BEND_SOLVER)
                 || node.get(&BEND_SOLVER) == FLIP_TRACKING),
-        pressure: by_volume || used(&PRESSURE),
-        seals_holes: node.get(&SEAL_HOLES),
-        shape: used(&RIGIDITY) || used(&DEFORM_RESISTANCE),
-        shells: node.get(&USE_POLYGON_SHELLS),
+        pressure,
+        seals_holes: pressure && node.get(&SEAL_HOLES),
+        shape,
+        shells: shape && node.get(&USE_POLYGON_SHELLS),
         plastic: lists.stretch && below(&RESTITUTION_TENSION, NO_TENSION),
         ..lists
     }

@@ -89,9 +89,10 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
     let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: true";
-    assert_eq!(lists(nothing), off);
+    let soft = "bend_angles: false, pressure: false, seals_holes: false, shape: false, shells: false, plastic: false";
+    assert_eq!(lists(nothing), format!("{off}, signed_bend: false, {soft}"));
     let on = "stretch: true, cross_links: true, shear: false, bend: true, air: true, damp: true, self_collision: true";
-    assert_eq!(lists(""), on);
+    assert_eq!(lists(""), format!("{on}, signed_bend: true, {soft}"));
     for (cloth, list) in [
         ("bendResistance: keys([(1, 0), (20, 1)])", "bend: true"),
         ("bendResistance: keys([(1, 0), (20, 0)])", "bend: false"),
@@ -105,6 +106,16 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
         ("stretchResistance: 0", "stretch: true"),
         ("drag: 0", "air: true"),
         ("stretchDamp: 0, damp: 1", "damp: true"),
+        ("bendSolver: simple", "signed_bend: false"),
+        ("bendAngleDropoff: 0.5", "bend_angles: true"),
+        ("bendAngleScale: 0.5", "bend_angles: true"),
+        ("restitutionAngle: 90", "bend_angles: true"),
+        ("bendSolver: flipTracking", "bend_angles: true"),
+        ("pressure: keys([(1, 0), (20, 1)])", "pressure: true, seals_holes: true"),
+        ("pressureMethod: volumeTrackingModel, sealHoles: false", "pressure: true, seals_holes: false"),
+        ("rigidity: 1", "shape: true, shells: false"),
+        ("deformResistance: 1, usePolygonShells: true", "shape: true, shells: true"),
+        ("restitutionTension: 999", "plastic: true"),
     ] {
         assert!(lists(cloth).contains(list), "{cloth}: {}", lists(cloth));
     }
@@ -147,7 +158,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         collide: false, thickness: 17, friction: 18, bounce: 19, collisionFlag: Edge, collisionLayer: 20, \
         stickiness: 22, collideStrength: 23, pushOut: 24, pushOutRadius: 25, crossoverPush: 26, \
         selfCrossoverPush: 27, bendAngleScale: 0.5, bendAngleDropoff: 0.25, bendSolver: flipTracking, \
-        restitutionAngle: 60, restitutionTension: 2, pressureMethod: volumeTrackingModel, startPressure: 0.1, \
+        restitutionAngle: 0, restitutionTension: 2, pressureMethod: volumeTrackingModel, startPressure: 0.1, \
         incompressibility: 2, pumpRate: 0.3, airTightness: 0.4, pressureDamping: 0.5, sealHoles: false, \
         rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
@@ -188,7 +199,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             angle_scale: 0.5,
             angle_dropoff: 0.25,
             solver: BendSolver::FlipTracking,
-            yield_sine: 0.5,
+            yield_sine: 0.0,
         },
         // Tension 2 of a resistance of 1.
         yield_strain: 2.0,

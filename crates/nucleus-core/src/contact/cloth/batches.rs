@@ -5,7 +5,7 @@
 //! any number of threads.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::broad_phase::RefreshKind;
@@ -130,12 +130,19 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
 
     /// One sweep. Returns the number of contacts that pushed.
     pub fn sweep(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
-        self.count(pool, |contact| contact.resolve(step))
+        self.count(pool, |contact| contact.is_resolved(step) && contact.resolve(step))
     }
 
-    /// The number of contacts without certificate.
-    pub fn certify(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
-        self.count(pool, |contact| !contact.certify(step))
+    /// The number of contacts without certificate. Marks their cloths.
+    pub fn certify(&mut self, step: &ClothStep<'_, R>, unproven: &[AtomicBool], pool: &ThreadPool) -> u64 {
+        self.count(pool, |contact| {
+            let is_unproven = !contact.certify(step);
+            if is_unproven {
+                let cloths = contact.cloths(step.materials.len());
+                cloths.into_iter().for_each(|cloth| unproven[cloth].store(true, Ordering::Relaxed));
+            }
+            is_unproven
+        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! The contact cache: all contacts among cloths, by kind, over a candidate interval.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, RwLock};
 
 use crate::bytes::checkpoint_struct;
@@ -198,9 +199,17 @@ impl<R: Real> ContactCache<R> {
         self.point_point.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
     }
 
-    /// The number of contacts without certificate.
-    pub fn certify(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
-        self.edge_edge.certify(step, pool) + self.point_face.certify(step, pool)
+    /// The number of contacts without certificate. Marks their cloths.
+    pub fn certify(&mut self, step: &ClothStep<'_, R>, unproven: &[AtomicBool], pool: &ThreadPool) -> u64 {
+        self.edge_edge.certify(step, unproven, pool) + self.point_face.certify(step, unproven, pool)
+    }
+
+    /// The pairs of cloths in contact, each as often as they have contacts.
+    pub fn cloth_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+        let pairs = self.point_face.iter().map(move |contact| contact.cloths(materials));
+        let pairs = pairs.chain(self.edge_edge.iter().map(move |contact| contact.cloths(materials)));
+        let pairs = pairs.chain(self.point_edge.iter().map(move |contact| contact.cloths(materials)));
+        pairs.chain(self.point_point.iter().map(move |contact| contact.cloths(materials)))
     }
 
     /// Truncates the motion of every contact without certificate, one after the other. Returns their number.

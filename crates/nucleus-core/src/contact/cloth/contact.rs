@@ -20,6 +20,8 @@ pub struct ClothStep<'a, R> {
     pub start: &'a [Row4<R>],
     /// Friction anchors; `None` outside of contact passes.
     pub anchors: Option<FrictionAnchors<'a, R>>,
+    /// The cloths whose contacts are resolved; all where it is empty.
+    pub mask: &'a [bool],
     /// Contact materials, by cloth and cloth.
     pub materials: &'a [Option<ContactMaterial<R>>],
     /// Vertex maps of contact attributes.
@@ -31,6 +33,12 @@ pub struct ClothStep<'a, R> {
 }
 
 impl<R: Real> ClothStep<'_, R> {
+    /// Whether contacts of the cloths of a material are resolved.
+    #[inline(always)]
+    pub(super) fn resolves(&self, material: u32) -> bool {
+        self.mask.is_empty() || self.mask[material as usize / self.materials.len().isqrt()]
+    }
+
     #[inline(always)]
     pub(super) fn row(&self, point: u32) -> Row4<R> {
         self.writer.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
@@ -132,6 +140,18 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     #[inline(always)]
     pub(super) fn material<'a>(&self, step: &ClothStep<'a, R>) -> Option<&'a ContactMaterial<R>> {
         step.materials.get(self.params.material as usize)?.as_ref()
+    }
+
+    /// Whether this pass resolves it.
+    #[inline(always)]
+    pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {
+        step.mask.is_empty() || self.is_disabled() || step.resolves(self.params.material)
+    }
+
+    /// The cloths of its two sides, given the number of materials.
+    pub fn cloths(&self, materials: usize) -> [usize; 2] {
+        let (material, cloths) = (self.params.material as usize, materials.isqrt());
+        [material / cloths, material % cloths]
     }
 
     /// The points of the two and their weights.

@@ -106,19 +106,20 @@ impl<R: Real> Solver<R> {
         let Self {
             state,
             pool,
-            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
+            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, contact_mask, .. },
             ..
         } = self
         else {
             return;
         };
+        let mask = &contact_mask[..];
         let ClothContacts { elements, materials, cache, interval_start, untangling, .. } = cloth_contacts;
         if untangling.any() {
             let most = elements.edge_length * UNTANGLING_SPEED * schedule.h;
             let anchors = std::mem::take(&mut state.anchor);
             untangling.untangle(
                 &anchors,
-                &cloth_step(state, materials, material_maps, schedule.h),
+                &ClothStep { mask, ..cloth_step(state, materials, material_maps, schedule.h) },
                 &elements.cloth,
                 most,
             );
@@ -126,8 +127,12 @@ impl<R: Real> Solver<R> {
         }
         let anchors = Some(FrictionAnchors { interval_start, intersecting: untangling.cloth_pairs() });
         let thickness_scale = R::from_f64(thickness_scale);
-        let step =
-            ClothStep { thickness_scale, anchors, ..cloth_step(state, materials, material_maps, schedule.h) };
+        let step = ClothStep {
+            thickness_scale,
+            anchors,
+            mask,
+            ..cloth_step(state, materials, material_maps, schedule.h)
+        };
         *counters.contacts.get_mut() += cache.sweep(&step, pool);
     }
 
@@ -361,6 +366,7 @@ pub(crate) fn cloth_step<'a, R: Real>(
         ),
         start,
         anchors: None,
+        mask: &[],
         materials,
         material_maps,
         h: R::from_f64(h),

@@ -119,6 +119,9 @@ impl Untangling {
         for intersection in &self.intersections {
             let [ours, theirs] =
                 [intersection.edge[0], intersection.face[0]].map(|point| cloth[point as usize] as usize);
+            if !step.mask.is_empty() && !step.mask[ours] {
+                continue;
+            }
             let material = &step.materials[ours * cloths + theirs];
             let rate = material.as_ref().map_or(1.0, |material| material.untangling_rate);
             intersection.untangle(anchors, step, most * rate);

@@ -66,21 +66,24 @@ impl<R: Real> Solver<R> {
         let Self {
             pool,
             model: Model { cloths, colliders, .. },
-            contact: ContactSystem { collider_contacts, window_bounds, frame_travel, collider_materials, .. },
+            contact:
+                ContactSystem {
+                    collider_contacts,
+                    window_bounds,
+                    bound_growth,
+                    frame_travel,
+                    collider_states,
+                    collider_materials,
+                    ..
+                },
             ..
         } = self;
         let bounds = MotionBounds { boxes: window_bounds, frame_travel: frame_travel[cloth] };
         for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
             if let Some(material) = &collider_materials[cloth * colliders.len() + list.collider] {
-                let thickness = R::from_f64(material.thickness);
-                list.activate(
-                    &bounds,
-                    window,
-                    thickness,
-                    material.adhesion_range,
-                    &cloths[cloth].blocks,
-                    pool,
-                );
+                let is_at_rest = !collider_states[list.collider].moves && frame_travel[cloth] == [R::ZERO; 3];
+                let growth = is_at_rest.then_some(&bound_growth[..]);
+                list.activate(&bounds, window, material, growth, &cloths[cloth].blocks, pool);
             }
         }
     }
@@ -220,7 +223,10 @@ impl<R: Real> Solver<R> {
             state,
             pool,
             model: Model { cloths, .. },
-            contact: ContactSystem { window_bounds, interval_bounds, frame_travel, bounds_violated, .. },
+            contact:
+                ContactSystem {
+                    window_bounds, bound_growth, interval_bounds, frame_travel, bounds_violated, ..
+                },
             ..
         } = self;
         let [frame_at_start, frame_now] = step.map(|time| travel_at(frame_travel[cloth], time));
@@ -232,8 +238,9 @@ impl<R: Real> Solver<R> {
             (R::from_f64(left / schedule.h - 1.0), [R::from_f64(margin), most])
         };
         let (window_bound, interval_bound) = (horizon(window, WINDOW_MARGIN), horizon(rest, INTERVAL_MARGIN));
-        let (window_bounds, interval_bounds, bounds_violated) = (
+        let (window_bounds, bound_growth, interval_bounds, bounds_violated) = (
             DisjointSlice::new(window_bounds),
+            DisjointSlice::new(bound_growth),
             DisjointSlice::new(interval_bounds),
             DisjointSlice::new(bounds_violated),
         );
@@ -247,6 +254,8 @@ impl<R: Real> Solver<R> {
                 // SAFETY: blocks do not overlap.
                 #[allow(unsafe_code)]
                 unsafe {
+                    let growth = box_growth(&window_bounds.get(row), &bound);
+                    bound_growth.set(row, bound_growth.get(row) + growth);
                     window_bounds.set(row, bound);
                     if bounds_violated.get(row) || !box_within(&bound, &interval_bounds.get(row)) {
                         interval_bounds.set(row, predict_box(start, now, interval_bound.0, interval_bound.1));
@@ -284,6 +293,7 @@ impl<R: Real> Solver<R> {
     pub(crate) fn begin_collider_contact(&mut self, frame: &FrameInput) {
         self.contact.active_windows.fill([0.0, 0.0]);
         self.contact.candidate_intervals.fill([0.0, 0.0]);
+        self.contact.bound_growth.fill(R::ZERO);
         let is_same = self.update_materials(frame);
         for (cloth, is_same) in is_same.into_iter().enumerate() {
             if !self.has_collider_material(cloth) {
@@ -501,6 +511,15 @@ pub fn predict_box<R: Real>(
 pub fn diagonal<R: Real>([low, high]: &MotionBox<R>) -> R {
     let diagonal: [R; 3] = std::array::from_fn(|axis| high.0[axis] - low.0[axis]);
     dot(diagonal, diagonal).sqrt()
+}
+
+/// How far a bound extends beyond an older one, in metres: the sum over all axes.
+fn box_growth<R: Real>(old: &MotionBox<R>, new: &MotionBox<R>) -> R {
+    let of_axis = |axis: usize| {
+        let beyond = max(old[0].0[axis] - new[0].0[axis], new[1].0[axis] - old[1].0[axis]);
+        max(beyond, R::ZERO)
+    };
+    of_axis(0) + of_axis(1) + of_axis(2)
 }
 
 /// Whether one bound contains another.

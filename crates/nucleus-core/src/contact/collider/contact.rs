@@ -8,7 +8,7 @@
 
 use nalgebra::Vector3;
 
-use crate::bytes::encode_struct;
+use crate::bytes::{Encode, Reader};
 use crate::contact::ccd::separated_throughout;
 use crate::contact::collider::broad_phase::{MotionBounds, diagonal};
 use crate::contact::narrow_phase;
@@ -40,12 +40,51 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
     pub(super) surface_motion: [R; 3],
     /// Displacement of the contact when the plane was set.
     plane_origin: [R; 3],
+    /// Growth of the points' window bounds in this frame up to which the contact certainly stays inactive; zero where that
+    /// is not known.
+    idle_until: [R; N],
 }
 
-encode_struct!([R: Real, const N: usize, const M: usize] ColliderContact<R, N, M> {
-    points: [u32; N], collider_points: [u32; M], group: u32, normal: [R; 3], plane: [[R; N]; 2], weights: [R; N],
-    surface_motion: [R; 3], plane_origin: [R; 3],
-});
+impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M> {
+    const SIZE: usize =
+        <[u32; N]>::SIZE + <[u32; M]>::SIZE + u32::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE;
+    fn encode(&self, out: &mut Vec<u8>) {
+        // Each frame begins with no contact known to be idle.
+        let Self {
+            points,
+            collider_points,
+            group,
+            normal,
+            plane,
+            weights,
+            surface_motion,
+            plane_origin,
+            idle_until: _,
+        } = self;
+        points.encode(out);
+        collider_points.encode(out);
+        group.encode(out);
+        [*normal, *surface_motion, *plane_origin].encode(out);
+        [plane[0], plane[1], *weights].encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        let (points, collider_points, group) =
+            (Encode::decode(from)?, Encode::decode(from)?, Encode::decode(from)?);
+        let [normal, surface_motion, plane_origin] = Encode::decode(from)?;
+        let [start, end, weights] = Encode::decode(from)?;
+        Some(Self {
+            points,
+            collider_points,
+            group,
+            normal,
+            plane: [start, end],
+            weights,
+            surface_motion,
+            plane_origin,
+            idle_until: [R::ZERO; N],
+        })
+    }
+}
 
 /// The outcome of resolving a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +145,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
+            idle_until: [R::ZERO; N],
         };
         contact.set_plane(normal, (b, c), step);
         let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
@@ -121,11 +161,23 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         self.weights.iter().all(|&weight| weight > interior) && normal.dot(&outward) < 0.0
     }
 
+    /// Whether the contact certainly stays inactive, given the growth of each point's window bounds in this frame.
+    #[inline(always)]
+    pub fn is_idle(&self, growth: &[R]) -> bool {
+        (0..N).all(|k| growth[self.points[k] as usize] < self.idle_until[k])
+    }
+
+    /// Notes that the gap exceeds the range by `slack` metres, for growth of the bounds by as much; the collider is at rest.
+    #[inline(always)]
+    pub fn set_idle(&mut self, slack: R, growth: &[R]) {
+        self.idle_until = self.points.map(|point| growth[point as usize] + slack);
+    }
+
     /// The smallest gap along the plane over the motion bounds of the cloth's points, within a window. The window
     /// is given by shares of the candidate interval and the motion of the moving frame. A contact with a gap
     /// above the thickness cannot touch.
     #[inline(always)]
-    pub fn min_gap(&self, window: [(R, [R; 3]); 2], bounds: &MotionBounds<'_, R>) -> R {
+    pub fn min_gap<const W: usize>(&self, window: [(R, [R; 3]); W], bounds: &MotionBounds<'_, R>) -> R {
         let window = window.map(|(share, frame_motion)| (share, dot(self.normal, frame_motion)));
         let mut least = R::from_f64(f64::from(f32::MAX));
         for k in 0..N {
@@ -142,6 +194,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// Rebases the plane on anchors that move to the points' positions; the collider is at rest.
     pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
+        self.idle_until = [R::ZERO; N];
         for k in 0..N {
             let by = moved[self.points[k] as usize].xyz();
             let along = dot(self.normal, by);
@@ -183,7 +236,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// The gap at the start of the step.
     #[inline(always)]
     pub(super) fn gap_at_start(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(self.points.map(|point| step.start(point)), step.interval_share(step.time[0])).0
+        self.gaps(self.points.map(|point| step.start(point)), step.shares[0]).0
     }
 
     /// Depenetration by colliders at the contact in this step, in metres.
@@ -261,10 +314,9 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
         // Gaps within rounding error are computed in double precision.
         let rounding = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
-        let (_, at_end) = self.gaps(moved, step.interval_share(step.time[1]));
+        let (_, at_end) = self.gaps(moved, step.shares[1]);
         // The plane may have been set at the end of this step, and prove nothing at its start.
-        let (_, at_start) =
-            self.gaps(self.points.map(|point| step.start(point)), step.interval_share(step.time[0]));
+        let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.shares[0]);
         if (at_end > rounding && at_start > rounding) || self.may_interpenetrate(step) {
             return Certificate::Separated;
         }

@@ -9,6 +9,7 @@ use crate::contact::collider::broad_phase::MotionBounds;
 use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
 use crate::contact::collider::query::FoundContacts;
 use crate::contact::depenetration::Depenetration;
+use crate::contact::material::ContactMaterial;
 use crate::contact::time_step::{ColliderStep, ContactCounters};
 use crate::math::{Real, Row4};
 use crate::model::Blocks;
@@ -62,6 +63,8 @@ pub struct ActiveSet {
     pub uncertified: [Vec<u32>; 3],
 }
 
+/// Share of the interaction range by which the gap of an idle contact must exceed it.
+const IDLE_MARGIN: f64 = 1e-3;
 /// Share of the thickness above which a gap over the whole window is a certificate: far above rounding error.
 const CERTIFIED_GAP: f64 = 0.02;
 
@@ -111,14 +114,15 @@ impl<R: Real> ColliderContacts<R> {
         self.face_point.iter_mut().for_each(|contact| contact.shift_anchors(moved));
     }
 
-    /// Selects the contacts whose gap can fall below `range` times the thickness within a window of the candidate
-    /// interval, by the motion bounds. Marks those that the bounds do not certify.
+    /// Selects the contacts whose gap can fall below the interaction range of the material within a window of the candidate
+    /// interval, by the motion bounds. Marks those that the bounds do not certify. `growth` is that of the points' window
+    /// bounds in this frame, around a collider at rest and in a moving frame at rest.
     pub fn activate(
         &mut self,
         bounds: &MotionBounds<'_, R>,
         window: [f64; 2],
-        thickness: R,
-        range: f64,
+        material: &ContactMaterial<R>,
+        growth: Option<&[R]>,
         blocks: &Blocks,
         pool: &ThreadPool,
     ) {
@@ -132,23 +136,24 @@ impl<R: Real> ColliderContacts<R> {
         let ActiveSet { point_face: of_points, edge_edge: of_edges, face_point: of_faces, runs, uncertified } =
             active;
         let [points_uncertified, edges_uncertified, faces_uncertified] = uncertified;
-        let points = Mutex::new((&mut *of_points, points_uncertified));
-        let elements = Mutex::new(((of_edges, edges_uncertified), (of_faces, faces_uncertified)));
-        let range = [thickness * R::from_f64(range), thickness * R::from_f64(CERTIFIED_GAP)];
+        let thickness = R::from_f64(material.thickness);
+        let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
+        let selection = Selection { bounds, window, range, growth, depenetration };
+        let points = Mutex::new((&mut *point_face, [&mut *of_points, points_uncertified]));
+        let edges = (edge_edge, [of_edges, edges_uncertified]);
+        let elements = Mutex::new((edges, (face_point, [of_faces, faces_uncertified])));
         pool.parallel_for(2, |task| match task {
             0 => {
-                let Ok(mut found) = points.lock() else { return };
-                let order = by_point.iter().map(|&key| key as u32);
-                let (found, uncertified) = &mut *found;
-                select(point_face, order, [found, uncertified], bounds, window, range, depenetration);
+                let Ok(mut lists) = points.lock() else { return };
+                let (contacts, found) = &mut *lists;
+                selection.select(contacts, by_point.iter().map(|&key| key as u32), found);
             }
             _ => {
-                let Ok(mut found) = elements.lock() else { return };
-                let ((edges, edges_uncertified), (faces, faces_uncertified)) = &mut *found;
-                let (edges, faces) =
-                    ([&mut **edges, &mut **edges_uncertified], [&mut **faces, &mut **faces_uncertified]);
-                select(edge_edge, all(edge_edge.len()), edges, bounds, window, range, depenetration);
-                select(face_point, all(face_point.len()), faces, bounds, window, range, depenetration);
+                let Ok(mut lists) = elements.lock() else { return };
+                let ((edges, of_edges), (faces, of_faces)) = &mut *lists;
+                let (all_edges, all_faces) = (all(edges.len()), all(faces.len()));
+                selection.select(edges, all_edges, of_edges);
+                selection.select(faces, all_faces, of_faces);
             }
         });
         let place = |end: u32| {
@@ -160,29 +165,55 @@ impl<R: Real> ColliderContacts<R> {
     }
 }
 
-fn select<R: Real, const N: usize, const M: usize>(
-    pairs: &[ColliderContact<R, N, M>],
-    order: impl Iterator<Item = u32>,
-    [active, uncertified]: [&mut Vec<u32>; 2],
-    bounds: &MotionBounds<'_, R>,
+/// How contacts are selected for the active set.
+struct Selection<'a, R> {
+    bounds: &'a MotionBounds<'a, R>,
     window: [(R, [R; 3]); 2],
-    [range, certified]: [R; 2],
-    depenetration: &Depenetration,
-) {
-    active.clear();
-    uncertified.clear();
-    let is_acting = |contact: &ColliderContact<R, N, M>| {
-        depenetration.points.is_empty() || !contact.points.iter().any(|&point| depenetration.contains(point))
-    };
-    for index in order {
-        let contact = &pairs[index as usize];
-        let gap = contact.min_gap(window, bounds);
-        if gap < range && is_acting(contact) {
-            active.push(index);
-            if gap <= certified {
-                uncertified.push(index);
+    /// Gaps in metres below which a contact is active, and up to which it is uncertified.
+    range: [R; 2],
+    growth: Option<&'a [R]>,
+    depenetration: &'a Depenetration,
+}
+
+impl<R: Real> Selection<'_, R> {
+    fn select<const N: usize, const M: usize>(
+        &self,
+        contacts: &mut [ColliderContact<R, N, M>],
+        order: impl Iterator<Item = u32>,
+        [active, uncertified]: &mut [&mut Vec<u32>; 2],
+    ) {
+        active.clear();
+        uncertified.clear();
+        let [range, certified] = self.range;
+        for index in order {
+            let contact = &mut contacts[index as usize];
+            if self.growth.is_some_and(|growth| contact.is_idle(growth)) {
+                continue;
+            }
+            let gap = self.min_gap(contact);
+            if gap < range && self.is_acting(contact) {
+                active.push(index);
+                if gap <= certified {
+                    uncertified.push(index);
+                }
             }
         }
+    }
+
+    /// The smallest gap of a contact over the window; notes until when the contact is idle.
+    #[inline(always)]
+    fn min_gap<const N: usize, const M: usize>(&self, contact: &mut ColliderContact<R, N, M>) -> R {
+        let Some(growth) = self.growth else { return contact.min_gap(self.window, self.bounds) };
+        // Around a collider at rest the gap is the same at both ends of the window.
+        let gap = contact.min_gap([self.window[0]], self.bounds);
+        let rounding = R::EPSILON * R::from_f64(16.0) * (gap + R::ONE);
+        contact.set_idle(gap - self.range[0] * R::from_f64(1.0 + IDLE_MARGIN) - rounding, growth);
+        gap
+    }
+
+    fn is_acting<const N: usize, const M: usize>(&self, contact: &ColliderContact<R, N, M>) -> bool {
+        let Depenetration { points, .. } = self.depenetration;
+        points.is_empty() || !contact.points.iter().any(|&point| self.depenetration.contains(point))
     }
 }
 

@@ -32,7 +32,7 @@ impl<R: Real> Solver<R> {
         watch.enter(Stage::BroadPhase);
         self.resolve_ground_contacts(thickness_scale, schedule, span, counters);
         for cloth in 0..self.model.cloths.len() {
-            if !self.has_collider_material(cloth) {
+            if !self.has_collider_material(cloth) || !self.is_resolved(cloth) {
                 continue;
             }
             self.update_collider_candidates(frame, cloth, schedule, span, counters);
@@ -79,11 +79,16 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         counters: &mut ContactCounters,
     ) -> [u64; 2] {
+        let marks = std::mem::take(&mut self.contact.has_unproven);
         let mut counts = [0; 2];
         self.for_all_contacts(frame, schedule, span, counters, |list, step, pool, _| {
             let [unproven, inseparable] = certify(list, step, pool);
+            if unproven > 0 {
+                marks[list.cloth].store(true, Ordering::Relaxed);
+            }
             counts = [counts[0] + unproven, counts[1] + inseparable];
         });
+        self.contact.has_unproven = marks;
         counts
     }
 
@@ -188,6 +193,11 @@ impl<R: Real> Solver<R> {
         }
     }
 
+    /// Whether a pass resolves the contacts of a cloth.
+    fn is_resolved(&self, cloth: usize) -> bool {
+        self.contact.contact_mask.get(cloth).is_none_or(|&is_resolved| is_resolved)
+    }
+
     /// The contact materials of a cloth with each collider.
     pub(crate) fn collider_materials_of(&self, cloth: usize) -> &[Option<ContactMaterial<R>>] {
         let colliders = self.model.colliders.len();
@@ -223,7 +233,7 @@ impl<R: Real> Solver<R> {
             state,
             pool,
             model: Model { cloths, .. },
-            contact: ContactSystem { ground, ground_materials, material_maps, .. },
+            contact: ContactSystem { ground, ground_materials, material_maps, contact_mask, .. },
             ..
         } = self;
         let Some(plane) = ground.in_step(span) else { return };
@@ -232,8 +242,9 @@ impl<R: Real> Solver<R> {
         } = state;
         let writer =
             PositionWriter::new([displacement, depenetration_by_collider, depenetration_by_cloth], predicted);
-        for (cloth, material) in cloths.iter().zip(ground_materials) {
-            let Some(material) = *material else { continue };
+        for (index, (cloth, material)) in cloths.iter().zip(ground_materials).enumerate() {
+            let is_resolved = contact_mask.get(index).is_none_or(|&is_resolved| is_resolved);
+            let Some(material) = material.filter(|_| is_resolved) else { continue };
             let ground = GroundContact {
                 writer,
                 start,
@@ -258,6 +269,12 @@ pub(crate) struct ColliderStepArgs<'a, R> {
 }
 
 impl<R: Real> ColliderStepArgs<'_, R> {
+    /// A time as a share of the candidate interval.
+    fn share(&self, time: f64) -> R {
+        let [from, to] = self.interval;
+        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
+    }
+
     pub(crate) fn of<'s>(
         &'s self,
         state: &'s mut State<R>,
@@ -282,6 +299,7 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             collider: [&collider.start, &collider.end],
             time: self.time,
             interval: self.interval,
+            shares: self.time.map(|time| self.share(time)),
             h: R::from_f64(self.h),
             thickness: R::from_f64(self.material.thickness),
             thickness_scale: R::ONE,

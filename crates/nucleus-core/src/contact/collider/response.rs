@@ -22,7 +22,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub fn resolve(&mut self, step: &ColliderStep<'_, R>) -> Outcome {
         let moved = self.points.map(|point| step.row(point).xyz());
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
-        let (gap, least) = self.gaps(moved, step.interval_share(step.time[1]));
+        let (gap, least) = self.gaps(moved, step.shares[1]);
         if least >= step.thickness * touching {
             return Outcome::Separated;
         }
@@ -173,7 +173,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// The gap at the end of the step.
     pub fn gap(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(self.points.map(|point| step.row(point).xyz()), step.interval_share(step.time[1])).0
+        self.gaps(self.points.map(|point| step.row(point).xyz()), step.shares[1]).0
     }
 
     /// Applies adhesion between the cloth's element and the surface.
@@ -187,7 +187,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         };
         let rows = self.points.map(|point| step.row(point));
         let start = self.points.map(|point| step.start(point));
-        let (gap, _) = self.gaps(start, step.interval_share(step.time[0]));
+        let (gap, _) = self.gaps(start, step.shares[0]);
         let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time[1] - step.time[0]));
         let [from, to] =
             [self.contact_displacement(start), self.contact_displacement(rows.map(|row| row.xyz()))];
@@ -210,7 +210,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// The normal, and the collider's velocity at the contact in m/s, if the two touch at the end of the step.
     pub fn touching_surface(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
         let moved = self.points.map(|point| step.row(point).xyz());
-        let (gap, _) = self.gaps(moved, step.interval_share(step.time[1]));
+        let (gap, _) = self.gaps(moved, step.shares[1]);
         let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
         Restitution::touches(gap, step.rest_gap(self.points, self.weights)).then_some((self.normal, velocity))
     }
