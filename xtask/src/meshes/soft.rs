@@ -31,6 +31,6 @@ pub fn trampoline() -> Mesh {
     let last = mesh.points.len() - RIM;
     mesh.points.push([0.0; 3]);
     let centre = mesh.points.len() - 1;
-    mesh.faces.extend((0..RIM).map(|k| vec![last + (k + 1) % RIM, last + k, centre]));
+    mesh.faces.extend((0..RIM).map(|k| vec![last + k, last + (k + 1) % RIM, centre]));
     mesh
 }

@@ -129,9 +129,9 @@ fn an_attribute_that_names_no_module_is_found_at_its_line() {
 #[test]
 fn a_retired_word_is_found_at_its_line_but_not_inside_another() {
     let [word, longer] = [concat!("bro", "om"), concat!("bro", "omstick")];
-    let page = |text: &str| super::retired_words("docs/page.md", text);
+    let page = |text: &str| retired_words("docs/page.md", text);
     assert_eq!(page(longer), [""; 0]);
     let problems = page(&format!("a\na {word}."));
     assert!(problems.len() == 1 && problems[0].starts_with("docs/page.md:2: "), "{problems:?}");
-    assert_eq!(super::retired_words("docs/claims.md", word), [""; 0], "the paper keeps its words");
+    assert_eq!(retired_words("docs/claims.md", word), [""; 0], "the paper keeps its words");
 }

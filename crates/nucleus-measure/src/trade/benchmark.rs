@@ -37,7 +37,7 @@ pub enum TradeError {
     /// The scene has no cloth.
     #[error("there is nothing to compare: the scene has no cloth")]
     NothingDynamic,
-    /// Fewer frames than [`FEWEST_FRAMES`].
+    /// Fewer frames than `FEWEST_FRAMES`.
     #[error("there is nothing to compare in {frames} frame(s): at least {FEWEST_FRAMES} are needed")]
     TooFewFrames {
         /// Number of frames, the start included.
