@@ -65,7 +65,7 @@ mod run;
 mod write;
 
 pub use camera::{Camera, CameraView, FilmFit};
-pub use container::atomic_file::part_path;
+pub use container::part_file::part_path;
 pub use corruption::CorruptionReport;
 pub use error::{OpenError, ReadError, RecordError};
 pub use messages::checkpoint::Checkpoint;

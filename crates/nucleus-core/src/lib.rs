@@ -48,8 +48,9 @@ mod step;
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
 pub use input::frame::{
-    BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FrameInput, GroundPlane,
-    InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
+    BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
+    FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
+    Stiffness,
 };
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};

@@ -65,7 +65,7 @@ pub struct ContactSystem<R: Real> {
     pub collider_materials: Vec<Option<ContactMaterial<R>>>,
     /// Contact material of each cloth with the ground plane.
     pub ground_materials: Vec<Option<ContactMaterial<R>>>,
-    /// Vertex material_maps of contact.
+    /// Vertex maps of contact.
     pub material_maps: MaterialMaps<R>,
     /// Contact of cloth with itself and with other cloth; none where no two elements can ever touch.
     pub cloth_contacts: Option<ClothContacts<R>>,

@@ -109,7 +109,12 @@ fn solve_substeps<R: CompiledReal>(
         update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
         let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
         update_gusts(&solver.model.cloths, &mut solver.state, frame, time, &solver.pool);
-        solver.push_out(frame, f64::from(substep - 1) / f64::from(schedule.substeps));
+        let (time, length) = (
+            f64::from(substep - 1) / f64::from(schedule.substeps),
+            frame.duration / f64::from(schedule.substeps),
+        );
+        solver.push_out(frame, time);
+        solver.apply_force_fields(frame, time, length);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let splits = solver.splits(frame, schedule, schedule.span(step), &max_speeds);
             let direction = if alternates_direction { schedule.direction(step) } else { Direction::Forward };

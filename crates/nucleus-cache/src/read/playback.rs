@@ -5,9 +5,9 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::container::atomic_file;
 use crate::container::chunk::Chunk;
 use crate::container::index::{FileIndex, rebuild, summary};
+use crate::container::part_file;
 use crate::corruption::CorruptionReport;
 use crate::error::OpenError;
 use crate::messages::metadata::PROFILE;
@@ -264,7 +264,7 @@ impl Head {
         file.seek(SeekFrom::Start(0))?;
         file.take(4096).read_to_end(&mut head)?;
         let magic = &mcap::MAGIC[..mcap::MAGIC.len().min(head.len())];
-        Ok(match atomic_file::read_header(&head) {
+        Ok(match part_file::read_header(&head) {
             _ if head.is_empty() => return Err(OpenError::Empty),
             Some((profile, library)) => Self::Of { profile, library },
             None if head.len() < 64 && head.starts_with(magic) => Self::Short,

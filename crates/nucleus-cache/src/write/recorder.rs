@@ -9,7 +9,7 @@ use nucleus_core::{ContactState, StateView};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::container::atomic_file::{self, AtomicFile, AtomicPaths};
+use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
 use crate::messages::attribute::{CONTACTS, RestEdges, STRAIN};
@@ -49,7 +49,7 @@ pub struct Recorder<W: Write + Seek = File> {
     pub(crate) time_samples: u64,
     /// Frame before the one in flight, and the number of time samples at its end.
     pub(crate) before: Option<(i32, u64)>,
-    pub(crate) paths: Option<AtomicPaths>,
+    pub(crate) paths: Option<PartPaths>,
     /// Compares new messages with those of an older cache, in a resumed run.
     pub(crate) replay_check: Option<Box<ReplayCheck>>,
     /// The first error during a step; [`end_frame`](Self::end_frame) returns it.
@@ -124,7 +124,7 @@ impl Recorder<File> {
         replace: bool,
     ) -> Result<Self, RecordError> {
         check(run, &objects)?;
-        let AtomicFile { file, paths } = atomic_file::create(path, replace)?;
+        let PartFile { file, paths } = part_file::create(path, replace)?;
         let mut recorder = Self::to_writer(file, run, objects)?;
         recorder.paths = Some(paths);
         Ok(recorder)
@@ -245,7 +245,7 @@ impl<W: Write + Seek> Recorder<W> {
     /// When writing fails; the recorded frames remain readable.
     pub fn finish(self) -> Result<Recorded, RecordError> {
         if let Some(replay_check) = &self.replay_check {
-            self.paths.iter().for_each(AtomicPaths::remove);
+            self.paths.iter().for_each(PartPaths::remove);
             return Err(RecordError::ReplayIncomplete {
                 frame: self.last_frame,
                 until: replay_check.until(),

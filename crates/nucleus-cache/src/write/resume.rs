@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{BufReader, Seek, Write};
 use std::path::Path;
 
-use crate::container::atomic_file::{self, AtomicFile, AtomicPaths};
+use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::error::{OpenError, ReadError, RecordError};
 use crate::messages::attribute::{CONTACTS, STRAIN};
 use crate::messages::{checkpoint, topology};
@@ -33,7 +33,7 @@ impl Playback {
     pub fn open_to_resume(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
         let file = file_at(path)?;
-        if atomic_file::is_locked(&file) {
+        if part_file::is_locked(&file) {
             return Err(OpenError::InUse { path: path.to_owned() });
         }
         Self::read(BufReader::new(file))
@@ -58,7 +58,7 @@ impl Recorder<File> {
         range: ResumeRange,
     ) -> Result<Self, RecordError> {
         check(run, &objects)?;
-        let AtomicFile { file, paths } = atomic_file::create_for_resume(path.as_ref(), replace)?;
+        let PartFile { file, paths } = part_file::create_for_resume(path.as_ref(), replace)?;
         let begun = Self::to_writer(file, run, objects)
             .and_then(|mut recorder| recorder.copy_frames(&mut old, range.copied).map(|()| recorder));
         let mut recorder = match begun {
@@ -83,13 +83,13 @@ impl<W: Write + Seek> Recorder<W> {
             Ok(false) => return Ok(()),
             Ok(true) => {}
             Err(error) => {
-                self.paths.iter().for_each(AtomicPaths::remove);
+                self.paths.iter().for_each(PartPaths::remove);
                 return Err(error);
             }
         }
         let (frames, bytes) = self.writer.progress();
         let failed = |source| RecordError::Write { frames, bytes, source };
-        self.paths.iter_mut().try_for_each(AtomicPaths::promote).map_err(failed)?;
+        self.paths.iter_mut().try_for_each(PartPaths::promote).map_err(failed)?;
         self.replay_check = None;
         Ok(())
     }

@@ -13,8 +13,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::bytes::encode_struct;
-use crate::contact::bvh::{Aabb, Bvh};
+use crate::contact::bvh::Aabb;
 use crate::contact::collider::ColliderState;
+use crate::contact::force_field::{Nearest, PlacedSurface};
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::contact::time_step::ColliderStep;
 use crate::input::frame::{FrameInput, PushOut};
@@ -178,11 +179,8 @@ fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, t
 
 /// A surface that pushes out, at its present position.
 struct PushOutSurface {
-    /// Its triangles in metres, facing the side that points are pushed to.
-    triangles: Vec<[Point; 3]>,
-    bvh: Bvh,
-    /// The origin of the boxes.
-    origin: Point,
+    /// Its triangles face the side that points are pushed to.
+    surface: PlacedSurface,
     /// Its own thickness in metres.
     thickness: f64,
     /// Share of the correction in each substep.
@@ -242,33 +240,15 @@ impl PushOutSurface {
         if push_out.share < 0.0 {
             triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
-        let centres: Vec<Point> = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
-        let origin = centres.first().copied().unwrap_or_default();
-        let mut bvh = Bvh::new(&centres);
-        bvh.refit(|at| Aabb::of(triangles[at].into_iter().map(|corner| corner - origin)));
         let share = push_out.share.abs().min(1.0);
-        Self { triangles, bvh, origin, thickness, share, radius: push_out.radius }
+        Self { surface: PlacedSurface::new(triangles), thickness, share, radius: push_out.radius }
     }
 
     /// The correction of a point in this substep, if it is within the radius and closer to the surface than
     /// `thickness`, or behind it.
     fn correction(&self, place: Point, thickness: f64) -> Option<Point> {
-        let away = place - self.origin;
-        let radius = Point::repeat(self.radius);
-        let mut nearest: Option<(f64, u32, Point)> = None;
-        self.bvh.query(&Aabb::new(away - radius, away + radius), |at| {
-            let corners = self.triangles[at as usize];
-            let weights = closest_on_triangle(place.into(), corners.map(Into::into));
-            let there: Point = corners.iter().zip(weights).map(|(corner, weight)| corner * weight).sum();
-            let found = ((place - there).norm(), at);
-            if nearest.is_none_or(|(distance, other, _)| found < (distance, other)) {
-                nearest = Some((found.0, found.1, there));
-            }
-        });
-        let (distance, at, there) = nearest.filter(|&(distance, _, _)| distance <= self.radius)?;
-        let [a, b, c] = self.triangles[at as usize];
-        let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-        let is_clear = normal.dot(&(place - there)) >= 0.0 && distance >= thickness;
-        (!is_clear).then(|| (there + normal * thickness - place) * self.share)
+        let Nearest { distance, point, normal } = self.surface.nearest(place, self.radius)?;
+        let is_clear = normal.dot(&(place - point)) >= 0.0 && distance >= thickness;
+        (!is_clear).then(|| (point + normal * thickness - place) * self.share)
     }
 }

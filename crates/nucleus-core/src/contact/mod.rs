@@ -34,6 +34,7 @@
 //! |---|---|
 //! | boxes, and the bounding volume hierarchy | [`bvh`] |
 //! | points, edges and triangles of a mesh, in groups; pseudonormals | [`boundary`] |
+//! | force fields of objects | [`force_field`] |
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`] |
@@ -86,6 +87,7 @@ pub mod cloth;
 pub mod collider;
 pub mod contact_state;
 pub mod depenetration;
+pub mod force_field;
 pub mod ground;
 pub mod material;
 pub mod narrow_phase;

@@ -196,6 +196,42 @@ pub struct ClothFrame {
     pub deform_resistance: f64,
     /// Attraction to the input mesh.
     pub input_attract: InputAttract,
+    /// Its force field on other objects.
+    pub field: Option<ForceField>,
+}
+
+/// A force field round a surface (`forceField`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceField {
+    /// On which side it acts, and in which direction.
+    pub side: FieldSide,
+    /// Acceleration at the surface in m/s²; above 0 it pushes away.
+    pub magnitude: f64,
+    /// How far it reaches, in metres.
+    pub distance: f64,
+    /// Factor from the surface (first) to the distance (last), evenly spaced.
+    pub falloff: [f64; Self::SAMPLES],
+}
+
+impl ForceField {
+    /// Samples of the falloff.
+    pub const SAMPLES: usize = 17;
+
+    /// Whether it acts at all.
+    pub fn is_on(&self) -> bool {
+        self.magnitude != 0.0 && self.distance > 0.0
+    }
+}
+
+/// Where the force field of a surface acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldSide {
+    /// On both sides, along the normals.
+    AlongNormal,
+    /// On the side that the normals point to, away from the surface.
+    Single,
+    /// On both sides, away from the surface.
+    Double,
 }
 
 /// How a hinge measures its angle (`bendSolver`).
@@ -358,6 +394,7 @@ impl Default for ClothFrame {
             rigidity: 0.0,
             deform_resistance: 0.0,
             input_attract: InputAttract::OFF,
+            field: None,
         }
     }
 }
@@ -385,6 +422,8 @@ pub struct ColliderFrame {
     pub push_out: PushOut,
     /// Whether points inside it, if it is closed, are depenetrated; otherwise they stay inside (`trappedCheck`).
     pub trapped_check: bool,
+    /// Its force field on cloth.
+    pub field: Option<ForceField>,
 }
 
 impl Default for ColliderFrame {
@@ -402,6 +441,7 @@ impl Default for ColliderFrame {
             collide_strength: 1.0,
             push_out: PushOut::OFF,
             trapped_check: true,
+            field: None,
         }
     }
 }

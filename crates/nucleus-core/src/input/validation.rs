@@ -13,7 +13,9 @@ use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
-use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pressure, ResistanceModel};
+use crate::input::frame::{
+    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
+};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
@@ -239,9 +241,10 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.damp, 0.0),
         (&mut cloth.input_attract.motion_drag, 0.0),
     ]);
+    let field = cloth.field.as_mut().is_some_and(sanitize_field);
     let limits = [&mut cloth.yield_strain, &mut cloth.bending.yield_sine].into_iter();
     let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
-    vectors | numbers | yields | sanitize_pressure(&mut cloth.pressure)
+    vectors | numbers | yields | field | sanitize_pressure(&mut cloth.pressure)
 }
 
 fn sanitize_pressure(pressure: &mut Pressure) -> bool {
@@ -254,16 +257,24 @@ fn sanitize_pressure(pressure: &mut Pressure) -> bool {
     }
 }
 
+fn sanitize_field(field: &mut ForceField) -> bool {
+    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
+    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
+    replaced | sanitize_numbers([(&mut field.magnitude, 0.0), (&mut field.distance, 0.0)])
+}
+
 fn sanitize_collider_settings(collider: &mut ColliderFrame) -> bool {
-    sanitize_numbers([
-        (&mut collider.thickness, 0.0),
-        (&mut collider.friction, 0.0),
-        (&mut collider.stickiness, 0.0),
-        (&mut collider.bounce, 0.0),
-        (&mut collider.collide_strength, 1.0),
-        (&mut collider.push_out.share, 0.0),
-        (&mut collider.push_out.radius, 0.0),
-    ])
+    let field = collider.field.as_mut().is_some_and(sanitize_field);
+    field
+        | sanitize_numbers([
+            (&mut collider.thickness, 0.0),
+            (&mut collider.friction, 0.0),
+            (&mut collider.stickiness, 0.0),
+            (&mut collider.bounce, 0.0),
+            (&mut collider.collide_strength, 1.0),
+            (&mut collider.push_out.share, 0.0),
+            (&mut collider.push_out.radius, 0.0),
+        ])
 }
 
 fn sanitize_vectors<const N: usize>(vectors: [&mut Vector3<f64>; N]) -> bool {

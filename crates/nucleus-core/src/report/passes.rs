@@ -3,7 +3,7 @@
 
 use crate::constraints::damp::Damping;
 use crate::contact::material::ContactMaterial;
-use crate::input::frame::{BendSolver, Bending, ClothFrame, FrameInput, PushOut};
+use crate::input::frame::{BendSolver, Bending, ClothFrame, ForceField, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
 use crate::math::Real;
@@ -45,7 +45,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
 }
 
 /// The cost of effects on whole cloths, of deformation that stays, and of gusts.
-fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 5] {
+fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 6] {
     let steps = f64::from(schedule.substeps * schedule.steps);
     let cost = |name, wanted: fn(&WholeEffect) -> bool, length: fn(&ClothModel<R>) -> usize| {
         let sweeps: Vec<_> = schedule.wholes.iter().filter(|whole| wanted(&whole.effect)).collect();
@@ -75,12 +75,21 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
         true if settings.feels_wind && !cloth.triangles.is_empty() => cloth.points().len(),
         _ => 0,
     };
+    let is_on = |field: Option<ForceField>| field.is_some_and(|field| field.is_on());
+    let fields_of_colliders = frame.colliders.iter().filter(|collider| is_on(collider.field)).count();
+    let in_fields = (0..frame.cloths.len()).map(|cloth| {
+        let others = frame.cloths.iter().enumerate().filter(|(other, _)| *other != cloth);
+        let fields = fields_of_colliders + others.filter(|(_, other)| is_on(other.field)).count();
+        fields * solver.model.cloths[cloth].points().len()
+    });
+    let in_fields = in_fields.sum();
     [
         cost("pressure", |effect| *effect == WholeEffect::Pressure, |cloth| cloth.pressure.rows()),
         cost("shape", |effect| matches!(effect, WholeEffect::Shape(_)), |cloth| cloth.shape.rows()),
         cost("attract", |effect| matches!(effect, WholeEffect::Attract(_)), |cloth| cloth.points().len()),
         PassCost { name: "yield", rows: sum(&yields), sweeps: steps },
         PassCost { name: "gusts", rows: sum(&gusty), sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "force field", rows: in_fields, sweeps: f64::from(schedule.substeps) },
     ]
 }
 

@@ -103,14 +103,14 @@ node_table! {
         AIR_PUSH_VORTICITY: f64 = float("airPushVorticity", "apvy", 0.0).soft(0.0, 1.0);
     }
     "Force Field Generation" {
-        /// A force field on the surface, and the side of the surface it acts on.
-        FORCE_FIELD: Choice = choice("forceField", "ffd", 0, &[(0, "Off"), (1, "AlongNormal"), (2, "Single Sided"), (3, "Double Sided")]);
-        /// Strength of the surface's field: above 0 it pushes others away.
-        FIELD_MAGNITUDE: f64 = float("fieldMagnitude", "fma", 1.0).soft(-10.0, 10.0);
+        /// A force field on the surface: along its normals, away from it on the side of its normals, or on both sides.
+        FORCE_FIELD: Choice = choice("forceField", "ffd", 0, &[(0, "Off"), (1, "AlongNormal"), (2, "Single Sided"), (3, "Double Sided")]).solved("nucleus_core::contact::force_field");
+        /// Strength of the field at the surface, 1 is an acceleration of 10 m/s²: above 0 it pushes others away.
+        FIELD_MAGNITUDE: f64 = float("fieldMagnitude", "fma", 1.0).soft(-10.0, 10.0).solved("nucleus_core::contact::force_field");
         /// How far the surface's field reaches.
-        FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0);
+        FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0).solved("nucleus_core::contact::force_field");
         /// The surface's field from the surface (0) to its reach (1).
-        FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING);
+        FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING).solved("nucleus_core::contact::force_field");
         /// A force field round every point, and what its strength goes by.
         POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]);
         /// Strength of the points' field on others: above 0 it pushes them away.

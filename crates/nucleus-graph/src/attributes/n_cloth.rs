@@ -17,7 +17,7 @@ node_table! {
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]);
     }
     "Dynamic Properties" {
-        /// A mesh to take rest lengths and angles from, in place of the input mesh; it has the same points and faces.
+        /// A mesh to take rest lengths and angles from, in place of the input mesh; it has the same points and faces. Connect it: `connections: [("rest.worldMesh[0]", "cloth1.restShapeMesh")]`.
         REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh", Data::Mesh).solved("nucleus_graph::compile::soft_body");
         /// Classic: whether a count belongs to a link, to the object however finely it is divided, or to the world whatever its size too. Physical: a stiffness never depends on the mesh.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]).solved("nucleus_graph::compile::soft_body");

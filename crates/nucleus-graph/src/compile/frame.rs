@@ -164,6 +164,7 @@ impl EvaluationInterval<'_> {
             rigidity: number(&n_cloth::RIGIDITY) * scales.rigidity,
             deform_resistance: number(&n_cloth::DEFORM_RESISTANCE) * scales.deform,
             input_attract: self.input_attract(cloth),
+            field: self.force_field(node),
         }
     }
 
@@ -181,6 +182,7 @@ impl EvaluationInterval<'_> {
             collide_strength: to.get(node, &n_base::COLLIDE_STRENGTH),
             push_out: self.push_out(node, collider.default_thickness),
             trapped_check: to.get(node, &n_rigid::TRAPPED_CHECK),
+            field: self.force_field(node),
         }
     }
 

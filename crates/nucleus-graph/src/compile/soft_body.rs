@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    BendSolver, Bending, ClothId, ClothLists, InputAttract, InputMesh, PASCALS_PER_PRESSURE, Pin, PointId,
-    Pressure, Surface,
+    BendSolver, Bending, ClothId, ClothLists, FieldSide, ForceField, InputAttract, InputMesh,
+    PASCALS_PER_PRESSURE, Pin, PointId, Pressure, Surface,
 };
 
 use crate::animation::sin_cos_degrees;
-use crate::attributes::{Choice, Key, n_base, n_cloth, nucleus, particle};
+use crate::attributes::{Choice, Key, RampPoint, n_base, n_cloth, nucleus, particle};
 use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::compiler::Compiler;
@@ -32,6 +32,11 @@ const NO_TENSION: f64 = 1000.0;
 const NO_ANGLE: f64 = 360.0;
 /// Pa·s for a `pressureDamping` of 1: it takes up a pressure of 1 at one volume in 1/24 s.
 const DAMPING: f64 = PASCALS_PER_PRESSURE / 24.0;
+/// Interpolations of ramps.
+const STEP: Choice = Choice(0);
+const LINEAR: Choice = Choice(1);
+/// m/s² for a `fieldMagnitude` of 1.
+const FIELD_ACCELERATION: f64 = 10.0;
 /// Faces of the mesh for which Object Space means the same as Link: those of a polyPlane as Maya makes it.
 const REFERENCE_FACES: f64 = 100.0;
 
@@ -119,6 +124,24 @@ impl EvaluationInterval<'_> {
             damp: number(&n_cloth::INPUT_ATTRACT_DAMP),
             motion_drag: number(&n_cloth::INPUT_MOTION_DRAG),
         }
+    }
+
+    /// The force field of an object. Its magnitude of 1 is an acceleration of 10 m/s² at the surface, about that of gravity.
+    pub(super) fn force_field(&self, node: NodeId) -> Option<ForceField> {
+        let side = match self.to.get(node, &n_base::FORCE_FIELD) {
+            Choice(1) => FieldSide::AlongNormal,
+            Choice(2) => FieldSide::Single,
+            Choice(3) => FieldSide::Double,
+            _ => return None,
+        };
+        let ramp = self.to.get(node, &n_base::FIELD_SCALE);
+        let last = (ForceField::SAMPLES - 1) as f64;
+        Some(ForceField {
+            side,
+            magnitude: self.to.get(node, &n_base::FIELD_MAGNITUDE) * FIELD_ACCELERATION,
+            distance: self.nucleus.units.length(self.to.get(node, &n_base::FIELD_DISTANCE)),
+            falloff: std::array::from_fn(|k| ramp_at(&ramp, k as f64 / last)),
+        })
     }
 
     /// A resistance as the solver takes it. Physical: as it is. Classic: a count, scaled as `scalingRelation` says and no
@@ -281,6 +304,25 @@ impl Compiler<'_> {
                 .help("its air is kept inside all the same; drag and push-out see it reversed");
         }
     }
+}
+
+/// A ramp at a position: before its first point and behind its last it is constant.
+fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
+    let mut points: Vec<RampPoint> = ramp.to_vec();
+    points.sort_by(|a, b| a.position.total_cmp(&b.position));
+    let next = points.partition_point(|point| point.position <= position);
+    let (Some(a), b) = (points.get(next.wrapping_sub(1)).or(points.first()), points.get(next)) else {
+        return 0.0;
+    };
+    let Some(b) = b.filter(|b| b.position > a.position && position > a.position) else { return a.value };
+    let share = (position - a.position) / (b.position - a.position);
+    let share = match a.interpolation {
+        STEP => 0.0,
+        LINEAR => share,
+        // Smooth and spline: no overshoot.
+        _ => share * share * (3.0 - 2.0 * share),
+    };
+    a.value + (b.value - a.value) * share
 }
 
 /// Area of a surface in the square of its unit.

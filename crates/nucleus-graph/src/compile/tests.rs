@@ -2,8 +2,8 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    BendSolver, Bending, ClothFrame, ClothId, ColliderFrame, Elements, FrameInput, InputAttract, PointId,
-    Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
+    BendSolver, Bending, ClothFrame, ClothId, ColliderFrame, Elements, FieldSide, ForceField, FrameInput,
+    InputAttract, PointId, Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
 };
 use proptest::prelude::*;
 
@@ -160,7 +160,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         selfCrossoverPush: 27, bendAngleScale: 0.5, bendAngleDropoff: 0.25, bendSolver: flipTracking, \
         restitutionAngle: 0, restitutionTension: 2, pressureMethod: volumeTrackingModel, startPressure: 0.1, \
         incompressibility: 2, pumpRate: 0.3, airTightness: 0.4, pressureDamping: 0.5, sealHoles: false, \
-        rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
+        forceField: doubleSided, fieldMagnitude: 3, fieldDistance: 4, rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
@@ -214,6 +214,12 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         rigidity: 28.0,
         deform_resistance: 29.0,
         input_attract: InputAttract { strength: 30.0, damp: 31.0, motion_drag: 32.0 },
+        field: Some(ForceField {
+            side: FieldSide::Double,
+            magnitude: 30.0,
+            distance: 4.0,
+            falloff: std::array::from_fn(|k| 1.0 - k as f64 / 16.0),
+        }),
     };
     assert_eq!(program(&sheet("", set)).first_input().cloths, [expected]);
 }

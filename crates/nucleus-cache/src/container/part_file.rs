@@ -12,22 +12,22 @@ use crate::messages::metadata::PROFILE;
 
 /// A file under its temporary name.
 #[derive(Debug)]
-pub(crate) struct AtomicFile {
+pub(crate) struct PartFile {
     pub file: File,
     /// Its temporary and its final path.
-    pub paths: AtomicPaths,
+    pub paths: PartPaths,
 }
 
 /// Temporary and final path of a file.
 #[derive(Debug)]
-pub(crate) struct AtomicPaths {
+pub(crate) struct PartPaths {
     partial: PathBuf,
     final_path: PathBuf,
 }
 
 /// Creates the temporary file beside `path`. With `replace` it may overwrite an older cache, and the partial cache of a
 /// killed run.
-pub(crate) fn create(path: &Path, replace: bool) -> Result<AtomicFile, RecordError> {
+pub(crate) fn create(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
     let partial = part_path(path);
     let file = open(&partial, path)?;
@@ -36,19 +36,19 @@ pub(crate) fn create(path: &Path, replace: bool) -> Result<AtomicFile, RecordErr
         return Err(RecordError::Unfinished { path: partial });
     }
     file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(AtomicFile { file, paths: AtomicPaths { partial, final_path: path.to_owned() } })
+    Ok(PartFile { file, paths: PartPaths { partial, final_path: path.to_owned() } })
 }
 
 /// Creates the temporary file of a resumed run, beside the partial cache. With `replace` it may overwrite an older
 /// cache.
-pub(crate) fn create_for_resume(path: &Path, replace: bool) -> Result<AtomicFile, RecordError> {
+pub(crate) fn create_for_resume(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
     let mut partial = path.file_name().unwrap_or_default().to_owned();
     partial.push(".resuming");
     let partial = path.with_file_name(partial);
     let file = open(&partial, path)?;
     file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(AtomicFile { file, paths: AtomicPaths { partial, final_path: path.to_owned() } })
+    Ok(PartFile { file, paths: PartPaths { partial, final_path: path.to_owned() } })
 }
 
 fn failed(path: &Path, source: io::Error) -> RecordError {
@@ -96,7 +96,7 @@ pub fn part_path(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-impl AtomicPaths {
+impl PartPaths {
     /// Renames the file of a resumed run to the path of a partial cache.
     pub fn promote(&mut self) -> io::Result<()> {
         let partial = part_path(&self.final_path);
