@@ -412,14 +412,30 @@ fn a_scaling_relation_other_than_link_raises_classic_counts_with_the_faces() {
     }
 }
 
+/// A sheet 2 m wide whose rest shape is 4 m wide and has so many cells along it.
+fn with_rest_shape(cells: u32) -> Result<Program, Vec<Diagnostic>> {
+    let text = format!(
+        r#"Scene(time: (start: 1, end: 24, fps: 24), nodes: {{
+            "nucleus1": nucleus(),
+            "p": polyPlane(width: 2, height: 2, subdivisions: (1, 1)),
+            "r": polyPlane(width: 4, height: 2, subdivisions: ({cells}, 1)),
+            "c": nCloth(inputMesh: "p"),
+        }}, connections: [("r.worldMesh[0]", "c.restShapeMesh")])"#
+    );
+    compile(&read_scene_text(&text, Path::new("test.ron")).expect("a valid scene").0)
+}
+
 #[test]
 fn a_rest_shape_mesh_is_the_model_and_the_input_mesh_the_start() {
-    let scene = r#""nucleus1": nucleus(),
-        "p": polyPlane(width: 2, height: 2, subdivisions: (1, 1)),
-        "r": polyPlane(width: 4, height: 2, subdivisions: (1, 1)),
-        "c": nCloth(inputMesh: "p", restShapeMesh: "r"),"#;
-    let program = program(scene);
+    let program = with_rest_shape(1).expect("meshes of the same faces");
     let cloth = &program.nuclei()[0].model.cloths()[0];
     let width = |points: &[Vector3<f64>]| (points[1] - points[0]).norm();
     assert_eq!((width(&cloth.surface.positions), width(cloth.positions())), (4.0, 2.0));
+}
+
+#[test]
+fn a_rest_shape_mesh_of_other_faces_is_refused() {
+    let error = with_rest_shape(2).expect_err("one face more");
+    let expected = "`r` cannot be the rest shape of `c`: it has 6 points and 2 faces, the input mesh 4 and 1";
+    assert_eq!(error[0].message, expected);
 }
