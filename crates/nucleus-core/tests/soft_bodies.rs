@@ -383,7 +383,7 @@ fn a_bend_beyond_the_restitution_angle_stays_by_what_is_beyond() {
 
 #[test]
 fn flip_tracking_brings_a_fold_past_180_degrees_back_the_way_it_came() {
-    // Held a little short of 180°, then carried past it, then let go.
+    // Held a little short of 180°, then carried past it, then released.
     let run = |solver_kind: BendSolver| {
         let (mut solver, mesh) = started(0.0, PI - 0.2);
         let soft = bending(Bending { solver: solver_kind, ..Bending::DEFAULT });
@@ -436,7 +436,7 @@ fn links_pulled_beyond_the_restitution_tension_stay_longer_by_the_rest() {
     builder.cloth(Cloth::new(strip.clone(), Mass::PerArea(0.2), lists)).expect("a sound mesh");
     let mut solver: Solver<f32> = Solver::new(builder, 1);
     let cloth = ClothFrame { yield_strain: 0.1, damp: 1.0, ..ClothFrame::default() };
-    // The far edge is pulled to a strain of 0.4, then let go.
+    // The far edge is pulled to a strain of 0.4, then released.
     let pull = |from: f64, to: f64| {
         let pins = (0..6).map(|point| {
             let place = strip.positions[point as usize];
