@@ -19,6 +19,12 @@
 //! | stretch, compression, shear | links | [`stretch`] |
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
 //! | damping of relative velocities | links | [`damp`] |
+//! | signed rest angles, angle scale and dropoff, flip tracking | hinges | [`angle`] |
+//! | links and hinges that yield | links and hinges | [`plastic`] |
+//! | pressure (ideal gas law) | chambers | [`pressure`] |
+//! | `rigidity` and `deformResistance` (shape matching: Müller et al. 2005) | shells | [`shape`] |
+//! | attraction to the live input mesh | points | [`attract`] |
+//! | effects that take a cloth as a whole, in one place | all | [`whole`] |
 //! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
 //! | the order of rows in a sweep, and its parallel loops | all | [`sweep`](mod@sweep) |
 

@@ -1,7 +1,7 @@
 //! Force fields of objects: points of others within a distance of a surface are accelerated (Maya's `forceField`).
 //!
-//! Once per substep, from the positions at its start, as fields act in the paper (§3.1): an acceleration of the magnitude times
-//! the falloff at the distance, which does not depend on the mass of the points.
+//! Once per substep, from the positions at its start: an acceleration of the magnitude times the falloff at the distance, which
+//! does not depend on the mass of the points.
 
 use nalgebra::Vector3;
 
