@@ -2,26 +2,29 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use clap::builder::PossibleValue;
+use nucleus_cache::atomic_file;
 use nucleus_interop::{Format, Request, Selection, export};
+use nucleus_maya::maya_ascii;
 
 use crate::options::{self, FrameRange};
 use crate::process::Outcome;
 use crate::progress::ShareProgress;
 use crate::{figures, files, output};
 
-/// Converts a cache to formats of other tools.
+/// Converts a cache to formats of other tools, or a scene to Maya ASCII.
 ///
-/// Lengths stay in scene units, except in glb and foxglove, whose specifications demand metres; usda states its units.
+/// A scene (.ron) becomes a Maya scene (.ma), wired as Maya's own commands do. Attributes that Maya does not have become
+/// added attributes, so that `nucleus import` gives the same scene again. All other options are for caches. Lengths stay in scene units, except in glb and foxglove, whose specifications demand metres; usda states its units.
 /// Blender assumes z-up OBJ files: import them with forward Y and up Z to keep the coordinates.
 #[derive(Debug, Args)]
 pub struct Export {
-    /// The cache (.mcap).
+    /// The cache (.mcap), or a scene (.ron).
     file: PathBuf,
-    /// The format; default: by the extension of the output.
-    #[arg(long = "as", value_name = "FORMAT")]
+    /// The format; default: by the extension of the output; of a scene, ma.
+    #[arg(long = "as", visible_alias = "format", value_name = "FORMAT")]
     format: Option<Wanted>,
     /// The file to write, or the folder for formats of several files; default: the name of the cache.
     #[arg(short, long)]
@@ -46,17 +49,17 @@ pub struct Export {
     force: bool,
 }
 
-/// A format as an option value.
+/// A format as an option value: one of caches, or `None` for Maya ASCII.
 #[derive(Debug, Clone, Copy)]
-struct Wanted(Format);
+struct Wanted(Option<Format>);
 
 impl clap::ValueEnum for Wanted {
     fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [Wanted; Format::ALL.len()] = {
-            let mut all = [Wanted(Format::Obj); Format::ALL.len()];
+        const ALL: [Wanted; Format::ALL.len() + 1] = {
+            let mut all = [Wanted(None); Format::ALL.len() + 1];
             let mut k = 0;
-            while k < all.len() {
-                all[k] = Wanted(Format::ALL[k]);
+            while k < Format::ALL.len() {
+                all[k] = Wanted(Some(Format::ALL[k]));
                 k += 1;
             }
             all
@@ -65,7 +68,10 @@ impl clap::ValueEnum for Wanted {
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let help = match self.0 {
+        let Some(format) = self.0 else {
+            return Some(PossibleValue::new("ma").help("a scene as Maya ASCII"));
+        };
+        let help = match format {
             Format::Obj => "Wavefront OBJ, a file per object and frame",
             Format::Ply => "binary PLY, a file per object and frame",
             Format::Pc2 => "point caches of 3ds Max and Blender, with their meshes",
@@ -77,13 +83,16 @@ impl clap::ValueEnum for Wanted {
             Format::Mcx => "Maya nCache, 64 bit",
             Format::Foxglove => "MCAP for Foxglove, Lichtblick and rerun",
         };
-        Some(PossibleValue::new(self.0.name()).help(help))
+        Some(PossibleValue::new(format.name()).help(help))
     }
 }
 
 impl Export {
     /// Writes the files.
     pub fn run(self) -> Result<Outcome> {
+        if self.is_scene() {
+            return self.write_scene();
+        }
         let mut cache = files::open_cache_and_warn(&self.file)?;
         let (format, out) = self.target()?;
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
@@ -116,10 +125,39 @@ impl Export {
         Ok(Outcome::Success)
     }
 
+    /// Whether the file is a scene, by its name.
+    fn is_scene(&self) -> bool {
+        self.file.extension().is_some_and(|end| end.eq_ignore_ascii_case("ron"))
+    }
+
+    /// Writes a scene as Maya ASCII.
+    fn write_scene(self) -> Result<Outcome> {
+        if let Some(Wanted(Some(format))) = self.format {
+            bail!("`{}` is a scene; {} is a format of caches", self.file.display(), format.name());
+        }
+        let Some((scene, ..)) = files::open_scene(&self.file, None)?.report()? else {
+            return Ok(Outcome::InvalidInput);
+        };
+        let stem = self.file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+        let out = self.out.unwrap_or_else(|| PathBuf::from(format!("{stem}.ma")));
+        if out.exists() && (!self.force || out.is_dir()) {
+            bail!("`{}` exists; replace it with `--force`", out.display());
+        }
+        let (text, omissions) = maya_ascii(&scene, &stem).map_err(|message| anyhow!(message))?;
+        atomic_file::write(&out, text.as_bytes())
+            .with_context(|| format!("cannot write `{}`", out.display()))?;
+        for line in omissions.to_string().lines() {
+            output::report(&format!("left out or changed: {line}\n"));
+        }
+        let nodes = figures::count(scene.graph.iter().count() - 1, "node");
+        output::report(&format!("{nodes} as Maya ASCII in `{}`\n", out.display()));
+        Ok(Outcome::Success)
+    }
+
     /// The format and the path of the output.
     fn target(&self) -> Result<(Format, PathBuf)> {
         let named = self.out.as_deref().and_then(Format::of_path);
-        let Some(format) = self.format.map(|wanted| wanted.0).or(named) else {
+        let Some(format) = self.format.and_then(|wanted| wanted.0).or(named) else {
             let all: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!("the format is unknown; give `--as` one of {}", all.join(", "));
         };

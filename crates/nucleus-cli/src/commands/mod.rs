@@ -4,6 +4,7 @@ mod diff;
 mod export;
 mod extremes;
 mod film;
+mod import;
 mod info;
 mod play;
 mod recover;
@@ -30,6 +31,7 @@ pub enum Command {
     Info(info::Info),
     Play(play::Play),
     Render(render::Render),
+    Import(import::Import),
     Export(export::Export),
     Diff(diff::Diff),
     Recover(recover::Recover),
@@ -53,6 +55,7 @@ impl Command {
             Self::Play(play) => play.run(),
             Self::Info(info) => info.run(),
             Self::Render(render) => render.run(),
+            Self::Import(import) => import.run(),
             Self::Export(export) => export.run(),
             Self::Diff(diff) => diff.run(),
             Self::Recover(recover) => recover.run(),

@@ -11,6 +11,7 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Diagnostic, Scene};
 use nucleus_measure::trade::Setting;
 
+use super::import;
 use crate::initial_state::InitialState;
 use crate::options::{self, Channels, FrameRange, Record};
 use crate::output::say;
@@ -30,7 +31,7 @@ const CHECKPOINT: u32 = 48;
 /// process at once; the unfinished cache then plays to its last complete frame. `nucleus resume` continues after either.
 #[derive(Debug, Args)]
 pub struct Run {
-    /// The scene (.ron).
+    /// The scene (.ron), or a Maya scene (.ma), which is first imported beside the cache.
     scene: PathBuf,
     /// Frames to run: a count that includes the start frame (`48`) or a range (`10..58`); default: those of the scene.
     #[arg(long, allow_hyphen_values = true)]
@@ -104,7 +105,9 @@ impl Run {
     }
 
     /// Simulates the scene.
-    pub fn run(self) -> Result<Outcome> {
+    pub fn run(mut self) -> Result<Outcome> {
+        let out = self.out()?;
+        self.scene = import::own_scene(self.scene, &out, self.force)?;
         let Some((scene, program, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
             return Ok(Outcome::InvalidInput);
         };
@@ -138,7 +141,6 @@ impl Run {
             checkpoint: self.checkpoint,
             facts: recording::facts(self.from.as_ref(), setting, if is_from { &read } else { &program })?,
         };
-        let out = self.out()?;
         let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;
         let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
         let (audit, json) = (self.audit, self.json);

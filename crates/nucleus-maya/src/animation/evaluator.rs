@@ -1,0 +1,227 @@
+//! The value of an attribute at a frame: stored, keyed, or computed by the nodes that drive it.
+
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use crate::scene::{MayaScene, NodeId, PlugRef, Wire};
+
+use super::curve::MayaCurve;
+use super::script::Script;
+
+/// Longest chain of nodes that is followed; a longer one is a cycle.
+const MAX_DEPTH: u32 = 200;
+
+/// Evaluates attributes of a scene.
+pub struct Evaluator<'s> {
+    /// The scene.
+    pub scene: &'s MayaScene,
+    curves: RefCell<HashMap<NodeId, Option<Rc<MayaCurve>>>>,
+    scripts: RefCell<HashMap<NodeId, Rc<Result<Script, String>>>>,
+    depth: Cell<u32>,
+}
+
+impl<'s> Evaluator<'s> {
+    /// For a scene.
+    pub fn new(scene: &'s MayaScene) -> Self {
+        Self { scene, curves: RefCell::default(), scripts: RefCell::default(), depth: Cell::new(0) }
+    }
+
+    /// The curve of an `animCurve` node.
+    pub fn curve(&self, id: NodeId) -> Option<Rc<MayaCurve>> {
+        let read = || MayaCurve::read(self.scene, id).map(Rc::new);
+        self.curves.borrow_mut().entry(id).or_insert_with(read).clone()
+    }
+
+    /// The program of an `expression` node, or why it cannot be read.
+    pub fn script(&self, id: NodeId) -> Rc<Result<Script, String>> {
+        let read = || {
+            let text = self.scene.string(id, &["ixp", "internalExpression"]).unwrap_or_default();
+            Rc::new(Script::parse(&text))
+        };
+        self.scripts.borrow_mut().entry(id).or_insert_with(read).clone()
+    }
+
+    /// The value of an attribute at a frame, in the units of the file.
+    pub fn number(&self, id: NodeId, names: &[&str], frame: f64) -> Option<f64> {
+        match self.scene.source(id, names, None) {
+            Some(wire) => self.output(wire.from, frame).or_else(|| self.scene.stored(id, names)),
+            None => self.scene.stored(id, names),
+        }
+    }
+
+    /// The same, or a default.
+    pub fn number_or(&self, id: NodeId, names: &[&str], frame: f64, default: f64) -> f64 {
+        self.number(id, names, frame).filter(|x| x.is_finite()).unwrap_or(default)
+    }
+
+    /// The value of a plug at a frame; `None` if its node computes it in a way that is not read.
+    pub fn output(&self, plug: PlugRef, frame: f64) -> Option<f64> {
+        if self.depth.get() > MAX_DEPTH {
+            return None;
+        }
+        self.depth.set(self.depth.get() + 1);
+        let value = self.computed(plug, frame).filter(|x| x.is_finite());
+        self.depth.set(self.depth.get() - 1);
+        value
+    }
+
+    fn computed(&self, plug: PlugRef, frame: f64) -> Option<f64> {
+        let PlugRef { node, .. } = plug;
+        let path = self.scene.path(plug);
+        let last = path.last();
+        let get = |names: &[&str], default: f64| self.number_or(node, names, frame, default);
+        match self.scene.kind(node) {
+            "time" => Some(frame),
+            kind if kind.starts_with("animCurveT") => Some(self.curve(node)?.value_at(frame)),
+            kind if kind.starts_with("animCurveU") => {
+                let input = self.number(node, &["i", "input"], frame)?;
+                Some(self.curve(node)?.value_at(input))
+            }
+            "unitConversion" => Some(get(&["i", "input"], 0.0) * get(&["cf", "conversionFactor"], 1.0)),
+            "timeToUnitConversion" | "unitToTimeConversion" => {
+                Some(get(&["i", "input"], 0.0) * get(&["cf", "conversionFactor"], 1.0))
+            }
+            "addDoubleLinear" => Some(get(&["i1", "input1"], 0.0) + get(&["i2", "input2"], 0.0)),
+            "multDoubleLinear" => Some(get(&["i1", "input1"], 0.0) * get(&["i2", "input2"], 1.0)),
+            "multiplyDivide" => {
+                let part = part(last.name)?;
+                let names: [[&[&str]; 2]; 3] = [
+                    [&["i1x", "input1X"], &["i2x", "input2X"]],
+                    [&["i1y", "input1Y"], &["i2y", "input2Y"]],
+                    [&["i1z", "input1Z"], &["i2z", "input2Z"]],
+                ];
+                let [a, b] = [get(names[part][0], 0.0), get(names[part][1], 1.0)];
+                match self.scene.stored_or(node, &["op", "operation"], 1.0) as u8 {
+                    0 => Some(a),
+                    1 => Some(a * b),
+                    2 => (b != 0.0).then_some(a / b),
+                    _ => Some(libm::pow(a, b)),
+                }
+            }
+            "reverse" => {
+                let names: [&[&str]; 3] = [&["ix", "inputX"], &["iy", "inputY"], &["iz", "inputZ"]];
+                Some(1.0 - get(names[part(last.name)?], 0.0))
+            }
+            "pairBlend" => {
+                let names: [[&[&str]; 2]; 6] = [
+                    [&["itx1", "inTranslateX1"], &["itx2", "inTranslateX2"]],
+                    [&["ity1", "inTranslateY1"], &["ity2", "inTranslateY2"]],
+                    [&["itz1", "inTranslateZ1"], &["itz2", "inTranslateZ2"]],
+                    [&["irx1", "inRotateX1"], &["irx2", "inRotateX2"]],
+                    [&["iry1", "inRotateY1"], &["iry2", "inRotateY2"]],
+                    [&["irz1", "inRotateZ1"], &["irz2", "inRotateZ2"]],
+                ];
+                let is_turn = last.name.starts_with("or") || last.name.starts_with("outRotate");
+                let [a, b] = names[part(last.name)? + if is_turn { 3 } else { 0 }];
+                let weight = get(&["w", "weight"], 1.0);
+                Some(get(a, 0.0) * (1.0 - weight) + get(b, 0.0) * weight)
+            }
+            "plusMinusAverage" if matches!(last.name, "o1" | "output1D") => {
+                let terms = self.elements(node, &["i1", "input1D"], frame);
+                let (sum, count) = (terms.iter().sum::<f64>(), terms.len().max(1) as f64);
+                match self.scene.stored_or(node, &["op", "operation"], 1.0) as u8 {
+                    2 => Some(2.0 * terms.first().copied().unwrap_or(0.0) - sum),
+                    3 => Some(sum / count),
+                    _ => Some(sum),
+                }
+            }
+            "blendWeighted" => {
+                let values = self.elements(node, &["i", "input"], frame);
+                let weights = self.elements(node, &["w", "weight"], frame);
+                let weight = |k: usize| weights.get(k).copied().unwrap_or(1.0);
+                Some(values.iter().enumerate().map(|(k, x)| x * weight(k)).sum())
+            }
+            "clamp" => {
+                let names: [[&[&str]; 3]; 3] = [
+                    [&["ipr", "inputR"], &["mnr", "minR"], &["mxr", "maxR"]],
+                    [&["ipg", "inputG"], &["mng", "minG"], &["mxg", "maxG"]],
+                    [&["ipb", "inputB"], &["mnb", "minB"], &["mxb", "maxB"]],
+                ];
+                let [x, low, high] = names[part(last.name)?].map(|names| get(names, 0.0));
+                Some(x.max(low).min(high))
+            }
+            "expression" => {
+                let script = self.script(node);
+                let index = path.segments().find_map(|segment| segment.range)?.0;
+                let result = script.as_ref().as_ref().ok()?.output(self, node, index, frame);
+                result.ok()
+            }
+            // An attribute that is passed on: of a transform, a locator, a control.
+            "transform" | "joint" | "locator" | "nucleus" | "nCloth" | "nRigid" | "nParticle"
+            | "dynamicConstraint" | "camera" | "mesh" | "network" | "script" => {
+                let names = [last.name];
+                self.number(node, &names, frame).or_else(|| self.of_whole(plug, frame))
+            }
+            _ => None,
+        }
+    }
+
+    /// A component that is stored or connected as part of a whole: `tx` of `t`.
+    fn of_whole(&self, plug: PlugRef, frame: f64) -> Option<f64> {
+        let last = self.scene.path(plug).last().name;
+        let (vector, default) = super::placement::names::vector_of(last)?;
+        let part = vector.parts.iter().position(|names| names.contains(&last))?;
+        Some(self.vector(plug.node, vector, [default; 3], frame)[part])
+    }
+
+    /// The elements of an array at a frame: stored ones, and those that are driven.
+    pub fn elements(&self, id: NodeId, names: &[&str], frame: f64) -> Vec<f64> {
+        let mut all = self.scene.array(id, names, 1, &[]).unwrap_or_default();
+        for (index, wire) in self.scene.sources(id, names) {
+            let index = index as usize;
+            if index >= all.len() && index < 1_000_000 {
+                all.resize(index + 1, 0.0);
+            }
+            if let (Some(value), Some(element)) = (self.output(wire.from, frame), all.get_mut(index)) {
+                *element = value;
+            }
+        }
+        all
+    }
+
+    /// A vector at a frame, in the units of the file.
+    pub fn vector(
+        &self,
+        id: NodeId,
+        vector: crate::scene::Vector3,
+        default: [f64; 3],
+        frame: f64,
+    ) -> [f64; 3] {
+        let stored = self.scene.stored_vector(id, vector, default);
+        let whole = self.scene.source(id, vector.whole, None);
+        [0, 1, 2].map(|part| {
+            let own = self.scene.source(id, vector.parts[part], None);
+            let driven = match (own, whole) {
+                (Some(wire), _) => self.output(wire.from, frame),
+                (None, Some(wire)) => self.part_of(wire, part, frame),
+                _ => None,
+            };
+            driven.unwrap_or(stored[part])
+        })
+    }
+
+    /// One component of a vector that is connected as a whole.
+    pub fn part_of(&self, wire: Wire, part: usize, frame: f64) -> Option<f64> {
+        let node = wire.from.node;
+        let last = self.scene.path(wire.from).last().name;
+        let (vector, default) = super::placement::names::vector_of_whole(last)?;
+        if !matches!(self.scene.kind(node), "transform" | "joint") || self.depth.get() >= MAX_DEPTH {
+            return None;
+        }
+        self.depth.set(self.depth.get() + 1);
+        let value = self.vector(node, vector, [default; 3], frame)[part];
+        self.depth.set(self.depth.get() - 1);
+        Some(value)
+    }
+}
+
+/// The component that a name ends with: `ox`, `outputX`, `outTranslateY`, `outputG`.
+fn part(name: &str) -> Option<usize> {
+    match name.chars().next_back()?.to_ascii_lowercase() {
+        'x' | 'r' => Some(0),
+        'y' | 'g' => Some(1),
+        'z' | 'b' => Some(2),
+        _ => None,
+    }
+}

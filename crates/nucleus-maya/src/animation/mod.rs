@@ -1,0 +1,24 @@
+//! Values over time: keyed curves, expressions, and the nodes between them and an attribute.
+//!
+//! | You want to know...                                    | Read                |
+//! |--------------------------------------------------------|---------------------|
+//! | the value of a curve with Maya's tangents              | [`MayaCurve`]       |
+//! | the value of an attribute at a frame                   | [`Evaluator`]       |
+//! | an expression node                                     | [`Script`]          |
+//! | how a driven attribute becomes keys of ours            | `channel.rs`        |
+//! | where a transform is                                   | `placement.rs`      |
+//!
+//! **Invariant:** a curve that ours can follow exactly keeps its keys. Any other is sampled at every frame, between
+//! which the solver interpolates linearly anyway (N2.4-7).
+
+mod channel;
+mod curve;
+mod evaluator;
+mod placement;
+mod script;
+mod syntax;
+
+pub use curve::MayaCurve;
+pub use evaluator::Evaluator;
+pub use placement::{Matrix, names};
+pub use script::Script;

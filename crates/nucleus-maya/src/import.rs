@@ -1,0 +1,133 @@
+//! A Maya scene as a scene of ours.
+
+use std::path::{Path, PathBuf};
+
+use nucleus_graph::scene::{Record, Scene, Source, TimeSpan, read_scene_text, write_scene};
+
+use crate::ascii::{ImportError, SourceText};
+use crate::nucleus_nodes::{Importer, OWN_FILE};
+use crate::omissions::Omissions;
+use crate::scene::MayaScene;
+
+/// Writes a file: its name, and its text. The error is a message.
+pub type WriteFile<'a> = dyn FnMut(&str, String) -> Result<(), String> + 'a;
+
+/// How a scene is imported.
+pub struct ImportOptions<'a> {
+    /// Meshes that the artist gives: the name of a node and an OBJ file.
+    pub meshes: Vec<(String, PathBuf)>,
+    /// The folder of the meshes, relative to our scene file.
+    pub folder: String,
+    /// Reads resistances as stiffnesses in place of Maya's counts of iterations.
+    pub physical: bool,
+    /// Writes a file of a mesh: its name relative to our scene file, and its text. The error is a message.
+    pub write: Box<WriteFile<'a>>,
+}
+
+impl<'a> ImportOptions<'a> {
+    /// Without meshes of the artist, in Maya's model of resistances.
+    pub fn new(folder: &str, write: impl FnMut(&str, String) -> Result<(), String> + 'a) -> Self {
+        Self { meshes: Vec::new(), folder: folder.to_owned(), physical: false, write: Box::new(write) }
+    }
+}
+
+/// The options, as an import uses them.
+pub(crate) struct Wishes<'s> {
+    pub(crate) meshes: &'s [(String, PathBuf)],
+    pub(crate) folder: &'s str,
+    pub(crate) physical: bool,
+    pub(crate) write: &'s mut WriteFile<'s>,
+}
+
+impl<'s> Wishes<'s> {
+    fn of(options: &'s mut ImportOptions<'_>) -> Self {
+        let ImportOptions { meshes, folder, physical, write } = options;
+        Self { meshes, folder, physical: *physical, write: &mut **write }
+    }
+}
+
+/// An imported scene.
+#[derive(Debug)]
+pub struct Imported {
+    /// The scene.
+    pub scene: Scene,
+    /// What is left out.
+    pub omissions: Omissions,
+}
+
+impl Imported {
+    /// The text of our scene file, with the omissions as comments at its head.
+    pub fn text(&self, origin: &str) -> String {
+        let mut head = format!("// Imported from `{}`.\n", one_line(origin));
+        if !self.omissions.is_empty() {
+            head += "// Left out or changed:\n";
+        }
+        for line in self.omissions.to_string().lines() {
+            head += &format!("// - {line}\n");
+        }
+        head + &write_scene(&self.scene)
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// Whether a file is a Maya scene by its name, ASCII or binary.
+pub fn is_maya_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("ma") || end.eq_ignore_ascii_case("mb"))
+}
+
+/// Imports a scene; `ron` is the scene file that it will be.
+///
+/// # Errors
+/// When the file cannot be read or is no Maya ASCII, or a mesh cannot be written. All else is an omission.
+pub fn import_scene(path: &Path, ron: &Path, options: &mut ImportOptions) -> Result<Imported, ImportError> {
+    import_text(SourceText::read(path)?, ron, options)
+}
+
+/// As [`import_scene`], for a text in memory.
+///
+/// # Errors
+/// As there.
+pub fn import_text(
+    text: SourceText,
+    ron: &Path,
+    options: &mut ImportOptions,
+) -> Result<Imported, ImportError> {
+    let path = text.path.clone();
+    let mut maya = MayaScene::of_text(text)?;
+    let own = maya.file_info.iter().find(|(key, _)| key == OWN_FILE).map(|(_, text)| text.clone());
+    let refused = |message: String| ImportError::Refused { file: path.clone(), message };
+    // What a scene of ours has besides its nodes.
+    let head = match &own {
+        Some(text) => Some(read_head(text, ron).map_err(refused)?),
+        None => None,
+    };
+    let mut omissions = std::mem::take(&mut maya.omissions);
+    let refused = |message: String| ImportError::Refused { file: path.clone(), message };
+    let carried = Importer::new(&maya, own.is_some(), Wishes::of(options)).run().map_err(refused)?;
+    omissions.extend(carried.omissions);
+    let [start, end] = carried.frames;
+    let source = Source::new(ron);
+    let scene = match head {
+        Some(head) => Scene { graph: carried.graph, source, ..head },
+        None => Scene {
+            time: TimeSpan { start, end, fps: maya.units.fps },
+            every: 1.0,
+            record: Record::Frames,
+            graph: carried.graph,
+            checks: Vec::new(),
+            source,
+        },
+    };
+    Ok(Imported { scene, omissions })
+}
+
+/// The scene of a text that has no nodes.
+fn read_head(text: &str, ron: &Path) -> Result<Scene, String> {
+    let first = |all: Vec<nucleus_graph::scene::Diagnostic>| {
+        all.first().map_or_else(String::new, |diagnostic| diagnostic.message.clone())
+    };
+    read_scene_text(text, ron).map(|(scene, _)| scene).map_err(first)
+}

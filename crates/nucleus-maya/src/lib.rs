@@ -1,0 +1,34 @@
+//! Maya scenes, read and written without Maya.
+//!
+//! ```text
+//! scene.ma ─SourceText─▶ Statements ─MayaScene─▶ nodes, wires ─Importer─▶ Scene ─▶ scene.ron, meshes
+//! ```
+//!
+//! | You want to know...                                    | Read                          |
+//! |--------------------------------------------------------|-------------------------------|
+//! | how a scene is imported                                | [`import_scene`]              |
+//! | how a scene of ours is written                         | [`maya_ascii`], `write/`      |
+//! | what is left out, and why                              | [`omissions`]                 |
+//! | how Maya ASCII is split into statements                | [`ascii`]                     |
+//! | nodes, the DAG, references, attributes                 | [`scene`]                     |
+//! | meshes, primitives, construction history               | [`mesh`]                      |
+//! | curves, expressions, transforms                        | [`animation`]                 |
+//! | blend shapes, skin clusters                            | `deform/`                     |
+//! | which attributes and connections are carried over      | `nucleus_nodes/`              |
+//!
+//! **Invariant:** nothing in a file is executed, and a path in a file never leads to writing. What is not carried over is
+//! listed.
+
+pub mod animation;
+pub mod ascii;
+mod deform;
+mod import;
+pub mod mesh;
+mod nucleus_nodes;
+pub mod omissions;
+pub mod scene;
+mod write;
+
+pub use ascii::ImportError;
+pub use import::{ImportOptions, Imported, WriteFile, import_scene, import_text, is_maya_scene};
+pub use write::maya_ascii;

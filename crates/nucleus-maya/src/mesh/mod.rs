@@ -1,0 +1,32 @@
+//! Meshes: embedded in a shape, or built again by their construction history.
+//!
+//! | You want to know...                                 | Read               |
+//! |-----------------------------------------------------|--------------------|
+//! | points, faces and edges of a mesh                   | [`Poly`]           |
+//! | `.vt`, `.ed`, `.fc` and `.pt` of a shape            | `embedded.rs`      |
+//! | Maya's primitives                                   | `primitives.rs`    |
+//! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs` |
+//! | the mesh of a shape at a frame                      | [`Evaluator::mesh`](crate::animation::Evaluator::mesh) |
+//! | a mesh as an OBJ file                               | [`obj_text`]       |
+//!
+//! **Invariant:** points are in the space of the shape, in centimetres, and keep Maya's numbers as far as those are known.
+
+mod embedded;
+mod extrude;
+mod history;
+mod obj;
+mod operators;
+mod poly;
+mod primitives;
+mod subdivide;
+
+pub use history::Built;
+pub use obj::obj_text;
+pub use poly::{Components, Poly};
+
+use crate::scene::{MayaScene, NodeId};
+
+/// Whether a creation node makes a primitive of ours, along the same axis unless that does not matter.
+pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {
+    primitives::own_primitive(scene, id).is_some() && (any_axis || primitives::is_upright(scene, id))
+}

@@ -1,0 +1,334 @@
+//! Operators on meshes that move, merge, split, join or drop points and faces.
+
+use std::collections::HashMap;
+
+use crate::animation::Matrix;
+use crate::scene::{MayaScene, NodeId, Vector3};
+
+use super::poly::{Components, Poly};
+use super::{embedded, extrude, subdivide};
+
+const TRANSLATE: Vector3 = Vector3 {
+    whole: &["t", "translate"],
+    parts: [&["tx", "translateX"], &["ty", "translateY"], &["tz", "translateZ"]],
+};
+
+/// Operators that change only normals, texture coordinates, colours, or nothing that the simulation sees.
+const PASSED_OVER: [&str; 34] = [
+    "polyMapCut",
+    "polyTweakUV",
+    "polyPlanarProj",
+    "polyPlanProj",
+    "polyCylProj",
+    "polySphProj",
+    "polyAutoProj",
+    "polyMapSew",
+    "polyMapSewMove",
+    "polyMapDel",
+    "polyNormalizeUV",
+    "polyFlipUV",
+    "polyLayoutUV",
+    "polyCopyUV",
+    "polyMoveUV",
+    "polyMoveFacetUV",
+    "polyForceUV",
+    "polySoftEdge",
+    "polyNormalPerVertex",
+    "polyColorPerVertex",
+    "polyColorMod",
+    "polyColorDel",
+    "createColorSet",
+    "deleteColorSet",
+    "createUVSet",
+    "deleteUVSet",
+    "copyColorSet",
+    "groupParts",
+    "polyCrease",
+    "polyPinUV",
+    "polyOptUvs",
+    "polyUVRectangle",
+    "polyContourProj",
+    "polyHoleFace",
+];
+
+/// What an operator does to its input.
+pub(super) enum Operation {
+    /// Done.
+    Done(Poly),
+    /// The type of the node is not carried out; its input is passed on.
+    Unknown(Poly),
+}
+
+/// Applies the operator of a history node to its input.
+pub(super) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation {
+    let kind = scene.kind(id);
+    let picked = || {
+        scene.value(id, &["ics", "inputComponents"]).map(|values| Components::of(&values)).unwrap_or_default()
+    };
+    let unit = scene.units.centimetres;
+    match kind {
+        _ if PASSED_OVER.contains(&kind) => {}
+        "polyTweak" => {
+            let parts: [&[&str]; 3] = [&["tx", "tweakX"], &["ty", "tweakY"], &["tz", "tweakZ"]];
+            let offsets = scene.array(id, &["tk", "tweak"], 3, &parts).unwrap_or_default();
+            embedded::add(&mut mesh.points, &offsets, unit);
+        }
+        "transformGeometry" => {
+            if let Some(matrix) = scene.matrix(id, &["txf", "transform"], None) {
+                let matrix = Matrix::of_rows(matrix);
+                mesh.points.iter_mut().for_each(|point| *point = matrix.point(*point));
+            }
+        }
+        "polyMoveVertex" => {
+            let by = scene.stored_vector(id, TRANSLATE, [0.0; 3]).map(|x| x * unit);
+            let flags = picked().flags("vtx", mesh.points.len());
+            for (point, _) in mesh.points.iter_mut().zip(flags).filter(|(_, picked)| *picked) {
+                (0..3).for_each(|k| point[k] += by[k]);
+            }
+        }
+        "polyNormal" => mesh = reversed(&mesh, &picked()),
+        "polyTriangulate" => mesh = triangulated(&mesh, &picked()),
+        "polySmoothFace" => {
+            let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
+            let picked = picked();
+            if !subdivide::is_whole(&mesh, &picked) {
+                return Operation::Unknown(mesh);
+            }
+            (0..divisions).for_each(|_| mesh = subdivide::smooth(&mesh));
+        }
+        "polySubdFace" => {
+            let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
+            let mut picked = picked().flags("f", mesh.face_count());
+            for _ in 0..divisions {
+                (mesh, picked) = subdivide::split(&mesh, &picked);
+            }
+        }
+        "polyExtrudeFace" => match extrude::extrude(scene, id, &mesh, &picked()) {
+            Some(extruded) => mesh = extruded,
+            None => return Operation::Unknown(mesh),
+        },
+        "polySplitVert" => mesh = split_points(&mesh, &picked()),
+        "polyMergeVert" => {
+            let distance = scene.stored_or(id, &["d", "distance"], 1e-4) * unit;
+            mesh = merged(&mesh, &picked(), distance);
+        }
+        "deleteComponent" => {
+            let values = scene.value(id, &["dc", "deleteComponents"]);
+            let list = values.map(|values| Components::of(&values)).unwrap_or_default();
+            if list.has_other_than("f") {
+                return Operation::Unknown(mesh);
+            }
+            mesh = without_faces(&mesh, &list.flags("f", mesh.face_count()));
+        }
+        "polyCloseBorder" => mesh = closed(&mesh),
+        _ => return Operation::Unknown(mesh),
+    }
+    Operation::Done(mesh)
+}
+
+fn reversed(mesh: &Poly, picked: &Components) -> Poly {
+    let flags = picked.flags("f", mesh.face_count());
+    let all = picked.is_empty();
+    let mut turned = Poly { stored_edges: mesh.stored_edges.clone(), ..Poly::reshaped(mesh.points.clone()) };
+    for (face, picked) in mesh.faces().zip(flags) {
+        let mut face = face.to_vec();
+        if picked || all {
+            face.reverse();
+        }
+        turned.face(&face);
+    }
+    turned
+}
+
+/// A fan of triangles for each picked face, from its first corner.
+fn triangulated(mesh: &Poly, picked: &Components) -> Poly {
+    let flags = picked.flags("f", mesh.face_count());
+    let all = picked.is_empty();
+    let mut made = Poly::reshaped(mesh.points.clone());
+    for (face, picked) in mesh.faces().zip(flags) {
+        if !(picked || all) || face.len() < 4 {
+            made.face(face);
+            continue;
+        }
+        (1..face.len() - 1).for_each(|k| made.face(&[face[0], face[k], face[k + 1]]));
+    }
+    made
+}
+
+/// Each face gets its own copy of the picked points; the first face keeps the point.
+fn split_points(mesh: &Poly, picked: &Components) -> Poly {
+    let flags = picked.flags("vtx", mesh.points.len());
+    let mut seen = vec![false; mesh.points.len()];
+    let mut made = Poly::reshaped(mesh.points.clone());
+    for face in mesh.faces() {
+        let mut own = Vec::with_capacity(face.len());
+        for &point in face {
+            let index = point as usize;
+            if !flags[index] || !seen[index] {
+                seen[index] = true;
+                own.push(point);
+            } else {
+                own.push(made.points.len() as u32);
+                made.points.push(mesh.points[index]);
+            }
+        }
+        made.face(&own);
+    }
+    made
+}
+
+/// Merges picked points that are no farther apart than a distance; the lowest number stays.
+pub(super) fn merged(mesh: &Poly, picked: &Components, distance: f64) -> Poly {
+    let flags = picked.flags("vtx", mesh.points.len());
+    let all = picked.is_empty();
+    let cell = distance.max(1e-9);
+    let key = |p: [f64; 3]| p.map(|x| (x / cell).floor() as i64);
+    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut target: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    for (index, point) in mesh.points.iter().enumerate() {
+        if !(all || flags[index]) {
+            continue;
+        }
+        let at = key(*point);
+        let mut found: Option<u32> = None;
+        for k in 0..27 {
+            let near = [at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1];
+            for other in grid.get(&near).into_iter().flatten() {
+                let q = mesh.points[*other as usize];
+                let squared: f64 = (0..3).map(|k| (q[k] - point[k]) * (q[k] - point[k])).sum();
+                if squared <= distance * distance {
+                    found = Some(found.map_or(*other, |old| old.min(*other)));
+                }
+            }
+        }
+        match found {
+            Some(other) => target[index] = other,
+            None => grid.entry(at).or_default().push(index as u32),
+        }
+    }
+    let mut made = Poly::reshaped(mesh.points.clone());
+    for face in mesh.faces() {
+        let mut own: Vec<u32> = face.iter().map(|point| target[*point as usize]).collect();
+        own.dedup();
+        while own.len() > 1 && own.first() == own.last() {
+            own.pop();
+        }
+        if own.len() >= 3 {
+            made.face(&own);
+        }
+    }
+    made.without_unused_points();
+    made
+}
+
+fn without_faces(mesh: &Poly, dropped: &[bool]) -> Poly {
+    let mut made = Poly::reshaped(mesh.points.clone());
+    for (face, dropped) in mesh.faces().zip(dropped) {
+        if !dropped {
+            made.face(face);
+        }
+    }
+    made.without_unused_points();
+    made
+}
+
+/// A face for each closed border.
+fn closed(mesh: &Poly) -> Poly {
+    let mut made = mesh.clone();
+    made.uv_corners.clear();
+    for border in borders(mesh) {
+        made.face(&border);
+    }
+    made
+}
+
+/// The closed borders of a mesh, each in the direction in which a face would fill it.
+fn borders(mesh: &Poly) -> Vec<Vec<u32>> {
+    let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
+    for face in mesh.faces() {
+        super::poly::sides(face).for_each(|side| *sides.entry(side).or_default() += 1);
+    }
+    let mut next: std::collections::BTreeMap<u32, u32> = std::collections::BTreeMap::new();
+    for (a, b) in sides.keys() {
+        if !sides.contains_key(&(*b, *a)) {
+            next.insert(*b, *a);
+        }
+    }
+    let mut all = Vec::new();
+    while let Some((&start, _)) = next.iter().next() {
+        let mut border = vec![start];
+        while let Some(point) = next.remove(&border[border.len() - 1]) {
+            if point == start {
+                break;
+            }
+            border.push(point);
+        }
+        if border.len() >= 3 {
+            all.push(border);
+        }
+    }
+    all
+}
+
+/// Meshes joined to one, each in its own placement.
+pub(super) fn united(parts: &[(Poly, Matrix)]) -> Poly {
+    let mut made = Poly::default();
+    for (part, matrix) in parts {
+        let first = made.points.len() as u32;
+        made.points.extend(part.points.iter().map(|point| matrix.point(*point)));
+        for face in part.faces() {
+            let own: Vec<u32> = face.iter().map(|point| point + first).collect();
+            made.face(&own);
+        }
+    }
+    made
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_quads() -> Poly {
+        let points = vec![
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [2.0, 1.0, 0.0],
+        ];
+        let mut mesh = Poly::reshaped(points);
+        mesh.face(&[0, 1, 4, 3]);
+        mesh.face(&[1, 2, 5, 4]);
+        mesh
+    }
+
+    fn all(kind: &str) -> Components {
+        Components::of(&crate::ascii::Values::new(None, &format!("1 \"{kind}[*]\"")))
+    }
+
+    #[test]
+    fn split_points_are_merged_again() {
+        let mesh = two_quads();
+        let split = split_points(&mesh, &all("vtx"));
+        assert_eq!(split.points.len(), 8);
+        assert_eq!(split.points_of(0), [0, 1, 4, 3], "the first face keeps its points");
+        let again = merged(&split, &all("vtx"), 1e-4);
+        assert_eq!((again.points.len(), again.face_count()), (6, 2));
+    }
+
+    #[test]
+    fn a_deleted_face_takes_its_own_points_along() {
+        let left = without_faces(&two_quads(), &[true, false]);
+        assert_eq!((left.points.len(), left.points_of(0)), (4, &[0, 1, 3, 2][..]));
+    }
+
+    #[test]
+    fn a_border_is_closed_against_the_direction_of_its_faces() {
+        let mesh = closed(&two_quads());
+        assert_eq!(mesh.face_count(), 3);
+        assert_eq!(mesh.points_of(2).len(), 6);
+        let [a, b] = [mesh.normal(0)[2], mesh.normal(2)[2]];
+        assert!(a > 0.0 && b < 0.0);
+    }
+}

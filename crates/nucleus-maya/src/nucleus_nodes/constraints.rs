@@ -1,0 +1,229 @@
+//! Constraints: their type, which Maya does not store, and their components.
+
+use nucleus_graph::attributes::{Choice, Component, Selection, Value, dynamic_constraint, n_component};
+use nucleus_graph::graph::{Creation, NodeId as OwnId, Setting};
+
+use crate::omissions::Cause;
+use crate::scene::{ANY, MayaScene, NodeId};
+
+use super::importer::Importer;
+use super::kept::nucleus_of;
+
+/// Maya's numbers of `componentType`.
+const POINT: u32 = 2;
+const EDGE: u32 = 3;
+const WHOLE: u32 = 6;
+/// Maya's numbers of `elements`.
+const LISTED: u32 = 0;
+const BORDERS: u32 = 1;
+
+/// A component node of a constraint.
+struct Part {
+    node: NodeId,
+    index: u32,
+    object: OwnId,
+    name: String,
+    kind: u32,
+    elements: u32,
+    list: Vec<u32>,
+    /// Whether the short form of a scene says all of it.
+    is_plain: bool,
+}
+
+impl Importer<'_> {
+    /// Connects a constraint to its nucleus and to its components.
+    pub(super) fn connect_constraint(&mut self, from: NodeId, to: OwnId) {
+        let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id)) else { return };
+        let parts = self.parts_of(from);
+        if !self.is_own {
+            let number = type_of(self.scene, from, &parts);
+            if number != 0 {
+                let row = &dynamic_constraint::CONSTRAINT_TYPE.row;
+                self.set(to, row, Setting::Fixed(Value::Choice(Choice(number))));
+            }
+        }
+        let repeated = (1..parts.len()).any(|k| parts[..k].iter().any(|other| other.name == parts[k].name));
+        let listed = self.scene.string(from, &[dynamic_constraint::COMPONENTS.row.name]).is_some();
+        let is_short = if self.is_own { listed } else { !repeated && !parts.is_empty() };
+        if is_short && parts.iter().all(|part| part.is_plain) {
+            let components = self.listed(from, &parts);
+            self.set_components(to, &components);
+            let creation = Creation::Constraint { components, nucleus };
+            if let Err(error) = self.graph.create(to, &creation) {
+                self.omissions.add(self.graph.node(to).name(), Cause::Connection(error.to_string()));
+            }
+            return;
+        }
+        for part in parts {
+            self.add_part(to, &part);
+        }
+        self.connect_to_nucleus(from);
+    }
+
+    fn set_components(&mut self, to: OwnId, components: &[Component]) {
+        let setting = Setting::Fixed(Value::Components(components.to_vec()));
+        self.set(to, &dynamic_constraint::COMPONENTS.row, setting);
+    }
+
+    /// The components in the short form: as a scene of ours lists them, else runs of points.
+    fn listed(&self, from: NodeId, parts: &[Part]) -> Vec<Component> {
+        let stored = self.scene.string(from, &[dynamic_constraint::COMPONENTS.row.name]);
+        if let Some(text) = stored.filter(|_| self.is_own) {
+            return text.split(' ').filter_map(component).collect();
+        }
+        parts.iter().flat_map(components).collect()
+    }
+
+    /// The component nodes of a constraint, in the order of their indices.
+    fn parts_of(&mut self, from: NodeId) -> Vec<Part> {
+        let scene = self.scene;
+        let mut parts = Vec::new();
+        for (index, wire) in scene.sources(from, &["cid", "componentIds"]) {
+            let node = wire.from.node;
+            if scene.kind(node) != "nComponent" {
+                self.omissions.add(
+                    scene.name(node),
+                    Cause::Component(format!("a {} is no component", scene.kind(node))),
+                );
+                continue;
+            }
+            let object = scene.source(node, &["obid", "objectId"], None).map(|wire| wire.from.node);
+            let Some(own) = object.and_then(|object| self.own_of(object)) else {
+                let why = "its object is left out".to_owned();
+                self.omissions.add(scene.name(node), Cause::Component(why));
+                continue;
+            };
+            let kind = scene.count_or(node, &["ct", "componentType"], 0);
+            let elements = scene.count_or(node, &["el", "elements"], LISTED);
+            let list = scene.array(node, &["ci", "componentIndices"], 1, &[]).unwrap_or_default();
+            let list: Vec<u32> = list.into_iter().map(|x| x.max(0.0) as u32).collect();
+            let said = [
+                "ct",
+                "componentType",
+                "el",
+                "elements",
+                "ci",
+                "componentIndices",
+                "cid",
+                "componentGroupId",
+            ];
+            let says_more = scene.assigned(node, ANY).any(|set| {
+                let row = n_component::N_COMPONENT.attribute(set.segment.name);
+                !set.values.is_empty() && row.is_some() && !said.contains(&set.segment.name)
+            });
+            let is_plain = matches!((kind, elements), (POINT, 0 | 2) | (WHOLE, _)) && !says_more;
+            let name = self.graph.node(own).name().to_owned();
+            parts.push(Part { node, index, object: own, name, kind, elements, list, is_plain });
+        }
+        parts
+    }
+
+    /// A component node with all its values.
+    fn add_part(&mut self, constraint: OwnId, part: &Part) {
+        let name = self.kept.free_name(self.scene.name(part.node));
+        let Ok(own) = self.graph.add(&name, &n_component::N_COMPONENT) else { return };
+        self.set_values(part.node, own, &n_component::N_COMPONENT);
+        if part.elements == LISTED {
+            let row = &n_component::COMPONENT_INDICES.row;
+            self.set(own, row, Setting::Fixed(Value::Ints(part.list.clone())));
+        }
+        use nucleus_graph::attributes::n_base;
+        use nucleus_graph::graph::Plug;
+        let id = Plug::new(part.object, &n_base::NUCLEUS_ID);
+        self.join(id, Plug::new(own, &n_component::OBJECT_ID));
+        let input = Plug::element(constraint, &dynamic_constraint::COMPONENT_IDS, part.index);
+        self.join(Plug::new(own, &n_component::OUT_COMPONENT), input);
+    }
+}
+
+/// A component as a scene of ours writes it: `cloth1.vtx[0:8]`.
+fn component(text: &str) -> Option<Component> {
+    let Some((object, index)) = text.split_once(".vtx[") else {
+        return (!text.is_empty())
+            .then(|| Component { object: text.to_owned(), selection: Selection::Object });
+    };
+    let index = index.strip_suffix(']')?;
+    let selection = match index {
+        "*" => Selection::AllPoints,
+        index => {
+            let (first, last) = index.split_once(':').unwrap_or((index, index));
+            Selection::Points { first: first.parse().ok()?, last: last.parse().ok()? }
+        }
+    };
+    Some(Component { object: object.to_owned(), selection })
+}
+
+/// The components of a plain part: the object, all its points, or runs of points.
+fn components(part: &Part) -> Vec<Component> {
+    let of = |selection| Component { object: part.name.clone(), selection };
+    match (part.kind, part.elements) {
+        (WHOLE, _) => vec![of(Selection::Object)],
+        (_, LISTED) => {
+            runs(&part.list).into_iter().map(|(first, last)| of(Selection::Points { first, last })).collect()
+        }
+        _ => vec![of(Selection::AllPoints)],
+    }
+}
+
+/// Runs of numbers that follow each other, in the order of the list.
+fn runs(list: &[u32]) -> Vec<(u32, u32)> {
+    let mut runs: Vec<(u32, u32)> = Vec::new();
+    for &number in list {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    runs
+}
+
+/// The creation type of a constraint, by the values that each of Maya's commands sets.
+fn type_of(scene: &MayaScene, id: NodeId, parts: &[Part]) -> i32 {
+    let number = |names: &[&str], default| scene.stored_or(id, names, default);
+    let relation = number(&["crr", "constraintRelation"], 1.0);
+    let components = number(&["cmr", "componentRelation"], 0.0);
+    let method = number(&["cm", "constraintMethod"], 1.0);
+    let excludes = scene.switch_or(id, &["excs", "excludeCollisions"], false);
+    if excludes && number(&["str", "strength"], 20.0) == 0.0 {
+        return if relation == 0.0 { 8 } else { 9 };
+    }
+    if relation == 0.0 {
+        let is_force = number(&["for", "force"], 0.0) != 0.0 && number(&["str", "strength"], 20.0) == 0.0;
+        return if is_force { 5 } else { 0 };
+    }
+    if number(&["cu", "connectionUpdate"], 0.0) != 0.0 {
+        return 3;
+    }
+    if components != 0.0 {
+        let is_border = parts.iter().any(|part| part.kind == EDGE && part.elements == BORDERS);
+        return match (method == 0.0, is_border) {
+            (true, true) => 4,
+            (true, false) => 7,
+            _ => 1,
+        };
+    }
+    if number(&["rls", "restLengthScale"], 1.0) == 0.0 {
+        return 6;
+    }
+    let is_surface = |part: &Part| !matches!(part.kind, POINT);
+    if parts.first().is_some_and(is_surface) { 2 } else { 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_of_points_becomes_runs() {
+        assert_eq!(runs(&[0, 1, 2, 7, 9, 10, 3]), [(0, 2), (7, 7), (9, 10), (3, 3)]);
+        assert_eq!(runs(&[u32::MAX, 0]), [(u32::MAX, u32::MAX), (0, 0)]);
+    }
+
+    #[test]
+    fn a_component_is_read_as_it_is_written() {
+        for text in ["cloth", "cloth.vtx[*]", "cloth.vtx[3]", "a:b.vtx[0:8]"] {
+            assert_eq!(component(text).unwrap().to_string(), text);
+        }
+        assert_eq!(component("cloth.vtx[x]"), None);
+    }
+}

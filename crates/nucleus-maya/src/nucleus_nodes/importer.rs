@@ -1,0 +1,291 @@
+//! An import, step by step: choose nodes, build meshes, set values, place, connect.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use nucleus_graph::attributes::{
+    self, Choice, NodeType, Value, dyn_base, dynamic_constraint, n_base, n_rigid, nucleus, transform,
+};
+use nucleus_graph::graph::{Graph, NodeId as OwnId, Setting};
+
+use crate::animation::Evaluator;
+use crate::import::Wishes;
+use crate::omissions::{Cause, Omissions};
+use crate::scene::{ANY, MayaScene, NodeId};
+
+use super::kept::{Kept, KeptNodes, MARK_AUTOMATIC};
+use super::meshes::Plan;
+
+/// Carries the nodes of a Maya scene over into a graph.
+pub(crate) struct Importer<'s> {
+    pub(super) scene: &'s MayaScene,
+    pub(super) values: Evaluator<'s>,
+    pub(super) options: Wishes<'s>,
+    pub(super) graph: Graph,
+    pub(super) kept: KeptNodes,
+    own: BTreeMap<usize, OwnId>,
+    /// First and last frame of the scene.
+    pub(super) frames: [i64; 2],
+    /// Whether this crate has written the file.
+    pub(super) is_own: bool,
+    pub(super) omissions: Omissions,
+}
+
+/// What an import gives.
+pub(crate) struct Carried {
+    pub(crate) graph: Graph,
+    pub(crate) frames: [i64; 2],
+    pub(crate) omissions: Omissions,
+}
+
+impl<'s> Importer<'s> {
+    pub(crate) fn new(scene: &'s MayaScene, is_own: bool, options: Wishes<'s>) -> Self {
+        let mut omissions = Omissions::default();
+        let kept = KeptNodes::of(scene, is_own, &mut omissions);
+        let frames = frames(scene, &kept, is_own);
+        Self {
+            scene,
+            values: Evaluator::new(scene),
+            options,
+            graph: Graph::new(),
+            kept,
+            own: BTreeMap::new(),
+            frames,
+            is_own,
+            omissions,
+        }
+    }
+
+    /// Carries everything over.
+    ///
+    /// # Errors
+    /// When a file of a mesh cannot be written.
+    pub(crate) fn run(mut self) -> Result<Carried, String> {
+        let all = self.kept.all.clone();
+        let mut plans: BTreeMap<usize, Plan> = BTreeMap::new();
+        for (index, kept) in all.iter().enumerate().filter(|(_, kept)| self.is_mesh(kept)) {
+            plans.insert(index, self.plan(kept.node, &kept.name));
+        }
+        let missing = self.without_mesh(&all, &plans);
+        for (index, kept) in all.iter().enumerate().filter(|(index, _)| !missing.contains(index)) {
+            let node_type = match plans.get(&index) {
+                Some(Plan::Primitive(_, node_type)) => *node_type,
+                Some(_) => &attributes::mesh::MESH,
+                None => kept.node_type.unwrap_or(&transform::TRANSFORM),
+            };
+            match self.graph.add(&kept.name, node_type) {
+                Ok(id) => {
+                    self.own.insert(index, id);
+                }
+                Err(error) => self.omissions.add(&*kept.name, Cause::Connection(error.to_string())),
+            }
+        }
+        let present: Vec<(usize, OwnId)> = self.own.iter().map(|(index, id)| (*index, *id)).collect();
+        for (index, id) in &present {
+            if self.graph.node(*id).node_type().is_a(&transform::TRANSFORM) {
+                self.place(all[*index].transform.unwrap_or(all[*index].node), *id);
+            }
+        }
+        for (index, id) in &present {
+            self.fill_node(&all[*index], *id, plans.remove(index))?;
+        }
+        self.connect(&all, &present);
+        Ok(Carried { graph: self.graph, frames: self.frames, omissions: self.omissions })
+    }
+
+    fn fill_node(&mut self, kept: &Kept, id: OwnId, plan: Option<Plan>) -> Result<(), String> {
+        let node_type = self.graph.node(id).node_type();
+        if let Some(plan) = plan {
+            if self.is_own {
+                self.set_given(kept.node, id, node_type);
+            }
+            return self.fill(kept.node, id, plan);
+        }
+        if node_type == &transform::TRANSFORM {
+            return Ok(());
+        }
+        if node_type == &attributes::camera::CAMERA {
+            self.set_given(kept.node, id, node_type);
+            self.set_camera(kept.node, id);
+            return Ok(());
+        }
+        self.set_values(kept.node, id, node_type);
+        self.apply_preset(id);
+        if node_type == &nucleus::NUCLEUS {
+            self.set_nucleus(kept.node, id);
+        }
+        if node_type.is_a(&n_base::N_BASE) {
+            self.set_creation_values(kept.node, id, node_type);
+        }
+        Ok(())
+    }
+
+    /// The preset that a scene of ours names.
+    fn apply_preset(&mut self, id: OwnId) {
+        let node = self.graph.node(id);
+        let Some(Setting::Fixed(Value::Text(name))) = node.settings().get(n_base::PRESET.row.name) else {
+            return;
+        };
+        let name = name.clone();
+        let preset = nucleus_graph::scene::presets().into_iter().find(|preset| preset.name == name);
+        let applied = preset.is_some_and(|preset| self.graph.apply_preset(id, &preset.settings).is_ok());
+        if !applied {
+            let what = self.graph.node(id).name().to_owned();
+            self.omissions.add(what, Cause::Value(format!("there is no preset `{name}`")));
+        }
+    }
+
+    fn connect(&mut self, all: &[Kept], present: &[(usize, OwnId)]) {
+        let of = |importer: &Self, base: &'static NodeType| -> Vec<(NodeId, OwnId)> {
+            let is = |id: &OwnId| importer.graph.node(*id).node_type().is_a(base);
+            present.iter().filter(|(_, id)| is(id)).map(|(index, id)| (all[*index].node, *id)).collect()
+        };
+        of(self, &n_base::N_BASE).into_iter().for_each(|(from, to)| self.connect_object(from, to));
+        let constraints = of(self, &dynamic_constraint::DYNAMIC_CONSTRAINT);
+        constraints.into_iter().for_each(|(from, to)| self.connect_constraint(from, to));
+        of(self, &dyn_base::DYN_BASE).into_iter().for_each(|(from, to)| self.connect_effect(from, to));
+        self.connect_the_rest();
+        self.report_caches(&of(self, &n_base::N_BASE));
+    }
+
+    /// Our node for a shape or a transform.
+    pub(super) fn own_of(&self, node: NodeId) -> Option<OwnId> {
+        self.own.get(self.kept.by_node.get(&node)?).copied()
+    }
+
+    fn is_mesh(&self, kept: &Kept) -> bool {
+        let is_source = |wire: crate::scene::Wire| {
+            matches!(self.scene.path(wire.to).last().name, "imsh" | "inputMesh" | "rsmh" | "restShapeMesh")
+        };
+        self.scene.kind(kept.node) == "mesh" || self.scene.leaving(kept.node).any(is_source)
+    }
+
+    /// Meshes that cannot be built, and objects that have none for it.
+    fn without_mesh(&mut self, all: &[Kept], plans: &BTreeMap<usize, Plan>) -> Vec<usize> {
+        let mut missing = Vec::new();
+        for (index, plan) in plans {
+            if let Plan::Missing(why) = plan {
+                self.report_missing(&all[*index].name, why);
+                missing.push(*index);
+            }
+        }
+        for (index, kept) in all.iter().enumerate() {
+            if !matches!(self.scene.kind(kept.node), "nCloth" | "nRigid") {
+                continue;
+            }
+            let source = self.scene.source(kept.node, &["imsh", "inputMesh"], None);
+            let mesh = source.and_then(|wire| self.kept.by_node.get(&wire.from.node));
+            match mesh {
+                Some(mesh) if !missing.contains(mesh) => {}
+                Some(mesh) => {
+                    let why = format!("`{}` cannot be built", all[*mesh].name);
+                    self.report_missing(&kept.name, &why);
+                    missing.push(index);
+                }
+                None => {
+                    self.report_missing(&kept.name, "no mesh is connected to it");
+                    missing.push(index);
+                }
+            }
+        }
+        missing
+    }
+
+    /// Sets the values of a node of which only some have a row: a primitive, a mesh.
+    pub(super) fn set_given(&mut self, from: NodeId, to: OwnId, node_type: &'static NodeType) {
+        let before = self.omissions.clone();
+        self.set_values(from, to, node_type);
+        let noted = std::mem::replace(&mut self.omissions, before);
+        noted.iter().filter(|(_, cause)| !matches!(cause, Cause::Unused(_))).for_each(|(what, cause)| {
+            self.omissions.add(what, cause.clone());
+        });
+    }
+
+    /// The film back is one attribute of two numbers in a file.
+    fn set_camera(&mut self, from: NodeId, to: OwnId) {
+        use attributes::camera::{HORIZONTAL_FILM_APERTURE, VERTICAL_FILM_APERTURE};
+        let Some(values) = self.scene.value(from, &["cap", "cameraAperture"]) else { return };
+        let rows = [&HORIZONTAL_FILM_APERTURE.row, &VERTICAL_FILM_APERTURE.row];
+        for (row, x) in rows.into_iter().zip(values.numbers()) {
+            self.set(to, row, Setting::Fixed(Value::Float(x)));
+        }
+    }
+
+    /// The model of resistances, and the start frame. Resistances of Maya are counts of iterations.
+    fn set_nucleus(&mut self, from: NodeId, to: OwnId) {
+        let row = &nucleus::RESISTANCE_MODEL.row;
+        if !self.is_own && !self.options.physical {
+            self.set(to, row, Setting::Fixed(Value::Choice(Choice(0))));
+        }
+        let stored = self.scene.stored(from, &["stf", "startFrame"]);
+        let is_automatic = self.is_own && {
+            let marks = self.scene.string(from, &[MARK_AUTOMATIC]).unwrap_or_default();
+            marks.split(' ').any(|mark| mark == nucleus::START_FRAME.row.name)
+        };
+        let frame = stored.unwrap_or(1.0);
+        if !is_automatic && (frame != self.frames[0] as f64 || (self.is_own && stored.is_some())) {
+            self.set(to, &nucleus::START_FRAME.row, Setting::Fixed(Value::Float(frame)));
+        }
+    }
+
+    /// Ours computes these where they are left out; in a file of Maya's, left out means the default of the node.
+    fn set_creation_values(&mut self, from: NodeId, to: OwnId, node_type: &'static NodeType) {
+        if self.is_own || self.scene.kind(from) == "nParticle" {
+            return;
+        }
+        let rows = ["thickness", "pushOutRadius", "selfCollisionFlag", "selfCollideWidthScale"];
+        for row in rows.iter().filter_map(|name| node_type.attribute(name)) {
+            let is_used = node_type != &n_rigid::N_RIGID || matches!(row.name, "thickness");
+            let is_given =
+                self.scene.assigned(from, ANY).any(|set| [row.name, row.short].contains(&set.segment.name));
+            if let (true, false, Some(default)) = (is_used, is_given, &row.default) {
+                self.set(to, row, Setting::from(default.clone()));
+            }
+        }
+    }
+
+    /// Recorded results: the object would play them in Maya.
+    fn report_caches(&mut self, objects: &[(NodeId, OwnId)]) {
+        let scene = self.scene;
+        for (from, to) in objects {
+            let Some(wire) = scene.source(*from, &["pfc", "playFromCache"], None) else { continue };
+            let name = scene.string(wire.from.node, &["cn", "cacheName"]).unwrap_or_default();
+            let folder = scene.string(wire.from.node, &["cp", "cachePath"]).unwrap_or_default();
+            let how = format!(
+                "it is simulated instead; `nucleus diff` compares the run with `{folder}{name}.xml`, and \
+                 `nucleus import {name}.xml -o {name}.mcap` makes a cache of it"
+            );
+            self.omissions.add(self.graph.node(*to).name(), Cause::Cache(how));
+        }
+        for (from, to) in objects {
+            if !self.is_joined(*to) && !self.is_own {
+                self.omissions.add(scene.name(*from), Cause::NoNucleus);
+            }
+        }
+    }
+
+    /// A file that a scene names, as an absolute path; `None` if it is not there or is no picture that is read.
+    pub(super) fn locate(&self, path: &str) -> Option<String> {
+        if self.is_own {
+            return Some(path.to_owned());
+        }
+        if !path.to_ascii_lowercase().ends_with(".png") {
+            return None;
+        }
+        let folder = self.scene.texts.first()?.path.parent().unwrap_or(Path::new(""));
+        let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
+        let found = [folder.join(path), folder.join(name), folder.join("sourceimages").join(name)];
+        let found = found.into_iter().find(|file| file.is_file())?.canonicalize().ok()?;
+        Some(found.to_str()?.to_owned())
+    }
+}
+
+/// The frames of the scene: the playback range, from the first start frame of a nucleus.
+fn frames(scene: &MayaScene, kept: &KeptNodes, is_own: bool) -> [i64; 2] {
+    let whole = |x: f64| x.clamp(-1e6, 1e6).round() as i64;
+    let [first, last] = scene.playback.unwrap_or([1.0, 120.0]).map(whole);
+    let nuclei = kept.all.iter().filter(|kept| scene.kind(kept.node) == "nucleus");
+    let start = nuclei.map(|kept| whole(scene.stored_or(kept.node, &["stf", "startFrame"], 1.0))).min();
+    let start = if is_own { first } else { start.unwrap_or(first) };
+    [start, last.max(if is_own { start } else { start + 1 })]
+}

@@ -1,0 +1,161 @@
+//! Meshes as nodes of ours: a primitive where it is one, else an OBJ file, or one for each frame.
+
+use nucleus_graph::attributes::{self, Attribute, NodeType, Value, mesh};
+use nucleus_graph::graph::{NodeId as OwnId, Setting};
+
+use crate::mesh::{Built, obj_text};
+use crate::omissions::Cause;
+use crate::scene::NodeId;
+
+use super::importer::Importer;
+
+/// What a mesh becomes.
+pub(super) enum Plan {
+    /// A primitive of ours, by its creation node.
+    Primitive(NodeId, &'static NodeType),
+    /// The file that a scene of ours names.
+    File(String),
+    /// The text of an OBJ file that the artist gives.
+    Given(String),
+    /// The mesh at the first frame, which may change over time.
+    Built(Built),
+    /// It cannot be built, and why.
+    Missing(String),
+}
+
+impl Importer<'_> {
+    /// Decides what a mesh becomes; `name` is that of our node.
+    pub(super) fn plan(&self, id: NodeId, name: &str) -> Plan {
+        let scene = self.scene;
+        let names = [name, scene.name(id)];
+        if let Some((_, path)) = self.options.meshes.iter().find(|(given, _)| names.contains(&given.as_str()))
+        {
+            return match std::fs::read_to_string(path) {
+                Ok(text) => Plan::Given(text),
+                Err(error) => Plan::Missing(format!("`{}` cannot be read: {error}", path.display())),
+            };
+        }
+        if self.is_own
+            && let Some(file) = scene.string(id, &[mesh::FILE.row.name])
+            && scene.node(id).added.iter().any(|(long, _)| **long == *mesh::FILE.row.name)
+        {
+            return Plan::File(file);
+        }
+        if let Some(plan) = self.own_primitive(id) {
+            return plan;
+        }
+        let start = self.frames[0] as f64;
+        let built = match scene.kind(id) {
+            "mesh" => self.values.mesh(id, start),
+            // The history flows into the object without a shape between.
+            _ => match self.history_output(id) {
+                Some(plug) => self.values.mesh_from(plug, start),
+                None => Err(format!("{} is not built", scene.kind(id))),
+            },
+        };
+        match built {
+            Ok(built) if built.mesh.face_count() == 0 => Plan::Missing("it has no face".to_owned()),
+            Ok(built) => Plan::Built(built),
+            Err(why) => Plan::Missing(why),
+        }
+    }
+
+    /// The primitive of ours that a shape shows unchanged.
+    fn own_primitive(&self, id: NodeId) -> Option<Plan> {
+        let scene = self.scene;
+        if scene.units.centimetres != 1.0 || scene.kind(id) != "mesh" {
+            return None;
+        }
+        let source = scene.source(id, &["i", "inMesh"], None)?.from.node;
+        let is_moved = scene.arriving(source).next().is_some();
+        let tweaks = scene.array(id, &["pt", "pnts"], 3, &[&["px"], &["py"], &["pz"]]).unwrap_or_default();
+        let is_tweaked = tweaks.iter().any(|x| *x != 0.0);
+        let upright = crate::mesh::is_own_primitive(scene, source, self.is_own);
+        let node_type = attributes::node_type(scene.kind(source))?;
+        (upright && !is_moved && !is_tweaked).then_some(Plan::Primitive(source, node_type))
+    }
+
+    fn history_output(&self, id: NodeId) -> Option<crate::scene::PlugRef> {
+        let inputs = ["imsh", "inputMesh", "rsmh", "restShapeMesh"];
+        let feeds = |wire: &crate::scene::Wire| inputs.contains(&self.scene.path(wire.to).last().name);
+        self.scene.leaving(id).find(feeds).map(|wire| wire.from)
+    }
+
+    /// Gives a mesh node its values, and writes the files that it names.
+    pub(super) fn fill(&mut self, id: NodeId, to: OwnId, plan: Plan) -> Result<(), String> {
+        let file = |text: String| Setting::Fixed(Value::Text(text));
+        let row: &'static Attribute = &mesh::FILE.row;
+        let stem = self.file_stem(to);
+        match plan {
+            Plan::Primitive(source, node_type) => self.set_given(source, to, node_type),
+            Plan::File(name) => self.set(to, row, file(name)),
+            Plan::Given(text) => {
+                let name = format!("{stem}.obj");
+                (self.options.write)(&name, text)?;
+                self.set(to, row, file(name));
+            }
+            Plan::Built(built) => {
+                let name = match built
+                    .is_deformed
+                    .then(|| self.sequence(id, &stem, &built))
+                    .transpose()?
+                    .flatten()
+                {
+                    Some(name) => name,
+                    None => {
+                        let name = format!("{stem}.obj");
+                        (self.options.write)(&name, obj_text(&built.mesh))?;
+                        name
+                    }
+                };
+                for (what, cause) in built.omitted {
+                    self.omissions.add(what, cause);
+                }
+                self.set(to, row, file(name));
+            }
+            Plan::Missing(_) => {}
+        }
+        Ok(())
+    }
+
+    /// A file for each frame, if the mesh changes; its name with `####` for the frame.
+    fn sequence(&mut self, id: NodeId, stem: &str, first: &Built) -> Result<Option<String>, String> {
+        let frames: Vec<i64> = crate::animation::Evaluator::sampled(self.frames).collect();
+        let at = |importer: &Self, frame: i64| importer.values.mesh(id, frame as f64).map(|built| built.mesh);
+        let same_points = |mesh: &crate::mesh::Poly| mesh.points == first.mesh.points;
+        if frames.iter().all(|frame| at(self, *frame).is_ok_and(|mesh| same_points(&mesh))) {
+            return Ok(None);
+        }
+        for frame in frames {
+            let mesh = at(self, frame)?;
+            (self.options.write)(&format!("{stem}.{frame:04}.obj"), obj_text(&mesh))?;
+        }
+        Ok(Some(format!("{stem}.####.obj")))
+    }
+
+    /// The folder and name of the files of a mesh.
+    fn file_stem(&self, to: OwnId) -> String {
+        let name: String = self
+            .graph
+            .node(to)
+            .name()
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+            .collect();
+        // Names that differ in other characters must not share a file.
+        let number = self.graph.iter().take_while(|(id, _)| *id != to).filter(|(_, node)| {
+            let other: String =
+                node.name().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+            other.eq_ignore_ascii_case(&name)
+        });
+        match number.count() {
+            0 => format!("{}/{name}", self.options.folder),
+            k => format!("{}/{name}_{}", self.options.folder, k + 1),
+        }
+    }
+
+    /// Notes that a mesh is missing, and with it an object.
+    pub(super) fn report_missing(&mut self, object: &str, why: &str) {
+        self.omissions.add(object, Cause::Mesh(why.to_owned()));
+    }
+}

@@ -1,0 +1,24 @@
+//! From Maya's nodes to ours: which are carried over, under which names, with which values and connections.
+//!
+//! | You want to know...                                   | Read                |
+//! |-------------------------------------------------------|---------------------|
+//! | which nodes a simulation needs                        | `kept.rs`           |
+//! | values of attributes, ramps, vertex maps              | `attributes.rs`     |
+//! | transforms with pivots, joints, shear                 | `transforms.rs`     |
+//! | meshes: primitives of ours, OBJ files, sequences      | `meshes.rs`         |
+//! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
+//! | all of it in order                                    | [`Importer`]        |
+//!
+//! **Invariant:** what the tables of `nucleus_graph::attributes` name is carried over by them; nothing here lists the
+//! attributes of cloth.
+
+mod attributes;
+mod constraints;
+mod importer;
+mod kept;
+mod meshes;
+mod transforms;
+mod wiring;
+
+pub(crate) use importer::Importer;
+pub(crate) use kept::{MARK_AUTOMATIC, MARK_NAME, MARK_PAINT, OWN_FILE};

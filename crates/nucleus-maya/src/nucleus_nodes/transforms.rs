@@ -1,0 +1,294 @@
+//! Transforms of Maya as transforms of ours, which have no pivots: the same placement at every frame, with the same keys.
+//!
+//! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO T`), and through `S R T` in
+//! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain
+//! of up to three.
+
+use nucleus_graph::animation::{Curve, Key};
+use nucleus_graph::attributes::{Attribute, Choice, Value, transform};
+use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
+
+use crate::animation::{Matrix, names};
+use crate::omissions::Cause;
+use crate::scene::NodeId;
+
+use super::attributes::of_channel;
+use super::importer::Importer;
+
+/// Channels of translate, rotate and scale, and the rotation order.
+struct Parts {
+    translate: [Channel; 3],
+    rotate: [Channel; 3],
+    scale: [Channel; 3],
+    order: usize,
+}
+
+fn is_fixed(channels: &[Channel; 3]) -> bool {
+    channels.iter().all(|channel| matches!(channel, Channel::Fixed(_)))
+}
+
+fn fixed(values: [f64; 3]) -> [Channel; 3] {
+    values.map(Channel::Fixed)
+}
+
+/// A channel moved by an offset.
+fn shifted(channel: &Channel, by: f64) -> Channel {
+    match channel {
+        Channel::Fixed(x) => Channel::Fixed(x + by),
+        Channel::Keyed(curve) => {
+            let keys = curve.keys().iter().map(|key| Key { value: key.value + by, ..*key }).collect();
+            let [before, after] = curve.infinities();
+            // Moving finite keys by a finite offset keeps them valid.
+            Curve::new(keys)
+                .map_or_else(|_| channel.clone(), |moved| Channel::Keyed(moved.with_infinity(before, after)))
+        }
+    }
+}
+
+fn all_shifted(channels: &[Channel; 3], by: [f64; 3]) -> [Channel; 3] {
+    [0, 1, 2].map(|k| shifted(&channels[k], by[k]))
+}
+
+impl Importer<'_> {
+    /// Places our node as the transform, or the node with a transform of its own, is in Maya.
+    pub(super) fn place(&mut self, from: NodeId, to: OwnId) {
+        let scene = self.scene;
+        let start = self.frames[0] as f64;
+        let parts = self.parts(from);
+        let inherits = scene.switch_or(from, names::INHERITS, true);
+        let mut parent = if inherits { self.placed_parent(from) } else { None };
+        if let Some(offset) =
+            scene.matrix(from, names::OFFSET, None).map(Matrix::of_rows).filter(|m| !m.is_identity())
+        {
+            let chain = self.add_transform(to, "offset");
+            self.hang(chain, parent);
+            parent = Some(self.set_matrix(chain, &offset, "offset2"));
+        }
+        let vector = |vector| self.values.lengths(from, vector, start);
+        let (rp, rpt, sp, spt) = (
+            vector(names::ROTATE_PIVOT),
+            vector(names::ROTATE_PIVOT_TRANSLATE),
+            vector(names::SCALE_PIVOT),
+            vector(names::SCALE_PIVOT_TRANSLATE),
+        );
+        let axis = self.values.degrees(from, names::ROTATE_AXIS, start);
+        let is_joint = scene.kind(from) == "joint";
+        let orient = if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] };
+        let shear = self.values.vector(from, names::SHEAR, [0.0; 3], start);
+        let is_zero = |all: &[[f64; 3]]| all.iter().flatten().all(|x| *x == 0.0);
+        if is_zero(&[rp, rpt, sp, spt, axis, orient, shear]) {
+            self.hang(to, parent);
+            self.set_parts(from, to, &parts);
+            return;
+        }
+        self.refuse_animated_pivots(from);
+        if is_fixed(&parts.rotate) && is_fixed(&parts.scale) {
+            self.place_folded(from, to, parent, &parts);
+            return;
+        }
+        if !is_zero(&[shear]) {
+            let why = "its shear is left out where its rotation or scale is animated".to_owned();
+            self.omissions.add(scene.name(from), Cause::Approximate(why));
+        }
+        let [rp, rpt, sp, spt] = if is_joint { [[0.0; 3]; 4] } else { [rp, rpt, sp, spt] };
+        let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
+        let minus = |a: [f64; 3]| a.map(|x| -x);
+        let order = parts.order;
+        let mut outer = all_shifted(&parts.translate, add(rp, rpt));
+        if orient != [0.0; 3] {
+            let chain = self.add_transform(to, "orient");
+            self.hang(chain, parent);
+            self.set_channels(chain, &transform::TRANSLATE.row, outer, 0.0);
+            self.set_channels(chain, &transform::ROTATE.row, fixed(orient), 0.0);
+            (parent, outer) = (Some(chain), fixed([0.0; 3]));
+        }
+        let turn = self.add_transform(to, "rotate");
+        self.hang(turn, parent);
+        self.set_channels(turn, &transform::TRANSLATE.row, outer, 0.0);
+        self.set_channels(turn, &transform::ROTATE.row, parts.rotate, 0.0);
+        self.set_order(turn, order);
+        let mut inner = turn;
+        if axis != [0.0; 3] {
+            inner = self.add_transform(to, "axis");
+            self.hang(inner, Some(turn));
+            self.set_channels(inner, &transform::ROTATE.row, fixed(axis), 0.0);
+        }
+        let between = add(add(sp, spt), minus(rp));
+        let scale = if sp == [0.0; 3] { to } else { self.add_transform(to, "scale") };
+        self.hang(scale, Some(inner));
+        self.set_channels(scale, &transform::TRANSLATE.row, fixed(between), 0.0);
+        self.set_channels(scale, &transform::SCALE.row, parts.scale, 1.0);
+        if scale != to {
+            self.hang(to, Some(scale));
+            self.set_channels(to, &transform::TRANSLATE.row, fixed(minus(sp)), 0.0);
+        }
+    }
+
+    /// Fixed turns and scales: one transform, or two if there is shear. The translation may be animated.
+    fn place_folded(&mut self, from: NodeId, to: OwnId, parent: Option<OwnId>, parts: &Parts) {
+        let start = self.frames[0] as f64;
+        let mut whole = self.values.local(from, start);
+        if let Some(offset) = self.scene.matrix(from, names::OFFSET, None).map(Matrix::of_rows)
+            && let Some(back) = offset.inverse()
+        {
+            whole = whole.then(&back);
+        }
+        let at = self.values.lengths(from, names::TRANSLATE, start);
+        let by = [0, 1, 2].map(|k| whole.0[3][k] - at[k]);
+        match whole.decomposed(parts.order) {
+            Some([_, rotate, scale]) => {
+                self.hang(to, parent);
+                self.set_channels(to, &transform::TRANSLATE.row, all_shifted(&parts.translate, by), 0.0);
+                self.set_channels(to, &transform::ROTATE.row, fixed(rotate), 0.0);
+                self.set_channels(to, &transform::SCALE.row, fixed(scale), 1.0);
+                self.set_order(to, parts.order);
+            }
+            None => {
+                let outer = self.add_transform(to, "shear");
+                self.hang(outer, parent);
+                let inner = self.set_sheared(outer, to, &whole);
+                self.hang(inner, Some(outer));
+                self.set_channels(outer, &transform::TRANSLATE.row, all_shifted(&parts.translate, by), 0.0);
+            }
+        }
+    }
+
+    /// Gives a transform the placement of a matrix; with shear, it takes a second one below it. Returns the lower one.
+    fn set_matrix(&mut self, to: OwnId, matrix: &Matrix, suffix: &str) -> OwnId {
+        let at = [0, 1, 2].map(|k| matrix.0[3][k]);
+        self.set_channels(to, &transform::TRANSLATE.row, fixed(at), 0.0);
+        if let Some([_, rotate, scale]) = matrix.decomposed(0) {
+            self.set_channels(to, &transform::ROTATE.row, fixed(rotate), 0.0);
+            self.set_channels(to, &transform::SCALE.row, fixed(scale), 1.0);
+            return to;
+        }
+        let inner = self.add_transform(to, suffix);
+        self.hang(inner, Some(to));
+        self.set_sheared(to, inner, matrix)
+    }
+
+    /// A map with shear is a rotation, a scale and a rotation (singular value decomposition): `A` below, `Σ B` above.
+    fn set_sheared(&mut self, outer: OwnId, inner: OwnId, matrix: &Matrix) -> OwnId {
+        let linear = nalgebra::Matrix3::from_fn(|row, column| matrix.0[row][column]);
+        let svd = linear.svd(true, true);
+        let (Some(mut a), Some(mut b)) = (svd.u, svd.v_t) else { return inner };
+        let mut stretch: [f64; 3] = svd.singular_values.into();
+        // Both must be rotations: a mirror moves into the scale.
+        for (m, is_column) in [(&mut a, true), (&mut b, false)] {
+            if m.determinant() < 0.0 {
+                (0..3).for_each(|k| if is_column { m[(k, 2)] = -m[(k, 2)] } else { m[(2, k)] = -m[(2, k)] });
+                stretch[2] = -stretch[2];
+            }
+        }
+        for (to, turn) in [(inner, a), (outer, b)] {
+            let mut own = Matrix::IDENTITY;
+            (0..9).for_each(|k| own.0[k / 3][k % 3] = turn[(k / 3, k % 3)]);
+            if let Some([_, rotate, _]) = own.decomposed(0) {
+                self.set_channels(to, &transform::ROTATE.row, fixed(rotate), 0.0);
+            }
+        }
+        self.set_channels(outer, &transform::SCALE.row, fixed(stretch), 1.0);
+        inner
+    }
+
+    /// The channels of a transform, in centimetres and degrees.
+    fn parts(&mut self, from: NodeId) -> Parts {
+        let units = self.scene.units;
+        let mut channels = |vector, factor: f64, default: f64| {
+            self.values.channels((from, vector), (factor, default), self.frames, &mut self.omissions)
+        };
+        Parts {
+            translate: channels(names::TRANSLATE, units.centimetres, 0.0),
+            rotate: channels(names::ROTATE, units.degrees, 0.0),
+            scale: channels(names::SCALE, 1.0, 1.0),
+            order: self.scene.stored_or(from, names::ROTATE_ORDER, 0.0).clamp(0.0, 5.0) as usize,
+        }
+    }
+
+    /// Sets what the file sets.
+    fn set_parts(&mut self, from: NodeId, to: OwnId, parts: &Parts) {
+        let given = |vector: crate::scene::Vector3| {
+            let mut all = vector.parts.iter().chain(std::iter::once(&vector.whole));
+            all.any(|names| {
+                self.scene.value(from, names).is_some() || self.scene.source(from, names, None).is_some()
+            })
+        };
+        let is_own = self.is_own;
+        let sets = [
+            (&transform::TRANSLATE.row, &parts.translate, 0.0, given(names::TRANSLATE)),
+            (&transform::ROTATE.row, &parts.rotate, 0.0, given(names::ROTATE)),
+            (&transform::SCALE.row, &parts.scale, 1.0, given(names::SCALE)),
+        ];
+        for (row, channels, default, given) in sets {
+            if given {
+                // A file of ours says what is set, even if it is the default.
+                let default = if is_own { f64::NAN } else { default };
+                self.set_channels(to, row, channels.clone(), default);
+            }
+        }
+        if self.scene.value(from, names::ROTATE_ORDER).is_some() {
+            self.set_order(to, parts.order);
+        }
+        let visibility = &transform::VISIBILITY.row;
+        let names: &[&str] = &["v", "visibility"];
+        if is_own
+            && let Some(visible) = self.values.channel((from, names), 1.0, self.frames, &mut self.omissions)
+        {
+            self.set(to, visibility, of_channel(visible, visibility));
+        }
+    }
+
+    /// Sets a vector, unless all of it is at its default.
+    fn set_channels(&mut self, to: OwnId, row: &'static Attribute, channels: [Channel; 3], default: f64) {
+        if channels.iter().all(|channel| *channel == Channel::Fixed(default)) {
+            return;
+        }
+        self.set(to, row, Setting::Parts(channels));
+    }
+
+    fn set_order(&mut self, to: OwnId, order: usize) {
+        if order != 0 || self.is_own {
+            self.set(to, &transform::ROTATE_ORDER.row, Setting::Fixed(Value::Choice(Choice(order as i32))));
+        }
+    }
+
+    fn add_transform(&mut self, of: OwnId, suffix: &str) -> OwnId {
+        let name = format!("{}_{suffix}", self.graph.node(of).name());
+        let name = self.kept.free_name(&name);
+        // The name is free and valid.
+        self.graph.add(&name, &transform::TRANSFORM).unwrap_or(of)
+    }
+
+    fn hang(&mut self, node: OwnId, parent: Option<OwnId>) {
+        if let Some(parent) = parent {
+            // Maya's parents form no cycle either.
+            let _ = self.graph.set_parent(node, parent);
+        }
+    }
+
+    /// Our node for the parent of a transform.
+    fn placed_parent(&self, from: NodeId) -> Option<OwnId> {
+        let parent = self.scene.node(from).parent?;
+        self.own_of(parent)
+    }
+
+    fn refuse_animated_pivots(&mut self, from: NodeId) {
+        let pivots = [
+            names::ROTATE_PIVOT,
+            names::SCALE_PIVOT,
+            names::ROTATE_PIVOT_TRANSLATE,
+            names::SCALE_PIVOT_TRANSLATE,
+        ];
+        let driven = |vector: &crate::scene::Vector3| {
+            vector
+                .parts
+                .iter()
+                .chain(std::iter::once(&vector.whole))
+                .any(|n| self.scene.source(from, n, None).is_some())
+        };
+        if pivots.iter().any(driven) {
+            let what = format!("{}.rotatePivot", self.scene.name(from));
+            self.omissions.add(what, Cause::Driven("curve or a node; pivots stay where they are".to_owned()));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Units of a file: `currentUnit -l centimeter -a degree -t film`.
+
+/// What a unit of a file is in Maya's own: centimetres, degrees and frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// Centimetres in a unit of length.
+    pub centimetres: f64,
+    /// Degrees in a unit of angle.
+    pub degrees: f64,
+    /// Frames per second.
+    pub fps: f64,
+}
+
+impl Default for Units {
+    fn default() -> Self {
+        Self { centimetres: 1.0, degrees: 1.0, fps: 24.0 }
+    }
+}
+
+/// Maya's names of frame rates.
+const RATES: [(&str, f64); 7] = [
+    ("game", 15.0),
+    ("film", 24.0),
+    ("pal", 25.0),
+    ("ntsc", 30.0),
+    ("show", 48.0),
+    ("palf", 50.0),
+    ("ntscf", 60.0),
+];
+
+impl Units {
+    /// Takes a unit of length; returns whether it is known.
+    pub fn set_length(&mut self, name: &str) -> bool {
+        self.centimetres = match name {
+            "mm" | "millimeter" => 0.1,
+            "cm" | "centimeter" => 1.0,
+            "m" | "meter" => 100.0,
+            "km" | "kilometer" => 100_000.0,
+            "in" | "inch" => 2.54,
+            "ft" | "foot" => 30.48,
+            "yd" | "yard" => 91.44,
+            "mi" | "mile" => 160_934.4,
+            _ => return false,
+        };
+        true
+    }
+
+    /// Takes a unit of angle; returns whether it is known.
+    pub fn set_angle(&mut self, name: &str) -> bool {
+        self.degrees = match name {
+            "deg" | "degree" => 1.0,
+            "rad" | "radian" => 180.0 / std::f64::consts::PI,
+            _ => return false,
+        };
+        true
+    }
+
+    /// Takes a unit of time; returns whether it is known.
+    pub fn set_time(&mut self, name: &str) -> bool {
+        let named = RATES.iter().find(|(known, _)| *known == name).map(|(_, fps)| *fps);
+        let number = || name.strip_suffix("fps").and_then(|number| number.parse::<f64>().ok());
+        let other = || match name {
+            "sec" => Some(1.0),
+            "min" => Some(1.0 / 60.0),
+            "hour" => Some(1.0 / 3600.0),
+            "millisec" => Some(1000.0),
+            _ => None,
+        };
+        match named.or_else(number).or_else(other).filter(|fps| *fps > 0.0 && fps.is_finite()) {
+            Some(fps) => {
+                self.fps = fps;
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Maya's name of a frame rate.
+    pub fn time_name(fps: f64) -> String {
+        let named = RATES.iter().find(|(_, known)| *known == fps);
+        named.map_or_else(|| format!("{fps}fps"), |(name, _)| (*name).to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_rate_is_read_as_it_is_named() {
+        for fps in [15.0, 24.0, 25.0, 30.0, 48.0, 60.0, 23.976, 120.0, 12.5] {
+            let mut units = Units::default();
+            assert!(units.set_time(&Units::time_name(fps)));
+            assert_eq!(units.fps, fps);
+        }
+        let mut units = Units::default();
+        assert!(!units.set_time("fortnight") && !units.set_time("0fps") && !units.set_time("nanfps"));
+        assert_eq!(units.fps, 24.0);
+    }
+}

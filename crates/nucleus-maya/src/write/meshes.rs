@@ -1,0 +1,104 @@
+//! Meshes of a scene: their points for the rule of thickness, and embedded in a shape.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use nucleus_core::Surface;
+use nucleus_graph::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
+use nucleus_graph::graph::NodeId;
+use nucleus_graph::mesh::{Primitive, read_obj};
+
+use super::Writer;
+
+impl Writer<'_> {
+    /// The surface of a mesh node at the first frame; `None` for a mesh that only displays another.
+    pub(super) fn surface_of(&self, id: NodeId) -> Result<Option<Surface>, String> {
+        let node = self.graph().node(id);
+        let count = |x: i64| u32::try_from(x).unwrap_or(1);
+        let kind = node.node_type();
+        let primitive = if kind == &poly_plane::POLY_PLANE {
+            use poly_plane::{HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
+            let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
+            Primitive::Plane([&WIDTH, &HEIGHT].map(|key| node.get(key)), steps)
+        } else if kind == &poly_sphere::POLY_SPHERE {
+            use poly_sphere::{RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_HEIGHT};
+            let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
+            Primitive::Sphere(node.get(&RADIUS), steps)
+        } else if kind == &poly_cube::POLY_CUBE {
+            use poly_cube::{
+                DEPTH, HEIGHT, SUBDIVISIONS_DEPTH, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH,
+            };
+            let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_DEPTH]
+                .map(|key| count(node.get(key)));
+            Primitive::Cube([&WIDTH, &HEIGHT, &DEPTH].map(|key| node.get(key)), steps)
+        } else if kind == &poly_cylinder::POLY_CYLINDER {
+            use poly_cylinder::{HEIGHT, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_CAPS, SUBDIVISIONS_HEIGHT};
+            let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_CAPS]
+                .map(|key| count(node.get(key)));
+            Primitive::Cylinder([&RADIUS, &HEIGHT].map(|key| node.get(key)), steps)
+        } else {
+            return self.file_surface(id);
+        };
+        primitive.surface().map(Some).map_err(|error| format!("`{}`: {error}", node.name()))
+    }
+
+    fn file_surface(&self, id: NodeId) -> Result<Option<Surface>, String> {
+        let file = self.graph().node(id).get(&mesh::FILE);
+        if file.is_empty() {
+            return Ok(None);
+        }
+        let path = self.scene.source.path(&numbered(&file, self.scene.time.start));
+        read_obj(&path).map(Some).map_err(|error| error.to_string())
+    }
+
+    /// Points, edges and faces of a mesh.
+    pub(super) fn embedded_mesh(&mut self, id: NodeId) -> Result<(), String> {
+        let Some(surface) = self.surface_of(id)? else { return Ok(()) };
+        let count = surface.positions.len();
+        let mut text = String::new();
+        let _ = write!(text, "\tsetAttr -s {count} \".vt[0:{}]\"", count.saturating_sub(1));
+        for p in &surface.positions {
+            let _ = write!(text, "\n\t\t{} {} {}", p.x, p.y, p.z);
+        }
+        text.push_str(";\n");
+        let mut numbers: HashMap<(u32, u32), i64> = HashMap::new();
+        let (mut edges, mut faces) = (String::new(), String::new());
+        for face in surface.faces.iter() {
+            let _ = write!(faces, "\n\t\tf {}", face.len());
+            for (k, &a) in face.iter().enumerate() {
+                let b = face[(k + 1) % face.len()];
+                let next = numbers.len() as i64;
+                // An edge that is walked backwards has the number -1 - n.
+                let number = match numbers.get(&(b, a)) {
+                    Some(number) => -1 - number,
+                    None => *numbers.entry((a, b)).or_insert_with(|| {
+                        let _ = write!(edges, "\n\t\t{a} {b} 0");
+                        next
+                    }),
+                };
+                let _ = write!(faces, " {number}");
+            }
+        }
+        let _ = writeln!(
+            text,
+            "\tsetAttr -s {} \".ed[0:{}]\"{edges};",
+            numbers.len(),
+            numbers.len().saturating_sub(1)
+        );
+        let faces_count = surface.faces.len();
+        let _ = writeln!(
+            text,
+            "\tsetAttr -s {faces_count} \".fc[0:{}]\" -type \"polyFaces\"{faces};",
+            faces_count.saturating_sub(1)
+        );
+        self.text.push_str(&text);
+        Ok(())
+    }
+}
+
+/// The file of a frame, where `####` stands for its number.
+fn numbered(file: &str, frame: i64) -> String {
+    let Some(first) = file.find('#') else { return file.to_owned() };
+    let digits = file[first..].bytes().take_while(|byte| *byte == b'#').count();
+    format!("{}{frame:0digits$}{}", &file[..first], &file[first + digits..])
+}
