@@ -18,18 +18,19 @@ use crate::bytes::{
 };
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::pressure::Chamber;
-use crate::contact::cloth::ClothContacts;
+use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::query::GROUP_SIZE;
 use crate::contact::material::ContactMaterial;
+use crate::contact::system::ContactSystem;
 use crate::input::frame::Elements;
 use crate::input::validation::is_in_range;
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
-use crate::solver::{ContactSystem, Solver};
+use crate::solver::Solver;
 use crate::state::State;
 use crate::state::kinematics::update_anchors;
 

@@ -6,6 +6,7 @@
 
 use crate::bytes::RestoreError;
 use crate::checkpoint;
+use crate::contact::contact_state::list_contact_states;
 use crate::input::frame::FrameInput;
 use crate::model::builder::ModelBuilder;
 use crate::output::{ContactState, PassCost, StepObserver, StepReport};
@@ -33,7 +34,7 @@ macro_rules! compiled {
             }
 
             fn contact_states(solver: &Solver<Self>, out: &mut Vec<Vec<ContactState>>) {
-                solver.list_contact_states(out);
+                list_contact_states(&solver.model, &solver.state, &solver.contact, out);
             }
 
             fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost> {

@@ -1,27 +1,21 @@
 //! The solver: its data in four groups (model, state, contact, threads), and its public methods.
 
-use std::sync::atomic::AtomicBool;
-
 use nalgebra::Vector3;
 
 use crate::bytes::RestoreError;
 use crate::constraints::whole;
-use crate::contact::cloth::ClothContacts;
-use crate::contact::collider::ColliderState;
-use crate::contact::collider::broad_phase::MotionBox;
-use crate::contact::collider::contacts::ColliderContacts;
-use crate::contact::ground::Ground;
-use crate::contact::material::ContactMaterial;
-use crate::contact::material::MaterialMaps;
+use crate::contact::system::{ContactPass, ContactSystem};
+use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::input::validation::LastPositions;
 use crate::input::{ClothId, ColliderId, PointId};
-use crate::math::{Real, Row4};
-use crate::model::builder::{Cloth, ModelBuilder};
-use crate::model::{ClothModel, ColliderModel};
+use crate::math::Real;
+use crate::model::builder::ModelBuilder;
+use crate::model::{ClothModel, ColliderModel, Model};
 use crate::output::{ContactState, StateView, StepObserver};
 use crate::output::{PassCost, StepReport};
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
 use crate::state::kinematics::update_anchors;
 
@@ -34,49 +28,6 @@ pub struct Solver<R: Real = f32> {
     /// Colliders in motion, contacts and what is known about candidates.
     pub(crate) contact: ContactSystem<R>,
     pub(crate) pool: ThreadPool,
-}
-
-/// The objects of a scene, by their ids.
-pub struct Model<R: Real> {
-    pub cloths: Vec<ClothModel<R>>,
-    pub colliders: Vec<ColliderModel>,
-}
-
-/// What contact keeps from time step to time step.
-pub struct ContactSystem<R: Real> {
-    /// By collider.
-    pub collider_states: Vec<ColliderState>,
-    /// Candidate pairs, per cloth and collider.
-    pub collider_contacts: Vec<ColliderContacts<R>>,
-    /// By cloth: the candidate interval of its pairs, and that of its active pairs, as shares of the frame.
-    pub candidate_intervals: Vec<[f64; 2]>,
-    pub active_windows: Vec<[f64; 2]>,
-    /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
-    pub frame_travel: Vec<[R; 3]>,
-    /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
-    /// scene has no collider.
-    pub window_bounds: Vec<MotionBox<R>>,
-    pub interval_bounds: Vec<MotionBox<R>>,
-    /// How far the window bounds of each point have grown in this frame, in metres.
-    pub bound_growth: Vec<R>,
-    /// Points with new motion bounds, whose pairs are to be found again.
-    pub bounds_violated: Vec<bool>,
-    /// Contact material of each cloth with each collider in this frame, by cloth and collider.
-    pub collider_materials: Vec<Option<ContactMaterial<R>>>,
-    /// Contact material of each cloth with the ground plane.
-    pub ground_materials: Vec<Option<ContactMaterial<R>>>,
-    /// Vertex maps of contact.
-    pub material_maps: MaterialMaps<R>,
-    /// Contact of cloth with itself and with other cloth; none where no two elements can ever touch.
-    pub cloth_contacts: Option<ClothContacts<R>>,
-    /// The cloths whose contacts a pass resolves; all where it is empty.
-    pub contact_mask: Vec<bool>,
-    /// Whether each cloth has a contact without certificate.
-    pub has_unproven: Vec<AtomicBool>,
-    /// Whether the last frame had a contact.
-    pub touches: bool,
-    /// The ground plane.
-    pub ground: Ground<R>,
 }
 
 /// `f32` or `f64`: a scalar for which this crate compiles the whole solver (`compiled.rs`).
@@ -170,9 +121,16 @@ impl<R: Real> Solver<R> {
         solver
     }
 
-    /// Moves every collider to a time of the frame, 0 to 1.
-    pub(crate) fn set_time(&mut self, now: f64) {
-        self.contact.collider_states.iter_mut().for_each(|collider| collider.now = now);
+    /// What the contact passes of a time step read and write.
+    pub(crate) fn contact_pass<'a>(
+        &'a mut self,
+        frame: &'a FrameInput,
+        schedule: &'a Schedule<R>,
+        span: StepInterval,
+        counters: &'a mut ContactCounters,
+    ) -> ContactPass<'a, R> {
+        let Self { model, state, contact, pool } = self;
+        ContactPass { model, frame, schedule, span, pool, state, contact, counters }
     }
 
     /// The mass of a point in kilograms, when it is not pinned.
@@ -192,40 +150,6 @@ impl<R: Real> Solver<R> {
         let first = model.points().start;
         out.clear();
         out.extend(model.order.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
-    }
-}
-
-impl<R: Real> ContactSystem<R> {
-    fn new(
-        cloths: &[Cloth],
-        models: &[ClothModel<R>],
-        colliders: &[ColliderModel],
-        state: &State<R>,
-        self_collides: bool,
-    ) -> Self {
-        let bounded = if colliders.is_empty() { 0 } else { state.anchor.len() };
-        let with_each =
-            |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
-        Self {
-            collider_states: colliders.iter().map(ColliderState::new).collect(),
-            collider_contacts: (0..models.len()).flat_map(with_each).collect(),
-            candidate_intervals: vec![[0.0; 2]; models.len()],
-            active_windows: vec![[0.0; 2]; models.len()],
-            frame_travel: vec![[R::ZERO; 3]; models.len()],
-            window_bounds: vec![[Row4::ZERO; 2]; bounded],
-            interval_bounds: vec![[Row4::ZERO; 2]; bounded],
-            bound_growth: vec![R::ZERO; bounded],
-            bounds_violated: vec![true; bounded],
-            collider_materials: Vec::new(),
-            ground_materials: Vec::new(),
-            material_maps: MaterialMaps::new(cloths, models, state.anchor.len()),
-            cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
-            contact_mask: Vec::with_capacity(models.len()),
-            has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
-            // Cloth that starts from a saved state may be in contact; only a frame can tell.
-            touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
-            ground: Ground::default(),
-        }
     }
 }
 

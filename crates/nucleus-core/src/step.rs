@@ -17,6 +17,13 @@ use std::sync::atomic::Ordering;
 use crate::constraints::damp::damp;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
+use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
+use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
+use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
+use crate::contact::force_field::apply_force_fields;
+use crate::contact::push_out::push_out;
+use crate::contact::restitution::apply_restitution;
+use crate::contact::safeguard::safeguard;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::input::validation::{InvalidInput, sanitize};
@@ -26,6 +33,7 @@ use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
 use crate::report::diagnostics::report;
+use crate::schedule::adaptive::splits;
 use crate::schedule::{Direction, Pass, Schedule, TimeStep};
 use crate::solver::{CompiledReal, Solver};
 use crate::state::kinematics::update_anchors;
@@ -70,15 +78,15 @@ fn solve_frame<R: CompiledReal>(
 /// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
 /// is evaluated once per frame and interpolated inside it (§2.4).
 fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
-    solver.begin_collider_contact(frame);
-    solver.begin_contact(frame);
+    begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
+    begin_cloth_contact(&solver.state, &mut solver.contact, frame);
     solver.state.move_anchors();
     solver.state.carry_air(frame);
     for pin in &frame.pins {
         let row = solver.model.cloths[pin.cloth.index()].place(pin.point.index());
         let is_moved_elsewhere = solver.state.pin(row, pin, frame.duration);
         if is_moved_elsewhere {
-            solver.invalidate_bounds(row as usize);
+            solver.contact.invalidate_bounds(row as usize);
         }
     }
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
@@ -88,7 +96,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
         collider.begin_frame(&motion.start, &motion.end);
     }
-    solver.find_near_colliders(frame);
+    find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
     solver.contact.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
 }
 
@@ -113,10 +121,12 @@ fn solve_substeps<R: CompiledReal>(
             f64::from(substep - 1) / f64::from(schedule.substeps),
             frame.duration / f64::from(schedule.substeps),
         );
-        solver.push_out(frame, time);
-        solver.apply_force_fields(frame, time, length);
+        let Solver { model, state, contact, .. } = solver;
+        push_out(model, state, contact, frame, time);
+        apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
-            let splits = solver.splits(frame, schedule, schedule.span(step), &max_speeds);
+            let Solver { model, state, contact, .. } = solver;
+            let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
             let direction = if alternates_direction { schedule.direction(step) } else { Direction::Forward };
             let schedule = schedule.split(frame, splits);
             for (index, span) in schedule.time_steps(step) {
@@ -127,7 +137,7 @@ fn solve_substeps<R: CompiledReal>(
         }
         let substep_length = schedule.h * f64::from(schedule.steps);
         damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
-        solver.set_time(f64::from(substep) / f64::from(schedule.substeps));
+        solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
     }
@@ -176,20 +186,22 @@ fn solve_time_step<R: CompiledReal>(
                 );
             }
             Pass::ClothContact => {
-                solver.apply_cloth_adhesion(frame, schedule, span, counters);
-                solver.resolve_cloth_contacts(1.0, frame, schedule, span, counters, observer);
+                let pass = &mut solver.contact_pass(frame, schedule, span, counters);
+                apply_cloth_adhesion(pass);
+                resolve_cloth_contacts(pass, 1.0, observer);
             }
             Pass::ColliderContact => {
-                solver.apply_collider_adhesion(frame, schedule, span, counters);
-                solver.resolve_collider_contacts(1.0, frame, schedule, span, counters, observer);
+                let pass = &mut solver.contact_pass(frame, schedule, span, counters);
+                apply_collider_adhesion(pass);
+                resolve_collider_contacts(pass, 1.0, observer);
             }
-            Pass::Safeguard => solver.safeguard(frame, schedule, span, counters, observer),
+            Pass::Safeguard => safeguard(&mut solver.contact_pass(frame, schedule, span, counters), observer),
         }
     }
     whole::remember_deformation(&mut solver.model.cloths, &solver.state, frame, &solver.pool);
     observer.enter(Stage::Velocity);
     update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, &solver.pool);
-    solver.apply_restitution(frame, schedule, span);
+    apply_restitution(&mut solver.contact_pass(frame, schedule, span, counters));
     observer.step(span.to, solver);
     ControlFlow::Continue(())
 }

@@ -5,9 +5,11 @@ use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::shortest_line;
+use crate::contact::system::ContactSystem;
 use crate::math::Real;
+use crate::model::Model;
 use crate::output::ContactState;
-use crate::solver::Solver;
+use crate::state::State;
 
 /// Gap ratio up to which two elements are touching. Passes keep the full thickness along a plane; the constraint
 /// sweeps after them and curved meshes add a little.
@@ -41,21 +43,34 @@ impl HighestStates {
     }
 }
 
-impl<R: Real> Solver<R> {
-    /// Replaces `out` by the contact state of each point of every cloth, in the user's order.
-    pub(crate) fn list_contact_states(&self, out: &mut Vec<Vec<ContactState>>) {
-        out.resize_with(self.model.cloths.len(), Vec::new);
-        out.iter_mut().for_each(Vec::clear);
-        if !self.can_have_contact() {
-            return;
-        }
-        let contact_states = self.contact_states();
-        for (model, out) in self.model.cloths.iter().zip(out) {
-            let first = model.points().start;
-            out.extend(model.order.places().iter().map(|&place| contact_states[(first + place) as usize]));
-        }
+/// Replaces `out` by the contact state of each point of every cloth, in the user's order.
+pub fn list_contact_states<R: Real>(
+    model: &Model<R>,
+    state: &State<R>,
+    contact: &ContactSystem<R>,
+    out: &mut Vec<Vec<ContactState>>,
+) {
+    out.resize_with(model.cloths.len(), Vec::new);
+    out.iter_mut().for_each(Vec::clear);
+    let points = ContactPoints { model, state, contact };
+    if !points.can_have_contact() {
+        return;
     }
+    let contact_states = points.contact_states();
+    for (model, out) in model.cloths.iter().zip(out) {
+        let first = model.points().start;
+        out.extend(model.order.places().iter().map(|&place| contact_states[(first + place) as usize]));
+    }
+}
 
+/// What contact states are computed from.
+struct ContactPoints<'a, R: Real> {
+    model: &'a Model<R>,
+    state: &'a State<R>,
+    contact: &'a ContactSystem<R>,
+}
+
+impl<R: Real> ContactPoints<'_, R> {
     /// Whether this scene can have contact at all.
     fn can_have_contact(&self) -> bool {
         self.contact.ground.is_there()
@@ -88,7 +103,9 @@ impl<R: Real> Solver<R> {
         let ColliderContacts { point_face, edge_edge, face_point, active, depenetration, .. } = list;
         depenetration.points.iter().for_each(|&(point, _)| states.raise(point, ContactState::Depenetrating));
         // The pair may not collide in this frame.
-        let Some(Some(material)) = self.collider_materials_of(list.cloth).get(list.collider) else { return };
+        let Some(Some(material)) = self.contact.collider_materials_of(list.cloth).get(list.collider) else {
+            return;
+        };
         let collider = list.collider;
         active
             .point_face

@@ -1,12 +1,8 @@
-//! Depenetration: points inside a closed collider, and push-out.
+//! Depenetration: points inside a closed collider.
 //!
 //! Points that the scene puts into a collider, or that another collider presses into it, move out to the nearest
 //! face, slowly and without velocity. Until then no other contact with that collider acts on them (Maya's
 //! `trappedCheck`).
-//!
-//! Push-out moves points of other objects that are near a surface to the side that it specifies. It looks only at
-//! present positions, for scenes that start with one object inside another. Points that it moves pass through
-//! surfaces; contact starts anew from there (Maya's `pushOut` and `pushOutRadius`).
 
 use std::ops::Range;
 
@@ -15,13 +11,10 @@ use nalgebra::Vector3;
 use crate::bytes::encode_struct;
 use crate::contact::bvh::Aabb;
 use crate::contact::collider::ColliderState;
-use crate::contact::force_field::{Nearest, PlacedSurface};
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::contact::time_step::ColliderStep;
-use crate::input::frame::{FrameInput, PushOut};
 use crate::math::Real;
 use crate::model::ColliderModel;
-use crate::solver::Solver;
 
 type Point = Vector3<f64>;
 
@@ -174,81 +167,5 @@ fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, t
             _ if radius > 4.0 * size.norm() => return best.map(|(_, face)| face),
             _ => radius *= 2.0,
         }
-    }
-}
-
-/// A surface that pushes out, at its present position.
-struct PushOutSurface {
-    /// Its triangles face the side that points are pushed to.
-    surface: PlacedSurface,
-    /// Its own thickness in metres.
-    thickness: f64,
-    /// Share of the correction in each substep.
-    share: f64,
-    radius: f64,
-}
-
-impl<R: Real> Solver<R> {
-    /// Pushes points out of all surfaces that do so, at the start of a substep, at time `time` as a share of the
-    /// frame.
-    pub(crate) fn push_out(&mut self, frame: &FrameInput, time: f64) {
-        let pushes = |push_out: &PushOut| push_out.share != 0.0 && push_out.radius > 0.0;
-        for at in (0..self.model.colliders.len()).filter(|&at| pushes(&frame.colliders[at].push_out)) {
-            let state = &self.contact.collider_states[at];
-            let faces = self.model.colliders[at].boundary.triangles.iter();
-            let triangles = faces.map(|face| face.map(|point| state.point(point, time))).collect();
-            let surface =
-                PushOutSurface::new(triangles, frame.colliders[at].push_out, frame.colliders[at].thickness);
-            (0..self.model.cloths.len()).for_each(|cloth| self.push_out_of(&surface, frame, cloth));
-        }
-        for at in (0..self.model.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
-            let place = |row: u32| Point::from(self.state.position(row));
-            let triangles =
-                self.model.cloths[at].boundary.triangles.iter().map(|face| face.map(place)).collect();
-            let surface =
-                PushOutSurface::new(triangles, frame.cloths[at].push_out, frame.cloths[at].thickness);
-            let others = (0..self.model.cloths.len()).filter(|&cloth| cloth != at);
-            others.for_each(|cloth| self.push_out_of(&surface, frame, cloth));
-        }
-    }
-
-    /// Moves the free points of a cloth, and invalidates their motion bounds.
-    fn push_out_of(&mut self, surface: &PushOutSurface, frame: &FrameInput, cloth: usize) {
-        let thickness = surface.thickness + frame.cloths[cloth].thickness;
-        let mut is_moved = false;
-        for row in self.model.cloths[cloth].points() {
-            let mut moved = self.state.displacement[row as usize];
-            let correction = surface.correction(Point::from(self.state.position(row)), thickness);
-            let Some(correction) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
-            (0..3).for_each(|axis| moved.0[axis] += R::from_f64(correction[axis]));
-            self.state.displacement[row as usize] = moved;
-            is_moved = true;
-            self.invalidate_bounds(row as usize);
-        }
-        if is_moved {
-            self.contact.active_windows[cloth] = [0.0; 2];
-            if let Some(cloth_contacts) = &mut self.contact.cloth_contacts {
-                cloth_contacts.interval = [0.0; 2];
-                cloth_contacts.untangling.is_search_due = true;
-            }
-        }
-    }
-}
-
-impl PushOutSurface {
-    fn new(mut triangles: Vec<[Point; 3]>, push_out: PushOut, thickness: f64) -> Self {
-        if push_out.share < 0.0 {
-            triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-        }
-        let share = push_out.share.abs().min(1.0);
-        Self { surface: PlacedSurface::new(triangles), thickness, share, radius: push_out.radius }
-    }
-
-    /// The correction of a point in this substep, if it is within the radius and closer to the surface than
-    /// `thickness`, or behind it.
-    fn correction(&self, place: Point, thickness: f64) -> Option<Point> {
-        let Nearest { distance, point, normal } = self.surface.nearest(place, self.radius)?;
-        let is_clear = normal.dot(&(place - point)) >= 0.0 && distance >= thickness;
-        (!is_clear).then(|| (point + normal * thickness - place) * self.share)
     }
 }

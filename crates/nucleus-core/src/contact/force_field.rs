@@ -6,10 +6,12 @@
 use nalgebra::Vector3;
 
 use crate::contact::bvh::{Aabb, Bvh};
+use crate::contact::collider::ColliderState;
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::input::frame::{FieldSide, ForceField, FrameInput};
 use crate::math::Real;
-use crate::solver::Solver;
+use crate::model::{ClothModel, Model};
+use crate::state::State;
 
 type Point = Vector3<f64>;
 
@@ -88,38 +90,48 @@ impl ForceField {
     }
 }
 
-impl<R: Real> Solver<R> {
-    /// Accelerates points in the fields of other objects for a substep of `length` seconds that begins at `time` as a share
-    /// of the frame.
-    pub(crate) fn apply_force_fields(&mut self, frame: &FrameInput, time: f64, length: f64) {
-        for at in 0..self.model.colliders.len() {
-            let Some(field) = frame.colliders[at].field.filter(ForceField::is_on) else { continue };
-            let state = &self.contact.collider_states[at];
-            let faces = self.model.colliders[at].boundary.triangles.iter();
-            let triangles = faces.map(|face| face.map(|point| state.point(point, time))).collect();
-            let surface = PlacedSurface::new(triangles);
-            (0..self.model.cloths.len()).for_each(|cloth| self.accelerate(&field, &surface, length, cloth));
-        }
-        for at in 0..self.model.cloths.len() {
-            let Some(field) = frame.cloths[at].field.filter(ForceField::is_on) else { continue };
-            let place = |row: u32| Point::from(self.state.position(row));
-            let faces = self.model.cloths[at].boundary.triangles.iter();
-            let surface = PlacedSurface::new(faces.map(|face| face.map(place)).collect());
-            let others = (0..self.model.cloths.len()).filter(|&cloth| cloth != at);
-            others.for_each(|cloth| self.accelerate(&field, &surface, length, cloth));
-        }
+/// Accelerates points in the fields of other objects for a substep of `length` seconds that begins at `time` as a share
+/// of the frame.
+pub fn apply_force_fields<R: Real>(
+    model: &Model<R>,
+    state: &mut State<R>,
+    colliders: &[ColliderState],
+    frame: &FrameInput,
+    [time, length]: [f64; 2],
+) {
+    for at in 0..model.colliders.len() {
+        let Some(field) = frame.colliders[at].field.filter(ForceField::is_on) else { continue };
+        let collider = &colliders[at];
+        let faces = model.colliders[at].boundary.triangles.iter();
+        let triangles = faces.map(|face| face.map(|point| collider.point(point, time))).collect();
+        let surface = PlacedSurface::new(triangles);
+        model.cloths.iter().for_each(|cloth| accelerate(cloth, state, &field, &surface, length));
     }
+    for at in 0..model.cloths.len() {
+        let Some(field) = frame.cloths[at].field.filter(ForceField::is_on) else { continue };
+        let place = |row: u32| Point::from(state.position(row));
+        let faces = model.cloths[at].boundary.triangles.iter();
+        let surface = PlacedSurface::new(faces.map(|face| face.map(place)).collect());
+        let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);
+        others.for_each(|cloth| accelerate(&model.cloths[cloth], state, &field, &surface, length));
+    }
+}
 
-    fn accelerate(&mut self, field: &ForceField, surface: &PlacedSurface, length: f64, cloth: usize) {
-        for row in self.model.cloths[cloth].points() {
-            if self.state.displacement[row as usize].0[3] <= R::ZERO {
-                continue;
-            }
-            let place = Point::from(self.state.position(row));
-            let Some(acceleration) = field.acceleration(surface, place) else { continue };
-            let velocity = &mut self.state.velocity[row as usize];
-            (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(acceleration[axis] * length));
+fn accelerate<R: Real>(
+    cloth: &ClothModel<R>,
+    state: &mut State<R>,
+    field: &ForceField,
+    surface: &PlacedSurface,
+    length: f64,
+) {
+    for row in cloth.points() {
+        if state.displacement[row as usize].0[3] <= R::ZERO {
+            continue;
         }
+        let place = Point::from(state.position(row));
+        let Some(acceleration) = field.acceleration(surface, place) else { continue };
+        let velocity = &mut state.velocity[row as usize];
+        (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(acceleration[axis] * length));
     }
 }
 

@@ -38,13 +38,15 @@
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`] |
-//! | the split of a push, friction, adhesion | [`response`] |
-//! | restitution | [`restitution`] |
+//! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
+//! | restitution at the end of a step | [`restitution`] |
 //! | the positions that contacts read and write; counters | [`time_step`] |
 //! | contact with colliders | [`collider`] |
 //! | contact among cloths, friction anchors, untangling | [`cloth`] |
 //! | the ground plane | [`ground`] |
-//! | points inside a collider, push-out | [`depenetration`] |
+//! | points inside a collider | [`depenetration`] |
+//! | push-out of points near a surface | [`push_out`] |
+//! | the state of contact, and what its passes read and write | [`system`] |
 //! | certificates and fallbacks at the end of a step | [`safeguard`] |
 //! | the contact state of each point, for observers | [`contact_state`] |
 //!
@@ -57,20 +59,20 @@
 //! | `material::MIN_THICKNESS` | 10 µm | certificates need a gap above rounding error |
 //! | `response::DEPENETRATION_SPEED` | 1 m/s | a depth from before the step resolves without a jump |
 //! | `response::ADHESION_RANGE` | 1.5 t | adhesion acts on contacts that have just separated |
-//! | `restitution::TOUCHING` | 1e-3 t | gap that still counts as touching |
+//! | `response::TOUCHING` | 1e-3 t | gap that still counts as touching |
 //! | `collider::broad_phase::WINDOW_MARGIN`, `INTERVAL_MARGIN` | 0.05 t, 0.5 t | smaller: more searches; larger: more contacts |
-//! | `collider::broad_phase::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
+//! | `collider::motion_bounds::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
 //! | `collider::broad_phase::WINDOW_STEPS` | 8 | life of an active set |
-//! | `collider::broad_phase::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
+//! | `collider::motion_bounds::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
 //! | `collider::query::GROUP_SIZE` | 2 triangles | fastest on a drape: 55 ms a frame, 67 with eight |
 //! | `collider::contact::PLANE_VALIDITY` | t / 256 | error of a plane around an edge below 1e-5 t |
 //! | `collider::contacts::CERTIFIED_GAP` and `cloth::element_bounds::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::contacts::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
 //! | `collider::response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
 //! | `TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
-//! | `cloth::pass::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
-//! | `cloth::pass::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
-//! | `cloth::pass::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
+//! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
+//! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
+//! | `cloth::broad_phase::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
 //! | `cloth::motion_bounds::KEEP_SHARE` | 0.8 | of the radius, within which a bound is kept without search |
 //! | `cloth::elements::GROUP_SIZE` | 8 triangles | within 10 % of the best on W3 |
 //! | `cloth::element_bounds::REST_GAP_SHARE` | 0.5 | a cloth thicker than its faces must still bend |
@@ -91,7 +93,9 @@ pub mod force_field;
 pub mod ground;
 pub mod material;
 pub mod narrow_phase;
+pub mod push_out;
 pub mod response;
 pub mod restitution;
 pub mod safeguard;
+pub mod system;
 pub mod time_step;

@@ -122,6 +122,52 @@ fn share_per_step<R: Real>(grip: R, h: R) -> R {
     if left <= R::ZERO { R::ONE } else { grip * h / (left + grip * h) }
 }
 
+/// Gap above the thickness up to which a contact is touching, as a share of the thickness.
+const TOUCHING: f64 = 1e-3;
+
+/// Restitution at a surface in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct Restitution<R> {
+    /// Coefficient of restitution, 0 to 1.
+    pub coefficient: R,
+    /// Approach speed in m/s below which there is none: resting contacts would jitter on the speed that gravity
+    /// adds in each step.
+    pub min_speed: R,
+    /// Length of the step in seconds.
+    pub h: R,
+}
+
+/// The state of a point after its contacts.
+#[derive(Debug, Clone, Copy)]
+pub struct Impact<R> {
+    /// Predicted displacement in metres.
+    pub predicted: [R; 3],
+    /// Displacement now, in metres.
+    pub displacement: [R; 3],
+    /// Velocity now, in m/s.
+    pub velocity: [R; 3],
+}
+
+impl<R: Real> Restitution<R> {
+    /// Whether a gap counts as touching.
+    pub fn touches(gap: R, thickness: R) -> bool {
+        gap <= thickness * R::from_f64(1.0 + TOUCHING)
+    }
+
+    /// The velocity after collision with a surface of this normal and velocity.
+    pub fn velocity_after(&self, impact: &Impact<R>, normal: [R; 3], surface: [R; 3]) -> [R; 3] {
+        let now: [R; 3] = std::array::from_fn(|axis| impact.velocity[axis] - surface[axis]);
+        let pushed: [R; 3] = std::array::from_fn(|axis| impact.displacement[axis] - impact.predicted[axis]);
+        let speed = dot(normal, now);
+        let before = speed - dot(normal, pushed) / self.h;
+        let after = -(self.coefficient * before);
+        if -before <= self.min_speed || speed >= after {
+            return impact.velocity;
+        }
+        std::array::from_fn(|axis| impact.velocity[axis] + normal[axis] * (after - speed))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -17,14 +17,17 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::contact::cloth::ClothContacts;
-use crate::contact::cloth::pass::cloth_step;
-use crate::contact::time_step::ContactCounters;
-use crate::input::frame::FrameInput;
+use crate::contact::cloth::broad_phase::update_cloth_candidates;
+use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::cloth::pass::resolve_cloth_contacts;
+use crate::contact::collider::pass::{
+    accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
+    revert_collider_contacts,
+};
+use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::Real;
 use crate::output::{Stage, StepObserver};
-use crate::schedule::{Schedule, StepInterval};
-use crate::solver::{ContactSystem, Solver};
+use crate::state::State;
 
 /// Attempts of each fallback.
 const PUSH_ATTEMPTS: usize = 4;
@@ -35,141 +38,102 @@ const FREEZE_ATTEMPTS: usize = 32;
 /// Attempts after which the safeguard no longer pushes.
 const PUSHING_ENDS: usize = PUSH_ATTEMPTS + SCALED_ATTEMPTS;
 
-impl<R: Real> Solver<R> {
-    /// Certifies all pairs at the end of a time step, and applies the fallbacks.
-    pub(crate) fn safeguard(
-        &mut self,
-        frame: &FrameInput,
-        schedule: &Schedule<R>,
-        now: StepInterval,
-        counters: &mut ContactCounters,
-        watch: &mut dyn StepObserver,
-    ) {
-        let has_cloth_contact = self.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
-        for attempt in 0..=PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS {
-            watch.enter(Stage::BroadPhase);
-            if has_cloth_contact {
-                self.update_cloth_candidates(frame, now, counters);
+/// Certifies all pairs at the end of a time step, and applies the fallbacks.
+pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
+    let has_cloth_contact = pass.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
+    for attempt in 0..=PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS {
+        watch.enter(Stage::BroadPhase);
+        if has_cloth_contact {
+            update_cloth_candidates(pass);
+        }
+        watch.enter(Stage::Contact);
+        pass.contact.has_unproven.iter().for_each(|mark| mark.store(false, Ordering::Relaxed));
+        let cloths = certify_cloth_contacts(pass);
+        let [sides, inseparable] = certify_collider_contacts(pass);
+        let unproven = [cloths, sides];
+        let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
+        if unproven == [0, 0] || is_last {
+            *pass.counters.pairs_unresolved.get_mut() += unproven[0] + unproven[1] + inseparable;
+        }
+        if unproven == [0, 0] {
+            return;
+        }
+        if attempt < PUSHING_ENDS {
+            mask_islands(pass.contact);
+            let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
+            if unproven[0] > 0 {
+                resolve_cloth_contacts(pass, thickness_scale, watch);
             }
-            watch.enter(Stage::Contact);
-            self.contact.has_unproven.iter().for_each(|mark| mark.store(false, Ordering::Relaxed));
-            let cloths = self.certify_cloth_contacts(schedule);
-            let [sides, inseparable] = self.certify_collider_contacts(frame, schedule, now, counters);
-            let unproven = [cloths, sides];
-            let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
-            if unproven == [0, 0] || is_last {
-                *counters.pairs_unresolved.get_mut() += unproven[0] + unproven[1] + inseparable;
+            resolve_collider_contacts(pass, thickness_scale, watch);
+            pass.contact.contact_mask.clear();
+        } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+            truncate(pass);
+            revert_collider_contacts(pass);
+        } else if !is_last {
+            if attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+                clear_frozen(pass.state, pass.contact);
             }
-            if unproven == [0, 0] {
-                return;
-            }
-            if attempt < PUSHING_ENDS {
-                self.mask_islands();
-                let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
-                if unproven[0] > 0 {
-                    self.resolve_cloth_contacts(thickness_scale, frame, schedule, now, counters, watch);
-                }
-                self.resolve_collider_contacts(thickness_scale, frame, schedule, now, counters, watch);
-                self.contact.contact_mask.clear();
-            } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
-                self.truncate(schedule, counters);
-                self.revert_collider_contacts(frame, schedule, now, counters);
-            } else if !is_last {
-                if attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS {
-                    self.clear_frozen();
-                }
-                self.revert_collider_contacts(frame, schedule, now, counters);
-                self.freeze(schedule, counters);
-            } else {
-                return self.accept_unresolved(frame, schedule, now, unproven[0] > 0, counters);
+            revert_collider_contacts(pass);
+            freeze(pass);
+        } else {
+            return accept_unresolved(pass, unproven[0] > 0);
+        }
+    }
+}
+
+fn certify_cloth_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> u64 {
+    let marks = std::mem::take(&mut pass.contact.has_unproven);
+    let count = pass.with_cloth_contacts(|cache, step, pool| cache.certify(step, &marks, pool));
+    pass.contact.has_unproven = marks;
+    count.unwrap_or(0)
+}
+
+/// Masks the islands of cloths in contact with each other that have a contact without certificate: only their contacts
+/// push again, so that no cloth elsewhere is changed.
+fn mask_islands<R: Real>(contact: &mut ContactSystem<R>) {
+    let ContactSystem { cloth_contacts, contact_mask, has_unproven, .. } = contact;
+    contact_mask.clear();
+    contact_mask.extend(has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed)));
+    let Some(ClothContacts { cache, materials, .. }) = cloth_contacts else { return };
+    let mut has_grown = true;
+    while has_grown {
+        has_grown = false;
+        for [a, b] in cache.cloth_pairs(materials.len()) {
+            if contact_mask[a] != contact_mask[b] {
+                (contact_mask[a], contact_mask[b]) = (true, true);
+                has_grown = true;
             }
         }
     }
+}
 
-    fn certify_cloth_contacts(&mut self, schedule: &Schedule<R>) -> u64 {
-        let Self {
-            state,
-            pool,
-            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, has_unproven, .. },
-            ..
-        } = self
-        else {
-            return 0;
-        };
-        let ClothContacts { cache, materials, .. } = cloth_contacts;
-        cache.certify(&cloth_step(state, materials, material_maps, schedule.h), has_unproven, pool)
+fn truncate<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let reverted = pass.with_cloth_contacts(|cache, step, _| cache.truncate(step));
+    *pass.counters.pairs_reverted.get_mut() += reverted.unwrap_or(0);
+}
+
+/// Freezes pairs without a certificate, or moves them with a point that is frozen already.
+fn freeze<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let cloth_contacts = pass.contact.cloth_contacts.as_mut();
+    let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
+    let reverted = pass.with_cloth_contacts(|cache, step, _| cache.freeze(step, &mut frozen));
+    *pass.counters.pairs_reverted.get_mut() += reverted.unwrap_or(0);
+    if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
+        cloth_contacts.frozen = frozen;
     }
+}
 
-    /// Masks the islands of cloths in contact with each other that have a contact without certificate: only their contacts
-    /// push again, so that no cloth elsewhere is changed.
-    fn mask_islands(&mut self) {
-        let Self { contact: ContactSystem { cloth_contacts, contact_mask, has_unproven, .. }, .. } = self;
-        contact_mask.clear();
-        contact_mask.extend(has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed)));
-        let Some(ClothContacts { cache, materials, .. }) = cloth_contacts else { return };
-        let mut has_grown = true;
-        while has_grown {
-            has_grown = false;
-            for [a, b] in cache.cloth_pairs(materials.len()) {
-                if contact_mask[a] != contact_mask[b] {
-                    (contact_mask[a], contact_mask[b]) = (true, true);
-                    has_grown = true;
-                }
-            }
-        }
-    }
+/// Only pinned points start out frozen.
+fn clear_frozen<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>) {
+    let Some(ClothContacts { frozen, .. }) = &mut contact.cloth_contacts else { return };
+    frozen.clear();
+    frozen.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
+}
 
-    fn truncate(&mut self, schedule: &Schedule<R>, counters: &mut ContactCounters) {
-        let Self {
-            state,
-            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
-            ..
-        } = self
-        else {
-            return;
-        };
-        let ClothContacts { cache, materials, .. } = cloth_contacts;
-        *counters.pairs_reverted.get_mut() +=
-            cache.truncate(&cloth_step(state, materials, material_maps, schedule.h));
-    }
-
-    /// Freezes pairs without a certificate, or moves them with a point that is frozen already.
-    fn freeze(&mut self, schedule: &Schedule<R>, counters: &mut ContactCounters) {
-        let Self {
-            state,
-            contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
-            ..
-        } = self
-        else {
-            return;
-        };
-        let ClothContacts { cache, frozen, materials, .. } = cloth_contacts;
-        *counters.pairs_reverted.get_mut() +=
-            cache.freeze(&cloth_step(state, materials, material_maps, schedule.h), frozen);
-    }
-
-    /// Only pinned points start out frozen.
-    fn clear_frozen(&mut self) {
-        let Self { state, contact: ContactSystem { cloth_contacts: Some(cloth_contacts), .. }, .. } = self
-        else {
-            return;
-        };
-        cloth_contacts.frozen.clear();
-        cloth_contacts.frozen.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
-    }
-
-    /// Accepts pairs that no fallback resolves. Their contacts are searched anew.
-    fn accept_unresolved(
-        &mut self,
-        frame: &FrameInput,
-        schedule: &Schedule<R>,
-        now: StepInterval,
-        among_cloths: bool,
-        counters: &mut ContactCounters,
-    ) {
-        self.accept_unresolved_collider_contacts(frame, schedule, now, counters);
-        if let Some(cloth_contacts) = &mut self.contact.cloth_contacts {
-            cloth_contacts.untangling.is_search_due |= among_cloths;
-        }
+/// Accepts pairs that no fallback resolves. Their contacts are searched anew.
+fn accept_unresolved<R: Real>(pass: &mut ContactPass<'_, R>, among_cloths: bool) {
+    accept_unresolved_collider_contacts(pass);
+    if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
+        cloth_contacts.untangling.is_search_due |= among_cloths;
     }
 }

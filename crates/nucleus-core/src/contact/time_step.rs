@@ -4,9 +4,11 @@ use std::sync::atomic::AtomicU64;
 
 use nalgebra::Vector3;
 
+use crate::contact::collider::ColliderState;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::state::State;
 
 type Point = Vector3<f64>;
 
@@ -36,11 +38,22 @@ pub struct PositionWriter<'a, R> {
 
 #[allow(unsafe_code)]
 impl<'a, R: Real> PositionWriter<'a, R> {
-    /// Borrows the columns displacement (with inverse mass), depenetration by colliders and depenetration by
-    /// cloth. `predicted` holds displacements before any constraint or contact.
-    pub fn new(columns: [&'a mut Vec<Row4<R>>; 3], predicted: &'a [Row4<R>]) -> Self {
-        let [displacement, by_collider, by_cloth] = columns.map(|column| DisjointSlice::new(column));
-        Self { displacement, by_collider, by_cloth, predicted }
+    /// Borrows the columns that contact writes; returns beside it the displacements at the start of the step and the
+    /// anchors.
+    pub fn of(state: &'a mut State<R>) -> (Self, &'a [Row4<R>], &'a [[f64; 3]]) {
+        let State {
+            displacement,
+            predicted,
+            depenetration_by_collider,
+            depenetration_by_cloth,
+            start,
+            anchor,
+            ..
+        } = state;
+        let [displacement, by_collider, by_cloth] =
+            [displacement, depenetration_by_collider, depenetration_by_cloth]
+                .map(|column| DisjointSlice::new(column));
+        (Self { displacement, by_collider, by_cloth, predicted }, start, anchor)
     }
 
     /// The displacement of a point without constraints and contacts, but with its depenetration.
@@ -227,5 +240,46 @@ impl<R: Real> ColliderStep<'_, R> {
     pub(in crate::contact) fn collider_position(&self, point: u32, time: f64) -> Point {
         let [start, end] = self.collider.map(|points| points[point as usize]);
         start + (end - start) * time
+    }
+}
+
+/// The parameters of a [`ColliderStep`], besides the state.
+pub struct ColliderStepArgs<'a, R> {
+    /// The contact material of the two.
+    pub material: ContactMaterial<R>,
+    /// Vertex maps of contact attributes.
+    pub material_maps: &'a MaterialMaps<R>,
+    /// Length of the step in seconds.
+    pub h: f64,
+    /// Start and end of the step, as shares of the frame.
+    pub time: [f64; 2],
+    /// The candidate interval, as shares of the frame.
+    pub interval: [f64; 2],
+}
+
+impl<R: Real> ColliderStepArgs<'_, R> {
+    /// A time as a share of the candidate interval.
+    fn share(&self, time: f64) -> R {
+        let [from, to] = self.interval;
+        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
+    }
+
+    /// The step of a cloth in `state` and a collider.
+    pub fn of<'s>(&'s self, state: &'s mut State<R>, collider: &'s ColliderState) -> ColliderStep<'s, R> {
+        let (writer, start, anchors) = PositionWriter::of(state);
+        ColliderStep {
+            writer,
+            start,
+            anchors,
+            collider: [&collider.start, &collider.end],
+            time: self.time,
+            interval: self.interval,
+            shares: self.time.map(|time| self.share(time)),
+            h: R::from_f64(self.h),
+            thickness: R::from_f64(self.material.thickness),
+            thickness_scale: R::ONE,
+            material: self.material,
+            material_maps: self.material_maps,
+        }
     }
 }

@@ -204,6 +204,14 @@ impl<R: Real> ClothModel<R> {
     }
 }
 
+/// The objects of a scene, by their ids.
+pub struct Model<R: Real> {
+    /// By cloth.
+    pub cloths: Vec<ClothModel<R>>,
+    /// By collider.
+    pub colliders: Vec<ColliderModel>,
+}
+
 /// One collider: its mesh, in its own order.
 #[derive(Debug, Clone)]
 pub struct ColliderModel {

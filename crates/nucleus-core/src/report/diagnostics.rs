@@ -8,17 +8,17 @@ use nalgebra::Vector3;
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
-use crate::contact::cloth::ClothContacts;
-use crate::contact::cloth::pass::cloth_step;
-use crate::contact::collider::pass::ColliderStepArgs;
-use crate::contact::time_step::ContactCounters;
+use crate::contact::cloth::contact::ClothStep;
+use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::system::ContactSystem;
+use crate::contact::time_step::{ColliderStepArgs, ContactCounters};
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::{Real, dot};
-use crate::model::ClothModel;
+use crate::model::{ClothModel, Model};
 use crate::output::StepReport;
 use crate::schedule::Schedule;
 use crate::schedule::resistance::PhysicalStiffness;
-use crate::solver::{ContactSystem, Model, Solver};
+use crate::solver::Solver;
 use crate::state::State;
 
 /// Strains are counted in `BINS` bins of this width; the last bin also has everything above.
@@ -187,7 +187,7 @@ fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
         return f64::INFINITY;
     };
     let ClothContacts { cache, materials, .. } = cloth_contacts;
-    let gap_ratio = cache.min_gap_ratio(&cloth_step(state, materials, material_maps, 0.0));
+    let gap_ratio = cache.min_gap_ratio(&ClothStep::new(state, materials, material_maps, 0.0));
     gap_ratio.map_or(f64::INFINITY, R::to_f64)
 }
 

@@ -2,6 +2,7 @@
 //! absent.
 
 use crate::constraints::damp::Damping;
+use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::{BendSolver, Bending, ClothFrame, ForceField, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
@@ -111,7 +112,7 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
         frame.plane.as_ref().and_then(with)
     };
     let each_other = |cloth: usize| match solver.contact.cloth_contacts {
-        Some(_) => solver.cloth_materials_of(frame, cloth),
+        Some(_) => cloth_materials_of(&solver.contact, frame, cloth),
         None => Vec::new(),
     };
     let elements = |cloth: usize| {

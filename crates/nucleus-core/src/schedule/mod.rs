@@ -17,7 +17,7 @@
 //! | what a resistance means, how counts are shared among substeps | [`resistance`] |
 //! | when a time step is split | `adaptive.rs` |
 
-mod adaptive;
+pub mod adaptive;
 pub mod resistance;
 
 use std::borrow::Cow;

@@ -8,8 +8,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::broad_phase::RefreshKind;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
+use crate::contact::cloth::search::RefreshKind;
 use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;

@@ -5,9 +5,10 @@ use std::sync::{Mutex, RwLock};
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::batches::{Blocks, ContactList};
-use crate::contact::cloth::broad_phase::{RefreshKind, SearchTask};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
-use crate::contact::restitution::Restitution;
+use crate::contact::cloth::query::{FoundContacts, SearchTask};
+use crate::contact::cloth::search::RefreshKind;
+use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -25,19 +26,6 @@ pub struct ContactCache<R> {
     pub point_point: ContactList<R, 1, 1>,
 }
 
-/// The contacts that a search task finds.
-#[derive(Debug)]
-pub struct FoundContacts<R> {
-    /// Points and faces.
-    pub point_face: Vec<ClothContact<R, 1, 3>>,
-    /// Edges and edges.
-    pub edge_edge: Vec<ClothContact<R, 2, 2>>,
-    /// Points and edges.
-    pub point_edge: Vec<ClothContact<R, 1, 2>>,
-    /// Points and points.
-    pub point_point: Vec<ClothContact<R, 1, 1>>,
-}
-
 checkpoint_struct!([R: Real] ContactCache<R> {
     columns: [], values: [], parts: [point_face, edge_edge, point_edge, point_point], rebuilt: [],
 });
@@ -50,27 +38,6 @@ impl<R> Default for ContactCache<R> {
             point_edge: ContactList::default(),
             point_point: ContactList::default(),
         }
-    }
-}
-
-impl<R> Default for FoundContacts<R> {
-    fn default() -> Self {
-        Self {
-            point_face: Vec::new(),
-            edge_edge: Vec::new(),
-            point_edge: Vec::new(),
-            point_point: Vec::new(),
-        }
-    }
-}
-
-impl<R> FoundContacts<R> {
-    /// Removes all, keeps the capacity.
-    pub fn clear(&mut self) {
-        self.point_face.clear();
-        self.edge_edge.clear();
-        self.point_edge.clear();
-        self.point_point.clear();
     }
 }
 

@@ -5,11 +5,11 @@
 
 use crate::bytes::{Encode, Reader, encode_struct};
 use crate::contact::cloth::element_bounds::ElementPoints;
-use crate::contact::cloth::response::FrictionAnchors;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
 use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
 use crate::contact::time_step::PositionWriter;
 use crate::math::{Real, Row4, add};
+use crate::state::State;
 
 /// A time step of all cloths.
 #[derive(Clone, Copy)]
@@ -30,6 +30,42 @@ pub struct ClothStep<'a, R> {
     pub h: R,
     /// Factor on every thickness: below one where there is too little room.
     pub thickness_scale: R,
+}
+
+/// The reference of friction anchors.
+#[derive(Clone, Copy)]
+pub struct FrictionAnchors<'a, R> {
+    /// Displacements at the start of the candidate interval.
+    pub interval_start: &'a [Row4<R>],
+    /// Pairs of intersecting cloths, the lower index first. They are to separate, so they have no anchors.
+    pub intersecting: &'a [[u32; 2]],
+}
+
+impl<R> FrictionAnchors<'_, R> {
+    /// Whether two cloths intersect, given the index of their material among all.
+    #[inline(always)]
+    pub(super) fn are_intersecting(&self, material: u32, materials: usize) -> bool {
+        if self.intersecting.is_empty() {
+            return false;
+        }
+        let cloths = materials.isqrt() as u32;
+        let [a, b] = [material / cloths, material % cloths];
+        self.intersecting.contains(&[a.min(b), a.max(b)])
+    }
+}
+
+impl<'a, R: Real> ClothStep<'a, R> {
+    /// A step of `h` seconds that resolves the contacts of all cloths, without friction anchors.
+    pub fn new(
+        state: &'a mut State<R>,
+        materials: &'a [Option<ContactMaterial<R>>],
+        material_maps: &'a MaterialMaps<R>,
+        h: f64,
+    ) -> Self {
+        let (writer, start, _) = PositionWriter::of(state);
+        let (h, thickness_scale) = (R::from_f64(h), R::ONE);
+        Self { writer, start, anchors: None, mask: &[], materials, material_maps, h, thickness_scale }
+    }
 }
 
 impl<R: Real> ClothStep<'_, R> {

@@ -1,17 +1,20 @@
 //! Detection of intersections: finds the edges that pierce faces, groups them into contours by union-find, and
 //! chooses a correction for each.
 
-use crate::contact::cloth::ClothContacts;
-use crate::contact::cloth::broad_phase::SearchInput;
 use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::search::SearchInput;
 use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
 
 /// Finds all intersections at the present positions. Valid while the boxes of the last search are.
-pub fn find_intersections<R: Real>(cloth_contacts: &mut ClothContacts<R>, input: &SearchInput<'_, R>) {
-    let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
+pub fn find_intersections<R: Real>(
+    elements: &ElementGroups,
+    materials: &[Option<ContactMaterial<R>>],
+    input: &SearchInput<'_, R>,
+    untangling: &mut Untangling,
+) {
     untangling.is_search_due = false;
     untangling.intersections.clear();
     let SearchInput { cloths, anchors, displacement: [_, displacement], strength, .. } = *input;

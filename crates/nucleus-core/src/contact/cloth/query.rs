@@ -1,13 +1,65 @@
 //! Broad-phase query of one element group against others: tests swept boxes four at a time, then builds contacts.
 
 use crate::contact::bvh::{Aabb, SweptBox};
-use crate::contact::cloth::broad_phase::ClothSearch;
-use crate::contact::cloth::cache::FoundContacts;
 use crate::contact::cloth::contact::{ClothContact, ContactParams};
-use crate::contact::cloth::element_bounds::{BoxRow, ElementPoints, GroupBounds};
+use crate::contact::cloth::element_bounds::ElementPoints;
+use crate::contact::cloth::group_bounds::{BoxRow, GroupBounds, GroupBoundsCache};
+use crate::contact::cloth::search::ClothSearch;
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;
 use crate::math::Real;
+
+/// The contacts that a search task finds.
+#[derive(Debug)]
+pub struct FoundContacts<R> {
+    /// Points and faces.
+    pub point_face: Vec<ClothContact<R, 1, 3>>,
+    /// Edges and edges.
+    pub edge_edge: Vec<ClothContact<R, 2, 2>>,
+    /// Points and edges.
+    pub point_edge: Vec<ClothContact<R, 1, 2>>,
+    /// Points and points.
+    pub point_point: Vec<ClothContact<R, 1, 1>>,
+}
+
+impl<R> Default for FoundContacts<R> {
+    fn default() -> Self {
+        Self {
+            point_face: Vec::new(),
+            edge_edge: Vec::new(),
+            point_edge: Vec::new(),
+            point_point: Vec::new(),
+        }
+    }
+}
+
+impl<R> FoundContacts<R> {
+    /// Removes all, keeps the capacity.
+    pub fn clear(&mut self) {
+        self.point_face.clear();
+        self.edge_edge.clear();
+        self.point_edge.clear();
+        self.point_point.clear();
+    }
+}
+
+/// The contacts that a task finds, and its buffers.
+#[derive(Debug)]
+pub struct SearchTask<R> {
+    pub(super) found: FoundContacts<R>,
+    pub(super) query: QueryGroup,
+    pub(super) group_bounds: GroupBoundsCache,
+}
+
+impl<R> Default for SearchTask<R> {
+    fn default() -> Self {
+        Self {
+            found: FoundContacts::default(),
+            query: QueryGroup::default(),
+            group_bounds: GroupBoundsCache::default(),
+        }
+    }
+}
 
 /// The elements of a group that have a new bound.
 #[derive(Debug, Default)]

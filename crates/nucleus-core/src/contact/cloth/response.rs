@@ -9,8 +9,7 @@ use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
-use crate::contact::response::{Adhesion, Push};
-use crate::contact::restitution::{Impact, Restitution};
+use crate::contact::response::{Adhesion, Impact, Push, Restitution};
 use crate::math::{Real, Row4, add, clamp_length, dot, max, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
 
@@ -173,28 +172,6 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     #[inline(always)]
     pub(super) fn contact_line(&self, at: &ElementPositions<R, N, M>, (b, c): &([R; N], [R; M])) -> [R; 3] {
         sub(interpolate(at.0, *b), interpolate(at.1, *c))
-    }
-}
-
-/// The reference of friction anchors.
-#[derive(Clone, Copy)]
-pub struct FrictionAnchors<'a, R> {
-    /// Displacements at the start of the candidate interval.
-    pub interval_start: &'a [Row4<R>],
-    /// Pairs of intersecting cloths, the lower index first. They are to separate, so they have no anchors.
-    pub intersecting: &'a [[u32; 2]],
-}
-
-impl<R> FrictionAnchors<'_, R> {
-    /// Whether two cloths intersect, given the index of their material among all.
-    #[inline(always)]
-    fn are_intersecting(&self, material: u32, materials: usize) -> bool {
-        if self.intersecting.is_empty() {
-            return false;
-        }
-        let cloths = materials.isqrt() as u32;
-        let [a, b] = [material / cloths, material % cloths];
-        self.intersecting.contains(&[a.min(b), a.max(b)])
     }
 }
 

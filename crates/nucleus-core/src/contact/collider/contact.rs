@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use crate::bytes::{Encode, Reader};
 use crate::contact::ccd::separated_throughout;
-use crate::contact::collider::broad_phase::{MotionBounds, diagonal};
+use crate::contact::collider::motion_bounds::{MotionBounds, diagonal};
 use crate::contact::narrow_phase;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, Row4, dot};

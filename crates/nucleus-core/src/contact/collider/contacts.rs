@@ -5,9 +5,9 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::contact::collider::broad_phase::MotionBounds;
+use crate::contact::collider::Boxes;
 use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
-use crate::contact::collider::query::FoundContacts;
+use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::depenetration::Depenetration;
 use crate::contact::material::ContactMaterial;
 use crate::contact::time_step::{ColliderStep, ContactCounters};
@@ -61,6 +61,26 @@ pub struct ActiveSet {
     /// Indices of `point_face`, `edge_edge` and `face_point` that motion bounds do not certify over the window:
     /// they need a certificate at the end of each time step.
     pub uncertified: [Vec<u32>; 3],
+}
+
+/// The contacts that a task finds, and its buffers.
+#[derive(Debug)]
+pub struct FoundContacts<R> {
+    pub(super) point_face: Vec<ColliderContact<R, 1, 3>>,
+    pub(super) edge_edge: Vec<ColliderContact<R, 2, 2>>,
+    pub(super) face_point: Vec<ColliderContact<R, 3, 1>>,
+    /// Points found behind a face.
+    pub(super) suspects: Vec<u32>,
+    /// Boxes of the current group.
+    pub(super) boxes: Boxes,
+}
+
+impl<R> Default for FoundContacts<R> {
+    fn default() -> Self {
+        let boxes = Boxes::default();
+        let (point_face, edge_edge, face_point) = (Vec::new(), Vec::new(), Vec::new());
+        Self { point_face, edge_edge, face_point, suspects: Vec::new(), boxes }
+    }
 }
 
 /// Share of the interaction range by which the gap of an idle contact must exceed it.

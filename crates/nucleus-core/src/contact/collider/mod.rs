@@ -5,7 +5,9 @@
 //!
 //! | You want to know... | Read |
 //! |---|---|
-//! | broad phase: motion bounds of cloth, and when contacts are searched | [`broad_phase`] |
+//! | the start of a frame: materials, and which colliders each cloth can touch | [`frame_start`] |
+//! | motion bounds of points | [`motion_bounds`] |
+//! | broad phase: when bounds are predicted and contacts searched | [`broad_phase`] |
 //! | which elements can touch, group by group | [`query`] |
 //! | the contacts of one cloth with one collider, the active ones, and a sweep over them | [`contacts`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
@@ -15,6 +17,8 @@
 pub mod broad_phase;
 pub mod contact;
 pub mod contacts;
+pub mod frame_start;
+pub mod motion_bounds;
 pub mod pass;
 pub mod query;
 mod response;

@@ -8,9 +8,9 @@ use nalgebra::Vector3;
 
 use crate::contact::boundary::{ElementGroup, Pseudonormals};
 use crate::contact::bvh::Aabb;
-use crate::contact::collider::broad_phase::MotionBounds;
 use crate::contact::collider::contact::ColliderContact;
-use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::collider::contacts::{ColliderContacts, FoundContacts};
+use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::{Boxes, ColliderState};
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
@@ -49,26 +49,6 @@ pub const GROUP_SIZE: usize = 2;
 
 /// Groups in a task.
 const GROUPS_PER_TASK: usize = 64;
-
-/// The contacts that a task finds, and its buffers.
-#[derive(Debug)]
-pub struct FoundContacts<R> {
-    point_face: Vec<ColliderContact<R, 1, 3>>,
-    edge_edge: Vec<ColliderContact<R, 2, 2>>,
-    face_point: Vec<ColliderContact<R, 3, 1>>,
-    /// Points found behind a face.
-    suspects: Vec<u32>,
-    /// Boxes of the current group.
-    boxes: Boxes,
-}
-
-impl<R> Default for FoundContacts<R> {
-    fn default() -> Self {
-        let boxes = Boxes::default();
-        let (point_face, edge_edge, face_point) = (Vec::new(), Vec::new(), Vec::new());
-        Self { point_face, edge_edge, face_point, suspects: Vec::new(), boxes }
-    }
-}
 
 impl<R> FoundContacts<R> {
     fn clear(&mut self) {

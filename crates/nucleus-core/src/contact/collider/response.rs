@@ -4,8 +4,8 @@ use crate::contact::collider::contact::{
     ColliderContact, Outcome, Point, best_plane, closest, cross_direction, interpolate, separated,
 };
 use crate::contact::material::ContactPoints;
+use crate::contact::response::Restitution;
 use crate::contact::response::{Adhesion, Push, coulomb_correction};
-use crate::contact::restitution::Restitution;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, add, dot, scale};
 

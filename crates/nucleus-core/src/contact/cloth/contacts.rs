@@ -1,0 +1,95 @@
+//! The state of contact among cloths.
+
+use std::sync::RwLock;
+
+use crate::contact::cloth::cache::ContactCache;
+use crate::contact::cloth::element_bounds::ElementBounds;
+use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::motion_bounds::Trajectories;
+use crate::contact::cloth::query::SearchTask;
+use crate::contact::cloth::search::RefreshKind;
+use crate::contact::cloth::untangling::Untangling;
+use crate::contact::material::ContactMaterial;
+use crate::math::{Real, Row4};
+use crate::model::ClothModel;
+
+/// All contact among cloths; empty where a scene has none.
+pub struct ClothContacts<R> {
+    /// The elements of all cloths.
+    pub elements: ElementGroups,
+    /// Contact materials in this frame, by cloth and cloth.
+    pub materials: Vec<Option<ContactMaterial<R>>>,
+    /// The motion bound of each point over the candidate interval.
+    pub trajectories: Trajectories<R>,
+    /// Displacements at the start of the candidate interval.
+    pub interval_start: Vec<Row4<R>>,
+    /// The candidate interval, as shares of the frame.
+    pub interval: [f64; 2],
+    /// Points that violate their motion bound.
+    pub bounds_violated: Vec<bool>,
+    /// All contacts that can touch within the candidate interval.
+    pub cache: ContactCache<R>,
+    /// Buffers of the search.
+    pub buffers: SearchBuffers<R>,
+    /// Points that the safeguard has frozen in this step.
+    pub frozen: Vec<bool>,
+    /// Intersections, and their corrections.
+    pub untangling: Untangling,
+}
+
+impl<R: Real> ClothContacts<R> {
+    /// For cloths of which some may collide with others or with themselves.
+    pub fn new(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
+        let rows = anchors.len();
+        Self {
+            elements: ElementGroups::new(cloths, anchors),
+            materials: Vec::new(),
+            trajectories: Trajectories::new(rows),
+            interval_start: vec![Row4::ZERO; rows],
+            interval: [1.0, 0.0], // expired
+            bounds_violated: vec![true; rows],
+            cache: ContactCache::default(),
+            buffers: SearchBuffers::default(),
+            frozen: Vec::new(),
+            untangling: Untangling::new(rows),
+        }
+    }
+
+    /// Whether any two cloths can collide in this frame.
+    pub fn is_enabled(&self) -> bool {
+        self.materials.iter().any(Option::is_some)
+    }
+
+    /// Updates the bounds of points and of the groups that contain them: of those that violated theirs, or of
+    /// all.
+    pub(super) fn update_bounds(&mut self, anchors: &[[f64; 3]], margin: f32, refresh: RefreshKind) {
+        let Self { elements, bounds_violated, buffers, trajectories, .. } = self;
+        let SearchBuffers { bounds, groups, .. } = buffers;
+        let violated =
+            (0..).zip(&*bounds_violated).filter(|(_, is_violated)| **is_violated).map(|(point, _)| point);
+        elements.groups_of(violated.clone(), groups);
+        if refresh.is_incremental() {
+            bounds.update(anchors, trajectories, violated);
+            groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
+        } else {
+            bounds.update(anchors, trajectories, 0..anchors.len() as u32);
+            (0..elements.groups.len() as u32).for_each(|group| elements.set_bound(group, bounds, margin));
+        }
+        elements.refit();
+    }
+}
+
+/// Buffers of a search, kept between searches.
+#[derive(Debug)]
+pub struct SearchBuffers<R> {
+    pub(super) bounds: ElementBounds,
+    /// The groups with a new bound.
+    pub(super) groups: Vec<u32>,
+    pub(super) tasks: Vec<RwLock<SearchTask<R>>>,
+}
+
+impl<R> Default for SearchBuffers<R> {
+    fn default() -> Self {
+        Self { bounds: ElementBounds::default(), groups: Vec::new(), tasks: Vec::new() }
+    }
+}

@@ -1,0 +1,157 @@
+//! The state of contact, and what its passes read and write.
+
+use std::sync::atomic::AtomicBool;
+
+use crate::contact::cloth::cache::ContactCache;
+use crate::contact::cloth::contact::ClothStep;
+use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::collider::ColliderState;
+use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::collider::motion_bounds::MotionBox;
+use crate::contact::ground::Ground;
+use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::contact::time_step::ContactCounters;
+use crate::input::frame::FrameInput;
+use crate::math::{Real, Row4};
+use crate::model::builder::Cloth;
+use crate::model::{ClothModel, ColliderModel, Model};
+use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::{Schedule, StepInterval};
+use crate::state::State;
+
+/// The state of contact that lasts from time step to time step.
+pub struct ContactSystem<R: Real> {
+    /// By collider.
+    pub collider_states: Vec<ColliderState>,
+    /// Candidate pairs, per cloth and collider.
+    pub collider_contacts: Vec<ColliderContacts<R>>,
+    /// By cloth: the candidate interval of its pairs, and that of its active pairs, as shares of the frame.
+    pub candidate_intervals: Vec<[f64; 2]>,
+    pub active_windows: Vec<[f64; 2]>,
+    /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
+    pub frame_travel: Vec<[R; 3]>,
+    /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
+    /// scene has no collider.
+    pub window_bounds: Vec<MotionBox<R>>,
+    pub interval_bounds: Vec<MotionBox<R>>,
+    /// How far the window bounds of each point have grown in this frame, in metres.
+    pub bound_growth: Vec<R>,
+    /// Points with new motion bounds, whose pairs are to be found again.
+    pub bounds_violated: Vec<bool>,
+    /// Contact material of each cloth with each collider in this frame, by cloth and collider.
+    pub collider_materials: Vec<Option<ContactMaterial<R>>>,
+    /// Contact material of each cloth with the ground plane.
+    pub ground_materials: Vec<Option<ContactMaterial<R>>>,
+    /// Vertex maps of contact.
+    pub material_maps: MaterialMaps<R>,
+    /// Contact of cloth with itself and with other cloth; none where no two elements can ever touch.
+    pub cloth_contacts: Option<ClothContacts<R>>,
+    /// The cloths whose contacts a pass resolves; all where it is empty.
+    pub contact_mask: Vec<bool>,
+    /// Whether each cloth has a contact without certificate.
+    pub has_unproven: Vec<AtomicBool>,
+    /// Whether the last frame had a contact.
+    pub touches: bool,
+    /// The ground plane.
+    pub ground: Ground<R>,
+}
+
+impl<R: Real> ContactSystem<R> {
+    /// Without contacts yet; all bounds are invalid. `self_collides` says whether two elements of cloth can ever touch.
+    pub fn new(
+        cloths: &[Cloth],
+        models: &[ClothModel<R>],
+        colliders: &[ColliderModel],
+        state: &State<R>,
+        self_collides: bool,
+    ) -> Self {
+        let bounded = if colliders.is_empty() { 0 } else { state.anchor.len() };
+        let with_each =
+            |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
+        Self {
+            collider_states: colliders.iter().map(ColliderState::new).collect(),
+            collider_contacts: (0..models.len()).flat_map(with_each).collect(),
+            candidate_intervals: vec![[0.0; 2]; models.len()],
+            active_windows: vec![[0.0; 2]; models.len()],
+            frame_travel: vec![[R::ZERO; 3]; models.len()],
+            window_bounds: vec![[Row4::ZERO; 2]; bounded],
+            interval_bounds: vec![[Row4::ZERO; 2]; bounded],
+            bound_growth: vec![R::ZERO; bounded],
+            bounds_violated: vec![true; bounded],
+            collider_materials: Vec::new(),
+            ground_materials: Vec::new(),
+            material_maps: MaterialMaps::new(cloths, models, state.anchor.len()),
+            cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
+            contact_mask: Vec::with_capacity(models.len()),
+            has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
+            // Cloth that starts from a saved state may be in contact; only a frame can tell.
+            touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
+            ground: Ground::default(),
+        }
+    }
+
+    /// The contact materials of a cloth with each collider.
+    pub fn collider_materials_of(&self, cloth: usize) -> &[Option<ContactMaterial<R>>] {
+        let colliders = self.collider_states.len();
+        self.collider_materials.get(cloth * colliders..(cloth + 1) * colliders).unwrap_or_default()
+    }
+
+    /// Whether a cloth collides with any collider in this frame.
+    pub fn has_collider_material(&self, cloth: usize) -> bool {
+        self.collider_materials_of(cloth).iter().any(Option::is_some)
+    }
+
+    /// Whether a pass resolves the contacts of a cloth.
+    pub fn is_resolved(&self, cloth: usize) -> bool {
+        self.contact_mask.get(cloth).is_none_or(|&is_resolved| is_resolved)
+    }
+
+    /// Moves every collider to a time of the frame, 0 to 1.
+    pub fn set_time(&mut self, now: f64) {
+        self.collider_states.iter_mut().for_each(|collider| collider.now = now);
+    }
+
+    /// Invalidates the motion bounds of a point whose position was set, among cloths and colliders.
+    pub fn invalidate_bounds(&mut self, row: usize) {
+        let Self { cloth_contacts, bounds_violated, .. } = self;
+        let among_cloths = cloth_contacts.as_mut().and_then(|contacts| contacts.bounds_violated.get_mut(row));
+        bounds_violated
+            .get_mut(row)
+            .into_iter()
+            .chain(among_cloths)
+            .for_each(|is_violated| *is_violated = true);
+    }
+}
+
+/// What the contact passes of a time step read and write.
+pub struct ContactPass<'a, R: Real> {
+    /// Read: the objects.
+    pub model: &'a Model<R>,
+    /// Read: the input of the frame.
+    pub frame: &'a FrameInput,
+    /// Read: the length of time steps, and what they are divided into.
+    pub schedule: &'a Schedule<R>,
+    /// Read: the time step, within the frame.
+    pub span: StepInterval,
+    /// The threads that share a pass.
+    pub pool: &'a ThreadPool,
+    /// Written: positions.
+    pub state: &'a mut State<R>,
+    /// Written: contacts, and bounds.
+    pub contact: &'a mut ContactSystem<R>,
+    /// Written: what the report counts.
+    pub counters: &'a mut ContactCounters,
+}
+
+impl<R: Real> ContactPass<'_, R> {
+    /// Calls `work` with the contacts among cloths, at their full thickness; `None` without any.
+    pub fn with_cloth_contacts<T>(
+        &mut self,
+        work: impl FnOnce(&mut ContactCache<R>, &ClothStep<'_, R>, &ThreadPool) -> T,
+    ) -> Option<T> {
+        let ContactSystem { cloth_contacts, material_maps, .. } = &mut *self.contact;
+        let ClothContacts { cache, materials, .. } = cloth_contacts.as_mut()?;
+        let step = ClothStep::new(self.state, materials, material_maps, self.schedule.h);
+        Some(work(cache, &step, self.pool))
+    }
+}
