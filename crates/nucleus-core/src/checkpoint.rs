@@ -17,7 +17,6 @@ use crate::bytes::{
     hash_word, load_column, verify_checksum,
 };
 use crate::constraints::angle::AngleGroup;
-use crate::constraints::pressure::Chamber;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
@@ -31,8 +30,8 @@ use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel};
 use crate::solver::Solver;
-use crate::state::State;
 use crate::state::kinematics::update_anchors;
+use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
 const KIND: [u8; 8] = *b"solver 6";

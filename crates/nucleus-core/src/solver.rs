@@ -25,7 +25,7 @@ pub struct Solver<R: Real = f32> {
     pub(crate) model: Model<R>,
     /// The columns that a frame changes.
     pub(crate) state: State<R>,
-    /// Colliders in motion, contacts and what is known about candidates.
+    /// Colliders in motion, contacts, and their candidates.
     pub(crate) contact: ContactSystem<R>,
     pub(crate) pool: ThreadPool,
 }
@@ -121,7 +121,7 @@ impl<R: Real> Solver<R> {
         solver
     }
 
-    /// What the contact passes of a time step read and write.
+    /// Inputs and outputs of the contact passes of a time step.
     pub(crate) fn contact_pass<'a>(
         &'a mut self,
         frame: &'a FrameInput,

@@ -10,15 +10,18 @@
 //! - Flip tracking: a hinge whose sign changes while it is folded by more than 90° has been folded past 180°. It is pushed
 //!   back the way it came: its chord counts as 2 s_max - |c| with the old sign.
 
+use nalgebra::Vector3;
+
 use crate::math::{Lanes, Real, Row4};
-use crate::model::Row;
+use crate::model::rows::Row;
+use crate::model::surface::Surface;
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
-use super::hinge::{HingeGroup, MIN_COSINE};
+use super::hinge::{HingeGroup, HingeRow, MIN_COSINE};
 use super::strength_map::StrengthMap;
 
-/// What the sign of four hinges is measured with, beside the hinges themselves.
+/// Vectors that give four hinges their sign, in addition to the hinges.
 #[derive(Debug, Clone, Copy)]
 pub struct AngleGroup<R> {
     /// From the first end of the edge of the anchors to the other, and to the middles of the far sides.
@@ -67,6 +70,17 @@ impl<R: Real, const N: usize> Row for AngleRow<R, N> {
     }
 }
 
+impl<R: Real, const N: usize> HingeRow<R, N> {
+    /// The signed angle of the hinge in the mesh that it was made from; `point` gives the mesh's point of a row.
+    pub fn angle(&self, surface: &Surface, point: impl Fn(u32) -> usize) -> AngleRow<R, N> {
+        let x = self.points.map(|row| surface.positions[point(row)]);
+        let c: Vector3<f64> = x.iter().zip(&self.weights).map(|(x, w)| x * w.to_f64()).sum();
+        let n = bisector(spans(x.map(Into::into)));
+        let sign = if c.dot(&Vector3::from(n)) < 0.0 { -1.0 } else { 1.0 };
+        AngleRow::new(self.points, self.rest.to_f64() * sign)
+    }
+}
+
 /// How a sweep reads angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleStrength<R> {
@@ -83,8 +97,8 @@ const fn far_sides<const N: usize>() -> [&'static [usize]; 2] {
 
 /// The sum of the unit normals of a hinge's two faces, from the vectors of its edge and to its far sides.
 pub fn bisector([edge, left, right]: [[f64; 3]; 3]) -> [f64; 3] {
-    let [edge, left, right] = [edge, left, right].map(nalgebra::Vector3::from);
-    let unit = |v: nalgebra::Vector3<f64>| v.try_normalize(0.0).unwrap_or_default();
+    let [edge, left, right] = [edge, left, right].map(Vector3::from);
+    let unit = |v: Vector3<f64>| v.try_normalize(0.0).unwrap_or_default();
     (unit(edge.cross(&left)) + unit(right.cross(&edge))).into()
 }
 
@@ -234,7 +248,7 @@ pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
     }
 }
 
-/// What of bends stays, and which are past 180°: after a time step.
+/// The update of rest angles after a time step: plastic bends, and hinges folded past 180°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleMemory<R> {
     /// `bendAngleScale`.

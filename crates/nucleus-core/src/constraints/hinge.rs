@@ -24,17 +24,16 @@
 use nalgebra::Vector3;
 
 use crate::math::Real;
+use crate::model::rows::Row;
 use crate::model::surface::Surface;
-
-use super::angle::{AngleRow, bisector, spans};
-use crate::model::{Row, Seam, fan_triangles, seams, triangle_area};
+use crate::model::topology::{Seam, fan_triangles, seams, triangle_area};
 
 /// A hinge of `N` points between rows of the solver's columns, before it is laid out.
 #[derive(Debug, Clone, Copy)]
 pub struct HingeRow<R, const N: usize> {
-    points: [u32; N],
-    weights: [R; N],
-    rest: R,
+    pub(super) points: [u32; N],
+    pub(super) weights: [R; N],
+    pub(super) rest: R,
     inverse_square_max: R,
 }
 
@@ -161,15 +160,6 @@ fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
 }
 
 impl<R: Real, const N: usize> HingeRow<R, N> {
-    /// The signed angle of the hinge in the mesh that it was made from; `point` gives the mesh's point of a row.
-    pub fn angle(&self, surface: &Surface, point: impl Fn(u32) -> usize) -> AngleRow<R, N> {
-        let x = self.points.map(|row| surface.positions[point(row)]);
-        let c: Vector3<f64> = x.iter().zip(&self.weights).map(|(x, w)| x * w.to_f64()).sum();
-        let n = bisector(spans(x.map(Into::into)));
-        let sign = if c.dot(&Vector3::from(n)) < 0.0 { -1.0 } else { 1.0 };
-        AngleRow::new(self.points, self.rest.to_f64() * sign)
-    }
-
     /// Whether the hinge is bent at rest.
     pub fn is_bent(&self) -> bool {
         self.rest > R::ZERO

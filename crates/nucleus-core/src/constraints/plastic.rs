@@ -2,7 +2,8 @@
 //! by as much as brings them back to the limit. Once per time step, after contact.
 
 use crate::math::{Real, Row4};
-use crate::model::{ClothModel, RowList};
+use crate::model::ClothModel;
+use crate::model::rows::RowList;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -39,7 +40,7 @@ pub fn creep<R: Real>(
     }
 }
 
-/// Updates what the hinges of a cloth remember of their angles.
+/// Updates the rest angles and flip states of the hinges of a cloth.
 pub fn remember_angles<R: Real>(
     cloth: &mut ClothModel<R>,
     points: &[Row4<R>],

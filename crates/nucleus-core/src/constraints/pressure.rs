@@ -14,11 +14,12 @@ use nalgebra::Vector3;
 
 use crate::input::frame::Pressure;
 use crate::math::{Real, Row4};
+use crate::model::rows::{Blocks, triangles_by_block};
 use crate::model::surface::Surface;
-use crate::model::{Blocks, components, triangles_by_block};
+use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::state::State;
+use crate::state::{Chamber, State};
 
 /// Pascals for a `pressure`, `startPressure` or `incompressibility` of 1.
 pub const PASCALS_PER_PRESSURE: f64 = 1000.0;
@@ -33,7 +34,7 @@ const NEWTON: usize = 12;
 /// Volume that a collapsed chamber counts as, as a share of its volume at the start.
 const LEAST_VOLUME: f64 = 1e-3;
 
-/// What is fixed of the pressure in one cloth.
+/// The chambers and holes of one cloth, fixed once it is compiled.
 #[derive(Debug, Clone, Default)]
 pub struct PressureModel {
     /// Triangles that touch each block of points; empty where the cloth has no pressure.
@@ -55,17 +56,6 @@ struct Hole {
 }
 
 const NO_CHAMBER: u32 = u32::MAX;
-
-/// The gas in one chamber.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chamber {
-    /// Volume at the start in m³; below zero for a mesh that is inside out.
-    pub start_volume: f64,
-    /// Volume at the end of the last time step in m³.
-    pub volume: f64,
-    /// Volume of its air at ambient pressure, in start volumes; below zero until the first frame sets it.
-    pub amount: f64,
-}
 
 /// Sums over a chamber in one time step.
 #[derive(Clone, Copy, Default)]

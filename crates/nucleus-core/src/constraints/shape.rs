@@ -12,8 +12,9 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::math::Real;
+use crate::model::rows::Blocks;
 use crate::model::surface::Surface;
-use crate::model::{Blocks, components};
+use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
@@ -31,7 +32,7 @@ const PINNED: f64 = 10.0;
 /// Share of the size that makes the linear map of a flat mesh definite.
 const FLAT: f64 = 1e-4;
 
-/// What is fixed of the shapes of one cloth.
+/// The rest shapes of one cloth, fixed once it is compiled.
 #[derive(Debug, Clone, Default)]
 pub struct ShapeModel {
     /// Points of each shell, in the solver's rows.
@@ -157,7 +158,7 @@ impl ShapeModel {
         let soft = FLAT * spread.trace();
         let linear = (spread + Matrix3::identity() * soft).try_inverse();
         let linear = linear.map_or(rotation, |inverse| (turned + rotation * soft) * inverse);
-        // About the centre at rest of what is weighed, which pins shift.
+        // About the weighted centre at rest, which pins shift.
         Fit { centre: centre - rotation * rest_centre, rotation, linear }
     }
 }

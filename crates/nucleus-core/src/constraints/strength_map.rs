@@ -5,7 +5,7 @@
 //! factor divides the compliance: half the stiffness is twice the compliance. A row with the factor 0 is skipped.
 
 use crate::math::{Lanes, Real};
-use crate::model::Row;
+use crate::model::rows::Row;
 
 /// A value for rows longer (`above`) and one for rows shorter (`below`) than at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,9 +7,10 @@
 //! Shear rows are links too: the cross links of quads, swept with the strength of `shearResistance`.
 
 use crate::math::{Lanes, Real, Row4};
+use crate::model::rows::Row;
 use crate::model::surface::Surface;
+use crate::model::topology::{Link, shear_links};
 use crate::model::vertex_maps::mean;
-use crate::model::{Link, Row, shear_links};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::strength_map::{Sides, StrengthMap};

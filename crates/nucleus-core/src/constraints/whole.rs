@@ -1,16 +1,15 @@
-//! Effects that take a cloth as a whole, not row by row: pressure, shape, the input mesh, and what of a deformation stays.
+//! Effects on a whole cloth, not row by row: pressure, shape, the input mesh, and plastic deformation.
 
 use crate::input::frame::{BendSolver, Bending, FrameInput, InputMesh};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{WholeEffect, WholeSweep};
-use crate::state::State;
+use crate::state::{Chamber, State};
 
 use super::angle::AngleMemory;
 use super::attract::Attraction;
 use super::plastic;
-use super::pressure::Chamber;
 use super::shape::UNTURNED;
 
 /// Gives the chambers and shells of all cloths their places in the state.

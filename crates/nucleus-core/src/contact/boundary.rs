@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::model::{by_halves, triangle_edges};
+use crate::model::order::by_halves;
+use crate::model::topology::triangle_edges;
 
 /// The boundary elements of one object, in the solver's rows.
 #[derive(Debug, Clone, Default)]

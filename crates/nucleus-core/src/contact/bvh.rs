@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::math::{Lanes as _, Real};
-use crate::model::by_halves;
+use crate::model::order::by_halves;
 
 /// An axis-aligned box in metres, relative to an origin of the caller. In single precision, rounded outwards. The
 /// fourth number is always zero, so that a box is two aligned loads.

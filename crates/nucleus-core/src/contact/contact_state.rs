@@ -63,7 +63,7 @@ pub fn list_contact_states<R: Real>(
     }
 }
 
-/// What contact states are computed from.
+/// The inputs of contact states.
 struct ContactPoints<'a, R: Real> {
     model: &'a Model<R>,
     state: &'a State<R>,

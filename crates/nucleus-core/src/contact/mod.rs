@@ -46,7 +46,7 @@
 //! | the ground plane | [`ground`] |
 //! | points inside a collider | [`depenetration`] |
 //! | push-out of points near a surface | [`push_out`] |
-//! | the state of contact, and what its passes read and write | [`system`] |
+//! | the state of contact, and the inputs and outputs of its passes | [`system`] |
 //! | certificates and fallbacks at the end of a step | [`safeguard`] |
 //! | the contact state of each point, for observers | [`contact_state`] |
 //!

@@ -1,4 +1,4 @@
-//! The state of contact, and what its passes read and write.
+//! The state of contact, and the inputs and outputs of its passes.
 
 use std::sync::atomic::AtomicBool;
 
@@ -123,13 +123,13 @@ impl<R: Real> ContactSystem<R> {
     }
 }
 
-/// What the contact passes of a time step read and write.
+/// Inputs and outputs of the contact passes of a time step.
 pub struct ContactPass<'a, R: Real> {
     /// Read: the objects.
     pub model: &'a Model<R>,
     /// Read: the input of the frame.
     pub frame: &'a FrameInput,
-    /// Read: the length of time steps, and what they are divided into.
+    /// Read: substeps, time steps and their length.
     pub schedule: &'a Schedule<R>,
     /// Read: the time step, within the frame.
     pub span: StepInterval,
@@ -139,7 +139,7 @@ pub struct ContactPass<'a, R: Real> {
     pub state: &'a mut State<R>,
     /// Written: contacts, and bounds.
     pub contact: &'a mut ContactSystem<R>,
-    /// Written: what the report counts.
+    /// Written: the counters of the report.
     pub counters: &'a mut ContactCounters,
 }
 

@@ -14,7 +14,8 @@ use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::{Real, Row4, dot};
-use crate::model::{AirFactors, ClothModel};
+use crate::model::ClothModel;
+use crate::model::strength_maps::AirFactors;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;

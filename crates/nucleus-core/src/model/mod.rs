@@ -17,23 +17,16 @@
 
 pub mod build_error;
 pub mod builder;
-mod order;
-mod rows;
-mod strength_maps;
+pub mod order;
+pub mod rows;
+pub mod strength_maps;
 pub mod surface;
-mod topology;
+pub mod topology;
 pub mod vertex_maps;
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
-
-pub use order::{Order, by_halves};
-pub use rows::{Blocks, Row, RowBatch, RowList};
-pub use strength_maps::{AirFactors, MapReader, StrengthMaps};
-pub use topology::{
-    Link, Seam, components, fan_triangles, seams, shear_links, stretch_links, triangle_area, triangle_edges,
-};
 
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::hinge::{self, HingeGroup, HingeRow};
@@ -43,7 +36,11 @@ use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
 use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
 use crate::model::builder::{Cloth, Collider, Mass, point_masses};
+use crate::model::order::Order;
+use crate::model::rows::{Blocks, RowList, triangles_by_block};
+use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps};
 use crate::model::surface::Surface;
+use crate::model::topology::{Link, stretch_links};
 use crate::model::vertex_maps::mean;
 
 /// One cloth: its range in the columns of the state, and its lists. Points are numbered by their row in the columns.
@@ -245,26 +242,4 @@ fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -
 fn mean_length(surface: &Surface) -> f64 {
     let links = stretch_links(surface, false);
     links.iter().map(|link| link.rest_length).sum::<f64>() / links.len().max(1) as f64
-}
-
-/// The triangles of each block: all with a point in it, so that the normals of a block need no other block.
-pub fn triangles_by_block(
-    surface: &Surface,
-    place: impl Fn(u32) -> u32,
-    blocks: &Blocks,
-) -> Vec<Vec<[u32; 3]>> {
-    let mut by_block = vec![Vec::new(); blocks.len()];
-    for triangle in surface.faces.triangles() {
-        let triangle = triangle.map(&place);
-        let [a, b, c] = triangle.map(|point| blocks.of(point));
-        by_block[a as usize].push(triangle);
-        if b != a {
-            by_block[b as usize].push(triangle);
-        }
-        if c != a && c != b {
-            by_block[c as usize].push(triangle);
-        }
-    }
-    by_block.iter_mut().for_each(|triangles| triangles.sort_unstable());
-    by_block
 }

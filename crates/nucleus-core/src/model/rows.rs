@@ -8,6 +8,8 @@
 
 use std::ops::Range;
 
+use crate::model::surface::Surface;
+
 /// Points per block, about.
 const POINTS_PER_BLOCK: usize = 1024;
 /// Lane groups per task of interface rows.
@@ -221,6 +223,28 @@ impl Colours {
         }
         colours.into_iter()
     }
+}
+
+/// The triangles of each block: all with a point in it, so that the normals of a block need no other block.
+pub fn triangles_by_block(
+    surface: &Surface,
+    place: impl Fn(u32) -> u32,
+    blocks: &Blocks,
+) -> Vec<Vec<[u32; 3]>> {
+    let mut by_block = vec![Vec::new(); blocks.len()];
+    for triangle in surface.faces.triangles() {
+        let triangle = triangle.map(&place);
+        let [a, b, c] = triangle.map(|point| blocks.of(point));
+        by_block[a as usize].push(triangle);
+        if b != a {
+            by_block[b as usize].push(triangle);
+        }
+        if c != a && c != b {
+            by_block[c as usize].push(triangle);
+        }
+    }
+    by_block.iter_mut().for_each(|triangles| triangles.sort_unstable());
+    by_block
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What the solver reports about a frame and about its own work.
+//! Reports: the figures of a frame, and the passes that a scene compiles to.
 //!
 //! | You want to know… | Read |
 //! |---|---|

@@ -5,12 +5,10 @@
 //! body 10 units up stops falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
 
 pub mod kinematics;
+pub mod start;
 
 use crate::bytes::{HASH_SEED, hash_word};
-use crate::constraints::pressure::Chamber;
 use crate::math::{Real, Row4, sub};
-use crate::model::ClothModel;
-use crate::model::builder::{Cloth, point_masses};
 
 /// The points of all cloths, in the solver's order; positions in world space.
 #[derive(Debug, Clone)]
@@ -50,44 +48,18 @@ pub struct State<R> {
     pub inverse_mass: Vec<R>,
 }
 
-impl<R: Real> State<R> {
-    /// Columns for all cloths, at the start that each cloth gives. Padding points have no mass.
-    pub fn new(cloths: &[Cloth], models: &[ClothModel<R>]) -> Self {
-        let rows = models.last().map_or(0, |last| last.points().start + last.blocks.columns()) as usize;
-        let air = models.iter().any(|model| !model.triangles.is_empty());
-        let mut state = Self {
-            anchor: vec![[0.0; 3]; rows],
-            displacement: vec![Row4::ZERO; rows],
-            velocity: vec![Row4::ZERO; rows],
-            start: Vec::new(),
-            depenetration_by_collider: Vec::new(),
-            depenetration_by_cloth: Vec::new(),
-            step_length: 0.0,
-            predicted: vec![Row4::ZERO; rows],
-            normal: vec![Row4::ZERO; if air { rows } else { 0 }],
-            area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
-            gust: Vec::new(),
-            wind_travel: [0.0; 3],
-            chambers: Vec::new(),
-            rotations: Vec::new(),
-            inverse_mass: vec![R::ZERO; rows],
-        };
-        for (cloth, model) in cloths.iter().zip(models) {
-            let masses = point_masses(cloth);
-            for (point, position) in cloth.positions().iter().enumerate() {
-                let row = model.place(point) as usize;
-                state.anchor[row] = (*position).into();
-                if let Some(velocity) = cloth.start.velocities.get(point) {
-                    state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
-                }
-                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins
-                // it.
-                state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
-            }
-        }
-        state
-    }
+/// The gas in one chamber.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chamber {
+    /// Volume at the start in m³; below zero for a mesh that is inside out.
+    pub start_volume: f64,
+    /// Volume at the end of the last time step in m³.
+    pub volume: f64,
+    /// Volume of its air at ambient pressure, in start volumes; below zero until the first frame sets it.
+    pub amount: f64,
+}
 
+impl<R: Real> State<R> {
     /// The position of a point in metres, in world space.
     pub fn position(&self, row: u32) -> [f64; 3] {
         let (anchor, moved) = (self.anchor[row as usize], self.displacement[row as usize].0);

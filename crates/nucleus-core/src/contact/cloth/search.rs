@@ -1,4 +1,4 @@
-//! One search for contacts among cloths: which contacts it replaces, and what its tasks read.
+//! One search for contacts among cloths: the contacts that it replaces, and the inputs of its tasks.
 
 use crate::contact::boundary::{BoundaryElements, ElementGroup};
 use crate::contact::bvh::SweptBox;

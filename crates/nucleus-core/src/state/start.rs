@@ -1,0 +1,45 @@
+//! The state at the start of a scene.
+
+use crate::math::{Real, Row4};
+use crate::model::ClothModel;
+use crate::model::builder::{Cloth, point_masses};
+use crate::state::State;
+
+impl<R: Real> State<R> {
+    /// Columns for all cloths, at the start that each cloth gives. Padding points have no mass.
+    pub fn new(cloths: &[Cloth], models: &[ClothModel<R>]) -> Self {
+        let rows = models.last().map_or(0, |last| last.points().start + last.blocks.columns()) as usize;
+        let air = models.iter().any(|model| !model.triangles.is_empty());
+        let mut state = Self {
+            anchor: vec![[0.0; 3]; rows],
+            displacement: vec![Row4::ZERO; rows],
+            velocity: vec![Row4::ZERO; rows],
+            start: Vec::new(),
+            depenetration_by_collider: Vec::new(),
+            depenetration_by_cloth: Vec::new(),
+            step_length: 0.0,
+            predicted: vec![Row4::ZERO; rows],
+            normal: vec![Row4::ZERO; if air { rows } else { 0 }],
+            area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
+            gust: Vec::new(),
+            wind_travel: [0.0; 3],
+            chambers: Vec::new(),
+            rotations: Vec::new(),
+            inverse_mass: vec![R::ZERO; rows],
+        };
+        for (cloth, model) in cloths.iter().zip(models) {
+            let masses = point_masses(cloth);
+            for (point, position) in cloth.positions().iter().enumerate() {
+                let row = model.place(point) as usize;
+                state.anchor[row] = (*position).into();
+                if let Some(velocity) = cloth.start.velocities.get(point) {
+                    state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
+                }
+                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins
+                // it.
+                state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
+            }
+        }
+        state
+    }
+}
