@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, components, float, int, node, plug, ramp, toggle};
+use super::key::{Plugged, choice, components, float, int, node, plug, ramp, toggle};
+use super::kind::Data;
 use super::node_type::node_table;
 use super::scene_nodes::transform::TRANSFORM;
-use super::{Choice, Component, Data, Plugged, RampPoint};
+use super::value::{Choice, Component, RampPoint};
 
 /// 1 everywhere.
 const FULL: &[RampPoint] = &[RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) }];

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::key::{Plugged, choice, float, floats, int, node, plug, ramp, toggle, vector, vectors};
+use super::kind::Data;
 use super::node_type::node_table;
 use super::scene_nodes::transform::TRANSFORM;
-use super::{Choice, Data, Plugged, RampPoint};
+use super::value::{Choice, RampPoint};
 
 use dyn_base::DYN_BASE;
 use field::FIELD;

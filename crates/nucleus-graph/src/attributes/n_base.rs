@@ -2,10 +2,13 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, float, floats, int, node, plug, ramp, text, texture, toggle, vector, vectors};
+use super::key::{
+    Plugged, choice, float, floats, int, node, plug, ramp, text, texture, toggle, vector, vectors,
+};
+use super::kind::Data;
 use super::node_type::node_table;
 use super::particle::PARTICLE;
-use super::{Choice, Data, Plugged, RampPoint};
+use super::value::{Choice, RampPoint};
 
 /// What a map is taken from.
 pub(super) const MAP_TYPES: &[(i32, &str)] = &[(0, "None"), (1, "Per-vertex"), (2, "Texture")];

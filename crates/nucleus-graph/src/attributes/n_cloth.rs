@@ -1,9 +1,10 @@
 //! Cloth.
 
-use super::key::{choice, float, floats, int, plug, texture, toggle};
+use super::key::{Plugged, choice, float, floats, int, plug, texture, toggle};
+use super::kind::Data;
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::node_type::node_table;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 node_table! {
     /// A mesh that behaves as cloth.

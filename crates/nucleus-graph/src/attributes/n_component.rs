@@ -1,9 +1,10 @@
 //! Parts of objects, as constraints see them. Made by the short form of a constraint.
 
-use super::key::{choice, float, floats, int, ints, plug};
+use super::key::{Plugged, choice, float, floats, int, ints, plug};
+use super::kind::Data;
 use super::n_base::MAP_TYPES;
 use super::node_type::node_table;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 node_table! {
     /// A part of one object that a constraint takes hold of.

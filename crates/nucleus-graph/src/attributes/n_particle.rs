@@ -3,10 +3,11 @@
 
 use std::borrow::Cow;
 
-use super::key::{choice, color_ramp, float, floats, int, plug, ramp, toggle, vectors};
+use super::key::{Plugged, choice, color_ramp, float, floats, int, plug, ramp, toggle, vectors};
+use super::kind::Data;
 use super::n_base::N_BASE;
 use super::node_type::node_table;
-use super::{Choice, ColorPoint, Data, Plugged, RampPoint};
+use super::value::{Choice, ColorPoint, RampPoint};
 
 /// What a ramp can be read by.
 const INPUTS: &[(i32, &str)] = &[

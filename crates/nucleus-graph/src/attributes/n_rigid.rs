@@ -1,9 +1,9 @@
 //! Colliders. Rows of its base are repeated where creation in Maya sets another value.
 
-use super::Choice;
 use super::key::{choice, float, floats, texture, toggle};
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::node_type::node_table;
+use super::value::Choice;
 
 /// What an object that nothing moves has no use for.
 #[rustfmt::skip] // a name per line would be a page of its own

@@ -120,7 +120,7 @@ macro_rules! node_table {
         })*
     ) => {
         $(#[doc = $type_doc])+
-        pub static $type: crate::attributes::NodeType = crate::attributes::NodeType {
+        pub static $type: crate::attributes::node_type::NodeType = crate::attributes::node_type::NodeType {
             name: $name,
             parent: $parent,
             rows: &[$($(&$key.row,)*)*],
@@ -130,7 +130,7 @@ macro_rules! node_table {
         };
         $($(
             $(#[doc = $doc])+
-            pub static $key: crate::attributes::Key<$value> = ($row).described($group, concat!($($doc),+));
+            pub static $key: crate::attributes::key::Key<$value> = ($row).described($group, concat!($($doc),+));
         )*)*
     };
 }

@@ -1,9 +1,10 @@
 //! The solver node.
 
-use super::key::{choice, float, int, plug, toggle, vector};
+use super::key::{Plugged, choice, float, int, plug, toggle, vector};
+use super::kind::Data;
 use super::node_type::node_table;
 use super::scene_nodes::transform::TRANSFORM;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 node_table! {
     /// A solver: only what belongs to the same one interacts. Holds gravity, wind, the ground plane and the quality settings.

@@ -1,8 +1,9 @@
 //! What all dynamic objects inherit from classic particles. None of it takes effect yet.
 
-use super::key::{choice, float, floats, int, ints, plug, text, toggle, vector, vectors};
+use super::key::{Plugged, choice, float, floats, int, ints, plug, text, toggle, vector, vectors};
+use super::kind::Data;
 use super::node_type::node_table;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 node_table! {
     /// The classic particle shape, which every object of a nucleus descends from.

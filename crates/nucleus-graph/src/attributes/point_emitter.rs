@@ -1,9 +1,10 @@
 //! Emitters.
 
 use super::fields::dyn_base::DYN_BASE;
-use super::key::{choice, float, floats, int, plug, toggle, vector};
+use super::key::{Plugged, choice, float, floats, int, plug, toggle, vector};
+use super::kind::Data;
 use super::node_type::node_table;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 node_table! {
     /// Emits particles. Not solved yet.

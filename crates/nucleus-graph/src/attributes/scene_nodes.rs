@@ -1,8 +1,9 @@
 //! Nodes of a scene that are not dynamics: transforms, cameras, meshes, primitives, and the time.
 
-use super::key::{choice, float, int, node, plug, text, together, toggle, vector};
+use super::key::{Plugged, choice, float, int, node, plug, text, together, toggle, vector};
+use super::kind::Data;
 use super::node_type::node_table;
-use super::{Choice, Data, Plugged};
+use super::value::Choice;
 
 use surface_shape::SURFACE_SHAPE;
 use transform::TRANSFORM;

@@ -71,6 +71,11 @@ pub struct RampPoint {
     pub interpolation: Choice,
 }
 
+impl RampPoint {
+    /// The scene's names of Maya's interpolations after a point, by Maya's number.
+    pub const INTERPOLATIONS: [&str; 4] = ["none", "linear", "smooth", "spline"];
+}
+
 /// One point of a ramp of colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColorPoint {

@@ -1,4 +1,4 @@
-//! What an audit checks in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
+//! Scope of an audit in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
 
 use nucleus_audit::{CollisionFilter, CollisionMesh, Plane};
 use nucleus_core::{ClothFrame, ClothId, FrameInput, Pin};

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::attributes::camera;
 use crate::graph::{EvalContext, Graph, NodeId};
-use crate::scene::TimeSpan;
+use crate::scene::document::TimeSpan;
 
 /// A camera.
 #[derive(Debug, Clone, PartialEq)]

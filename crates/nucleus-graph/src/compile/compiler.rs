@@ -8,10 +8,11 @@ use nalgebra::Vector3;
 use nucleus_core::{BuildError, ClothId, Faces, ModelBuilder};
 
 use crate::attributes::{Attribute, Key, NodeType, Plugged, nucleus};
+use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{EvalContext, NodeId};
 use crate::memory::{Cost, Size};
-use crate::scene::{Findings, Scene};
+use crate::scene::document::Scene;
 
 use super::geometry::Geometry;
 use super::program::{NucleusProgram, Object, ObjectKind};

@@ -7,11 +7,12 @@ use nucleus_core::Surface;
 use crate::attributes::{
     Painting, Value, mesh, n_base, n_particle, poly_cube, poly_cylinder, poly_plane, poly_sphere,
 };
+use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{Graph, Node, NodeId};
 use crate::memory::{self, Budget, Cost, Size, TooLarge};
 use crate::mesh::{ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj, read_obj_uvs};
-use crate::scene::{Findings, Scene, Source};
+use crate::scene::document::{Scene, Source};
 
 use super::animated_mesh::{AnimatedMesh, NumberedFile, Points};
 

@@ -43,8 +43,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::attributes::nucleus;
+use crate::diagnostic::{Diagnostic, Findings};
 use crate::graph::NodeId;
-use crate::scene::{Diagnostic, Findings, Scene};
+use crate::scene::document::{Scene, TimeSpan};
 
 use compiler::{CompiledNucleus, Compiler};
 use geometry::Geometry;
@@ -92,7 +93,7 @@ fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, warnings: Vec<Diagnostic>
     let start = nuclei.iter().map(NucleusProgram::start).min().unwrap_or(scene.time.start);
     let data = ProgramData {
         graph: scene.graph.clone(),
-        time: crate::scene::TimeSpan { start, ..scene.time },
+        time: TimeSpan { start, ..scene.time },
         every: scene.every,
         record: scene.record,
         checks: scene.checks.clone(),

@@ -7,8 +7,9 @@ use nucleus_core::{ClothId, ColliderId, Faces, ModelBuilder};
 
 use crate::attributes::{FromValue, Key};
 use crate::checks::Check;
+use crate::diagnostic::Diagnostic;
 use crate::graph::{EvalContext, Graph, NodeId};
-use crate::scene::{Diagnostic, Record, TimeSpan};
+use crate::scene::document::{Record, TimeSpan};
 
 use super::camera::{self, Camera};
 use super::sources::{AttachmentSource, ClothSource, ColliderSource};

@@ -8,8 +8,9 @@ use nalgebra::Vector3;
 use nucleus_core::Surface;
 
 use crate::attributes::{Choice, nucleus};
+use crate::diagnostic::Findings;
 use crate::graph::NodeId;
-use crate::scene::{Findings, Scene, TimeSpan};
+use crate::scene::document::{Scene, TimeSpan};
 
 /// `resistanceModel: classic`.
 pub(super) const CLASSIC: Choice = Choice(0);

@@ -14,19 +14,21 @@
 //! mistakes.
 
 mod comments;
-mod document;
+pub(crate) mod document;
 pub mod edit;
+mod file_text;
 mod preset;
 mod read;
 mod short_form;
 pub mod syntax;
 mod write;
 
-pub(crate) use crate::diagnostic::Findings;
 pub use crate::diagnostic::{Diagnostic, Note, Severity};
 pub use document::{Record, Scene, Source, TimeSpan};
-pub use preset::{Preset, presets, read_preset};
-pub use read::{TextError, read_scene, read_scene_text, read_scene_within, read_text};
+pub use file_text::{TextError, read_text};
+pub use preset::Preset;
+pub use read::preset::{presets, read_preset};
+pub use read::{read_scene, read_scene_text, read_scene_within};
 pub use write::{format_scene, write_scene};
 
 #[cfg(test)]

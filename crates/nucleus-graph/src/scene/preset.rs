@@ -7,36 +7,10 @@
 //! nCloth(friction: 0.05, stretchResistance: 60)
 //! ```
 
-use std::path::Path;
-
 use crate::attributes::{Attribute, NodeType};
 use crate::graph::Setting;
-use crate::memory::Memory;
 
-use super::read::{TextError, read_lone_node, read_text};
-use super::syntax;
 use super::write::setting_lines;
-use crate::diagnostic::{Diagnostic, Findings, nearest};
-
-/// Limit on the size of a preset file.
-const MAX_SIZE: Memory = Memory(1_000_000);
-
-/// The built-in presets by name.
-static PRESETS: [(&str, &str); 13] = [
-    ("burlap", include_str!("../../presets/burlap.ron")),
-    ("canvas", include_str!("../../presets/canvas.ron")),
-    ("chainmail", include_str!("../../presets/chainmail.ron")),
-    ("chiffon", include_str!("../../presets/chiffon.ron")),
-    ("cotton", include_str!("../../presets/cotton.ron")),
-    ("heavyDenim", include_str!("../../presets/heavyDenim.ron")),
-    ("looseThickKnit", include_str!("../../presets/looseThickKnit.ron")),
-    ("nylon", include_str!("../../presets/nylon.ron")),
-    ("paper", include_str!("../../presets/paper.ron")),
-    ("rubberSheet", include_str!("../../presets/rubberSheet.ron")),
-    ("silk", include_str!("../../presets/silk.ron")),
-    ("tShirt", include_str!("../../presets/tShirt.ron")),
-    ("thickLeather", include_str!("../../presets/thickLeather.ron")),
-];
 
 /// Settings for a type of node.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,73 +29,5 @@ impl Preset {
     /// The settings as a scene writes them: `friction: 0.4`.
     pub fn lines(&self) -> Vec<String> {
         self.settings.iter().flat_map(|(row, setting)| setting_lines(row, setting)).collect()
-    }
-}
-
-/// All built-in presets in the order of their names.
-pub fn presets() -> Vec<Preset> {
-    PRESETS.iter().filter_map(|(name, text)| read_preset(name, text, Path::new(name)).ok()).collect()
-}
-
-/// The built-in preset of this name, or the preset in this file if the name ends in `.ron`. `file` resolves the name
-/// of a file to a path.
-///
-/// # Errors
-/// A message and a help: the preset does not exist, or its file cannot be read.
-pub(super) fn preset(
-    name: &str,
-    file: &dyn Fn(&str) -> std::path::PathBuf,
-) -> Result<Preset, (String, String)> {
-    if let Some((name, text)) = PRESETS.iter().find(|(known, _)| *known == name) {
-        return read_preset(name, text, Path::new(name)).map_err(|mistakes| refusal(name, &mistakes));
-    }
-    if !name.ends_with(".ron") {
-        let near = nearest(name, PRESETS.iter().map(|(known, _)| *known));
-        let help =
-            near.map_or("`nucleus presets` lists them".to_owned(), |near| format!("did you mean `{near}`?"));
-        return Err((format!("there is no preset `{name}`"), help));
-    }
-    let path = file(name);
-    let text = read_text(&path, MAX_SIZE).map_err(|error| {
-        let message = match error {
-            TextError::Unreadable { path, cause } => format!("cannot read the preset `{path}`: {cause}"),
-            other => format!("cannot take the preset `{name}`: {other}"),
-        };
-        (message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned())
-    })?;
-    // Syntax errors quote the text, and a file that is no preset may hold anything.
-    if let Err(mistakes) = syntax::parse(&text) {
-        let at = mistakes.first().map_or(0, |mistake| mistake.span.start.min(text.len()));
-        let before = text.get(..at).unwrap_or_default();
-        let (line, start) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |end| end + 1));
-        let column = before[start..].chars().count() + 1;
-        let message =
-            format!("the preset `{name}` cannot be read: malformed at line {line}, column {column}");
-        return Err((message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned()));
-    }
-    read_preset(name, &text, &path).map_err(|mistakes| refusal(name, &mistakes))
-}
-
-fn refusal(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
-    let first = mistakes.first().map(|mistake| mistake.message.as_str()).unwrap_or_default();
-    (
-        format!("the preset `{name}` cannot be read: {first}"),
-        "a preset is a file like `nCloth(friction: 0.4)`".to_owned(),
-    )
-}
-
-/// Reads a preset from text.
-///
-/// # Errors
-/// All mistakes in the text.
-pub fn read_preset(name: &str, text: &str, file: &Path) -> Result<Preset, Vec<Diagnostic>> {
-    let mut findings = Findings::new(file.to_owned());
-    let read = read_lone_node(text, &mut findings);
-    let comment = text.lines().next().and_then(|line| line.strip_prefix("//")).unwrap_or_default();
-    match read {
-        Some((node_type, settings)) if findings.errors() == 0 => {
-            Ok(Preset { name: name.to_owned(), doc: comment.trim().to_owned(), node_type, settings })
-        }
-        _ => Err(findings.in_order()),
     }
 }

@@ -8,7 +8,6 @@ use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
 use super::comments::Comments;
 use super::document::{Record, Scene, TimeSpan};
-use super::read::INTERPOLATIONS;
 use super::short_form::ShortForm;
 
 /// Writes a scene as RON that reads back to the same scene, to the bit.
@@ -224,7 +223,7 @@ fn color_point(point: &ColorPoint) -> String {
 
 /// The interpolation to the next point of a ramp, unless it is linear.
 fn interpolation_suffix(interpolation: Choice) -> String {
-    match usize::try_from(interpolation.0).ok().and_then(|index| INTERPOLATIONS.get(index)) {
+    match usize::try_from(interpolation.0).ok().and_then(|index| RampPoint::INTERPOLATIONS.get(index)) {
         Some(&"linear") | None => String::new(),
         Some(word) => format!(", {word}"),
     }

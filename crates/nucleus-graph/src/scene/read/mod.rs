@@ -9,6 +9,7 @@
 //! | how `nodes` are read                                 | `declaration.rs`, `nodes.rs` |
 //! | how a setting is read: values, keys, maps            | `setting.rs`, `value.rs`, `keys.rs` |
 //! | how components (`"cloth1.vtx[0:8]"`) are read        | `component.rs`  |
+//! | how material presets are found and read              | `preset.rs`     |
 //! | how names of nodes become connections                | `references.rs` |
 //! | how `connections` are read                           | `connections.rs` |
 
@@ -19,28 +20,25 @@ mod declaration;
 mod fields;
 mod keys;
 mod nodes;
+pub(super) mod preset;
 mod references;
 mod setting;
 mod time;
 mod value;
 
 use std::collections::BTreeSet;
-use std::io::Read;
 use std::path::Path;
 
-use crate::attributes::{Attribute, NodeType};
 use crate::compile;
-use crate::files;
-use crate::graph::{NodeId, Setting};
+use crate::diagnostic::{Diagnostic, Findings};
+use crate::graph::NodeId;
 use crate::memory::{self, Budget, Memory};
 
-use super::document::{Scene, Source, TimeSpan};
-use super::syntax::{self, Node};
-use crate::diagnostic::Diagnostic;
-use crate::diagnostic::Findings;
+use crate::scene::document::{Scene, Source, TimeSpan};
+use crate::scene::file_text::{TextError, read_text};
+use crate::scene::syntax::{self, Node};
 
 use fields::Fields;
-pub(super) use setting::INTERPOLATIONS;
 
 /// Reads a scene file. Also returns warnings, such as settings without effect.
 ///
@@ -59,52 +57,6 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<(Scene, Vec<Diagnostic>), Ve
         }
     }
     Err(findings.in_order())
-}
-
-/// The text of a scene file.
-///
-/// # Errors
-/// When it is not a regular file, cannot be read, is larger than `memory`, or is not UTF-8.
-pub fn read_text(path: &Path, memory: Memory) -> Result<String, TextError> {
-    let path_of = || path.display().to_string();
-    let unreadable = |cause| TextError::Unreadable { path: path_of(), cause };
-    let (mut file, bytes) = files::open(path).map_err(unreadable)?;
-    let refused = |refused| TextError::TooLarge { path: path_of(), why: format!("{refused}") };
-    Budget::new(memory).check(bytes).map_err(refused)?;
-    let mut all = Vec::new();
-    file.read_to_end(&mut all).map_err(unreadable)?;
-    let not_text = |at| TextError::NotText { path: path_of(), at };
-    String::from_utf8(all).map_err(|error| not_text(error.utf8_error().valid_up_to()))
-}
-
-/// Reasons why the text of a scene file cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum TextError {
-    /// The file cannot be read.
-    #[error("cannot read `{path}`: {cause}")]
-    Unreadable {
-        /// The file.
-        path: String,
-        /// The error of the system.
-        cause: std::io::Error,
-    },
-    /// The file is larger than the memory limit.
-    #[error("`{path}` takes {why}")]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// The size and the limit.
-        why: String,
-    },
-    /// The file is not UTF-8.
-    #[error("`{path}` is not text: scenes are UTF-8")]
-    NotText {
-        /// The file.
-        path: String,
-        /// The number of valid bytes before the first invalid one.
-        at: usize,
-    },
 }
 
 /// Reads a scene from text. Diagnostics name `file`, and relative paths start from its folder.
@@ -168,31 +120,8 @@ fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
     let connections = connections::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
-    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, findings);
+    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, preset::find, findings);
     let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();
     Some((Scene { time, every, record, graph, checks: checks.unwrap_or_default(), source }, broken))
-}
-
-/// Reads a text of one node without a name: its type and settings.
-pub(super) fn read_lone_node(
-    text: &str,
-    findings: &mut Findings,
-) -> Option<(&'static NodeType, Vec<(&'static Attribute, Setting)>)> {
-    let root = match syntax::parse(text) {
-        Ok(root) => root,
-        Err(errors) => {
-            for error in errors {
-                findings.error(&error.span, error.message).help = error.help;
-            }
-            return None;
-        }
-    };
-    let declaration = declaration::unnamed(&root, findings)?;
-    let node_type = declaration.node_type;
-    let graph = nodes::read_lone(&declaration, findings);
-    let (_, node) = graph.iter().find(|(_, node)| node.name() == declaration.name)?;
-    let row = |name: &&'static str| node_type.attribute(name);
-    let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
-    Some((node_type, set.collect()))
 }

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::PathBuf;
 
 use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, time};
 use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
 use crate::memory::NODE;
 use crate::scene::document::Source;
-use crate::scene::preset::preset;
+use crate::scene::preset::Preset;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::component;
@@ -18,11 +19,15 @@ use super::references::{self, Reference, References};
 use super::setting::{read, read_part};
 use super::value::{expected, single, text};
 
+/// Finds a preset by its name, and by the path of a file. The error is a message and a help.
+type FindPreset = fn(&str, &dyn Fn(&str) -> PathBuf) -> Result<Preset, (String, String)>;
+
 /// Reads all nodes and connects them. Also returns the nodes with mistakes.
 pub(super) fn read_nodes(
     node: &Node,
     connections: &Connections,
     source: &mut Source,
+    presets: FindPreset,
     findings: &mut Findings,
 ) -> (Graph, BTreeSet<NodeId>) {
     let mut graph = Graph::new();
@@ -59,6 +64,7 @@ pub(super) fn read_nodes(
             id,
             declaration,
             source,
+            presets,
             findings,
             references: &mut references,
             set: Vec::new(),
@@ -76,7 +82,7 @@ pub(super) fn read_nodes(
 }
 
 /// Reads the node of a preset. References to other nodes are refused.
-pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> Graph {
+pub(super) fn read_lone(declaration: &Declaration, presets: FindPreset, findings: &mut Findings) -> Graph {
     let mut graph = Graph::new();
     let Ok(id) = graph.add(declaration.name, declaration.node_type) else { return graph };
     let mut references = References { names: Default::default(), all: Vec::new() };
@@ -87,6 +93,7 @@ pub(super) fn read_lone(declaration: &Declaration, findings: &mut Findings) -> G
         id,
         declaration,
         source: &mut source,
+        presets,
         findings: &mut reported,
         references: &mut references,
         set: Vec::new(),
@@ -110,6 +117,7 @@ struct NodeReader<'a, 'b> {
     id: NodeId,
     declaration: &'a Declaration<'b>,
     source: &'a mut Source,
+    presets: FindPreset,
     findings: &'a mut Findings,
     references: &'a mut References,
     /// The settings so far: attribute, component of a vector, place.
@@ -211,7 +219,7 @@ impl NodeReader<'_, '_> {
         if name.is_empty() {
             return;
         }
-        let preset = match preset(name, &|file| self.source.path(file)) {
+        let preset = match (self.presets)(name, &|file| self.source.path(file)) {
             Ok(preset) => preset,
             Err((message, help)) => {
                 self.findings.error(&node.span, message).help(help);

@@ -122,9 +122,6 @@ fn list<T>(
     read.into_iter().collect()
 }
 
-/// Maya's interpolations of ramps, by index.
-pub(in crate::scene) const INTERPOLATIONS: [&str; 4] = ["none", "linear", "smooth", "spline"];
-
 /// A point of a ramp: `(0.5, 1)` or `(0.5, 1, smooth)`. Without a word, the interpolation is linear.
 fn ramp_point(label: &str, node: &Node, findings: &mut Findings) -> Option<RampPoint> {
     let (position, value, interpolation) = point_parts(label, "points of (position, value)", node, findings)?;
@@ -160,9 +157,9 @@ fn point_parts<'a>(
         },
         _ => return expected(label, what, node, findings),
     };
-    let Some(index) = INTERPOLATIONS.iter().position(|name| *name == word) else {
+    let Some(index) = RampPoint::INTERPOLATIONS.iter().position(|name| *name == word) else {
         let error = findings.error(&node.span, format!("{label} has no interpolation `{word}`"));
-        error.help(format!("it takes {}", listed(&INTERPOLATIONS)));
+        error.help(format!("it takes {}", listed(&RampPoint::INTERPOLATIONS)));
         return None;
     };
     Some((position, value, Choice(index as i32)))
