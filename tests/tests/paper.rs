@@ -1,4 +1,4 @@
-//! What the white paper claims, shown on scenes.
+//! Claims of the white paper, shown on scenes.
 
 use nalgebra::Vector3;
 use nucleus_core::ClothId;

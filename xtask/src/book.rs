@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn the_index_of_the_book_links_every_page_and_names_every_option() {
-        let root = crate::root();
+        let root = crate::files::root();
         let index = fs::read_to_string(root.join("docs/README.md")).unwrap();
         for page in Page::value_variants() {
             let verb = page.to_possible_value().unwrap();

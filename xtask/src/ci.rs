@@ -100,7 +100,7 @@ fn scenes(root: &Path) -> anyhow::Result<()> {
 
 /// Folder of optimised programs.
 fn built(root: &Path) -> PathBuf {
-    crate::target(root).join("release")
+    files::target(root).join("release")
 }
 
 fn succeed(mut command: Command, name: &str) -> anyhow::Result<()> {

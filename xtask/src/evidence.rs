@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn every_tag_names_an_existing_claim_and_is_directly_above_a_test() {
-        let root = crate::root();
+        let root = files::root();
         let claims = claims(&root).unwrap();
         for evidence in evidence(&root).unwrap() {
             assert!(!evidence.name.is_empty(), "{evidence:?}");
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn claim_numbers_are_unique_and_consecutive() {
         let mut last = ("".to_owned(), 0);
-        for claim in claims(&crate::root()).unwrap() {
+        for claim in claims(&files::root()).unwrap() {
             let (section, number) = claim.id.split_once('-').unwrap();
             let expected = if section == last.0 { last.1 + 1 } else { 1 };
             assert_eq!(number, expected.to_string(), "{}", claim.id);

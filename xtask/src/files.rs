@@ -1,8 +1,18 @@
-//! The files of the repository.
+//! The files of the repository, and its folders.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// The root of the repository: the folder above this crate.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in a folder of the repository").to_owned()
+}
+
+/// The target folder of cargo.
+pub fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
+}
 
 /// All files below `folder`, in order of their paths; none if the folder does not exist.
 ///

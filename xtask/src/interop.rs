@@ -4,14 +4,17 @@
 //! Compares each export with the cache, read by the independent `mcap` package, point by point.
 
 mod films;
+mod process;
 
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, bail, ensure};
 use serde_json::Value;
+
+use crate::files;
+use process::{cargo, environment, succeed};
 
 /// Options of the interoperability check.
 #[derive(Debug, clap::Args)]
@@ -48,12 +51,9 @@ const ENVIRONMENTS: [(&str, &[&str]); 2] = [
 ];
 const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
 
-/// The Python version of Blender's module.
-const PYTHON: &str = "python3.11";
-
 /// Installs missing tools, exports, and runs every reader.
 pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
-    let place = super::target(root).join("interop");
+    let place = files::target(root).join("interop");
     fs::create_dir_all(&place)?;
     if options.films {
         return films::run(root, &place);
@@ -84,7 +84,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
 /// The sample, which has all unusual features, and the start of a real run.
 fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let [sample, drape] = ["sample.mcap", "drape.mcap"].map(|name| place.join(name));
-    let release = super::target(root).join("release");
+    let release = files::target(root).join("release");
     for cache in [&sample, &drape] {
         // Caches are never overwritten without a flag.
         if cache.exists() {
@@ -101,7 +101,7 @@ fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 fn export(root: &Path, cache: &Path, folder: &Path) -> anyhow::Result<()> {
-    let nucleus = super::target(root).join("release/nucleus");
+    let nucleus = files::target(root).join("release/nucleus");
     for format in ["obj", "ply", "pc2", "mdd", "usda", "glb", "vtu", "mc", "mcx", "foxglove"] {
         let out = match format {
             "usda" | "glb" => format!("run.{format}"),
@@ -162,35 +162,5 @@ fn install(place: &Path) -> anyhow::Result<()> {
         npm.args(["install", "--no-audit", "--no-fund", "--prefix"]).arg(&node).arg(VALIDATOR);
         succeed(&mut npm)?;
     }
-    Ok(())
-}
-
-/// Installs Python packages into a virtual environment, unless present; returns its Python.
-fn environment(place: &Path, name: &str, packages: &[&str]) -> anyhow::Result<PathBuf> {
-    let folder = place.join(name);
-    let (stamp, python) = (folder.join("installed"), folder.join("bin/python"));
-    if fs::read_to_string(&stamp).is_ok_and(|known| known == packages.join("\n")) {
-        return Ok(python);
-    }
-    println!("-- installing {} into {}", packages.join(", "), folder.display());
-    succeed(Command::new(PYTHON).args(["-m", "venv"]).arg(&folder))?;
-    succeed(Command::new(&python).args(["-m", "pip", "install", "-q"]).args(packages))?;
-    fs::write(stamp, packages.join("\n"))?;
-    Ok(python)
-}
-
-fn cargo(root: &Path, arguments: &[&str]) -> anyhow::Result<()> {
-    cargo_with(root, arguments, &[])
-}
-
-fn cargo_with(root: &Path, arguments: &[&str], variables: &[(&str, &OsStr)]) -> anyhow::Result<()> {
-    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    succeed(Command::new(program).args(arguments).current_dir(root).envs(variables.iter().copied()))
-}
-
-fn succeed(command: &mut Command) -> anyhow::Result<()> {
-    let name = command.get_program().to_string_lossy().into_owned();
-    let status = command.status().with_context(|| format!("`{name}` cannot be started"))?;
-    ensure!(status.success(), "`{name}`: {status}");
     Ok(())
 }

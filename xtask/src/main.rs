@@ -12,7 +12,6 @@
 //! | parser of `ARCHITECTURE.md`                           | [`map`]         |
 //! | files of the repository                               | [`files`]       |
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -49,7 +48,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    let root = root();
+    let root = files::root();
     let result = match Task::parse() {
         Task::Ci => ci::run(&root),
         Task::Evidence => evidence::print(&root),
@@ -66,14 +65,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// The root of the repository: the folder above this crate.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is in a folder of the repository").to_owned()
-}
-
-/// The target folder of cargo.
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }

@@ -3,25 +3,21 @@
 //! | Question                                  | Read         |
 //! |-------------------------------------------|--------------|
 //! | the meshes                                | [`ALL`]      |
+//! | the meshes of stress tests                | [`extremes`] |
 //! | the two ribbons of a knot                 | [`knot`]     |
 //! | the OBJ writer                            | [`Mesh`]     |
 
-use std::f64::consts::TAU;
-use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
 use anyhow::Context;
 
+mod extremes;
 mod knot;
+mod mesh;
 mod soft;
 
-/// Points and polygons, counted from 0.
-#[derive(Debug, Default)]
-pub struct Mesh {
-    points: Vec<[f64; 3]>,
-    faces: Vec<Vec<usize>>,
-}
+use mesh::{Mesh, ring};
 
 /// A file name and its generator.
 type Entry = (&'static str, fn() -> Mesh);
@@ -42,58 +38,19 @@ const ALL: [Entry; 10] = [
 
 /// Writes all of them.
 pub fn run(root: &Path) -> anyhow::Result<()> {
-    for (name, make) in ALL {
-        let path = root.join("scenes/meshes").join(name).with_extension("obj");
-        fs::write(&path, make().obj()).with_context(|| format!("cannot write `{}`", path.display()))?;
-        println!("scenes/meshes/{name}.obj");
+    for (name, text) in files() {
+        let path = root.join(&name);
+        fs::write(&path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
+        println!("{name}");
     }
     Ok(())
 }
 
-impl Mesh {
-    /// A strip of quads: rows of equal length; with `closed`, the last point of a row connects to its first.
-    fn rows(rows: Vec<Vec<[f64; 3]>>, closed: bool) -> Self {
-        let width = rows.first().map_or(0, Vec::len);
-        let count = rows.len();
-        let mut mesh = Self { points: rows.into_iter().flatten().collect(), faces: Vec::new() };
-        for row in 1..count {
-            for column in 0..width - usize::from(!closed) {
-                let next = (column + 1) % width;
-                let [above, below] = [(row - 1) * width, row * width];
-                mesh.faces.push(vec![above + column, below + column, below + next, above + next]);
-            }
-        }
-        mesh
-    }
-
-    fn add(&mut self, other: Self) {
-        let first = self.points.len();
-        self.points.extend(other.points);
-        self.faces.extend(other.faces.into_iter().map(|face| face.iter().map(|k| k + first).collect()));
-    }
-
-    fn obj(&self) -> String {
-        let mut text = String::from("# Written by `cargo xtask meshes`.\n");
-        for [x, y, z] in &self.points {
-            // Normalises -0.0, whose sign depends on the arithmetic.
-            let [x, y, z] = [x, y, z].map(|x| (x * 1e5).round() / 1e5 + 0.0);
-            writeln!(text, "v {x:.5} {y:.5} {z:.5}").expect("writing to a string does not fail");
-        }
-        for face in &self.faces {
-            let corners: Vec<String> = face.iter().map(|k| (k + 1).to_string()).collect();
-            writeln!(text, "f {}", corners.join(" ")).expect("writing to a string does not fail");
-        }
-        text
-    }
-}
-
-/// A ring of points about the y axis.
-fn ring(count: usize, radius: f64, height: f64) -> Vec<[f64; 3]> {
-    let point = |k: usize| {
-        let turn = TAU * k as f64 / count as f64;
-        [radius * turn.cos(), height, radius * turn.sin()]
-    };
-    (0..count).map(point).collect()
+/// The path of each generated file from the root, and its text.
+fn files() -> impl Iterator<Item = (String, String)> {
+    let gallery = ALL.iter().map(|(name, make)| (format!("scenes/meshes/{name}.obj"), make().obj()));
+    let extremes = extremes::ALL.iter().map(|(name, text)| (format!("scenes/extremes/{name}.obj"), text()));
+    gallery.chain(extremes)
 }
 
 /// An open tube along x, 100 long and 25 in diameter, 40 points around and 61 along.
@@ -167,10 +124,10 @@ mod tests {
 
     #[test]
     fn the_files_of_the_gallery_match_their_generators() {
-        let folder = crate::root().join("scenes/meshes");
-        for (name, make) in ALL {
-            let there = fs::read_to_string(folder.join(name).with_extension("obj")).unwrap_or_default();
-            assert!(there == make().obj(), "scenes/meshes/{name}.obj: `cargo xtask meshes` rewrites it");
+        let root = crate::files::root();
+        for (name, text) in files() {
+            let there = fs::read_to_string(root.join(&name)).unwrap_or_default();
+            assert!(there == text, "{name}: `cargo xtask meshes` rewrites it");
         }
     }
 }

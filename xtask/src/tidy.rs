@@ -1,5 +1,7 @@
-//! Checks that no compiler makes: the map fits the tree, attributes name modules that exist, files stay short, nothing
-//! names one machine.
+//! Checks that no compiler makes: the map fits the tree, attributes name modules that exist, files stay short and import
+//! each other in no circle, nothing names one machine.
+
+mod imports;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -42,7 +44,7 @@ const RETIRED: [&str; 17] = [
     concat!("Gri", "ps"),
 ];
 
-/// Prints what is not tidy; fails if anything is not.
+/// Prints all problems; fails if there are any.
 pub fn run(root: &Path) -> anyhow::Result<()> {
     let problems = problems(root)?;
     problems.iter().for_each(|problem| println!("{problem}"));
@@ -57,13 +59,18 @@ pub fn run(root: &Path) -> anyhow::Result<()> {
 pub fn problems(root: &Path) -> io::Result<Vec<String>> {
     let mut problems = map_problems(root)?;
     for path in files::below(root)? {
-        // What is not text has neither lines nor words.
+        // A file that is not text has neither lines nor words.
         let Ok(text) = fs::read_to_string(&path) else { continue };
         let name = files::name(root, &path);
         problems.extend(text_problems(&name, &text));
         if name.starts_with(TABLES) {
             problems.extend(solved_problems(root, &name, &text));
         }
+    }
+    for package in packages(root)? {
+        let src = root.join(&package).join("src");
+        let circles = imports::circles(&src)?.into_iter();
+        problems.extend(circles.map(|circle| format!("{package}/src: {circle}")));
     }
     Ok(problems)
 }
@@ -150,7 +157,7 @@ fn map_problems(root: &Path) -> io::Result<Vec<String>> {
     Ok(problems.into_iter().map(|problem| format!("{PAGE}{problem}")).collect())
 }
 
-/// Adds what is named and not there, what is there and not named, and what is named twice.
+/// Adds names without a thing, things without a name, and names that occur twice.
 fn compare(kind: &str, inside: &str, named: &[Named], there: &[String], problems: &mut Vec<String>) {
     let mut seen = BTreeSet::new();
     for Named { name, line } in named {

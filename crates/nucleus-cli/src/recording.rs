@@ -1,4 +1,4 @@
-//! From a simulation to a recorder: what a cache states about its run, and the fingerprint of what the run was made from.
+//! From a simulation to a recorder: the metadata of a run, and the fingerprint of its inputs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -254,13 +254,13 @@ fn audit_json(audit: &Audit) -> Value {
     json!({
         "steps": account.motions,
         "crossings": account.crossings,
-        "overlaps": account.intersections,
+        "intersections": account.intersections,
         "touches": account.touches,
         "undecided": account.undecided,
         "below_ground": account.below_ground,
-        "intersections_at_start": account.initial_intersections,
-        "intersections": account.remaining_initial_intersections,
-        "inside": account.current_intersections,
+        "initial_intersections": account.initial_intersections,
+        "remaining_initial_intersections": account.remaining_initial_intersections,
+        "current_intersections": account.current_intersections,
         "first": audit.findings().next(),
     })
 }

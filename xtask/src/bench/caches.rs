@@ -3,14 +3,10 @@
 mod player;
 mod recording;
 mod target;
+mod throughput;
 
 use std::path::Path;
-use std::process::Command;
 
-use anyhow::{Context, ensure};
-use serde_json::Value;
-
-use super::table::{Table, figure};
 use target::Target;
 
 /// Text above the tables.
@@ -23,105 +19,14 @@ The sheet waves so that every float changes in every frame; figures are medians 
 `cargo xtask book --only caches` rewrites this page; it needs 12 GB of disk temporarily.
 ";
 
-/// Points along a side, frames, and whether compression is `--compact`.
-const SHEETS: [(u32, u32, bool); 3] = [(129, 600, false), (129, 60, true), (1000, 40, false)];
-/// Frames of 129² points in 10 GB.
-const LARGE: u32 = 67_500;
-
-/// Targets: megabytes per second written and read, milliseconds per seek in a file of 10 GB.
-const WRITE: f64 = 300.0;
-const READ: f64 = 2000.0;
-const SEEK: f64 = 5.0;
-
 /// All tables of the page, targets first.
 pub fn tables(root: &Path) -> anyhow::Result<String> {
-    let folder = crate::target(root).join("caches");
+    let folder = crate::files::target(root).join("caches");
     std::fs::create_dir_all(&folder)?;
     let [costs, checkpoint] = recording::tables()?;
-    let (throughput, large) = (throughput(root, &folder)?, large(root, &folder)?);
+    let (throughput, large) = (throughput::throughput(root, &folder)?, throughput::large(root, &folder)?);
     let parts = [throughput, large, costs, checkpoint, player::table(root, &folder)?];
     let targets: Vec<&Target> = parts.iter().flat_map(|(_, targets)| targets).collect();
     let tables = std::iter::once(target::table(&targets)).chain(parts.iter().map(|(table, _)| table.clone()));
     Ok(tables.map(|table| format!("{table}\n")).collect())
-}
-
-fn throughput(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
-    let head =
-        ["sheet", "packing", "write MB/s", "read MB/s", "packed", "recorder, bytes per point", "reader, MB"];
-    let mut table = Table::new("Speed and memory", &head);
-    let mut targets = Vec::new();
-    for (side, frames, is_compact) in SHEETS {
-        let mut runs = Vec::new();
-        for _ in 0..3 {
-            runs.push(example(root, folder, side, frames, is_compact, None)?);
-        }
-        let median = |key: &str| {
-            let mut all: Vec<f64> = runs.iter().filter_map(|run| run[key].as_f64()).collect();
-            all.sort_by(f64::total_cmp);
-            all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
-        };
-        let packing = if is_compact { "`--compact`" } else { "usual" };
-        let keys = ["write_mb_s", "read_mb_s", "packed", "recorder_bytes_per_point", "reader_mb"];
-        let cells = [format!("{side}²"), packing.to_owned()];
-        table.row(cells.into_iter().chain(keys.map(|key| figure(median(key)))));
-        if !is_compact {
-            targets.push(Target::above(&format!("writing {side}², MB/s"), WRITE, median("write_mb_s")));
-            targets.push(Target::above(&format!("reading {side}², MB/s"), READ, median("read_mb_s")));
-        }
-    }
-    table.note("Memory is the peak that recorder and reader add to the process, meshes included: a few frames, independent of the length of the run.");
-    table.note("The file includes the mesh, which is a larger share of 60 frames than of 600.");
-    Ok((table, targets))
-}
-
-fn large(root: &Path, folder: &Path) -> anyhow::Result<(Table, Vec<Target>)> {
-    let value = example(root, folder, 129, LARGE, false, None)?;
-    let mut table = Table::new("A file of 10 GB", &["", "median ms", "99 of 100 ms"]);
-    let mut row = |name: &str, key: &str| {
-        let times = [0, 1].map(|k| figure(value[key][k].as_f64().unwrap_or(f64::NAN)));
-        table.row([name.to_owned()].into_iter().chain(times));
-    };
-    row("seek, cold file cache", "cold_seek_ms");
-    row("seek, warm file cache", "seek_ms");
-    let number = |key: &str| figure(value[key].as_f64().unwrap_or(f64::NAN));
-    table.note(format!(
-        "{} GB, {LARGE} frames of 129²: opened in {} ms, written at {} MB/s, read at {} MB/s with {} MB of memory.",
-        number("gigabytes"), number("open_ms"), number("write_mb_s"), number("read_mb_s"), number("reader_mb"),
-    ));
-    let cold = |k: usize| value["cold_seek_ms"][k].as_f64().unwrap_or(f64::NAN);
-    let targets = vec![
-        Target::below("seek in 10 GB with a cold file cache, median ms", SEEK, cold(0)),
-        Target::below("the same, 99 of 100", SEEK, cold(1)),
-    ];
-    Ok((table, targets))
-}
-
-/// Runs the throughput example of the cache crate; its results as JSON.
-fn example(
-    root: &Path,
-    folder: &Path,
-    side: u32,
-    frames: u32,
-    is_compact: bool,
-    keep: Option<&Path>,
-) -> anyhow::Result<Value> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.args([
-        "run",
-        "--quiet",
-        "--release",
-        "--package",
-        "nucleus-cache",
-        "--example",
-        "throughput",
-        "--",
-    ]);
-    command.args([side.to_string(), frames.to_string()]).args(is_compact.then_some("compact"));
-    command.args(keep.map(|path| format!("keep={}", path.display())));
-    let output =
-        command.current_dir(root).env("TMPDIR", folder).output().context("cargo cannot be started")?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    ensure!(output.status.success(), "throughput {side} {frames}: {said}");
-    Ok(serde_json::from_slice(&output.stdout)?)
 }

@@ -6,6 +6,7 @@
 //!
 //! | Question                                 | Module     |
 //! |------------------------------------------|------------|
+//! | the workloads                            | [`workload`] |
 //! | the scenes                               | [`scene`]  |
 //! | one run                                  | [`mod@run`] |
 //! | figures of other solvers                 | [`peers`]  |
@@ -13,13 +14,9 @@
 //! | cost of self-collision, and its scaling  | [`cost`]   |
 //! | the cloth of the scaling test            | [`pile`]   |
 
-use anyhow::ensure;
-use nucleus_graph::audit::Closeness;
-
-use super::ball::Ball;
 use super::report::Report;
 use super::table::figure;
-use super::workload::BALL;
+use anyhow::ensure;
 
 pub mod cost;
 mod peers;
@@ -27,12 +24,12 @@ mod pile;
 mod run;
 mod scene;
 mod tables;
+mod workload;
 
-use peers::{PEERS, Peer};
+use peers::{PEERS, answer};
 use run::{RunResult, RunSpec};
-
-/// Evaluations per 1/24 s at which costs are compared.
-const TYPICAL: u32 = 48;
+use workload::TYPICAL;
+pub use workload::Workload;
 
 /// Target speed-up of W3 over the fastest peer without penetrations.
 const LEAD: f64 = 5.0;
@@ -40,59 +37,6 @@ const LEAD: f64 = 5.0;
 /// Target speed-up of two threads, and its size.
 const PAIR_TARGET: f64 = 1.5;
 const PAIR_SIZE: u32 = 129;
-
-/// A workload.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Workload {
-    /// W3: a sheet of 1.5 m falls on a ball and onto itself.
-    Folds,
-    /// W4: a ball at 10 m/s flies into a sheet that hangs by two corners.
-    Shot,
-    /// W8: five such sheets on one another.
-    Layers,
-}
-
-impl Workload {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Folds => "W3",
-            Self::Shot => "W4",
-            Self::Layers => "W8",
-        }
-    }
-
-    /// Frames of a full run.
-    fn frames(self) -> u32 {
-        match self {
-            Self::Folds | Self::Layers => 96,
-            Self::Shot => 24,
-        }
-    }
-
-    /// Evaluations per 1/24 s to run. Five sheets take minutes per run.
-    fn evaluations(self) -> &'static [u32] {
-        if self == Self::Layers { &[48, 96] } else { &[24, 48, 96, 192] }
-    }
-
-    /// Maximum points along the side of a sheet: five larger ones take an hour, and no peer has larger ones.
-    fn largest(self) -> u32 {
-        if self == Self::Layers { 33 } else { 129 }
-    }
-
-    /// The ball.
-    fn ball(self) -> Ball {
-        match self {
-            Self::Folds | Self::Layers => BALL,
-            // From 2 m before the sheet to 8 m behind it in a second.
-            Self::Shot => Ball { radius: 0.15, start: [0.5, -0.5, -2.0], flight: [0.0, 0.0, 10.0 / 24.0] },
-        }
-    }
-
-    fn closeness(self) -> Closeness {
-        // Only an audit of every step sees a passage within a frame.
-        if self == Self::Shot { Closeness::Steps } else { Closeness::Frames }
-    }
-}
 
 /// Runs a workload at all sizes and settings on one thread, and at one setting on all.
 ///
@@ -134,15 +78,6 @@ fn on_threads(spec: &RunSpec, threads: &[u32], known: &[RunResult]) -> anyhow::R
     Ok(runs)
 }
 
-/// Our fastest run of no more error and without penetrations.
-fn answer<'a>(peer: &Peer, runs: &'a [RunResult]) -> Option<&'a RunResult> {
-    let clean = |run: &&RunResult| run.audit.is_some_and(|report| report.found() == 0);
-    let good = |run: &&RunResult| {
-        run.spec.size == peer.size && peer.stretch.is_none_or(|most| 1e2 * run.stretch <= most)
-    };
-    runs.iter().filter(clean).filter(good).min_by(|a, b| a.ms().total_cmp(&b.ms()))
-}
-
 fn check_thread_targets(runs: &[RunResult], report: &mut Report) {
     for run in runs {
         let (spec, first) = (&run.spec, &runs[0].timed);
@@ -176,6 +111,7 @@ fn check_target(workload: Workload, sizes: &[u32], runs: &[RunResult], report: &
 mod tests {
     use nucleus_audit::AuditCounts;
 
+    use super::peers::Peer;
     use super::*;
 
     #[test]

@@ -1,4 +1,4 @@
-//! Only what a scene needs: one feature at a time is added to the same sheet, and its cost is measured.
+//! Cost of each feature: one at a time is added to the same sheet.
 
 use nalgebra::Vector3;
 use nucleus_core::{

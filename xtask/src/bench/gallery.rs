@@ -26,7 +26,8 @@ struct Runs {
 /// # Errors
 /// When a scene cannot be read or compiled, or threads change its result.
 pub fn run(files: &[PathBuf], threads: &[u32], report: &mut Report) -> anyhow::Result<()> {
-    let found = if files.is_empty() { of_the_gallery(&crate::root().join(FOLDER))? } else { files.to_vec() };
+    let found =
+        if files.is_empty() { of_the_gallery(&crate::files::root().join(FOLDER))? } else { files.to_vec() };
     let all: anyhow::Result<Vec<Runs>> = found.iter().map(|file| Runs::new(file, threads)).collect();
     let all = all?;
     report.show(time_table(&all));
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn the_scenes_of_the_gallery_are_all_found() {
-        let found = of_the_gallery(&crate::root().join(FOLDER)).unwrap();
+        let found = of_the_gallery(&crate::files::root().join(FOLDER)).unwrap();
         let names: Vec<_> = found.iter().map(|file| file.file_stem().unwrap().to_string_lossy()).collect();
         assert!(names.is_sorted() && names.iter().any(|name| name == "reef_knot"), "{names:?}");
     }

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, ensure};
 
-use super::{cargo_with, environment, succeed};
+use super::process::{cargo_with, environment, succeed};
 
 /// A Python package that contains ffmpeg with H.264 and VP9.
 const PACKAGE: &str = "imageio-ffmpeg==0.6.0";

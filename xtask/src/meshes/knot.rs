@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::Mesh;
+use super::mesh::Mesh;
 
 /// Half the distance of the strands of a ribbon, outside the knot and inside it.
 const NARROW: f64 = 3.0;

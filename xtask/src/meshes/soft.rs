@@ -1,6 +1,6 @@
 //! Meshes of soft bodies: a balloon with an open neck, and the round bed of a trampoline.
 
-use super::{Mesh, ring};
+use super::mesh::{Mesh, ring};
 
 /// Points round a balloon and a trampoline.
 const AROUND: usize = 32;

@@ -92,7 +92,7 @@ fn a_missing_map_is_one_problem() {
 
 #[test]
 fn this_repository_is_tidy() {
-    assert_eq!(problems(&crate::root()).unwrap(), [""; 0]);
+    assert_eq!(problems(&files::root()).unwrap(), [""; 0]);
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! N2.2-5, N2.4-15 and N2.4-16: how many collision iterations, and how many substeps.
 
+use super::claim::{ClaimResult, Experiment, Status, name};
 use super::scenes::{Parameters, drape, strain};
-use super::{ClaimResult, Experiment, Status};
+
 use crate::report::{figure, percent};
 use crate::trade::Reading;
 use crate::trade::run::Run;
@@ -65,7 +66,7 @@ fn left_stretch(reading: Reading) -> ClaimResult {
         );
     }
     ClaimResult {
-        reading: super::page::name(reading),
+        reading: name(reading),
         status: Status::of(by_steps < 0.7 && by_passes < 0.7),
         reason,
         table: (HEAD.to_vec(), steps.iter().chain(&passes).map(row).collect()),

@@ -1,7 +1,8 @@
 //! N2.4-13, N2.4-17 and N2.4-18: numbers of substeps and iterations, for pairs, for particles, and for propagation.
 
+use super::claim::{ClaimResult, Experiment, Status, name};
 use super::scenes::{Parameters, drape, late_strain, pairs_per_query, particles, strain, strip};
-use super::{ClaimResult, Experiment, Status};
+
 use crate::report::{figure, percent};
 use crate::trade::Reading;
 use crate::trade::run::Run;
@@ -40,7 +41,7 @@ fn substep_cost(reading: Reading) -> ClaimResult {
         figure(runs[0].ms()),
     );
     ClaimResult {
-        reading: super::page::name(reading),
+        reading: name(reading),
         status: Status::of(cheapest > 0),
         reason,
         table: (
@@ -84,7 +85,7 @@ fn particles_at_one(reading: Reading) -> ClaimResult {
         ]
     });
     ClaimResult {
-        reading: super::page::name(reading),
+        reading: name(reading),
         status: Status::of(one.contact.pairs_unresolved == 0 && least(one) > 0.98 && one.is_finite()),
         reason: format!(
             "at one and one, {} pairs are unresolved and the least gap is {} of the thickness",
@@ -120,7 +121,7 @@ fn growth_of_need(reading: Reading) -> ClaimResult {
         .map(|(cells, (count, strain))| vec![cells.to_string(), figure(*count), percent(*strain)]);
     let power = (needed[3].0 / needed[0].0).log2() / 3.0;
     ClaimResult {
-        reading: super::page::name(reading),
+        reading: name(reading),
         status: Status::of(power > 1.2),
         reason: format!("the count grows with the power {power:.2} of the length"),
         table: (vec!["cells", "count needed", "strain, 99 %"], rows.collect()),

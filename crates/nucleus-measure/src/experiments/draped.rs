@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nucleus_core::{BuildError, Cloth, ClothLists, Collider, ColliderFrame, Mass, ModelBuilder};
 use nucleus_graph::mesh::poly_sphere;
 
-use super::{Experiment, Scheme, Table, or_dash};
+use super::experiment::{Experiment, STIFFNESS, Scheme, Table, or_dash};
 use crate::clock::{Clock, Timing};
 use crate::fixture::{DENSITY, Fixture, Vec3, sheet};
 use crate::metrics::deformation::{Edges, Strain};
@@ -84,7 +84,7 @@ fn drape(size: u32, scheme: Scheme, evaluations: u32) -> Result<(Strain, f64), B
     scheme.set(&mut fixture, evaluations);
     let cloth = fixture.cloth();
     match scheme {
-        Scheme::SmallSteps => cloth.stiffness.shear = Some(super::STIFFNESS / 10.0),
+        Scheme::SmallSteps => cloth.stiffness.shear = Some(STIFFNESS / 10.0),
         Scheme::Passes(_) => cloth.shear_resistance = f64::from(evaluations) / 10.0,
     }
     (cloth.thickness, cloth.friction) = (THICKNESS / 2.0, 10.0);

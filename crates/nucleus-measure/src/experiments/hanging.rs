@@ -2,7 +2,7 @@
 
 use nucleus_core::{BuildError, ClothLists};
 
-use super::{Experiment, STIFFNESS, Scheme, Table, or_dash, timed};
+use super::experiment::{Experiment, STIFFNESS, Scheme, Table, or_dash, timed};
 use crate::fixture::{DENSITY, Fixture, GRAVITY, Vec3, sheet};
 use crate::report::figure;
 

@@ -2,7 +2,7 @@
 
 use nucleus_core::{BuildError, ClothLists, Faces, Surface};
 
-use super::{Experiment, Scheme, Table, or_dash};
+use super::experiment::{Experiment, Scheme, Table, or_dash};
 use crate::fixture::{DENSITY, Fixture, GRAVITY, Vec3, sheet, vertex_areas};
 use crate::metrics::conservation::potential;
 use crate::report::figure;

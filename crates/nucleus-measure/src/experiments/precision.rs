@@ -2,7 +2,7 @@
 
 use nucleus_core::{BuildError, COUNT_PERIOD, ClothLists, Real, ResistanceModel};
 
-use super::{Experiment, Scheme, Table, or_dash};
+use super::experiment::{Experiment, Scheme, Table, or_dash};
 use crate::fixture::{Fixture, GRAVITY, Vec3, sheet};
 use crate::metrics::deformation::distance;
 use crate::report::figure;

@@ -141,7 +141,7 @@ pub fn evaluate(
         Evaluation { stress_case: *stress_case, figures: Vec::new(), recovery: None, reported: Vec::new() };
     // A panic of the solver fails its row, not the table.
     let result = catch_unwind(AssertUnwindSafe(|| match &stress_case.expectation {
-        Expectation::Rejected { scene, names } => evaluation.rejects(&scene(), names),
+        Expectation::Rejected { scene, message } => evaluation.rejects(&scene(), message),
         Expectation::Runs(runs) => evaluation.runs(runs, baselines, budget),
     }));
     match result {
@@ -193,13 +193,13 @@ pub fn evaluate_all<E: From<io::Error>>(
 }
 
 impl Evaluation {
-    fn rejects(&mut self, scene: &TestScene, names: &[&str]) -> io::Result<()> {
+    fn rejects(&mut self, scene: &TestScene, message: &str) -> io::Result<()> {
         let compiled = scene.compile()?;
         self.reported = compiled.messages(Severity::Error);
         // The temporary folder of the scene is meaningless to readers.
         self.reported.iter_mut().for_each(|message| *message = without_folder(message));
         let messages = self.reported.join("\n");
-        let missing = names.iter().filter(|name| !messages.contains(**name)).count();
+        let missing = message.split("; ").filter(|part| !messages.contains(part)).count();
         let runs = usize::from(compiled.program.is_some());
         self.figures.push(Measurement::at_most(Kind::Runs, "runs after all", runs as f64, 0.0));
         self.figures.push(Measurement::at_most(Kind::Words, "not named in the error", missing as f64, 0.0));

@@ -15,7 +15,6 @@
 
 mod energy_budget;
 mod evaluation;
-mod meshes;
 mod page;
 mod row;
 mod rows;

@@ -9,7 +9,7 @@ const HEAD: &str = "# Extremes
 
 Behaviour of the solver with extreme inputs.
 `nucleus extremes --only NAME` runs a row, and `nucleus extremes --save FOLDER` writes its scene, so that it can be changed, recorded and viewed.
-Most scenes are in `scenes/extremes/`; rows with generated meshes or injected faults are in code.
+The scenes are in `scenes/extremes/`. Seven rows inject faults into the input of single frames (NaN, infinity, a frame without duration); no scene file can express these, so they are in code (`extremes/rows/input.rs`).
 Bounds are set before a row is run, from the scene itself or from the needs of a user; a row outside a bound is listed as failing, with its figure.
 
 - **Energy** is the maximum of kinetic energy over supplied energy. Gravity, forces and changes of attributes supply energy, and wind, colliders and pins do so as if each had struck the cloth elastically. Above 1.01 the solver has created energy.

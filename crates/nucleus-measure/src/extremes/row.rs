@@ -25,12 +25,12 @@ pub struct StressCase {
 pub enum Expectation {
     /// It runs within bounds.
     Runs(Runs),
-    /// It is rejected with an error that contains all these parts.
+    /// It is rejected with an error.
     Rejected {
         /// The scene.
         scene: fn() -> TestScene,
-        /// Parts of the message.
-        names: &'static [&'static str],
+        /// Parts of the message, separated by semicolons.
+        message: &'static str,
     },
 }
 

@@ -17,8 +17,8 @@ pub type FaultInjection = fn(frame: i64, input: &mut FrameInput);
 pub struct TestScene {
     /// The scene file.
     pub text: String,
-    /// OBJ files by name.
-    pub meshes: Vec<(&'static str, String)>,
+    /// OBJ files: their names, and their text.
+    pub meshes: Vec<(&'static str, &'static str)>,
     /// Faults to inject.
     pub inject: Option<FaultInjection>,
 }
@@ -39,9 +39,9 @@ impl TestScene {
         Self { text: text.into(), meshes: Vec::new(), inject: None }
     }
 
-    /// Adds an OBJ file.
-    pub fn mesh(mut self, name: &'static str, text: String) -> Self {
-        self.meshes.push((name, text));
+    /// Adds an OBJ file, by its path in `scenes/extremes/`.
+    pub fn mesh(mut self, path: &'static str, text: &'static str) -> Self {
+        self.meshes.push((path.rsplit_once('/').map_or(path, |(_, name)| name), text));
         self
     }
 

@@ -1,8 +1,8 @@
 //! SVG charts in the colours of the page's style sheet.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
-use super::{figure, percent};
+use super::figures::{figure, percent};
 
 /// Width and height of a chart, in SVG units.
 const SIZE: [f64; 2] = [760.0, 420.0];
@@ -97,23 +97,18 @@ impl Axis {
 
 impl Chart {
     /// Renders the chart.
-    pub fn svg(&self) -> String {
+    pub fn svg(&self) -> Markup {
         let [width, height] = SIZE;
-        let mut svg = format!(
-            "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{} against {}\">\n",
-            escape(&self.y.name),
-            escape(&self.x.name)
-        );
-        self.draw_floor(&mut svg);
-        self.draw_axes(&mut svg);
-        self.draw_mark(&mut svg);
-        for line in &self.lines {
-            self.draw_line(line, &mut svg);
+        html! {
+            svg viewBox={ "0 0 " (width) " " (height) } role="img"
+                aria-label={ (self.y.name) " against " (self.x.name) } {
+                (self.floor())
+                (self.axes())
+                (self.mark())
+                @for line in &self.lines { (self.line(line)) }
+                @for dot in &self.dots { (self.dot(dot)) }
+            }
         }
-        for dot in &self.dots {
-            self.draw_dot(dot, &mut svg);
-        }
-        svg + "</svg>\n"
     }
 
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -123,114 +118,73 @@ impl Chart {
         [left + across * self.x.share(x), top + up * (1.0 - self.y.share(y))]
     }
 
-    fn draw_axes(&self, svg: &mut String) {
+    fn axes(&self) -> Markup {
         let [left, bottom] = self.place([self.x.low, self.y.low]);
         let [right, top] = self.place([self.x.high, self.y.high]);
-        for tick in self.x.ticks() {
-            let x = self.place([tick, self.y.low])[0];
-            let below = bottom + 18.0;
-            put(svg, format_args!("<path class=\"grid\" d=\"M{x:.1} {top:.1}V{bottom:.1}\"/>"));
-            let words = self.x.tick_label(tick);
-            put(
-                svg,
-                format_args!("<text x=\"{x:.1}\" y=\"{below:.1}\" text-anchor=\"middle\">{words}</text>"),
-            );
+        let across = |tick: f64| self.place([tick, self.y.low])[0];
+        let up = |tick: f64| self.place([self.x.low, tick])[1];
+        html! {
+            @for (x, tick) in self.x.ticks().into_iter().map(|tick| (across(tick), tick)) {
+                path.grid d={ "M" (at(x)) " " (at(top)) "V" (at(bottom)) } {}
+                text x=(at(x)) y=(at(bottom + 18.0)) text-anchor="middle" { (self.x.tick_label(tick)) }
+            }
+            @for (y, tick) in self.y.ticks().into_iter().map(|tick| (up(tick), tick)) {
+                path.grid d={ "M" (at(left)) " " (at(y)) "H" (at(right)) } {}
+                text x=(at(left - 8.0)) y=(at(y + 4.0)) text-anchor="end" { (self.y.tick_label(tick)) }
+            }
+            text.name x=(at((left + right) / 2.0)) y=(at(SIZE[1] - 8.0)) text-anchor="middle" { (self.x.name) }
+            text.name transform={ "translate(14 " (at((top + bottom) / 2.0)) ") rotate(-90)" } text-anchor="middle" {
+                (self.y.name)
+            }
         }
-        for tick in self.y.ticks() {
-            let y = self.place([self.x.low, tick])[1];
-            put(svg, format_args!("<path class=\"grid\" d=\"M{left:.1} {y:.1}H{right:.1}\"/>"));
-            let (beside, middle, words) = (left - 8.0, y + 4.0, self.y.tick_label(tick));
-            put(
-                svg,
-                format_args!("<text x=\"{beside:.1}\" y=\"{middle:.1}\" text-anchor=\"end\">{words}</text>"),
-            );
-        }
-        let (middle, lowest, name) = ((left + right) / 2.0, SIZE[1] - 8.0, escape(&self.x.name));
-        put(
-            svg,
-            format_args!(
-                "<text class=\"name\" x=\"{middle:.1}\" y=\"{lowest:.1}\" text-anchor=\"middle\">{name}</text>"
-            ),
-        );
-        let (middle, name) = ((top + bottom) / 2.0, escape(&self.y.name));
-        put(
-            svg,
-            format_args!(
-                "<text class=\"name\" transform=\"translate(14 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{name}</text>"
-            ),
-        );
     }
 
-    fn draw_floor(&self, svg: &mut String) {
-        let Some((floor, words)) = &self.floor else { return };
+    fn floor(&self) -> Markup {
+        let Some((floor, words)) = &self.floor else { return html! {} };
         let [left, bottom] = self.place([self.x.low, self.y.low]);
         let [right, top] = self.place([self.x.high, *floor]);
-        let (width, height) = (right - left, bottom - top);
-        put(
-            svg,
-            format_args!(
-                "<rect class=\"floor\" x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
-            ),
-        );
-        let (x, y, words) = (left + 8.0, (top + 16.0).min(bottom - 6.0), escape(words));
-        put(svg, format_args!("<text class=\"remark\" x=\"{x:.1}\" y=\"{y:.1}\">{words}</text>"));
+        html! {
+            rect.floor x=(at(left)) y=(at(top)) width=(at(right - left)) height=(at(bottom - top)) {}
+            text.remark x=(at(left + 8.0)) y=(at((top + 16.0).min(bottom - 6.0))) { (words) }
+        }
     }
 
-    fn draw_mark(&self, svg: &mut String) {
-        let Some((mark, words)) = &self.mark else { return };
+    fn mark(&self) -> Markup {
+        let Some((mark, words)) = &self.mark else { return html! {} };
         let [x, bottom] = self.place([*mark, self.y.low]);
         let top = self.place([*mark, self.y.high])[1];
-        put(svg, format_args!("<path class=\"mark\" d=\"M{x:.1} {top:.1}V{bottom:.1}\"/>"));
         let is_right = self.x.share(*mark) > 0.6;
         let (beside, anchor) = if is_right { (x - 6.0, "end") } else { (x + 6.0, "start") };
-        let (y, words) = (top + 14.0, escape(words));
-        put(
-            svg,
-            format_args!(
-                "<text class=\"remark\" x=\"{beside:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{words}</text>"
-            ),
-        );
+        html! {
+            path.mark d={ "M" (at(x)) " " (at(top)) "V" (at(bottom)) } {}
+            text.remark x=(at(beside)) y=(at(top + 14.0)) text-anchor=(anchor) { (words) }
+        }
     }
 
-    fn draw_line(&self, line: &Line, svg: &mut String) {
-        let places: Vec<[f64; 2]> = line.through.iter().map(|at| self.place(*at)).collect();
-        let points: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-        put(svg, format_args!("<polyline class=\"{}\" points=\"{}\"/>", line.class, points.join(" ")));
+    fn line(&self, line: &Line) -> Markup {
+        let places = line.through.iter().map(|at| self.place(*at));
+        let points: Vec<String> = places.map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        html! { polyline class=(line.class) points=(points.join(" ")) {} }
     }
 
-    fn draw_dot(&self, dot: &Dot, svg: &mut String) {
+    fn dot(&self, dot: &Dot) -> Markup {
         let [x, y] = self.place(dot.at);
-        let sound = if dot.is_sound { "" } else { " bad" };
-        put(
-            svg,
-            format_args!(
-                "<circle class=\"dot c{}{sound}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\"><title>{}</title></circle>",
-                dot.colour % 6,
-                escape(&dot.title)
-            ),
-        );
-        if let Some(words) = &dot.label {
-            let is_right = self.x.share(dot.at[0]) > 0.7;
-            let (beside, anchor) = if is_right { (x - 10.0, "end") } else { (x + 10.0, "start") };
-            let (y, words) = (y - 8.0, escape(words));
-            put(
-                svg,
-                format_args!(
-                    "<text class=\"label\" x=\"{beside:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{words}</text>"
-                ),
-            );
+        let is_right = self.x.share(dot.at[0]) > 0.7;
+        let (beside, anchor) = if is_right { (x - 10.0, "end") } else { (x + 10.0, "start") };
+        html! {
+            circle class={ "dot c" (dot.colour % 6) @if !dot.is_sound { " bad" } } cx=(at(x)) cy=(at(y)) r="5" {
+                title { (dot.title) }
+            }
+            @if let Some(words) = &dot.label {
+                text.label x=(at(beside)) y=(at(y - 8.0)) text-anchor=(anchor) { (words) }
+            }
         }
     }
 }
 
-fn put(svg: &mut String, element: std::fmt::Arguments) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(svg, "{element}");
-}
-
-/// Escapes text for HTML.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+/// A coordinate, with the digits that an SVG needs.
+fn at(x: f64) -> String {
+    format!("{x:.1}")
 }
 
 #[cfg(test)]
@@ -250,7 +204,8 @@ mod tests {
         let x = Axis::log("a < b & c", [1.0, 2.0]);
         let chart =
             Chart { x: x.clone(), y: x, dots: Vec::new(), lines: Vec::new(), floor: None, mark: None };
-        assert!(chart.svg().contains("a &lt; b &amp; c") && !chart.svg().contains("a < b"));
+        let svg = chart.svg().into_string();
+        assert!(svg.contains("a &lt; b &amp; c") && !svg.contains("a < b"));
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! The HTML page: one file with embedded pictures, for light and dark colour schemes.
 
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
-use super::chart::{Axis, Chart, Dot, Line, escape};
-use super::{figure, percent, time_to};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::chart::{Axis, Chart, Dot, Line};
+use super::figures::{figure, percent};
+use super::text::time_to;
 use crate::trade::{Point, Reading, Setting, Trade};
 
 /// A picture of the last state of a run.
@@ -38,96 +40,89 @@ pub struct Page<'a> {
 
 /// Renders the page.
 pub fn html(page: &Page) -> String {
-    let scene = escape(page.scene);
+    let scene = page.scene;
     let [start, end] = page.trade.frames;
-    let mut text = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{scene}: speed against accuracy</title>\n<style>\n{}</style>\n\
-         <h1>{scene}</h1>\n<p class=\"soft\">Speed against accuracy, frames {start} to {end}.</p>\n",
-        include_str!("style.css")
-    );
-    text += &lead(page);
-    text += &cards(page.trade);
-    text += &pictures(page.pictures);
-    text += &trade_chart(page);
-    text += &divergence_chart(page);
-    text += &table(page.trade);
-    text += &how(page);
-    text
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            title { (scene) ": speed against accuracy" }
+            style { (PreEscaped(include_str!("style.css"))) }
+            h1 { (scene) }
+            p.soft { "Speed against accuracy, frames " (start) " to " (end) "." }
+            (lead(page))
+            (cards(page.trade))
+            (pictures(page.pictures))
+            (trade_chart(page))
+            (divergence_chart(page))
+            (table(page.trade))
+            (method(page))
+        }
+    };
+    page.into_string()
 }
 
 /// The recommendation, in one sentence.
-fn lead(page: &Page) -> String {
-    let trade = page.trade;
+fn lead(page: &Page) -> Markup {
     let Some(best) = page.recommended else {
-        return "<p class=\"lead\">No setting is sound; the table below lists the reasons.</p>\n".to_owned();
+        return html! { p.lead { "No setting is sound; the table below lists the reasons." } };
     };
     let error = best.error.unwrap_or_default();
     let reached = match error <= page.wanted {
         true => format!("the cheapest with an error of at most {}", percent(page.wanted)),
         false => format!("the nearest to an error of {}, which no setting reaches", percent(page.wanted)),
     };
-    let mut text = format!(
-        "<p class=\"lead\"><b>{}</b> is {reached}: {} ms per frame, error {}.",
-        escape(&best.setting.to_string()),
-        figure(best.ms),
-        percent(error)
-    );
-    if let Some(own) = trade.own_point().filter(|own| own.setting != best.setting)
-        && let Some(error) = own.error
-    {
-        let _ = write!(
-            text,
-            " The scene's own setting, {}, takes {} ms and has an error of {}.",
-            escape(&own.setting.to_string()),
-            figure(own.ms),
-            percent(error)
-        );
+    let own = page.trade.own_point().filter(|own| own.setting != best.setting);
+    html! {
+        p.lead {
+            b { (best.setting) } " is " (reached) ": " (figure(best.ms)) " ms per frame, error " (percent(error)) "."
+            @if let Some((own, error)) = own.and_then(|own| Some((own, own.error?))) {
+                " The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms and has an error of "
+                (percent(error)) "."
+            }
+        }
     }
-    text + "</p>\n"
 }
 
 /// Time to three errors, and the slope of the curve.
-fn cards(trade: &Trade) -> String {
-    let card = |title: String, big: String, small: String| {
-        format!(
-            "<div class=\"card\"><div class=\"soft\">{title}</div><div class=\"big\">{big}</div><div class=\"soft\">{}</div></div>\n",
-            escape(&small)
-        )
+fn cards(trade: &Trade) -> Markup {
+    let card = |title: &str, big: &str, small: &str| {
+        html! { div.card { div.soft { (title) } div.big { (big) } div.soft { (small) } } }
     };
-    let mut text = "<div class=\"cards\">\n".to_owned();
-    for error in [0.1, 0.01, 0.001] {
+    let time_to_error = |error: f64| {
         let title = format!("time to {}", percent(error));
-        text += &match trade.cheapest(error).filter(|_| trade.resolves(error)) {
-            Some(point) => card(title, format!("{} ms", figure(point.ms)), point.setting.to_string()),
+        match trade.cheapest(error).filter(|_| trade.resolves(error)) {
+            Some(point) => card(&title, &format!("{} ms", figure(point.ms)), &point.setting.to_string()),
             None => {
                 let why = time_to(trade, error);
-                let why = why.split_once(": ").map_or(why.as_str(), |(_, why)| why).to_owned();
-                card(title, "–".to_owned(), why)
+                card(&title, "–", why.split_once(": ").map_or(why.as_str(), |(_, why)| why))
             }
-        };
+        }
+    };
+    html! {
+        div.cards {
+            @for error in [0.1, 0.01, 0.001] { (time_to_error(error)) }
+            @if let Some(slope) = trade.slope() {
+                (card("slope", &format!("{slope:.2}"), "exponent of error against time"))
+            }
+        }
     }
-    if let Some(slope) = trade.slope() {
-        let small = "exponent of error against time".to_owned();
-        text += &card("slope".to_owned(), format!("{slope:.2}"), small);
-    }
-    text + "</div>\n"
 }
 
-fn pictures(pictures: &[Picture]) -> String {
-    if pictures.is_empty() {
-        return String::new();
+fn pictures(pictures: &[Picture]) -> Markup {
+    html! {
+        @if !pictures.is_empty() {
+            div.pictures {
+                @for Picture { title, caption, png } in pictures {
+                    figure {
+                        img alt=(title) src={ "data:image/png;base64," (base64(png)) };
+                        figcaption { b { (title) } br; (caption) }
+                    }
+                }
+            }
+        }
     }
-    let mut text = "<div class=\"pictures\">\n".to_owned();
-    for Picture { title, caption, png } in pictures {
-        let (title, caption) = (escape(title), escape(caption));
-        let _ = writeln!(
-            text,
-            "<figure><img alt=\"{title}\" src=\"data:image/png;base64,{}\"><figcaption><b>{title}</b><br>{caption}</figcaption></figure>",
-            base64(png)
-        );
-    }
-    text + "</div>\n"
 }
 
 /// Group of settings with one colour: reading and substeps.
@@ -136,7 +131,7 @@ fn family(setting: &Setting) -> (Reading, u32) {
 }
 
 /// Error against time.
-fn trade_chart(page: &Page) -> String {
+fn trade_chart(page: &Page) -> Markup {
     let trade = page.trade;
     let families: BTreeSet<(bool, u32)> = trade
         .points
@@ -177,25 +172,30 @@ fn trade_chart(page: &Page) -> String {
         floor: trade.floor.map(|floor| (floor, "reference uncertainty".to_owned())),
         mark: None,
     };
-    let mut text =
-        format!("<h2>Error against time</h2>\n<div class=\"chart\">{}<div class=\"key\">", chart.svg());
-    for (index, (is_classic, substeps)) in families.iter().enumerate() {
-        let reading = if *is_classic { "Classic, " } else { "" };
-        let plural = if *substeps == 1 { "" } else { "s" };
-        let _ = write!(
-            text,
-            "<span><i style=\"background:var(--c{})\"></i>{reading}{substeps} substep{plural}</span>",
-            index % 6
-        );
+    let reading = |is_classic: bool| if is_classic { "Classic, " } else { "" };
+    let plural = |substeps: u32| if substeps == 1 { "" } else { "s" };
+    html! {
+        h2 { "Error against time" }
+        div.chart {
+            (chart.svg())
+            div.key {
+                @for (index, &(is_classic, substeps)) in families.iter().enumerate() {
+                    span {
+                        i style={ "background:var(--c" (index % 6) ")" } {}
+                        (reading(is_classic)) (substeps) " substep" (plural(substeps))
+                    }
+                }
+                span { i style="border:2px solid var(--bad)" {} "not sound" }
+            }
+        }
     }
-    text + "<span><i style=\"border:2px solid var(--bad)\"></i>not sound</span></div></div>\n"
 }
 
 /// Distance of runs from the reference, frame by frame.
-fn divergence_chart(page: &Page) -> String {
+fn divergence_chart(page: &Page) -> Markup {
     let trade = page.trade;
     if trade.divergence.is_empty() {
-        return String::new();
+        return html! {};
     }
     let start = trade.frames[0] as f64 + 1.0;
     let places = |divergence: &[f64]| -> Vec<[f64; 2]> {
@@ -212,13 +212,6 @@ fn divergence_chart(page: &Page) -> String {
     let values =
         lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
     let named = ["the other reference"].into_iter().chain(page.series.iter().map(|(name, _)| name.as_str()));
-    let key: String = named
-        .zip(["soft", "c0", "c1"])
-        .map(|(name, colour)| {
-            format!("<span><i style=\"background:var(--{colour})\"></i>{}</span>", escape(name))
-        })
-        .collect();
-    let key = format!("<div class=\"key\">{key}</div>");
     let mark = match trade.measure {
         crate::trade::ErrorMeasure::Position { frames } => {
             Some((start + frames as f64 - 1.0, "end of comparison".to_owned()))
@@ -233,64 +226,99 @@ fn divergence_chart(page: &Page) -> String {
         floor: None,
         mark,
     };
-    format!(
-        "<h2>Predictability horizon</h2>\n<div class=\"chart\">{}{key}</div>\n<p class=\"soft\">Two references, \
-         one with half the step of the other, diverge when a fold falls to one side in one of them and to the other side in the \
-         other. Beyond that frame the distance measures chaos, not the error of a setting.</p>\n",
-        chart.svg()
-    )
-}
-
-fn table(trade: &Trade) -> String {
-    let mut text = "<h2>All settings</h2>\n<div class=\"wide\"><table>\n<tr><th>ms</th><th>error</th><th>position, RMS</th>\
-                    <th>largest</th><th>strain, 99 %</th><th>largest</th><th>energy created</th><th>gap</th><th>setting</th></tr>\n"
-        .to_owned();
-    let maybe = |x: Option<f64>, show: fn(f64) -> String| x.map_or("–".to_owned(), show);
-    for point in trade.reference.iter().chain(&trade.points) {
-        let is_reference = trade.reference.as_ref().is_some_and(|reference| std::ptr::eq(reference, point));
-        let classes = [(point.on_frontier, "frontier"), (point.setting == trade.own && !is_reference, "own")];
-        let classes: Vec<&str> = classes.iter().filter(|(is, _)| *is).map(|(_, class)| *class).collect();
-        let trouble = point.trouble().map(|t| format!(" <span class=\"trouble\">{}</span>", escape(&t)));
-        let _ = writeln!(
-            text,
-            "<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}{}{}</td></tr>",
-            classes.join(" "),
-            figure(point.ms),
-            if is_reference { "reference".to_owned() } else { maybe(point.error, percent) },
-            maybe(point.position.map(|[rms, _]| rms), percent),
-            maybe(point.position.map(|[_, max]| max), percent),
-            percent(point.strain),
-            percent(point.max_strain),
-            maybe(point.created, percent),
-            maybe(point.least_gap, figure),
-            escape(&point.setting.to_string()),
-            if is_reference { ", in double precision" } else { "" },
-            trouble.unwrap_or_default()
-        );
+    html! {
+        h2 { "Predictability horizon" }
+        div.chart {
+            (chart.svg())
+            div.key {
+                @for (name, colour) in named.zip(["soft", "c0", "c1"]) {
+                    span { i style={ "background:var(--" (colour) ")" } {} (name) }
+                }
+            }
+        }
+        p.soft {
+            "Two references, one with half the step of the other, diverge when a fold falls to one side in one of them and to "
+            "the other side in the other. Beyond that frame the distance measures chaos, not the error of a setting."
+        }
     }
-    text + "</table></div>\n"
 }
 
-fn how(page: &Page) -> String {
+/// Heads of the table.
+const HEADS: [&str; 9] = [
+    "ms",
+    "error",
+    "position, RMS",
+    "largest",
+    "strain, 99 %",
+    "largest",
+    "energy created",
+    "gap",
+    "setting",
+];
+
+fn table(trade: &Trade) -> Markup {
+    html! {
+        h2 { "All settings" }
+        div.wide {
+            table {
+                tr { @for head in HEADS { th { (head) } } }
+                @if let Some(point) = &trade.reference { (row(trade, point, true)) }
+                @for point in &trade.points { (row(trade, point, false)) }
+            }
+        }
+    }
+}
+
+fn row(trade: &Trade, point: &Point, is_reference: bool) -> Markup {
+    let maybe = |x: Option<f64>, show: fn(f64) -> String| x.map_or("–".to_owned(), show);
+    let classes = [(point.on_frontier, "frontier"), (point.setting == trade.own && !is_reference, "own")];
+    let classes: Vec<&str> = classes.iter().filter(|(is, _)| *is).map(|(_, class)| *class).collect();
+    let error = if is_reference { "reference".to_owned() } else { maybe(point.error, percent) };
+    let figures = [
+        figure(point.ms),
+        error,
+        maybe(point.position.map(|[rms, _]| rms), percent),
+        maybe(point.position.map(|[_, max]| max), percent),
+        percent(point.strain),
+        percent(point.max_strain),
+        maybe(point.created, percent),
+        maybe(point.least_gap, figure),
+    ];
+    html! {
+        tr class=(classes.join(" ")) {
+            @for figure in figures { td { (figure) } }
+            td {
+                (point.setting)
+                @if is_reference { ", in double precision" }
+                @if let Some(trouble) = point.trouble() { " " span.trouble { (trouble) } }
+            }
+        }
+    }
+}
+
+fn method(page: &Page) -> Markup {
     let trade = page.trade;
-    let floor =
-        trade.floor.map(|floor| format!(" The reference uncertainty is {} in this measure.", percent(floor)));
     let energy = match trade.is_closed {
         true => {
             "Nothing drives the cloth, so any rise of kinetic plus potential energy above its initial value is created by the \
-                 solver; the table gives it over the energy of a fall by the cloth's own size."
+             solver; the table gives it over the energy of a fall by the cloth's own size."
         }
         false => "Wind or animation drives the cloth, so created energy is not measured.",
     };
-    format!(
-        "<h2>Method</h2>\n<p>{}{}</p>\n<p>Times are processor time of one core, in the solver alone. Strain is \
-         the 99th percentile over all edges, RMS over all frames; gap is the minimum over the thickness. {energy}</p>\n\
-         <footer>{} · scene and solver {}</footer>\n</html>\n",
-        escape(&trade.measure.sentence()),
-        floor.unwrap_or_default(),
-        escape(page.machine),
-        escape(&trade.name)
-    )
+    html! {
+        h2 { "Method" }
+        p {
+            (trade.measure.sentence())
+            @if let Some(floor) = trade.floor {
+                " The reference uncertainty is " (percent(floor)) " in this measure."
+            }
+        }
+        p {
+            "Times are processor time of one core, in the solver alone. Strain is the 99th percentile over all edges, RMS over "
+            "all frames; gap is the minimum over the thickness. " (energy)
+        }
+        footer { (page.machine) " · scene and solver " (trade.name) }
+    }
 }
 
 /// Bytes as text (RFC 4648).

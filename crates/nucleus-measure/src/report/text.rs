@@ -1,6 +1,6 @@
 //! Text renderings of a trade: terminal, CSV, and the Markdown index.
 
-use super::{figure, percent};
+use super::figures::{figure, percent};
 use crate::trade::{ErrorMeasure, Reading, Trade};
 
 /// Errors for which the time is reported.

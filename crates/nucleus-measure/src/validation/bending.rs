@@ -2,8 +2,8 @@
 
 use nucleus_core::{BuildError, Stiffness};
 
+use super::case::{Case, Comparison, Fixture, Tolerance};
 use super::elastica::{self, Curve};
-use super::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{DENSITY, STRIP, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[

@@ -4,7 +4,7 @@ use nucleus_core::{
     BuildError, Cloth, ClothLists, Collider, ColliderFrame, Faces, GroundPlane, Mass, ModelBuilder, Surface,
 };
 
-use super::{Case, Comparison, Fixture, Tolerance};
+use super::case::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{DENSITY, GRAVITY, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[

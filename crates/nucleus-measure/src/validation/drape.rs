@@ -3,7 +3,7 @@
 
 use nucleus_core::{BuildError, Cloth, Faces, Mass, ModelBuilder, Stiffness, Surface};
 
-use super::{Case, Comparison, Fixture, Tolerance};
+use super::case::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{STRIP, Vec3, membrane};
 
 pub const CASES: &[Case] = &[Case {

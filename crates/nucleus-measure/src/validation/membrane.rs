@@ -2,7 +2,7 @@
 
 use nucleus_core::{BuildError, ClothLists, Faces, Surface};
 
-use super::{Case, Comparison, Fixture, Tolerance};
+use super::case::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet};
 
 pub const CASES: &[Case] = &[

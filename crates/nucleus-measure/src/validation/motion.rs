@@ -2,7 +2,7 @@
 
 use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
 
-use super::{Case, Comparison, Fixture, Tolerance};
+use super::case::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet, vertex_areas};
 
 pub const CASES: &[Case] = &[

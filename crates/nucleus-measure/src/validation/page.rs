@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Case, Comparison, Tolerance};
+use super::case::{Case, Comparison, Tolerance};
 
 /// The page: a section per case, with a table of its figures.
 ///

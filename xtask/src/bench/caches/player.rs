@@ -8,7 +8,8 @@ use anyhow::{Context, ensure};
 use serde_json::Value;
 
 use super::target::Target;
-use super::{Table, example, figure};
+use super::throughput::example;
+use crate::bench::table::{Table, figure};
 
 /// Frames of 129² points in 2 GB.
 const FRAMES: u32 = 13_500;

@@ -12,7 +12,7 @@ use nucleus_graph::scene::read_scene_text;
 use nucleus_measure::clock::Clock;
 
 use super::target::Target;
-use super::{Table, figure};
+use crate::bench::table::{Table, figure};
 
 /// A sheet of 129² points that falls on a ball, slips off and piles up on the floor.
 const SCENE: &str = r#"Scene(time: (start: 1, end: 40, fps: 24), nodes: {

@@ -1,6 +1,6 @@
 //! Performance targets of caches.
 
-use super::{Table, figure};
+use crate::bench::table::{Table, figure};
 
 /// A figure and its target.
 pub struct Target {

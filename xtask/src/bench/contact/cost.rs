@@ -3,7 +3,7 @@
 use super::pile;
 use super::run::RunSpec;
 use super::scene::Setting;
-use super::{TYPICAL, Workload};
+use super::workload::{TYPICAL, Workload};
 use crate::bench::report::Report;
 use crate::bench::stages;
 use crate::bench::table::{Table, figure};

@@ -1,6 +1,7 @@
 //! Figures of other solvers on W3, W4 and W8 on one core; see [`SOURCE`](crate::bench::peers::SOURCE).
 
-use super::Workload::{self, Folds, Layers, Shot};
+use super::run::RunResult;
+use super::workload::Workload::{self, Folds, Layers, Shot};
 
 /// A run of another solver.
 #[derive(Debug, Clone, Copy)]
@@ -50,4 +51,13 @@ const fn peer(
     left: &'static str,
 ) -> Peer {
     Peer { name, workload, size, ms, stretch, left }
+}
+
+/// Our fastest run of no more error and without penetrations.
+pub fn answer<'a>(peer: &Peer, runs: &'a [RunResult]) -> Option<&'a RunResult> {
+    let clean = |run: &&RunResult| run.audit.is_some_and(|report| report.found() == 0);
+    let good = |run: &&RunResult| {
+        run.spec.size == peer.size && peer.stretch.is_none_or(|most| 1e2 * run.stretch <= most)
+    };
+    runs.iter().filter(clean).filter(good).min_by(|a, b| a.ms().total_cmp(&b.ms()))
 }

@@ -5,8 +5,8 @@ use nucleus_audit::AuditCounts;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
-use super::Workload;
 use super::scene::{self, Setting};
+use super::workload::Workload;
 use crate::bench::accuracy::Meter;
 use crate::bench::table::figure;
 use crate::bench::timed::{Timed, state_hash};

@@ -11,7 +11,7 @@ use nucleus_graph::scene::read_scene_text;
 
 use tempfile::TempDir;
 
-use super::Workload;
+use super::workload::Workload;
 use crate::bench::ball::Ball;
 use crate::bench::mesh::{self, Cells};
 use crate::bench::workload::{DENSITY, GRAVITY};

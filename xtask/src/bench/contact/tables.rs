@@ -2,9 +2,9 @@
 
 use nucleus_graph::audit::Closeness;
 
-use super::peers::PEERS;
+use super::peers::{PEERS, answer};
 use super::run::RunResult;
-use super::{TYPICAL, Workload, answer};
+use super::workload::{TYPICAL, Workload};
 use crate::bench::peers::SOURCE;
 use crate::bench::stages;
 use crate::bench::table::{Table, figure};

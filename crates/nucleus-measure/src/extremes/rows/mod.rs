@@ -3,11 +3,9 @@
 //! | Question                                                    | Read              |
 //! |-------------------------------------------------------------|-------------------|
 //! | rows whose scene is a file of `scenes/extremes/`            | `scenes.rs`       |
-//! | rows whose mesh is generated                                | `mesh.rs`         |
 //! | rows that inject faults into the input of frames            | `input.rs`        |
 
 mod input;
-mod mesh;
 mod scenes;
 
 use std::sync::LazyLock;
@@ -16,12 +14,7 @@ use super::row::StressCase;
 
 /// All rows, in the order of the table.
 static ROWS: LazyLock<Vec<StressCase>> = LazyLock::new(|| {
-    let from_files = scenes::rows();
-    let group = |name: &'static str| from_files.iter().copied().filter(move |row| row.group == name);
-    let mut rows = mesh::MASS.to_vec();
-    rows.extend(["Mass", "Resistances", "Time", "Scale", "Forces", "Thickness"].into_iter().flat_map(group));
-    rows.extend(mesh::ROWS);
-    rows.extend(group("Colliders"));
+    let mut rows = scenes::rows();
     rows.extend(input::ROWS);
     rows
 });

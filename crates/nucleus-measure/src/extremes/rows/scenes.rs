@@ -1,6 +1,7 @@
 //! Rows whose scene is a file of `scenes/extremes/`, embedded so that an installed program has them.
 //!
-//! The first lines of a file are comments: the summary, `Expected: ...`, and `Known failure: ...` if there is one.
+//! The first lines of a file are comments: the summary, `Expected: ...`, `Rejected: ...` with parts of the error if the scene
+//! is no valid one, and `Known failure: ...` if there is one.
 //! Bounds of the check language are checks of the scene. Each row adds its baseline and its other bounds.
 
 use super::super::row::{Assertion, CostUnit, Expectation, Runs, StressCase};
@@ -13,23 +14,45 @@ macro_rules! text {
     };
 }
 
-/// The row of a file; `Runs` without its scene.
+/// The scene of `scenes/extremes/PATH.ron`, with OBJ files of its folder.
+macro_rules! scene {
+    ($path:literal $(, $mesh:literal)*) => {
+        TestScene::new(text!($path))
+            $(.mesh($mesh, include_str!(concat!("../../../../../scenes/extremes/", $mesh))))*
+    };
+}
+
+/// The row of a file and of its OBJ files; `Runs` without its scene.
 macro_rules! row {
-    ($path:literal, $runs:expr) => {{
+    ($path:literal $(, $mesh:literal)*; $runs:expr) => {{
         const BOUNDS: Runs = $runs;
-        const RUNS: Runs = Runs { scene: || TestScene::new(text!($path)), ..BOUNDS };
-        from_text($path, text!($path), RUNS)
+        const RUNS: Runs = Runs { scene: || scene!($path $(, $mesh)*), ..BOUNDS };
+        from_text($path, text!($path), Expectation::Runs(RUNS))
     }};
+}
+
+/// The row of a file that is rejected, with its OBJ file.
+macro_rules! rejected {
+    ($path:literal, $mesh:literal) => {
+        from_text(
+            $path,
+            text!($path),
+            Expectation::Rejected {
+                scene: || scene!($path, $mesh),
+                message: labelled(text!($path), "Rejected: ").unwrap_or_default(),
+            },
+        )
+    };
 }
 
 /// The baseline banner.
 pub(super) fn banner() -> TestScene {
-    TestScene::new(text!("baseline/banner"))
+    scene!("baseline/banner")
 }
 
 /// The baseline sheet on a ball.
 pub(super) fn drape() -> TestScene {
-    TestScene::new(text!("baseline/drape"))
+    scene!("baseline/drape")
 }
 
 /// A scene compared with the baseline banner.
@@ -45,12 +68,18 @@ pub(super) const BANNER: Runs = Runs {
 
 /// A scene compared with the baseline sheet on a ball.
 const DRAPE: Runs = Runs { baseline: drape, ..BANNER };
-const CLASSIC: Runs = Runs { baseline: || TestScene::new(text!("baseline/banner-classic")), ..BANNER };
-const RUG: Runs = Runs { baseline: || TestScene::new(text!("baseline/rug")), ..BANNER };
-const PINCH: Runs = Runs { baseline: || TestScene::new(text!("baseline/pinch")), ..BANNER };
-const SHORT_BANNER: Runs = Runs { baseline: || TestScene::new(text!("baseline/banner-48")), ..BANNER };
+const CLASSIC: Runs = Runs { baseline: || scene!("baseline/banner-classic"), ..BANNER };
+const RUG: Runs = Runs { baseline: || scene!("baseline/rug"), ..BANNER };
+const PINCH: Runs = Runs { baseline: || scene!("baseline/pinch"), ..BANNER };
+const SHORT_BANNER: Runs = Runs { baseline: || scene!("baseline/banner-48"), ..BANNER };
 const SMALL_SHORT_BANNER: Runs =
-    Runs { baseline: || TestScene::new(text!("baseline/small-banner-48")), cost: CostUnit::Step, ..BANNER };
+    Runs { baseline: || scene!("baseline/small-banner-48"), cost: CostUnit::Step, ..BANNER };
+
+const STRIP: Runs = Runs { baseline: || scene!("baseline/even-strip", "baseline/even.obj"), ..BANNER };
+const FROM_A_FILE: Runs =
+    Runs { baseline: || scene!("baseline/banner-from-a-file", "baseline/grid.obj"), ..BANNER };
+const LARGER_MESH: Runs = Runs { cost: CostUnit::Evaluation, ..FROM_A_FILE };
+const FREE: Runs = Runs { baseline: || scene!("baseline/small-free-sheet", "baseline/grid2.obj"), ..BANNER };
 
 /// Weight in N of a sheet of 1 m².
 const WEIGHT: f64 = 0.2 * 9.8;
@@ -62,15 +91,16 @@ const fn fall(seconds: f64) -> f64 {
 
 /// All rows of files, group by group.
 pub(super) fn rows() -> Vec<StressCase> {
-    [material(), time(), scale(), forces(), thickness(), colliders()].concat()
+    [material(), time(), scale(), forces(), thickness(), meshes(), colliders()].concat()
 }
 
 fn material() -> Vec<StressCase> {
     vec![
-        row!("mass/mass-ratio-of-cloths", Runs { cost: CostUnit::Evaluation, ..BANNER }),
-        row!("mass/mass-1e-9", BANNER),
-        row!(
-            "mass/mass-1e6",
+        row!("mass/mass-ratio-in-a-mesh", "mass/graded-1e6.obj"; STRIP),
+        row!("mass/mass-ratio-100-in-a-mesh", "mass/graded-1e2.obj"; STRIP),
+        row!("mass/mass-ratio-of-cloths"; Runs { cost: CostUnit::Evaluation, ..BANNER }),
+        row!("mass/mass-1e-9"; BANNER),
+        row!("mass/mass-1e6";
             Runs {
                 assertions: &[Assertion::at_most(
                     "farthest from the ordinary banner (m)",
@@ -80,32 +110,30 @@ fn material() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!("resistances/resistance-0-beside-1e6", Runs { cost: CostUnit::Evaluation, ..BANNER }),
-        row!(
-            "resistances/resistance-0-beside-1e6-classic",
+        row!("resistances/resistance-0-beside-1e6"; Runs { cost: CostUnit::Evaluation, ..BANNER }),
+        row!("resistances/resistance-0-beside-1e6-classic";
             Runs {
-                baseline: || TestScene::new(text!("baseline/small-banner-classic-48")),
+                baseline: || scene!("baseline/small-banner-classic-48"),
                 cost: CostUnit::Evaluation,
                 ..BANNER
             }
         ),
-        row!("resistances/rigid-drape", DRAPE),
-        row!("resistances/resistance-jumps", BANNER),
-        row!("resistances/tiny-resistances", BANNER),
-        row!("resistances/rest-length-0", BANNER),
-        row!("resistances/rest-length-10", BANNER),
-        row!("resistances/damp-1e6", BANNER),
-        row!("resistances/everything-keyed", BANNER),
+        row!("resistances/rigid-drape"; DRAPE),
+        row!("resistances/resistance-jumps"; BANNER),
+        row!("resistances/tiny-resistances"; BANNER),
+        row!("resistances/rest-length-0"; BANNER),
+        row!("resistances/rest-length-10"; BANNER),
+        row!("resistances/damp-1e6"; BANNER),
+        row!("resistances/everything-keyed"; BANNER),
     ]
 }
 
 fn time() -> Vec<StressCase> {
     vec![
-        row!("time/one-step-a-frame", BANNER),
-        row!("time/one-step-a-frame-classic", CLASSIC),
-        row!("time/one-step-a-frame-contact", DRAPE),
-        row!(
-            "time/substeps-1000",
+        row!("time/one-step-a-frame"; BANNER),
+        row!("time/one-step-a-frame-classic"; CLASSIC),
+        row!("time/one-step-a-frame-contact"; DRAPE),
+        row!("time/substeps-1000";
             Runs {
                 assertions: &[Assertion::at_most(
                     "farthest from the run of 3 substeps (m)",
@@ -115,18 +143,16 @@ fn time() -> Vec<StressCase> {
                 ..SMALL_SHORT_BANNER
             }
         ),
-        row!(
-            "time/substeps-1000-classic",
+        row!("time/substeps-1000-classic";
             Runs {
-                baseline: || TestScene::new(text!("baseline/small-banner-classic")),
+                baseline: || scene!("baseline/small-banner-classic"),
                 cost: CostUnit::Step,
                 ..BANNER
             }
         ),
-        row!(
-            "time/substeps-100000",
+        row!("time/substeps-100000";
             Runs {
-                baseline: || TestScene::new(text!("baseline/small-rug-3")),
+                baseline: || scene!("baseline/small-rug-3"),
                 cost: CostUnit::Step,
                 assertions: &[Assertion::at_most(
                     "farthest from the run of 3 substeps (m)",
@@ -136,17 +162,15 @@ fn time() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!("time/time-scale-1e-4", Runs { cost: CostUnit::Step, ..BANNER }),
-        row!(
-            "time/time-scale-1e4",
+        row!("time/time-scale-1e-4"; Runs { cost: CostUnit::Step, ..BANNER }),
+        row!("time/time-scale-1e4";
             Runs {
-                baseline: || TestScene::new(text!("baseline/small-banner")),
+                baseline: || scene!("baseline/small-banner"),
                 cost: CostUnit::Step,
                 ..BANNER
             }
         ),
-        row!(
-            "time/a-million-frames-a-second",
+        row!("time/a-million-frames-a-second";
             Runs {
                 cost: CostUnit::Step,
                 assertions: &[
@@ -162,10 +186,9 @@ fn time() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!(
-            "time/rest-for-1000-frames",
+        row!("time/rest-for-1000-frames";
             Runs {
-                baseline: || TestScene::new(text!("baseline/small-rug")),
+                baseline: || scene!("baseline/small-rug"),
                 assertions: &[Assertion::at_most(
                     "farthest from where it lay after 4 s (m)",
                     1e-3,
@@ -179,10 +202,9 @@ fn time() -> Vec<StressCase> {
 
 fn scale() -> Vec<StressCase> {
     vec![
-        row!("scale/size-1e-3", BANNER),
-        row!("scale/size-1e-3-and-evaluations", Runs { cost: CostUnit::Step, ..BANNER }),
-        row!(
-            "scale/size-1e5",
+        row!("scale/size-1e-3"; BANNER),
+        row!("scale/size-1e-3-and-evaluations"; Runs { cost: CostUnit::Step, ..BANNER }),
+        row!("scale/size-1e5";
             Runs {
                 assertions: &[Assertion::at_most("farthest it has fallen (m)", fall(4.05), |run, _| {
                     run.farthest_from_start()
@@ -190,14 +212,12 @@ fn scale() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!("scale/space-scale-1e-6", BANNER),
-        row!(
-            "scale/space-scale-1e6",
-            Runs { baseline: || TestScene::new(text!("baseline/drape-24")), ..BANNER }
+        row!("scale/space-scale-1e-6"; BANNER),
+        row!("scale/space-scale-1e6";
+            Runs { baseline: || scene!("baseline/drape-24"), ..BANNER }
         ),
-        row!("scale/drape-1e-3", DRAPE),
-        row!(
-            "scale/10-km-away",
+        row!("scale/drape-1e-3"; DRAPE),
+        row!("scale/10-km-away";
             Runs {
                 assertions: &[Assertion::at_most(
                     "farthest from the run at the origin (m)",
@@ -207,8 +227,7 @@ fn scale() -> Vec<StressCase> {
                 ..SHORT_BANNER
             }
         ),
-        row!(
-            "scale/1000-km-away",
+        row!("scale/1000-km-away";
             Runs {
                 assertions: &[Assertion::at_most(
                     "farthest from the run at the origin (m)",
@@ -218,14 +237,13 @@ fn scale() -> Vec<StressCase> {
                 ..SHORT_BANNER
             }
         ),
-        row!("scale/drape-10-km-away", DRAPE),
+        row!("scale/drape-10-km-away"; DRAPE),
     ]
 }
 
 fn forces() -> Vec<StressCase> {
     vec![
-        row!(
-            "forces/gravity-0",
+        row!("forces/gravity-0";
             Runs {
                 assertions: &[Assertion::at_most("farthest that any point has moved (m)", 0.0, |run, _| {
                     run.farthest_from_start()
@@ -233,15 +251,14 @@ fn forces() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!("forces/gravity-1e4", BANNER),
-        row!("forces/gravity-1e4-classic", CLASSIC),
-        row!("forces/gravity-1e4-floor", RUG),
-        row!("forces/gravity-1e4-drape", DRAPE),
-        row!("forces/gravity-flips", BANNER),
-        row!("forces/wind-1e3", BANNER),
-        row!("forces/wind-1e3-light", BANNER),
-        row!(
-            "forces/wind-1e3-one-step",
+        row!("forces/gravity-1e4"; BANNER),
+        row!("forces/gravity-1e4-classic"; CLASSIC),
+        row!("forces/gravity-1e4-floor"; RUG),
+        row!("forces/gravity-1e4-drape"; DRAPE),
+        row!("forces/gravity-flips"; BANNER),
+        row!("forces/wind-1e3"; BANNER),
+        row!("forces/wind-1e3-light"; BANNER),
+        row!("forces/wind-1e3-one-step";
             Runs {
                 assertions: &[Assertion::at_most("fastest (m/s)", 1000.0, |run, _| {
                     run.max(|record| record.energy.speed)
@@ -249,46 +266,103 @@ fn forces() -> Vec<StressCase> {
                 ..BANNER
             }
         ),
-        row!("forces/wind-flips", BANNER),
-        row!("forces/air-1e6", BANNER),
-        row!("forces/force-1e3", BANNER),
+        row!("forces/wind-flips"; BANNER),
+        row!("forces/air-1e6"; BANNER),
+        row!("forces/force-1e3"; BANNER),
     ]
 }
 
 fn thickness() -> Vec<StressCase> {
     vec![
-        row!("thickness/thickness-0", DRAPE),
-        row!("thickness/thickness-above-a-face", DRAPE),
+        row!("thickness/thickness-0"; DRAPE),
+        row!("thickness/thickness-above-a-face"; DRAPE),
         // Depenetration lifts it by 2 m.
-        row!("thickness/thickness-above-the-cloth", Runs { initial_energy: WEIGHT * 2.2, ..DRAPE }),
-        row!(
-            "thickness/thickness-above-the-cloth-floor",
+        row!("thickness/thickness-above-the-cloth"; Runs { initial_energy: WEIGHT * 2.2, ..DRAPE }),
+        row!("thickness/thickness-above-the-cloth-floor";
             Runs {
                 initial_energy: WEIGHT * 2.0,
                 assertions: &[Assertion::at_least("lowest point in the end (m)", 1.99, |run, _| run.lowest())],
                 ..RUG
             }
         ),
-        row!("thickness/thickness-leaps", Runs { initial_energy: WEIGHT * 0.5, ..RUG }),
+        row!("thickness/thickness-leaps"; Runs { initial_energy: WEIGHT * 0.5, ..RUG }),
+    ]
+}
+
+fn meshes() -> Vec<StressCase> {
+    const ABOVE_GROUND: Assertion =
+        Assertion::at_least("lowest point in the end (m)", -1.0, |run, _| run.lowest());
+    vec![
+        row!(
+            "meshes/faces-without-area", "meshes/flat.obj";
+            Runs {
+                assertions: &[Assertion::at_most(
+                    "farthest from the sheet without them (m)",
+                    1e-9,
+                    |run, baseline| run.farthest_from(baseline),
+                )],
+                warnings: &["has 3 faces without area, which are left out"],
+                ..FROM_A_FILE
+            }
+        ),
+        row!("meshes/slivers", "meshes/slivers.obj"; FROM_A_FILE),
+        row!("meshes/edges-without-length", "meshes/double.obj"; FROM_A_FILE),
+        row!("meshes/doubled-points", "meshes/two.obj"; LARGER_MESH),
+        row!(
+            "meshes/stray-points", "meshes/stray.obj";
+            Runs {
+                // 3.3 m/s after a third of a second, in this air.
+                assertions: &[Assertion::at_most("lowest point in the end (m)", -11.5, |run, _| run.lowest())],
+                warnings: &["2 points of no face, the first is point 289"],
+                ..FROM_A_FILE
+            }
+        ),
+        row!("meshes/faces-twice", "meshes/twice.obj"; LARGER_MESH),
+        row!("meshes/three-faces-on-an-edge", "meshes/book.obj"; LARGER_MESH),
+        row!(
+            "meshes/fan-of-1000", "meshes/fan.obj";
+            Runs {
+                baseline: || scene!("baseline/banner-from-a-file-24", "baseline/grid32.obj"),
+                ..BANNER
+            }
+        ),
+        row!(
+            "meshes/one-point", "meshes/point.obj";
+            Runs {
+                assertions: &[
+                    ABOVE_GROUND,
+                    Assertion::at_most("lowest point in the end (m) ", -0.9, |run, _| run.lowest()),
+                ],
+                warnings: &["has no face, only free points"],
+                ..FREE
+            }
+        ),
+        row!("meshes/one-face", "meshes/triangle.obj"; Runs { assertions: &[ABOVE_GROUND], ..FREE }),
+        rejected!("meshes/no-points", "meshes/empty.obj"),
+        rejected!("meshes/no-area", "meshes/line.obj"),
+        rejected!("meshes/nan-in-a-file", "meshes/nan.obj"),
+        rejected!("meshes/no-such-point-in-a-file", "meshes/short.obj"),
+        rejected!("meshes/mesh-too-far", "meshes/far.obj"),
+        rejected!("meshes/mesh-scaled-to-nothing", "meshes/triangle.obj"),
+        rejected!("meshes/mass-0", "meshes/triangle.obj"),
     ]
 }
 
 fn colliders() -> Vec<StressCase> {
     vec![
-        row!("colliders/collider-teleports", DRAPE),
-        row!("colliders/collider-at-1000-m-s", DRAPE),
-        row!("colliders/collider-spins", DRAPE),
-        row!("colliders/collider-scaled-to-0", DRAPE),
-        row!("colliders/collider-collapses", DRAPE),
-        row!("colliders/collider-turned-inside-out", DRAPE),
-        row!("colliders/collider-flattened", DRAPE),
-        row!("colliders/pinch", PINCH),
-        row!("colliders/pinch-to-nothing", PINCH),
-        row!("colliders/pinch-overlapping", PINCH),
+        row!("colliders/collider-teleports"; DRAPE),
+        row!("colliders/collider-at-1000-m-s"; DRAPE),
+        row!("colliders/collider-spins"; DRAPE),
+        row!("colliders/collider-scaled-to-0"; DRAPE),
+        row!("colliders/collider-collapses"; DRAPE),
+        row!("colliders/collider-turned-inside-out"; DRAPE),
+        row!("colliders/collider-flattened"; DRAPE),
+        row!("colliders/pinch"; PINCH),
+        row!("colliders/pinch-to-nothing"; PINCH),
+        row!("colliders/pinch-overlapping"; PINCH),
         // It starts on both sides of the ball, and depenetration lifts it.
-        row!("colliders/starts-inside", Runs { initial_energy: WEIGHT * 0.3, ..DRAPE }),
-        row!(
-            "colliders/sheet-drawn-to-a-point",
+        row!("colliders/starts-inside"; Runs { initial_energy: WEIGHT * 0.3, ..DRAPE }),
+        row!("colliders/sheet-drawn-to-a-point";
             Runs {
                 assertions: &[
                     Assertion::at_most("frames not finite ", 0.0, |run, _| f64::from(!run.is_finite())),
@@ -301,24 +375,33 @@ fn colliders() -> Vec<StressCase> {
 }
 
 /// The row of a file at `GROUP/NAME`.
-fn from_text(path: &'static str, text: &'static str, runs: Runs) -> StressCase {
+fn from_text(path: &'static str, text: &'static str, expectation: Expectation) -> StressCase {
     let (folder, name) = path.split_once('/').unwrap_or(("", path));
-    let comments = || text.lines().map_while(|line| line.strip_prefix("// "));
-    let labelled = |label: &str| comments().find_map(|line| line.strip_prefix(label));
     StressCase {
         name,
         group: title(folder),
-        summary: comments().next().unwrap_or_default(),
-        expected: labelled("Expected: ").unwrap_or_default(),
-        expectation: Expectation::Runs(runs),
-        known_failure: labelled("Known failure: "),
+        summary: comments(text).next().unwrap_or_default(),
+        expected: labelled(text, "Expected: ").unwrap_or_default(),
+        expectation,
+        known_failure: labelled(text, "Known failure: "),
     }
+}
+
+/// The comments at the head of a scene.
+fn comments(text: &'static str) -> impl Iterator<Item = &'static str> {
+    text.lines().map_while(|line| line.strip_prefix("// "))
+}
+
+/// The comment with this label.
+fn labelled(text: &'static str, label: &str) -> Option<&'static str> {
+    comments(text).find_map(|line| line.strip_prefix(label))
 }
 
 /// The heading of a folder.
 fn title(folder: &str) -> &'static str {
     match folder {
         "mass" => "Mass",
+        "meshes" => "Meshes",
         "resistances" => "Resistances",
         "time" => "Time",
         "scale" => "Scale",
@@ -346,7 +429,10 @@ mod tests {
                 continue;
             }
             for file in fs::read_dir(group.path()).expect("a folder").map(|entry| entry.expect("readable")) {
-                files.insert(file.path().file_stem().expect("a name").to_string_lossy().into_owned());
+                let path = file.path();
+                if path.extension().is_some_and(|end| end == "ron") {
+                    files.insert(path.file_stem().expect("a name").to_string_lossy().into_owned());
+                }
             }
         }
         let rows = rows();

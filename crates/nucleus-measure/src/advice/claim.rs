@@ -1,9 +1,60 @@
-//! The experiments as a Markdown page.
+//! An experiment on a claim of the paper, its result, and the Markdown page of all.
 
 use std::fmt::Write;
 
-use super::{ClaimResult, Experiment};
 use crate::trade::Reading;
+
+/// An experiment on a claim of the paper.
+pub struct Experiment {
+    /// Number of the claim.
+    pub claim: &'static str,
+    /// The claim.
+    pub says: &'static str,
+    /// The scene, in words.
+    pub scene: &'static str,
+    /// Runs it.
+    pub run: fn() -> Vec<ClaimResult>,
+}
+
+/// Result for one reading of resistances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClaimResult {
+    /// `Classic`, `Physical`.
+    pub reading: &'static str,
+    /// Whether the claim holds.
+    pub status: Status,
+    /// The reason, with the decisive figures.
+    pub reason: String,
+    /// Column heads, and rows.
+    pub table: (Vec<&'static str>, Vec<Vec<String>>),
+}
+
+/// Whether a claim holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// It holds.
+    Holds,
+    /// It does not hold.
+    DoesNotHold,
+    /// The reading has nothing that the claim is about.
+    DoesNotApply,
+}
+
+impl Status {
+    /// `Holds` or `DoesNotHold`.
+    pub fn of(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::DoesNotHold }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::DoesNotHold => "does not hold",
+            Self::DoesNotApply => "does not apply",
+        }
+    }
+}
 
 /// Name of a reading on the page.
 pub(super) fn name(reading: Reading) -> &'static str {

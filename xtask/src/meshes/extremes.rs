@@ -1,10 +1,38 @@
-//! Degenerate and extreme meshes, as OBJ text.
+//! Degenerate and extreme meshes of the stress tests in `scenes/extremes/`, as OBJ text.
 
 use std::fmt::Write;
 
+/// A path in `scenes/extremes/` without its ending, and the generator of the text.
+type Entry = (&'static str, fn() -> String);
+
+/// All meshes.
+pub const ALL: [Entry; 21] = [
+    ("mass/graded-1e6", || graded(40, 1e6)),
+    ("mass/graded-1e2", || graded(40, 1e2)),
+    ("baseline/even", || graded(40, 1.0)),
+    ("baseline/grid", || grid(16)),
+    ("baseline/grid32", || grid(32)),
+    ("baseline/grid2", || grid(2)),
+    ("meshes/flat", || grid_and_flat_faces(16)),
+    ("meshes/slivers", || slivers(16)),
+    ("meshes/double", || edges_of_no_length(16)),
+    ("meshes/two", || doubled(16)),
+    ("meshes/stray", || grid_and_stray_points(16)),
+    ("meshes/twice", || faces_twice(16)),
+    ("meshes/book", || book(5, 8)),
+    ("meshes/fan", || fan(1000)),
+    ("meshes/point", || points(1)),
+    ("meshes/triangle", triangle),
+    ("meshes/empty", String::new),
+    ("meshes/line", || points(3) + "f 1 2 3\n"),
+    ("meshes/nan", || triangle() + "v 1 nan 2\n"),
+    ("meshes/short", || triangle() + "f 1 2 9\n"),
+    ("meshes/far", || triangle() + "v 1e300 0 0\n"),
+];
+
 /// A square grid of quads in the plane y = 0, `cells` each way, a metre wide round the origin. The first row of
 /// points is at z = 0.5.
-pub fn grid(cells: usize) -> String {
+fn grid(cells: usize) -> String {
     let mut text = grid_points(cells);
     quads(&mut text, cells, 1);
     text
@@ -20,7 +48,7 @@ fn grid_points(cells: usize) -> String {
 }
 
 /// A grid with two vertices of no face at a distance.
-pub fn grid_and_stray_points(cells: usize) -> String {
+fn grid_and_stray_points(cells: usize) -> String {
     let mut text = grid(cells);
     point(&mut text, [2.0, 0.0, 0.0]);
     point(&mut text, [2.0, 0.5, 0.0]);
@@ -28,7 +56,7 @@ pub fn grid_and_stray_points(cells: usize) -> String {
 }
 
 /// A grid with faces that name a vertex twice, lie on a line, or have no length.
-pub fn grid_and_flat_faces(cells: usize) -> String {
+fn grid_and_flat_faces(cells: usize) -> String {
     let mut text = grid(cells);
     face(&mut text, &[1, 2, 2]);
     face(&mut text, &[1, 2, 3]);
@@ -37,7 +65,7 @@ pub fn grid_and_flat_faces(cells: usize) -> String {
 }
 
 /// A grid in which one row of cells is a millionth as high as it is wide.
-pub fn slivers(cells: usize) -> String {
+fn slivers(cells: usize) -> String {
     let middle = cells / 2;
     let mut text = String::new();
     for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
@@ -58,7 +86,7 @@ fn quads(text: &mut String, cells: usize, first: usize) {
 }
 
 /// A grid in which one row of cells has zero height: its vertices are doubled and joined by edges of zero length.
-pub fn edges_of_no_length(cells: usize) -> String {
+fn edges_of_no_length(cells: usize) -> String {
     let mut text = String::new();
     for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
         let lower = if row > cells / 2 { row - 1 } else { row };
@@ -78,7 +106,7 @@ pub fn edges_of_no_length(cells: usize) -> String {
 }
 
 /// Two coincident grids without common vertices.
-pub fn doubled(cells: usize) -> String {
+fn doubled(cells: usize) -> String {
     let mut text = grid_points(cells);
     text += &grid_points(cells);
     quads(&mut text, cells, 1);
@@ -87,7 +115,7 @@ pub fn doubled(cells: usize) -> String {
 }
 
 /// Every face twice, the second time with inverted winding.
-pub fn faces_twice(cells: usize) -> String {
+fn faces_twice(cells: usize) -> String {
     let mut text = grid(cells);
     for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
         let a = row * (cells + 1) + column + 1;
@@ -97,7 +125,7 @@ pub fn faces_twice(cells: usize) -> String {
 }
 
 /// Sheets of `cells` by `cells` that all share one edge line, like the pages of a book.
-pub fn book(pages: usize, cells: usize) -> String {
+fn book(pages: usize, cells: usize) -> String {
     let mut text = String::new();
     for row in 0..=cells {
         point(&mut text, [row as f64 / cells as f64 - 0.5, 0.0, 0.5]);
@@ -124,7 +152,7 @@ pub fn book(pages: usize, cells: usize) -> String {
 }
 
 /// A disc of a central vertex, the first, and `spokes` triangles around it.
-pub fn fan(spokes: usize) -> String {
+fn fan(spokes: usize) -> String {
     let mut text = String::new();
     point(&mut text, [0.0, 0.0, 0.0]);
     for k in 0..spokes {
@@ -139,7 +167,7 @@ pub fn fan(spokes: usize) -> String {
 
 /// A strip of quads with geometrically growing sides: the last vertex has `ratio` times the mass of the first. A metre
 /// long, from z = 0.5.
-pub fn graded(cells: usize, ratio: f64) -> String {
+fn graded(cells: usize, ratio: f64) -> String {
     let growth = ratio.powf(0.5 / cells as f64);
     let lengths: Vec<f64> = (0..cells).map(|k| growth.powi(k as i32)).collect();
     let scale = 1.0 / lengths.iter().sum::<f64>();
@@ -159,14 +187,14 @@ pub fn graded(cells: usize, ratio: f64) -> String {
 }
 
 /// Vertices on a line, without faces.
-pub fn points(count: usize) -> String {
+fn points(count: usize) -> String {
     let mut text = String::new();
     (0..count).for_each(|k| point(&mut text, [k as f64 / 10.0, 0.0, 0.0]));
     text
 }
 
 /// One triangle.
-pub fn triangle() -> String {
+fn triangle() -> String {
     let mut text = String::new();
     [[-0.5, 0.0, 0.5], [0.5, 0.0, 0.5], [0.0, 0.0, -0.5]].iter().for_each(|p| point(&mut text, *p));
     face(&mut text, &[1, 2, 3]);
