@@ -308,7 +308,7 @@ checkpoint_struct!([R: Real] State<R> {
     values: [wind_travel],
     parts: [],
     rebuilt: [
-        start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, area, gust,
+        start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, corrections, area, added_wind,
         inverse_mass
     ],
 });

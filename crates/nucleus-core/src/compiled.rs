@@ -10,7 +10,7 @@ use crate::contact::contact_state::list_contact_states;
 use crate::input::frame::FrameInput;
 use crate::model::builder::ModelBuilder;
 use crate::output::{ContactState, PassCost, StepObserver, StepReport};
-use crate::report::{diagnostics, passes};
+use crate::report::{diagnostics, memory, passes};
 use crate::solver::{CompiledReal, Solver};
 use crate::step;
 
@@ -39,6 +39,10 @@ macro_rules! compiled {
 
             fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost> {
                 passes::passes(solver, frame)
+            }
+
+            fn memory(solver: &Solver<Self>) -> usize {
+                memory::bytes(solver)
             }
 
             fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64 {

@@ -47,6 +47,7 @@ mod step;
 
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
+pub use input::fields::{PointField, WindField};
 pub use input::frame::{
     BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
@@ -55,7 +56,7 @@ pub use input::frame::{
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
-pub use model::builder::{Cloth, ClothLists, Collider, Mass, ModelBuilder, Start};
+pub use model::builder::{Cloth, ClothLists, Collider, LinkOrder, Mass, ModelBuilder, Start};
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
 pub use output::{ContactState, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex};

@@ -55,6 +55,9 @@ pub trait CompiledReal: Real {
     /// [`Solver::passes`].
     fn passes(solver: &Solver<Self>, frame: &FrameInput) -> Vec<PassCost>;
 
+    /// [`Solver::memory`].
+    fn memory(solver: &Solver<Self>) -> usize;
+
     /// [`Solver::elastic_energy`].
     fn elastic_energy(solver: &Solver<Self>, frame: &FrameInput) -> f64;
 }
@@ -93,6 +96,11 @@ impl<R: CompiledReal> Solver<R> {
         R::passes(self, frame)
     }
 
+    /// Bytes of the columns of points and the lists of rows, without those of contact.
+    pub fn memory(&self) -> usize {
+        R::memory(self)
+    }
+
     /// The elastic energy of stretch, shear and bending in joules, with the stiffness of `frame` and the current
     /// positions. Zero in Classic, where a resistance is no stiffness.
     pub fn elastic_energy(&self, frame: &FrameInput) -> f64 {
@@ -102,17 +110,18 @@ impl<R: CompiledReal> Solver<R> {
 
 impl<R: Real> Solver<R> {
     pub(crate) fn build(builder: ModelBuilder, threads: usize) -> Self {
-        let ModelBuilder { cloths, colliders } = builder;
+        let ModelBuilder { cloths, colliders, link_orders, field_maps } = builder;
         let self_collides = cloths.len() > 1 || cloths.iter().any(|cloth| cloth.lists.self_collision);
         let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
-        for cloth in &cloths {
+        for (cloth, order) in cloths.iter().zip(&link_orders) {
             let first = models.last().map_or(0, |last| last.points().start + last.blocks.columns());
-            models.push(ClothModel::new(cloth, first, !colliders.is_empty() || self_collides));
+            models.push(ClothModel::new(cloth, order, first, !colliders.is_empty() || self_collides));
         }
         let mut state = State::new(&cloths, &models);
         let pool = ThreadPool::new(threads);
         whole::prepare(&mut models, &mut state, &pool);
-        let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
+        let colliders = colliders.into_iter().zip(field_maps);
+        let colliders: Vec<_> = colliders.map(|(collider, map)| ColliderModel::new(collider, map)).collect();
         let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
         drop(cloths);
         let model = Model { cloths: models, colliders };

@@ -21,6 +21,7 @@ use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, res
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
 use crate::contact::force_field::apply_force_fields;
+use crate::contact::point_field::apply_point_fields;
 use crate::contact::push_out::push_out;
 use crate::contact::restitution::apply_restitution;
 use crate::contact::safeguard::safeguard;
@@ -28,7 +29,7 @@ use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
-use crate::integrate::gusts::update_gusts;
+use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
@@ -115,15 +116,17 @@ fn solve_substeps<R: CompiledReal>(
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
         update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
-        let time = frame.duration * f64::from(substep - 1) / f64::from(schedule.substeps);
-        update_gusts(&solver.model.cloths, &mut solver.state, frame, time, &solver.pool);
         let (time, length) = (
             f64::from(substep - 1) / f64::from(schedule.substeps),
             frame.duration / f64::from(schedule.substeps),
         );
-        let Solver { model, state, contact, .. } = solver;
+        let Solver { model, state, contact, pool } = solver;
+        let objects =
+            Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
+        update_local_wind(&objects, state, frame, pool);
         push_out(model, state, contact, frame, time);
         apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
+        apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
@@ -167,7 +170,7 @@ fn solve_time_step<R: CompiledReal>(
                 let sweeps = &schedule.sweeps[sweeps.clone()];
                 sweep(
                     &solver.model.cloths,
-                    &mut solver.state.displacement,
+                    [&mut solver.state.displacement, &mut solver.state.corrections],
                     sweeps,
                     now.direction,
                     &solver.pool,

@@ -372,7 +372,12 @@ fn a_bend_angle_scale_scales_the_rest_angle_and_zero_is_flat() {
 #[test]
 fn a_bend_beyond_the_restitution_angle_stays_by_what_is_beyond() {
     let limit = 0.3f64;
-    let set = Bending { solver: BendSolver::Signed, yield_sine: (limit / 2.0).sin(), ..Bending::DEFAULT };
+    let set = Bending {
+        solver: BendSolver::Signed,
+        yield_sine: (limit / 2.0).sin(),
+        yield_half_angle: limit / 2.0,
+        ..Bending::DEFAULT
+    };
     for (start, expected) in [(0.25, 0.0), (1.0, 0.7)] {
         let (mut solver, mesh) = started(0.0, start);
         settle(&mut solver, bending(set), &mesh, 160);

@@ -3,15 +3,17 @@
 mod scenes;
 
 use nucleus_core::{
-    BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
-    Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, Start, StateView, Surface, VertexMaps,
+    BendSolver, Bending, BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame,
+    FrameInput, GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, Start, StateView,
+    Surface, VertexMaps,
 };
 use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 const SIDE: u32 = 9;
 const PATCH: usize = 81;
-const AIRY: ClothLists = ClothLists { self_collision: false, ..ClothLists::ALL };
+const AIRY: ClothLists =
+    ClothLists { self_collision: false, bend_angles: true, plastic: true, ..ClothLists::ALL };
 
 /// Two unconnected sheets of 1 m, as one mesh.
 fn two_sheets() -> Surface {
@@ -57,7 +59,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
 /// A map, and the attribute on which the same factor everywhere acts.
 type Column = (&'static str, fn(Vec<f64>) -> VertexMaps, fn(&mut ClothFrame, &mut f64, f64));
 
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 11] = [
     ("mass", |mass| VertexMaps { mass, ..VertexMaps::default() }, |_, mass, f| *mass *= f),
     (
         "stretch",
@@ -83,6 +85,16 @@ const COLUMNS: [Column; 9] = [
         |cloth, _, f| cloth.tangential_drag *= f,
     ),
     ("lift", |lift| VertexMaps { lift, ..VertexMaps::default() }, |cloth, _, f| cloth.lift *= f),
+    (
+        "bend angle dropoff",
+        |angle_dropoff| VertexMaps { angle_dropoff, ..VertexMaps::default() },
+        |cloth, _, f| cloth.bending.angle_dropoff *= f,
+    ),
+    (
+        "restitution angle",
+        |yield_angle| VertexMaps { yield_angle, ..VertexMaps::default() },
+        |cloth, _, f| cloth.bending = yielding(cloth.bending.yield_half_angle * f),
+    ),
 ];
 
 /// Resistances with less than one evaluation per substep in Classic: half the resistance is half the strength.
@@ -97,7 +109,19 @@ fn lively() -> ClothFrame {
         drag: 0.1,
         tangential_drag: 0.3,
         lift: 0.1,
+        bending: yielding(0.02),
         ..still()
+    }
+}
+
+/// Bends whose half angle is above this stay; the resistance partly grows with the angle.
+fn yielding(half_angle: f64) -> Bending {
+    Bending {
+        solver: BendSolver::Signed,
+        angle_dropoff: 0.4,
+        yield_sine: half_angle.sin(),
+        yield_half_angle: half_angle,
+        ..Bending::DEFAULT
     }
 }
 

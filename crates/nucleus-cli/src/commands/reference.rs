@@ -69,9 +69,11 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
         for row in rows.iter().filter(|row| row.group == group) {
             let name = format!("{} ({})", row.name, row.short);
             let without_effect = match row.effect {
-                Effect::Solved(_) => "",
-                Effect::NotYet => " No effect yet.",
-                Effect::Never => " No effect, in Maya neither.",
+                Effect::Solved(_) => String::new(),
+                _ if node_type.has_no_use_for(row) => " No effect on such a node.".to_owned(),
+                Effect::NotYet => " No effect yet.".to_owned(),
+                Effect::Never => " No effect, in Maya neither.".to_owned(),
+                Effect::Elsewhere(reason) => format!(" No effect: {reason}."),
             };
             writeln!(text, "  {name:<36} {}\n      {}{without_effect}", facts(row), row.doc())?;
         }

@@ -19,7 +19,7 @@ use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
 use super::hinge::{HingeGroup, HingeRow, MIN_COSINE};
-use super::strength_map::StrengthMap;
+use super::strength_map::{StrengthGroup, StrengthMap};
 
 /// Vectors that give four hinges their sign, in addition to the hinges.
 #[derive(Debug, Clone, Copy)]
@@ -198,6 +198,10 @@ fn measure<R: Real, const N: usize>(
     Measured { chord, direction, longest }
 }
 
+/// Four hinges, their angles, and the vertex maps of their angles if there are any.
+pub type MappedAngles<'a, R, const N: usize> =
+    (&'a HingeGroup<R, N>, &'a AngleGroup<R>, Option<&'a StrengthGroup<R>>);
+
 /// Sweeps the hinges of `groups` once, each group with its angles and its map.
 ///
 /// # Safety
@@ -206,7 +210,7 @@ fn measure<R: Real, const N: usize>(
 #[inline]
 pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = ((&'a HingeGroup<R, N>, &'a AngleGroup<R>), M)>,
+    groups: impl Iterator<Item = (MappedAngles<'a, R, N>, M)>,
     strength: &BendStrength<R>,
     angles: &AngleStrength<R>,
 ) {
@@ -215,7 +219,7 @@ pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
     let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
     let least = splat(R::from_f64(MIN_COSINE * MIN_COSINE));
     let (scale, dropoff) = (splat(angles.scale), splat(angles.dropoff));
-    for ((hinge, angle), map) in groups {
+    for ((hinge, angle, angle_map), map) in groups {
         // SAFETY: the caller's promise.
         let rows = hinge.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
         let columns = rows.map(R::Lanes::transpose);
@@ -229,6 +233,10 @@ pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
         let error = chord - R::Lanes::from_array(angle.rest) * scale;
         let size = error.most(zero - error);
         let bent = (size / (longest + tiny)).least(one);
+        let dropoff = match angle_map {
+            Some(map) => (dropoff * R::Lanes::from_array(map.above)).least(one),
+            None => dropoff,
+        };
         let grown = (one - dropoff) + dropoff * bent;
         // cos²(θ/2), within bounds: the moment grows with the angle.
         let cosine = one - chord * chord * R::Lanes::from_array(hinge.inverse_square_max);
@@ -255,6 +263,8 @@ pub struct AngleMemory<R> {
     pub scale: R,
     /// Sine of half the angle beyond which bends stay; above 1 none do.
     pub yield_sine: R,
+    /// Half that angle in radians, for a vertex map to scale.
+    pub yield_half_angle: f64,
     /// Whether hinges that are folded past 180° are followed.
     pub tracks_flips: bool,
 }
@@ -262,7 +272,7 @@ pub struct AngleMemory<R> {
 impl<R: Real> AngleMemory<R> {
     /// Whether there is anything to remember.
     pub fn is_on(&self) -> bool {
-        self.tracks_flips || self.yield_sine <= R::ONE
+        self.tracks_flips || self.yield_sine <= R::ONE || self.yield_half_angle.is_finite()
     }
 
     /// Brings the memory of four hinges up to where their points are.
@@ -270,6 +280,7 @@ impl<R: Real> AngleMemory<R> {
         &self,
         hinge: &HingeGroup<R, N>,
         angle: &mut AngleGroup<R>,
+        map: Option<&StrengthGroup<R>>,
         displacement: &[Row4<R>],
     ) {
         let x = hinge.points.map(|ends| {
@@ -286,10 +297,11 @@ impl<R: Real> AngleMemory<R> {
             if self.tracks_flips {
                 self.follow(angle, lane, chord[lane], longest[lane]);
             }
-            let most = longest[lane] * self.yield_sine;
+            let yield_sine = map.map_or(self.yield_sine, |map| self.mapped_sine(map.below[lane]));
+            let most = longest[lane] * yield_sine;
             let chord = measured(angle.flipped[lane], chord[lane], longest[lane]);
             let rest = angle.rest[lane] * self.scale;
-            if self.yield_sine <= R::ONE && self.scale != R::ZERO {
+            if yield_sine <= R::ONE && self.scale != R::ZERO {
                 if chord - rest > most {
                     angle.rest[lane] = (chord - most) / self.scale;
                 } else if rest - chord > most {
@@ -297,6 +309,12 @@ impl<R: Real> AngleMemory<R> {
                 }
             }
         }
+    }
+
+    /// The sine of half the angle beyond which a hinge with this factor keeps its bend; above 1 from 180° on.
+    fn mapped_sine(&self, factor: R) -> R {
+        let half = self.yield_half_angle * factor.to_f64();
+        R::from_f64(if half < std::f64::consts::FRAC_PI_2 { sine(half) } else { f64::INFINITY })
     }
 
     /// A sign that changes while the hinge is folded by more than 90° has gone past 180°.
@@ -312,6 +330,13 @@ impl<R: Real> AngleMemory<R> {
             (angle.flipped[lane], angle.side[lane]) = (R::ZERO, sign);
         }
     }
+}
+
+/// The sine of 0 to 90° in radians, to 6e-8, by its series: the same bits on every machine.
+fn sine(x: f64) -> f64 {
+    let square = x * x;
+    let terms = [110.0, 72.0, 42.0, 20.0, 6.0];
+    x * terms.iter().fold(1.0, |sum, term| 1.0 - square / term * sum)
 }
 
 fn measured<R: Real>(flipped: R, chord: R, longest: R) -> R {

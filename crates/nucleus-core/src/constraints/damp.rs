@@ -10,9 +10,9 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
+use super::row_loops::for_all_rows;
 use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
-use super::sweep::for_all_rows;
 
 /// Damps all cloths once, for a substep of this many seconds. Reads displacements, writes velocities.
 pub fn damp<R: Real>(

@@ -17,6 +17,7 @@
 //! | Effect | Rows | Read |
 //! |---|---|---|
 //! | stretch, compression, shear | links | [`stretch`] |
+//! | links that are all corrected from the same state | links | [`parallel`] |
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
 //! | damping of relative velocities | links | [`damp`] |
 //! | signed rest angles, angle scale and dropoff, flip tracking | hinges | [`angle`] |
@@ -26,15 +27,18 @@
 //! | attraction to the live input mesh | points | [`attract`] |
 //! | effects that take a cloth as a whole, in one place | all | [`whole`] |
 //! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
-//! | the order of rows in a sweep, and its parallel loops | all | [`sweep`](mod@sweep) |
+//! | the order of rows in a sweep | all | [`sweep`](mod@sweep) |
+//! | parallel loops over rows | all | [`row_loops`] |
 
 pub mod angle;
 pub mod attract;
 pub mod bend;
 pub mod damp;
 pub mod hinge;
+pub mod parallel;
 pub mod plastic;
 pub mod pressure;
+pub mod row_loops;
 pub mod shape;
 pub mod strength_map;
 pub mod stretch;

@@ -9,6 +9,7 @@ use crate::parallel::thread_pool::ThreadPool;
 
 use super::angle::{AngleGroup, AngleMemory};
 use super::hinge::HingeGroup;
+use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
 
 /// Groups of rows per task.
@@ -47,19 +48,23 @@ pub fn remember_angles<R: Real>(
     memory: &AngleMemory<R>,
     pool: &ThreadPool,
 ) {
-    update(&cloth.bend, &mut cloth.bend_angles, points, memory, pool);
-    update(&cloth.bend_six, &mut cloth.bend_six_angles, points, memory, pool);
+    let maps = &cloth.strength_maps;
+    update(&cloth.bend, &mut cloth.bend_angles, maps.angles.groups(), points, memory, pool);
+    update(&cloth.bend_six, &mut cloth.bend_six_angles, maps.angles_six.groups(), points, memory, pool);
 }
 
 fn update<R: Real, const N: usize>(
     hinges: &RowList<HingeGroup<R, N>>,
     angles: &mut RowList<AngleGroup<R>>,
+    maps: &[StrengthGroup<R>],
     points: &[Row4<R>],
     memory: &AngleMemory<R>,
     pool: &ThreadPool,
 ) {
     let hinges = hinges.groups();
-    for_groups(angles.groups_mut(), pool, |at, angle| memory.update(&hinges[at], angle, points));
+    for_groups(angles.groups_mut(), pool, |at, angle| {
+        memory.update(&hinges[at], angle, maps.get(at), points)
+    });
 }
 
 /// Does `work` on every group, in tasks of a fixed size.

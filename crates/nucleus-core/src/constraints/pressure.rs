@@ -101,6 +101,11 @@ impl PressureModel {
         self.triangles.iter().map(Vec::len).sum()
     }
 
+    /// Bytes of its lists.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.chamber[..]) + self.rows() * size_of::<[u32; 3]>()
+    }
+
     /// The chambers as they are when nothing has moved yet.
     pub fn start<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
         self.find_areas(blocks, state, pool);

@@ -91,6 +91,12 @@ impl ShapeModel {
         self.shells.iter().map(Vec::len).sum()
     }
 
+    /// Bytes of its lists.
+    pub fn bytes(&self) -> usize {
+        let shared: usize = self.share.iter().map(|share| size_of_val(&share[..])).sum();
+        self.rows() * (size_of::<u32>() + size_of::<Vector3<f64>>()) + shared
+    }
+
     /// Moves the points of a cloth towards their goals.
     pub fn relax<R: Real>(&self, state: &mut State<R>, strength: ShapeStrength, pool: &ThreadPool) {
         for (index, (shell, rest)) in self.shells.iter().zip(&self.rest).enumerate() {

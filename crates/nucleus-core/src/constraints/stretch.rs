@@ -130,26 +130,11 @@ pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>>(
     groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
     strength: &LinkStrength<R>,
 ) {
-    let both = |sides: Sides<R>| (R::Lanes::splat(sides.above), R::Lanes::splat(sides.below));
-    let (share_above, share_below) = both(strength.share);
-    let (compliance_above, compliance_below) = both(strength.compliance);
-    let (rest_scale, tiny) = (R::Lanes::splat(strength.rest_scale), R::Lanes::splat(R::MIN_DENOMINATOR));
+    let projection = LinkProjection::new(strength);
     for (group, map) in groups {
         // SAFETY: the caller's promise.
         let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-        let [ax, ay, az, w_a] = R::Lanes::transpose(a);
-        let [bx, by, bz, w_b] = R::Lanes::transpose(b);
-        let [sx, sy, sz] = group.span.map(R::Lanes::from_array);
-        let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
-        let length = (dx * dx + dy * dy + dz * dz).sqrt();
-        let c = length - R::Lanes::from_array(group.rest_length) * rest_scale;
-        let share = c.choose_by_sign(share_above, share_below);
-        let compliance = c.choose_by_sign(compliance_above, compliance_below);
-        let (share, compliance) = map.scale(c, share, compliance);
-        let softness = compliance * R::Lanes::from_array(group.slenderness);
-        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
-        let lambda = share * c / ((w_a + w_b + softness) * length + tiny);
-        let push = R::Lanes::transpose([lambda * dx, lambda * dy, lambda * dz, R::Lanes::splat(R::ZERO)]);
+        let push = projection.push(group, map, [a, b]);
         for lane in 0..4 {
             let [end_a, end_b] = group.ends.map(|end| end[lane]);
             let moved_a = a[lane] + a[lane].splat_last() * push[lane];
@@ -160,5 +145,57 @@ pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>>(
                 points.set(end_b, Row4(moved_b.to_array()));
             }
         }
+    }
+}
+
+/// The correction of links in one sweep, with its constants in lanes.
+pub struct LinkProjection<L> {
+    share: [L; 2],
+    compliance: [L; 2],
+    rest_scale: L,
+    tiny: L,
+}
+
+impl<L: Copy> LinkProjection<L> {
+    /// For a sweep of this strength.
+    #[inline(always)]
+    pub fn new<R: Real<Lanes = L>>(strength: &LinkStrength<R>) -> Self
+    where
+        L: Lanes<R>,
+    {
+        let both = |sides: Sides<R>| [L::splat(sides.above), L::splat(sides.below)];
+        Self {
+            share: both(strength.share),
+            compliance: both(strength.compliance),
+            rest_scale: L::splat(strength.rest_scale),
+            tiny: L::splat(R::MIN_DENOMINATOR),
+        }
+    }
+
+    /// The vectors by which the first ends of four links move, over their inverse masses, in metres times kilograms; the
+    /// second ends move the other way. `a` and `b` are the rows of the ends.
+    #[inline(always)]
+    pub fn push<R: Real<Lanes = L>, P: StrengthMap<R>>(
+        &self,
+        group: &LinkGroup<R>,
+        map: P,
+        [a, b]: [[L; 4]; 2],
+    ) -> [L; 4]
+    where
+        L: Lanes<R>,
+    {
+        let [ax, ay, az, w_a] = L::transpose(a);
+        let [bx, by, bz, w_b] = L::transpose(b);
+        let [sx, sy, sz] = group.span.map(L::from_array);
+        let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
+        let length = (dx * dx + dy * dy + dz * dz).sqrt();
+        let c = length - L::from_array(group.rest_length) * self.rest_scale;
+        let share = c.choose_by_sign(self.share[0], self.share[1]);
+        let compliance = c.choose_by_sign(self.compliance[0], self.compliance[1]);
+        let (share, compliance) = map.scale(c, share, compliance);
+        let softness = compliance * L::from_array(group.slenderness);
+        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
+        let lambda = share * c / ((w_a + w_b + softness) * length + self.tiny);
+        L::transpose([lambda * dx, lambda * dy, lambda * dz, L::splat(R::ZERO)])
     }
 }

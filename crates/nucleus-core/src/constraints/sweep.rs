@@ -6,12 +6,13 @@
 
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
+use crate::constraints::row_loops::for_interface_rows;
 use crate::constraints::strength_map::{StrengthGroup, Uniform};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
-use crate::constraints::{angle, bend, stretch};
+use crate::constraints::{angle, bend, parallel, stretch};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
-use crate::model::rows::{Blocks, RowBatch, RowList};
+use crate::model::rows::{RowBatch, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Direction, Effect, Sweep};
@@ -20,18 +21,23 @@ use crate::schedule::{Direction, Effect, Sweep};
 ///
 /// The interior rows of all lists come first, block by block, while the block is in the core's cache; then the
 /// interface rows, list by list. Backward reverses the unmapped order, in cloths that alternate their direction.
+///
+/// `corrections` is scratch for links that are all corrected from the same state; empty where no cloth has such.
 pub fn sweep<R: Real>(
     cloths: &[ClothModel<R>],
-    displacement: &mut [Row4<R>],
+    [displacement, corrections]: [&mut [Row4<R>]; 2],
     sweeps: &[Sweep<R>],
     direction: Direction,
     pool: &ThreadPool,
 ) {
-    let points = DisjointSlice::new(displacement);
     for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
         let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
         let backward = direction == Direction::Backward && cloth.alternates_direction;
-        let sweeper = Sweeper { points, cloth, backward };
+        if !cloth.valence.is_empty() {
+            sweep_parallel(cloth, [displacement, corrections], of_cloth, pool);
+            continue;
+        }
+        let sweeper = Sweeper { points: DisjointSlice::new(displacement), cloth, backward };
         if backward {
             of_cloth.iter().rev().for_each(|sweep| sweeper.interface(pool, &sweep.effect));
             pool.parallel_for(cloth.blocks.len(), |block| {
@@ -43,6 +49,29 @@ pub fn sweep<R: Real>(
             });
             of_cloth.iter().for_each(|sweep| sweeper.interface(pool, &sweep.effect));
         }
+    }
+}
+
+/// The sweeps over a cloth whose links are all corrected from the same state.
+fn sweep_parallel<R: Real>(
+    cloth: &ClothModel<R>,
+    [displacement, corrections]: [&mut [Row4<R>]; 2],
+    sweeps: &[Sweep<R>],
+    pool: &ThreadPool,
+) {
+    let no_maps = RowList::default();
+    for Sweep { effect, .. } in sweeps {
+        let (lists, strength) = match effect {
+            Effect::Stretch(strength) => ((&cloth.stretch, &cloth.strength_maps.stretch), strength),
+            Effect::Shear(strength) => ((&cloth.shear, &no_maps), strength),
+            Effect::Bend(..) => {
+                let sweeper = Sweeper { points: DisjointSlice::new(displacement), cloth, backward: false };
+                pool.parallel_for(cloth.blocks.len(), |block| sweeper.interior(block, effect));
+                sweeper.interface(pool, effect);
+                continue;
+            }
+        };
+        parallel::sweep(displacement, corrections, cloth, lists, strength, pool);
     }
 }
 
@@ -66,8 +95,9 @@ impl<R: Real> Sweeper<'_, R> {
             Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), batch, strength),
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
-                self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, batch, strength);
-                self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, batch, strength);
+                self.hinges((&cloth.bend, &cloth.bend_angles, &maps.angles), &maps.bend, batch, strength);
+                let (angles, maps_of_six) = (&cloth.bend_six_angles, &maps.angles_six);
+                self.hinges((&cloth.bend_six, angles, maps_of_six), &maps.bend_six, batch, strength);
             }
         }
     }
@@ -84,10 +114,11 @@ impl<R: Real> Sweeper<'_, R> {
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
                 for_interface_rows(pool, &cloth.bend, backward, |batch| {
-                    self.hinges((&cloth.bend, &cloth.bend_angles), &maps.bend, batch, strength);
+                    self.hinges((&cloth.bend, &cloth.bend_angles, &maps.angles), &maps.bend, batch, strength);
                 });
                 for_interface_rows(pool, &cloth.bend_six, backward, |batch| {
-                    self.hinges((&cloth.bend_six, &cloth.bend_six_angles), &maps.bend_six, batch, strength);
+                    let (angles, maps_of_six) = (&cloth.bend_six_angles, &maps.angles_six);
+                    self.hinges((&cloth.bend_six, angles, maps_of_six), &maps.bend_six, batch, strength);
                 });
             }
         }
@@ -117,14 +148,20 @@ impl<R: Real> Sweeper<'_, R> {
     #[allow(unsafe_code)]
     fn hinges<const N: usize>(
         &self,
-        (rows, angles): (&RowList<HingeGroup<R, N>>, &RowList<AngleGroup<R>>),
+        (rows, angles, angle_maps): (
+            &RowList<HingeGroup<R, N>>,
+            &RowList<AngleGroup<R>>,
+            &RowList<StrengthGroup<R>>,
+        ),
         maps: &RowList<StrengthGroup<R>>,
         batch: RowBatch,
         (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
         let (rows, maps) = (rows.batch(batch).iter(), maps.batch(batch).iter());
         if !angles.batch(batch).is_empty() {
-            let rows = rows.zip(angles.batch(batch));
+            let angle_maps = angle_maps.batch(batch);
+            let rows = rows.zip(angles.batch(batch)).enumerate();
+            let rows = rows.map(|(k, (hinge, angle))| (hinge, angle, angle_maps.get(k)));
             // SAFETY: see `Sweeper`.
             unsafe {
                 match (self.backward, maps.len() > 0) {
@@ -156,29 +193,4 @@ fn unmapped<G>(group: &G) -> (&G, Uniform) {
 /// The same for a group with its angles.
 fn uniform<G>(group: G) -> (G, Uniform) {
     (group, Uniform)
-}
-
-/// Does `work` on all batches of a list once: interior rows, then interface rows.
-pub fn for_all_rows<G: Sync>(
-    pool: &ThreadPool,
-    blocks: &Blocks,
-    list: &RowList<G>,
-    work: impl Fn(RowBatch) + Sync,
-) {
-    pool.parallel_for(blocks.len(), |block| work(RowBatch::Interior(block)));
-    for_interface_rows(pool, list, false, work);
-}
-
-/// Does `work` on the interface rows of a list, colour by colour.
-fn for_interface_rows<G: Sync>(
-    pool: &ThreadPool,
-    list: &RowList<G>,
-    backward: bool,
-    work: impl Fn(RowBatch) + Sync,
-) {
-    let count = list.interface_colours();
-    for k in 0..count {
-        let colour = if backward { count - 1 - k } else { k };
-        pool.parallel_for(list.interface_tasks(colour), |task| work(RowBatch::Interface(colour, task)));
-    }
 }

@@ -79,10 +79,11 @@ pub fn remember_deformation<R: Real>(
             let [scale, limit] = [settings.rest_length_scale, settings.yield_strain].map(R::from_f64);
             plastic::creep(cloth, &state.displacement, scale, limit, pool);
         }
-        let Bending { angle_scale, yield_sine, solver, .. } = settings.bending;
+        let Bending { angle_scale, yield_sine, yield_half_angle, solver, .. } = settings.bending;
         let memory = AngleMemory {
             scale: R::from_f64(angle_scale),
             yield_sine: R::from_f64(yield_sine),
+            yield_half_angle,
             tracks_flips: solver == BendSolver::FlipTracking,
         };
         if memory.is_on() && cloth.bend_angles.len() + cloth.bend_six_angles.len() > 0 {

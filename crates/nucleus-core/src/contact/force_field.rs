@@ -5,9 +5,8 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::bvh::{Aabb, Bvh};
 use crate::contact::collider::ColliderState;
-use crate::contact::narrow_phase::closest_on_triangle;
+use crate::contact::placed_surface::{Nearest, PlacedSurface};
 use crate::input::frame::{FieldSide, ForceField, FrameInput};
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
@@ -15,61 +14,11 @@ use crate::state::State;
 
 type Point = Vector3<f64>;
 
-/// A triangulated surface at its present position, for queries of its nearest point.
-pub struct PlacedSurface {
-    /// In metres.
-    triangles: Vec<[Point; 3]>,
-    bvh: Bvh,
-    /// The origin of the boxes.
-    origin: Point,
-}
-
-/// The nearest point of a surface.
-#[derive(Debug, Clone, Copy)]
-pub struct Nearest {
-    /// In metres.
-    pub distance: f64,
-    /// The point, in metres.
-    pub point: Point,
-    /// Normal of its triangle, of unit length.
-    pub normal: Point,
-}
-
-impl PlacedSurface {
-    /// A surface of these triangles.
-    pub fn new(triangles: Vec<[Point; 3]>) -> Self {
-        let centres: Vec<Point> = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
-        let origin = centres.first().copied().unwrap_or_default();
-        let mut bvh = Bvh::new(&centres);
-        bvh.refit(|at| Aabb::of(triangles[at].into_iter().map(|corner| corner - origin)));
-        Self { triangles, bvh, origin }
-    }
-
-    /// The nearest point within a radius in metres; of two as near, that of the first triangle.
-    pub fn nearest(&self, place: Point, radius: f64) -> Option<Nearest> {
-        let away = place - self.origin;
-        let half = Point::repeat(radius);
-        let mut best: Option<(f64, u32, Point)> = None;
-        self.bvh.query(&Aabb::new(away - half, away + half), |at| {
-            let corners = self.triangles[at as usize];
-            let weights = closest_on_triangle(place.into(), corners.map(Into::into));
-            let point: Point = corners.iter().zip(weights).map(|(corner, weight)| corner * weight).sum();
-            let found = ((place - point).norm(), at);
-            if best.is_none_or(|(distance, other, _)| found < (distance, other)) {
-                best = Some((found.0, found.1, point));
-            }
-        });
-        let (distance, at, point) = best.filter(|&(distance, _, _)| distance <= radius)?;
-        let [a, b, c] = self.triangles[at as usize];
-        let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-        Some(Nearest { distance, point, normal })
-    }
-}
-
 impl ForceField {
-    /// The acceleration of a point in m/s².
-    fn acceleration(&self, surface: &PlacedSurface, place: Point) -> Option<Point> {
-        let Nearest { distance, point, normal } = surface.nearest(place, self.distance)?;
+    /// The acceleration of a point in m/s². `map` has a factor on the magnitude at each corner; it is 1 where empty.
+    fn acceleration(&self, surface: &PlacedSurface, map: &[f64], place: Point) -> Option<Point> {
+        let nearest = surface.nearest(place, self.distance)?;
+        let Nearest { distance, point, normal, .. } = nearest;
         let side = normal.dot(&(place - point));
         let away = (place - point).try_normalize(0.0).unwrap_or(normal);
         let direction = match self.side {
@@ -77,17 +26,18 @@ impl ForceField {
             FieldSide::Single if side < 0.0 => return None,
             FieldSide::Single | FieldSide::Double => away,
         };
-        Some(direction * (self.magnitude * self.falloff_at(distance / self.distance)))
+        let factor = if map.is_empty() { 1.0 } else { nearest.mean(|corner| map[corner as usize]) };
+        Some(direction * (self.magnitude * factor * falloff_at(&self.falloff, distance / self.distance)))
     }
+}
 
-    /// The falloff at a share of the distance, between samples in straight lines.
-    fn falloff_at(&self, share: f64) -> f64 {
-        let last = self.falloff.len() - 1;
-        let at = share.clamp(0.0, 1.0) * last as f64;
-        let low = (at as usize).min(last - 1);
-        let [a, b] = [self.falloff[low], self.falloff[low + 1]];
-        a + (b - a) * (at - low as f64)
-    }
+/// The falloff at a share of the distance, between evenly spaced samples in straight lines.
+pub fn falloff_at(falloff: &[f64; ForceField::SAMPLES], share: f64) -> f64 {
+    let last = falloff.len() - 1;
+    let at = share.clamp(0.0, 1.0) * last as f64;
+    let low = (at as usize).min(last - 1);
+    let [a, b] = [falloff[low], falloff[low + 1]];
+    a + (b - a) * (at - low as f64)
 }
 
 /// Accelerates points in the fields of other objects for a substep of `length` seconds that begins at `time` as a share
@@ -101,37 +51,47 @@ pub fn apply_force_fields<R: Real>(
 ) {
     for at in 0..model.colliders.len() {
         let Some(field) = frame.colliders[at].field.filter(ForceField::is_on) else { continue };
-        let collider = &colliders[at];
-        let faces = model.colliders[at].boundary.triangles.iter();
-        let triangles = faces.map(|face| face.map(|point| collider.point(point, time))).collect();
-        let surface = PlacedSurface::new(triangles);
-        model.cloths.iter().for_each(|cloth| accelerate(cloth, state, &field, &surface, length));
+        let (placed, collider) = (&colliders[at], &model.colliders[at]);
+        let triangles = collider.boundary.triangles.clone();
+        let surface = PlacedSurface::new(triangles, |point| placed.point(point, time));
+        let source = Source { field, surface, map: &collider.field_map };
+        model.cloths.iter().for_each(|cloth| source.accelerate(cloth, state, length));
     }
     for at in 0..model.cloths.len() {
         let Some(field) = frame.cloths[at].field.filter(ForceField::is_on) else { continue };
-        let place = |row: u32| Point::from(state.position(row));
-        let faces = model.cloths[at].boundary.triangles.iter();
-        let surface = PlacedSurface::new(faces.map(|face| face.map(place)).collect());
+        let cloth = &model.cloths[at];
+        let first = cloth.points().start;
+        // Corners are counted from the cloth's first row, as its map is.
+        let triangles = cloth.boundary.triangles.iter().map(|face| face.map(|row| row - first)).collect();
+        let surface = PlacedSurface::new(triangles, |corner| state.position(first + corner).into());
+        let source = Source { field, surface, map: &cloth.field_map };
         let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);
-        others.for_each(|cloth| accelerate(&model.cloths[cloth], state, &field, &surface, length));
+        others.for_each(|cloth| source.accelerate(&model.cloths[cloth], state, length));
     }
 }
 
-fn accelerate<R: Real>(
-    cloth: &ClothModel<R>,
-    state: &mut State<R>,
-    field: &ForceField,
-    surface: &PlacedSurface,
-    length: f64,
-) {
-    for row in cloth.points() {
-        if state.displacement[row as usize].0[3] <= R::ZERO {
-            continue;
+/// The field of one object at its present position.
+struct Source<'a> {
+    field: ForceField,
+    surface: PlacedSurface,
+    /// Factors on the magnitude by corner; empty where they are 1.
+    map: &'a [f64],
+}
+
+impl Source<'_> {
+    /// Accelerates the free points of a cloth for a substep of `length` seconds.
+    fn accelerate<R: Real>(&self, cloth: &ClothModel<R>, state: &mut State<R>, length: f64) {
+        for row in cloth.points() {
+            if state.displacement[row as usize].0[3] <= R::ZERO {
+                continue;
+            }
+            let place = Point::from(state.position(row));
+            let Some(acceleration) = self.field.acceleration(&self.surface, self.map, place) else {
+                continue;
+            };
+            let velocity = &mut state.velocity[row as usize];
+            (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(acceleration[axis] * length));
         }
-        let place = Point::from(state.position(row));
-        let Some(acceleration) = field.acceleration(surface, place) else { continue };
-        let velocity = &mut state.velocity[row as usize];
-        (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(acceleration[axis] * length));
     }
 }
 
@@ -141,16 +101,13 @@ mod tests {
 
     #[test]
     fn a_field_acts_on_its_sides_and_falls_off_with_the_distance() {
-        let floor = PlacedSurface::new(vec![[
-            Point::new(-9.0, 0.0, 9.0),
-            Point::new(9.0, 0.0, 9.0),
-            Point::new(0.0, 0.0, -9.0),
-        ]]);
+        let corners = [Point::new(-9.0, 0.0, 9.0), Point::new(9.0, 0.0, 9.0), Point::new(0.0, 0.0, -9.0)];
+        let floor = PlacedSurface::new(vec![[0, 1, 2]], |corner| corners[corner as usize]);
         let falloff = std::array::from_fn(|k| 1.0 - k as f64 / (ForceField::SAMPLES - 1) as f64);
         let field = |side| ForceField { side, magnitude: 4.0, distance: 2.0, falloff };
         let at = |side, y: f64| {
             field(side)
-                .acceleration(&floor, Point::new(0.1, y, 0.2))
+                .acceleration(&floor, &[], Point::new(0.1, y, 0.2))
                 .map_or(0.0, |acceleration| acceleration.y)
         };
         for (side, above, below) in [
@@ -161,5 +118,9 @@ mod tests {
             assert!((at(side, 0.5) - above).abs() < 1e-12 && (at(side, -0.5) - below).abs() < 1e-12);
         }
         assert_eq!(at(FieldSide::Double, 2.5), 0.0, "beyond its distance there is none");
+        // At the middle of an edge a map has the mean of its ends.
+        let mapped =
+            field(FieldSide::Double).acceleration(&floor, &[0.2, 0.6, 9.0], Point::new(0.0, 1.0, 9.0));
+        assert!((mapped.map_or(0.0, |acceleration| acceleration.y) - 2.0 * 0.4).abs() < 1e-12);
     }
 }

@@ -34,7 +34,8 @@
 //! |---|---|
 //! | boxes, and the bounding volume hierarchy | [`bvh`] |
 //! | points, edges and triangles of a mesh, in groups; pseudonormals | [`boundary`] |
-//! | force fields of objects | [`force_field`] |
+//! | force fields of surfaces, and of points | [`force_field`], [`point_field`] |
+//! | the nearest point of a surface, and what a ray hits | [`placed_surface`] |
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`] |
@@ -93,6 +94,8 @@ pub mod force_field;
 pub mod ground;
 pub mod material;
 pub mod narrow_phase;
+pub mod placed_surface;
+pub mod point_field;
 pub mod push_out;
 pub mod response;
 pub mod restitution;

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::force_field::{Nearest, PlacedSurface};
+use crate::contact::placed_surface::{Nearest, PlacedSurface};
 use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, PushOut};
 use crate::math::Real;
@@ -88,13 +88,16 @@ impl PushOutSurface {
             triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
         let share = push_out.share.abs().min(1.0);
-        Self { surface: PlacedSurface::new(triangles), thickness, share, radius: push_out.radius }
+        let corners: Vec<Point> = triangles.iter().flatten().copied().collect();
+        let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let surface = PlacedSurface::new(faces, |corner| corners[corner as usize]);
+        Self { surface, thickness, share, radius: push_out.radius }
     }
 
     /// The correction of a point in this substep, if it is within the radius and closer to the surface than
     /// `thickness`, or behind it.
     fn correction(&self, place: Point, thickness: f64) -> Option<Point> {
-        let Nearest { distance, point, normal } = self.surface.nearest(place, self.radius)?;
+        let Nearest { distance, point, normal, .. } = self.surface.nearest(place, self.radius)?;
         let is_clear = normal.dot(&(place - point)) >= 0.0 && distance >= thickness;
         (!is_clear).then(|| (point + normal * thickness - place) * self.share)
     }

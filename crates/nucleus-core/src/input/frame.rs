@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use crate::input::fields::{FALLOFF_SAMPLES, PointField, WindField};
 use crate::input::{ClothId, PointId};
 
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
@@ -147,7 +148,7 @@ pub struct ClothFrame {
     pub drag: f64,
     /// Share of `drag` that also acts along the surface, 0 to 1.
     pub tangential_drag: f64,
-    /// Air force at right angles to the motion.
+    /// Air force at right angles to the motion: acceleration over v² sin α cos α in 1/m, times the mass.
     pub lift: f64,
     /// Whether the solver's gravity acts on this cloth.
     pub feels_gravity: bool,
@@ -198,6 +199,10 @@ pub struct ClothFrame {
     pub input_attract: InputAttract,
     /// Its force field on other objects.
     pub field: Option<ForceField>,
+    /// The force fields of its points.
+    pub point_field: Option<PointField>,
+    /// Its wind shadow, and the air that it pushes.
+    pub wind_field: WindField,
 }
 
 /// A force field round a surface (`forceField`).
@@ -215,7 +220,7 @@ pub struct ForceField {
 
 impl ForceField {
     /// Samples of the falloff.
-    pub const SAMPLES: usize = 17;
+    pub const SAMPLES: usize = FALLOFF_SAMPLES;
 
     /// Whether it acts at all.
     pub fn is_on(&self) -> bool {
@@ -256,12 +261,19 @@ pub struct Bending {
     pub solver: BendSolver,
     /// Sine of half the angle beyond which bends become permanent (`restitutionAngle`); infinite for none.
     pub yield_sine: f64,
+    /// Half that angle in radians, for a vertex map to scale; infinite for none.
+    pub yield_half_angle: f64,
 }
 
 impl Bending {
     /// Maya's defaults, but for the sign of angles, which costs a little and matters only to cloth that is bent at rest.
-    pub const DEFAULT: Self =
-        Self { angle_scale: 1.0, angle_dropoff: 0.0, solver: BendSolver::Simple, yield_sine: f64::INFINITY };
+    pub const DEFAULT: Self = Self {
+        angle_scale: 1.0,
+        angle_dropoff: 0.0,
+        solver: BendSolver::Simple,
+        yield_sine: f64::INFINITY,
+        yield_half_angle: f64::INFINITY,
+    };
 }
 
 /// Pressure inside a mesh.
@@ -395,6 +407,8 @@ impl Default for ClothFrame {
             deform_resistance: 0.0,
             input_attract: InputAttract::OFF,
             field: None,
+            point_field: None,
+            wind_field: WindField::OFF,
         }
     }
 }
@@ -424,6 +438,10 @@ pub struct ColliderFrame {
     pub trapped_check: bool,
     /// Its force field on cloth.
     pub field: Option<ForceField>,
+    /// The force fields of its points.
+    pub point_field: Option<PointField>,
+    /// Its wind shadow, and the air that it pushes.
+    pub wind_field: WindField,
 }
 
 impl Default for ColliderFrame {
@@ -442,6 +460,8 @@ impl Default for ColliderFrame {
             push_out: PushOut::OFF,
             trapped_check: true,
             field: None,
+            point_field: None,
+            wind_field: WindField::OFF,
         }
     }
 }

@@ -6,8 +6,10 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the attributes and motion of a frame | [`frame`] |
+//! | what objects do to the air and to each other at a distance | [`fields`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
+pub mod fields;
 pub mod frame;
 pub mod validation;
 

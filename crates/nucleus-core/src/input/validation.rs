@@ -13,6 +13,7 @@ use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
+use crate::input::fields::{PointField, WindField};
 use crate::input::frame::{
     ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
 };
@@ -241,10 +242,14 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.damp, 0.0),
         (&mut cloth.input_attract.motion_drag, 0.0),
     ]);
-    let field = cloth.field.as_mut().is_some_and(sanitize_field);
-    let limits = [&mut cloth.yield_strain, &mut cloth.bending.yield_sine].into_iter();
+    let fields = cloth.field.as_mut().is_some_and(sanitize_field)
+        | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
+        | sanitize_wind_field(&mut cloth.wind_field);
+    let bending = &mut cloth.bending;
+    let limits =
+        [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle].into_iter();
     let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
-    vectors | numbers | yields | field | sanitize_pressure(&mut cloth.pressure)
+    vectors | numbers | yields | fields | sanitize_pressure(&mut cloth.pressure)
 }
 
 fn sanitize_pressure(pressure: &mut Pressure) -> bool {
@@ -263,9 +268,28 @@ fn sanitize_field(field: &mut ForceField) -> bool {
     replaced | sanitize_numbers([(&mut field.magnitude, 0.0), (&mut field.distance, 0.0)])
 }
 
+fn sanitize_point_field(field: &mut PointField) -> bool {
+    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
+    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
+    let PointField { magnitude, self_attract, radius, distance, .. } = field;
+    replaced | sanitize_numbers([(magnitude, 0.0), (self_attract, 0.0), (radius, 0.0), (distance, 0.0)])
+}
+
+fn sanitize_wind_field(field: &mut WindField) -> bool {
+    let WindField { shadow_distance, shadow_diffusion, push_distance, push_vorticity, .. } = field;
+    sanitize_numbers([
+        (shadow_distance, 0.0),
+        (shadow_diffusion, 0.0),
+        (push_distance, 0.0),
+        (push_vorticity, 0.0),
+    ])
+}
+
 fn sanitize_collider_settings(collider: &mut ColliderFrame) -> bool {
-    let field = collider.field.as_mut().is_some_and(sanitize_field);
-    field
+    let fields = collider.field.as_mut().is_some_and(sanitize_field)
+        | collider.point_field.as_mut().is_some_and(sanitize_point_field)
+        | sanitize_wind_field(&mut collider.wind_field);
+    fields
         | sanitize_numbers([
             (&mut collider.thickness, 0.0),
             (&mut collider.friction, 0.0),

@@ -6,7 +6,10 @@
 //! half-steps, also matches that output.
 //!
 //! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no work. Its
-//! rate is per unit of time, not of length, so large scenes need no manual scaling.
+//! acceleration is `lift` times density over mass times v² sin α cos α at an angle of attack α, with v in m/s: the lift
+//! of a thin plate (Hoerner, Fluid-Dynamic Lift, 1985, ch. 3), and a force that grows with v² as in recorded output of
+//! the original. There v is in scene units per second, so that lift grows with the size of a scene (a known fault,
+//! N1.3-4); in metres it does not.
 
 use std::ops::Range;
 
@@ -27,6 +30,7 @@ pub struct Air<R> {
     /// Factors on the relative velocity along the normal, and along the surface.
     along_normal: R,
     along_surface: R,
+    /// Lift over the mass times the length of the step, in s/m.
     lift: R,
 }
 
@@ -34,8 +38,9 @@ pub struct Air<R> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AirForces {
     wind: Vector3<f64>,
-    /// Drag and lift over the mass, per second.
+    /// Drag over the mass, per second.
     drag: f64,
+    /// Lift over the mass, per metre.
     lift: f64,
     tangential_drag: f64,
     h: f64,
@@ -44,9 +49,9 @@ pub struct AirForces {
 impl AirForces {
     /// The forces on a cloth with this `pointMass` in steps of `h` seconds; `None` in a vacuum.
     pub fn new(frame: &FrameInput, cloth: &ClothFrame, point_mass: f64, h: f64) -> Option<Self> {
-        let rate = |attribute: f64| attribute * frame.air_density / (COUNT_PERIOD * point_mass);
-        let (drag, lift) = (rate(cloth.drag), rate(cloth.lift));
-        if drag <= 0.0 && lift <= 0.0 {
+        let per_mass = |attribute: f64| attribute * frame.air_density / point_mass;
+        let (drag, lift) = (per_mass(cloth.drag) / COUNT_PERIOD, per_mass(cloth.lift));
+        if drag <= 0.0 && lift == 0.0 {
             return None;
         }
         let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
@@ -64,16 +69,16 @@ impl AirForces {
             wind: [self.wind.x, self.wind.y, self.wind.z].map(R::from_f64),
             along_normal: remaining(drag),
             along_surface: remaining(drag * (self.tangential_drag * factors.tangential_drag)),
-            lift: R::from_f64((self.lift * factors.lift * self.h).min(1.0)),
+            lift: R::from_f64(self.lift * factors.lift * self.h),
         }
     }
 }
 
 impl<R: Real> Air<R> {
-    /// The same with a gust on top of the wind, in m/s.
+    /// The same with this added to the wind, in m/s.
     #[inline(always)]
-    pub fn gusting(&self, gust: [R; 3]) -> Self {
-        Self { wind: std::array::from_fn(|axis| self.wind[axis] + gust[axis]), ..*self }
+    pub fn with_wind(&self, added: [R; 3]) -> Self {
+        Self { wind: std::array::from_fn(|axis| self.wind[axis] + added[axis]), ..*self }
     }
 
     /// The velocity after the step.
@@ -98,8 +103,17 @@ impl<R: Real> Air<R> {
             return through;
         }
         let share = facing / speed_squared;
+        // At most a turn of 45° in a step: lift too strong for the step is bounded, not unstable.
+        let turn = self.lift * speed_squared.sqrt();
+        let turn = if turn > R::ONE {
+            R::ONE
+        } else if turn < -R::ONE {
+            -R::ONE
+        } else {
+            turn
+        };
         let lifted: [R; 3] = std::array::from_fn(|axis| {
-            through[axis] - self.lift * facing * (normal[axis] - through[axis] * share)
+            through[axis] - turn * facing * (normal[axis] - through[axis] * share)
         });
         let scale = (speed_squared / dot(lifted, lifted)).sqrt();
         lifted.map(|x| x * scale)

@@ -5,12 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::input::frame::{ClothFrame, FrameInput};
-use crate::math::{Real, Row4};
-use crate::model::ClothModel;
-use crate::parallel::disjoint::DisjointSlice;
-use crate::parallel::thread_pool::ThreadPool;
-use crate::state::State;
+use crate::input::frame::FrameInput;
 
 /// Size in metres of the largest gusts, and of those of half their strength.
 const SIZES: [(f64, f64); 2] = [(2.0, 2.0 / 3.0), (0.5, 1.0 / 3.0)];
@@ -20,51 +15,26 @@ pub fn is_gusty(frame: &FrameInput) -> bool {
     frame.wind_noise != 0.0 && frame.wind != Vector3::zeros()
 }
 
-/// Sets what gusts add to the wind at every point that feels it, once per substep; `time` is in seconds since the start of
-/// the frame.
-pub fn update_gusts<R: Real>(
-    cloths: &[ClothModel<R>],
-    state: &mut State<R>,
-    frame: &FrameInput,
-    time: f64,
-    pool: &ThreadPool,
-) {
-    if !is_gusty(frame) || state.normal.is_empty() {
-        return state.gust.clear();
-    }
-    state.gust.clear();
-    state.gust.resize(state.normal.len(), Row4::ZERO);
-    let feels = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
-        settings.feels_wind && !cloth.triangles.is_empty()
-    };
-    for (cloth, _) in cloths.iter().zip(&frame.cloths).filter(feels) {
-        find_gusts(cloth, state, frame, time, pool);
-    }
+/// The gusts at one time.
+pub struct GustField {
+    /// How far the wind has carried the air since the start, in metres.
+    travel: Vector3<f64>,
+    /// In m/s.
+    strength: f64,
 }
 
-fn find_gusts<R: Real>(
-    cloth: &ClothModel<R>,
-    state: &mut State<R>,
-    frame: &FrameInput,
-    time: f64,
-    pool: &ThreadPool,
-) {
-    // The frame's own travel is counted from its start on.
-    let travel = Vector3::from(state.wind_travel) + frame.wind * (time - frame.duration);
-    let strength = frame.wind.norm() * frame.wind_noise;
-    let State { anchor, displacement, gust, .. } = state;
-    let gusts = DisjointSlice::new(gust);
-    pool.parallel_for(cloth.blocks.len(), |block| {
-        let rows = cloth.blocks.range(block);
-        // SAFETY: blocks do not overlap.
-        #[allow(unsafe_code)]
-        let run = unsafe { gusts.run(rows.clone()) };
-        for (row, gust) in rows.zip(run) {
-            let moved = displacement[row as usize].xyz().map(R::to_f64);
-            let place = Vector3::from(anchor[row as usize]) + Vector3::from(moved) - travel;
-            *gust = Row4::new((noise(place) * strength).into(), R::ZERO);
-        }
-    });
+impl GustField {
+    /// The gusts at a share `time` of a frame, at whose end the wind has travelled `travel` metres.
+    pub fn new(travel: [f64; 3], frame: &FrameInput, time: f64) -> Self {
+        // The frame's own travel is counted from its start on.
+        let travel = Vector3::from(travel) + frame.wind * (frame.duration * time - frame.duration);
+        Self { travel, strength: frame.wind.norm() * frame.wind_noise }
+    }
+
+    /// What they add to the wind at a place, in m/s; `place` in metres.
+    pub fn at(&self, place: Vector3<f64>) -> Vector3<f64> {
+        noise(place - self.travel) * self.strength
+    }
 }
 
 /// A smooth field of vectors, each component between -1 and 1 and of mean zero; `place` in metres.

@@ -16,8 +16,13 @@
 //! |---|---|
 //! | gravity, forces, inertia; velocities after the corrections | [`predict`] |
 //! | drag, lift and wind, implicit per time step | [`aerodynamics`] |
+//! | what is added to the wind at each point | [`local_wind`] |
 //! | wind that varies in space and time | [`gusts`] |
+//! | objects that keep the wind from others, and that push air | [`wind_shadow`], [`air_push`] |
 
 pub mod aerodynamics;
+pub mod air_push;
 pub mod gusts;
+pub mod local_wind;
 pub mod predict;
+pub mod wind_shadow;

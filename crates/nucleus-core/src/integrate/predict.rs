@@ -43,7 +43,7 @@ pub fn predict<R: Real>(
         velocity: DisjointSlice::new(&mut state.velocity),
         predicted: DisjointSlice::new(&mut state.predicted),
         normal: &state.normal,
-        gust: &state.gust,
+        added_wind: &state.added_wind,
     };
     for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
         let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
@@ -93,8 +93,8 @@ struct MotionColumns<'a, R> {
     predicted: DisjointSlice<'a, Row4<R>>,
     /// Normals of unit length; empty where no air is felt.
     normal: &'a [Row4<R>],
-    /// What gusts add to the wind in m/s; empty in a steady wind.
-    gust: &'a [Row4<R>],
+    /// What gusts, wind shadows and pushed air add to the wind in m/s; empty where nothing does.
+    added_wind: &'a [Row4<R>],
 }
 
 /// Moves a run of points. A pinned point keeps its velocity, which is that of its pin.
@@ -131,8 +131,8 @@ unsafe fn move_points<R: Real>(
                 forces.air_factors.get(k).zip(forces.air).map(|(factors, air)| air.at(factors));
             let normal = columns.normal[points.start as usize + k];
             let air = mapped.as_ref().unwrap_or(air);
-            let slowed = match columns.gust.get(points.start as usize + k) {
-                Some(gust) => air.gusting(gust.xyz()).slow(kicked.to_array(), normal.xyz()),
+            let slowed = match columns.added_wind.get(points.start as usize + k) {
+                Some(added) => air.with_wind(added.xyz()).slow(kicked.to_array(), normal.xyz()),
                 None => air.slow(kicked.to_array(), normal.xyz()),
             };
             kicked = Row4(slowed).lanes();

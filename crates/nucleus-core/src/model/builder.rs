@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 use crate::input::validation::is_in_range;
-use crate::input::{ClothId, ColliderId};
+use crate::input::{ClothId, ColliderId, PointId};
 use crate::model::build_error::BuildError;
 use crate::model::surface::Surface;
 use crate::model::topology::point_areas;
@@ -89,6 +89,18 @@ impl ClothLists {
     };
 }
 
+/// The order in which the links of a cloth are corrected in a sweep.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum LinkOrder {
+    /// One after another, by colours.
+    #[default]
+    Sequential,
+    /// One after another, outwards from these points (`sortLinks`).
+    Outwards(Vec<PointId>),
+    /// All from the same state (`evaluationOrder`: Parallel).
+    Parallel,
+}
+
 /// A mesh that becomes cloth. Its shape is the rest shape, and the start unless `start` gives another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cloth {
@@ -143,6 +155,10 @@ pub struct Collider {
 pub struct ModelBuilder {
     pub(crate) cloths: Vec<Cloth>,
     pub(crate) colliders: Vec<Collider>,
+    /// By cloth.
+    pub(crate) link_orders: Vec<LinkOrder>,
+    /// By collider: factors on the magnitude of its force field by point; empty where they are 1.
+    pub(crate) field_maps: Vec<Vec<f64>>,
 }
 
 impl ModelBuilder {
@@ -165,6 +181,7 @@ impl ModelBuilder {
         cloth.factors.check(cloth.surface.positions.len())?;
         check_start(&cloth.start, cloth.surface.positions.len())?;
         self.cloths.push(cloth);
+        self.link_orders.push(LinkOrder::Sequential);
         Ok(ClothId(self.cloths.len() as u32 - 1))
     }
 
@@ -185,7 +202,25 @@ impl ModelBuilder {
     pub fn collider(&mut self, collider: Collider) -> Result<ColliderId, BuildError> {
         check_surface(&collider.surface)?;
         self.colliders.push(collider);
+        self.field_maps.push(Vec::new());
         Ok(ColliderId(self.colliders.len() as u32 - 1))
+    }
+
+    /// Sets the order in which the links of a cloth are corrected.
+    pub fn set_link_order(&mut self, cloth: ClothId, order: LinkOrder) {
+        self.link_orders[cloth.index()] = order;
+    }
+
+    /// Sets factors on the magnitude of a collider's force field, one per point in the mesh's order.
+    ///
+    /// # Errors
+    /// When there is not one per point, or one is no number from 0 to 1e6.
+    pub fn set_field_map(&mut self, collider: ColliderId, factors: Vec<f64>) -> Result<(), BuildError> {
+        let points = self.colliders[collider.index()].surface.positions.len();
+        let maps = VertexMaps { field_magnitude: factors, ..VertexMaps::default() };
+        maps.check(points)?;
+        self.field_maps[collider.index()] = maps.field_magnitude;
+        Ok(())
     }
 }
 

@@ -11,12 +11,13 @@
 //! | what a cloth or collider is built from, and what is refused | [`builder`], [`build_error`] |
 //! | polygon meshes | [`surface`] |
 //! | edges, cross links, seams, areas | `topology.rs` |
-//! | the order of points | `order.rs` |
+//! | the order of points; the order of links | `order.rs`, `link_order.rs` |
 //! | blocks, colours and lane groups of rows | `rows.rs` |
 //! | vertex maps, as given and per row | [`vertex_maps`], `strength_maps.rs` |
 
 pub mod build_error;
 pub mod builder;
+pub mod link_order;
 pub mod order;
 pub mod rows;
 pub mod strength_maps;
@@ -35,7 +36,7 @@ use crate::constraints::shape::ShapeModel;
 use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
 use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
-use crate::model::builder::{Cloth, Collider, Mass, point_masses};
+use crate::model::builder::{Cloth, Collider, LinkOrder, Mass, point_masses};
 use crate::model::order::Order;
 use crate::model::rows::{Blocks, RowList, triangles_by_block};
 use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps};
@@ -87,11 +88,16 @@ pub struct ClothModel<R> {
     pub strength_maps: StrengthMaps<R>,
     /// Vertex maps of the aerodynamic forces, by row; empty where there are none.
     pub air: Vec<AirFactors>,
+    /// Factors on the magnitude of the force field, by row; empty where they are 1.
+    pub field_map: Vec<f64>,
+    /// The number of links at each point, by row with padding points; empty where links are corrected one after
+    /// another.
+    pub valence: Vec<R>,
 }
 
 impl<R: Real> ClothModel<R> {
     /// Compiles a cloth whose first row in the columns is `first`. `collides`: contact is possible.
-    pub fn new(cloth: &Cloth, first: u32, collides: bool) -> Self {
+    pub fn new(cloth: &Cloth, order_of_links: &LinkOrder, first: u32, collides: bool) -> Self {
         let surface = &cloth.surface;
         let order = Order::morton(&surface.positions);
         let blocks = Blocks::new(first, surface.positions.len());
@@ -118,26 +124,33 @@ impl<R: Real> ClothModel<R> {
             damps: cloth.lists.damp,
             strength_maps: StrengthMaps::default(),
             air: Vec::new(),
+            field_map: Vec::new(),
+            valence: Vec::new(),
         };
         let places = model.order.places().to_vec();
         let place = |point: u32| first + places[point as usize];
         let point = |place: u32| model.order.user((place - first) as usize);
-        let maps = MapReader { maps: &cloth.factors, point: &point };
+        let blocks = model.blocks.clone();
+        let maps = MapReader { maps: &cloth.factors, point: &point, blocks: &blocks };
+        let distances = link_order::distances(surface, order_of_links);
+        let levels = |rows: &[LinkRow<R>]| link_order::levels(rows, &distances, point);
         let mut strength_maps = StrengthMaps::default();
         if cloth.lists.stretch {
             let rows = stretch_rows(surface, cloth, place);
-            strength_maps.stretch = maps.links(&rows, &model.blocks);
-            strength_maps.damp = maps.damping(&rows, &model.blocks);
-            model.stretch = RowList::new(&rows, &model.blocks);
+            let levels = levels(&rows);
+            strength_maps.stretch = maps.links(&rows, &levels);
+            strength_maps.damp = maps.damping(&rows, &levels);
+            model.stretch = RowList::in_levels(&rows, &levels, &blocks);
         }
         if cloth.lists.shear {
             let rest = &cloth.factors.rest_length;
-            model.shear = RowList::new(&shear_rows(surface, rest, place), &model.blocks);
+            let rows = shear_rows(surface, rest, place);
+            model.shear = RowList::in_levels(&rows, &levels(&rows), &blocks);
         }
         if cloth.lists.bend {
             let rows = hinge::rows(surface, place);
-            strength_maps.bend = maps.hinges(&rows.of_four, &model.blocks);
-            strength_maps.bend_six = maps.hinges(&rows.of_six, &model.blocks);
+            strength_maps.bend = maps.hinges(&rows.of_four);
+            strength_maps.bend_six = maps.hinges(&rows.of_six);
             model.bend = RowList::new(&rows.of_four, &model.blocks);
             model.bend_six = RowList::new(&rows.of_six, &model.blocks);
             let is_bent =
@@ -147,6 +160,8 @@ impl<R: Real> ClothModel<R> {
                 let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(surface, point)).collect();
                 model.bend_angles = RowList::new(&four, &model.blocks);
                 model.bend_six_angles = RowList::new(&six, &model.blocks);
+                strength_maps.angles = maps.angles(&rows.of_four);
+                strength_maps.angles_six = maps.angles(&rows.of_six);
             }
         }
         if cloth.lists.pressure {
@@ -164,6 +179,13 @@ impl<R: Real> ClothModel<R> {
         }
         if cloth.lists.air {
             model.air = maps.air(model.points());
+        }
+        let by_row = |factors: &Vec<f64>| model.points().map(|row| factors[point(row)]).collect();
+        let field_map = Some(&cloth.factors.field_magnitude).filter(|map| !map.is_empty()).map(by_row);
+        model.field_map = field_map.unwrap_or_default();
+        if *order_of_links == LinkOrder::Parallel {
+            let groups = model.stretch.groups().iter().chain(model.shear.groups());
+            model.valence = link_order::valence(groups, first, model.blocks.columns());
         }
         model.strength_maps = strength_maps;
         if cloth.lists.air {
@@ -195,6 +217,18 @@ impl<R: Real> ClothModel<R> {
         self.strength_maps.len() + self.air.len()
     }
 
+    /// The triangles of its surface, each once, in its rows.
+    pub fn surface_triangles(&self) -> Vec<[u32; 3]> {
+        if !self.boundary.triangles.is_empty() {
+            return self.boundary.triangles.clone();
+        }
+        let of_block = |(block, triangles): (usize, &Vec<[u32; 3]>)| {
+            let own = |triangle: &&[u32; 3]| self.blocks.of(triangle[0]) as usize == block;
+            triangles.iter().filter(own).copied().collect::<Vec<_>>()
+        };
+        self.triangles.iter().enumerate().flat_map(of_block).collect()
+    }
+
     /// The row of a point of the mesh.
     pub fn place(&self, point: usize) -> u32 {
         self.points().start + self.order.place(point)
@@ -218,16 +252,18 @@ pub struct ColliderModel {
     pub boundary: BoundaryElements,
     /// Pseudonormals for the inside test, where every edge has two faces.
     pub pseudonormals: Option<Pseudonormals>,
+    /// Factors on the magnitude of its force field, by point; empty where they are 1.
+    pub field_map: Vec<f64>,
 }
 
 impl ColliderModel {
-    /// Compiles a collider.
-    pub fn new(collider: Collider) -> Self {
+    /// Compiles a collider with the map of its force field.
+    pub fn new(collider: Collider, field_map: Vec<f64>) -> Self {
         let triangles: Vec<_> = collider.surface.faces.triangles().collect();
         let triangles = sort_spatially(&triangles, |point| collider.surface.positions[point as usize]);
         let boundary = BoundaryElements::new(triangles, 0..collider.surface.positions.len() as u32);
         let pseudonormals = Pseudonormals::of(&boundary);
-        Self { positions: collider.surface.positions, boundary, pseudonormals }
+        Self { positions: collider.surface.positions, boundary, pseudonormals, field_map }
     }
 }
 

@@ -100,26 +100,33 @@ impl<G> Default for RowList<G> {
 impl<G> RowList<G> {
     /// Lays out rows; within a colour they keep their order.
     pub fn new<T: Row<Group = G>>(rows: &[T], blocks: &Blocks) -> Self {
+        Self::in_levels(rows, &[], blocks)
+    }
+
+    /// Lays out rows level by level, each of which is coloured for itself: in a block, and among the interface rows,
+    /// rows of a lower level come first. `levels` has one entry per row, or is empty for a single level.
+    pub fn in_levels<T: Row<Group = G>>(rows: &[T], levels: &[u32], blocks: &Blocks) -> Self {
         let mut list = Self { rows: rows.len(), ..Self::default() };
         if rows.is_empty() {
             return list;
         }
-        let mut by_block: Vec<Vec<T>> = (0..blocks.len()).map(|_| Vec::new()).collect();
+        let mut by_block: Vec<Vec<(u32, T)>> = (0..blocks.len()).map(|_| Vec::new()).collect();
         let mut interface = Vec::new();
-        for row in rows {
+        for (k, row) in rows.iter().enumerate() {
+            let levelled = (levels.get(k).copied().unwrap_or(0), *row);
             let block = blocks.of(row.point(0));
             let inside = (1..T::POINTS).all(|k| blocks.of(row.point(k)) == block);
-            if inside { by_block[block as usize].push(*row) } else { interface.push(*row) }
+            if inside { by_block[block as usize].push(levelled) } else { interface.push(levelled) }
         }
         let mut colours = Colours::new(blocks);
         for (block, rows) in by_block.into_iter().enumerate() {
             let start = list.groups.len() as u32;
-            colours
-                .sort(rows)
-                .for_each(|of_colour| list.push_groups(&of_colour, blocks.padding_point(block)));
+            for of_colour in colours.sort_levels(rows) {
+                list.push_groups(&of_colour, blocks.padding_point(block));
+            }
             list.interior.push(start..list.groups.len() as u32);
         }
-        for of_colour in colours.sort(interface) {
+        for of_colour in colours.sort_levels(interface) {
             let start = list.groups.len() as u32;
             list.push_groups(&of_colour, blocks.padding_point(blocks.len()));
             list.interface.push(start..list.groups.len() as u32);
@@ -192,6 +199,13 @@ struct Colours {
 impl Colours {
     fn new(blocks: &Blocks) -> Self {
         Self { first: blocks.first, taken: vec![0; blocks.points as usize] }
+    }
+
+    /// The rows by level, and in each by colour.
+    fn sort_levels<T: Row>(&mut self, mut rows: Vec<(u32, T)>) -> Vec<Vec<T>> {
+        rows.sort_by_key(|&(level, _)| level);
+        let of_level = |rows: &[(u32, T)]| rows.iter().map(|&(_, row)| row).collect();
+        rows.chunk_by(|a, b| a.0 == b.0).flat_map(|rows| self.sort(of_level(rows))).collect()
     }
 
     /// The rows by colour. A fan of many rows round one point needs as many colours as it has rows, so colours are
@@ -313,6 +327,20 @@ mod tests {
             stored.sort_unstable();
             given.sort_unstable();
             prop_assert_eq!(stored, given);
+        }
+
+        #[test]
+        fn rows_of_a_lower_level_come_first_in_their_block((points, rows) in pairs()) {
+            let blocks = Blocks::new(0, points);
+            let levels: Vec<u32> = rows.iter().map(|pair| pair.0 % 3).collect();
+            let list = RowList::in_levels(&rows, &levels, &blocks);
+            prop_assert_eq!(list.groups().iter().flatten().filter(|p| p.0 < points as u32).count(), rows.len());
+            for block in 0..blocks.len() {
+                let real = list.interior(block).iter().flatten().filter(|p| p.0 < points as u32);
+                let order: Vec<u32> = real.map(|pair| pair.0 % 3).collect();
+                prop_assert!(order.is_sorted(), "{:?}", order);
+                prop_assert!(list.interior(block).iter().all(|group| !shares_a_point(&[*group], points as u32)));
+            }
         }
     }
 }

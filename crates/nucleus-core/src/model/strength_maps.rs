@@ -22,19 +22,25 @@ pub struct StrengthMaps<R> {
     pub bend_six: RowList<StrengthGroup<R>>,
     /// On the damping of links; both sides are the same.
     pub damp: RowList<StrengthGroup<R>>,
+    /// Of hinges of four points: on the dropoff (above), and on the angle beyond which bends stay (below).
+    pub angles: RowList<StrengthGroup<R>>,
+    /// The same of hinges of six points.
+    pub angles_six: RowList<StrengthGroup<R>>,
 }
 
 impl<R> Default for StrengthMaps<R> {
     fn default() -> Self {
         let none = RowList::default;
-        Self { stretch: none(), bend: none(), bend_six: none(), damp: none() }
+        let (stretch, damp) = (none(), none());
+        Self { stretch, bend: none(), bend_six: none(), damp, angles: none(), angles_six: none() }
     }
 }
 
 impl<R> StrengthMaps<R> {
     /// How many rows have a factor.
     pub fn len(&self) -> usize {
-        [&self.stretch, &self.bend, &self.bend_six, &self.damp].iter().map(|list| list.len()).sum()
+        let lists = [&self.stretch, &self.bend, &self.bend_six, &self.damp, &self.angles, &self.angles_six];
+        lists.iter().map(|list| list.len()).sum()
     }
 }
 
@@ -60,11 +66,13 @@ pub struct MapReader<'a> {
     pub maps: &'a VertexMaps,
     /// The point of the mesh at a row of the columns.
     pub point: &'a dyn Fn(u32) -> usize,
+    /// The blocks of the cloth.
+    pub blocks: &'a Blocks,
 }
 
 impl MapReader<'_> {
     /// The map of links.
-    pub fn links<R: Real>(&self, rows: &[LinkRow<R>], blocks: &Blocks) -> RowList<StrengthGroup<R>> {
+    pub fn links<R: Real>(&self, rows: &[LinkRow<R>], levels: &[u32]) -> RowList<StrengthGroup<R>> {
         let [above, below] = [&self.maps.stretch, &self.maps.compression];
         if above.is_empty() && below.is_empty() {
             return RowList::default();
@@ -72,26 +80,22 @@ impl MapReader<'_> {
         let factors = |row: &LinkRow<R>| {
             StrengthRow::new(row.ends, [above, below].map(|c| self.mean_factor(c, row.ends)))
         };
-        RowList::new(&rows.iter().map(factors).collect::<Vec<_>>(), blocks)
+        RowList::in_levels(&rows.iter().map(factors).collect::<Vec<_>>(), levels, self.blocks)
     }
 
     /// The map of the damping along links.
-    pub fn damping<R: Real>(&self, rows: &[LinkRow<R>], blocks: &Blocks) -> RowList<StrengthGroup<R>> {
+    pub fn damping<R: Real>(&self, rows: &[LinkRow<R>], levels: &[u32]) -> RowList<StrengthGroup<R>> {
         let damp = &self.maps.damp;
         if damp.is_empty() {
             return RowList::default();
         }
         let factor = |row: &LinkRow<R>| mean(damp, row.ends.map(|end| (self.point)(end)).into_iter());
         let row = |row: &LinkRow<R>| StrengthRow::new(row.ends, [factor(row); 2]);
-        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), blocks)
+        RowList::in_levels(&rows.iter().map(row).collect::<Vec<_>>(), levels, self.blocks)
     }
 
     /// The map of hinges.
-    pub fn hinges<R: Real, const N: usize>(
-        &self,
-        rows: &[HingeRow<R, N>],
-        blocks: &Blocks,
-    ) -> RowList<StrengthGroup<R>> {
+    pub fn hinges<R: Real, const N: usize>(&self, rows: &[HingeRow<R, N>]) -> RowList<StrengthGroup<R>> {
         let bend = &self.maps.bend;
         if bend.is_empty() {
             return RowList::default();
@@ -100,7 +104,20 @@ impl MapReader<'_> {
             let points: [u32; N] = std::array::from_fn(|k| row.point(k));
             StrengthRow::new(points, [self.mean_factor(bend, points); 2])
         };
-        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), blocks)
+        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), self.blocks)
+    }
+
+    /// The maps of the angles of hinges.
+    pub fn angles<R: Real, const N: usize>(&self, rows: &[HingeRow<R, N>]) -> RowList<StrengthGroup<R>> {
+        let maps = [&self.maps.angle_dropoff, &self.maps.yield_angle];
+        if maps.iter().all(|map| map.is_empty()) {
+            return RowList::default();
+        }
+        let row = |row: &HingeRow<R, N>| {
+            let points: [u32; N] = std::array::from_fn(|k| row.point(k));
+            StrengthRow::new(points, maps.map(|map| mean(map, points.map(|p| (self.point)(p)).into_iter())))
+        };
+        RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), self.blocks)
     }
 
     /// The factors of the air at these rows. A larger mass factor lessens drag and lift.

@@ -43,6 +43,12 @@ pub struct VertexMaps {
     pub rigidity: Vec<f64>,
     /// Share of `deform_resistance`.
     pub deform: Vec<f64>,
+    /// On `angle_dropoff`.
+    pub angle_dropoff: Vec<f64>,
+    /// On the angle beyond which bends stay.
+    pub yield_angle: Vec<f64>,
+    /// On the magnitude of the force field.
+    pub field_magnitude: Vec<f64>,
 }
 
 /// Smaller shares count as zero.
@@ -50,7 +56,7 @@ const MIN_SHARE: f64 = 1e-6;
 
 impl VertexMaps {
     /// Every map, with its name and range.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 17] {
+    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 20] {
         const ANY: [f64; 2] = [0.0, 1e6];
         const SHARE: [f64; 2] = [0.0, 1.0];
         [
@@ -71,6 +77,9 @@ impl VertexMaps {
             ("input attract", &self.input_attract, ANY),
             ("rigidity", &self.rigidity, SHARE),
             ("deform resistance", &self.deform, SHARE),
+            ("bend angle dropoff", &self.angle_dropoff, ANY),
+            ("restitution angle", &self.yield_angle, ANY),
+            ("field magnitude", &self.field_magnitude, ANY),
         ]
     }
 

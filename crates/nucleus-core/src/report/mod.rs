@@ -6,4 +6,5 @@
 //! | the passes that a frame consists of, and their cost | [`passes`] |
 
 pub mod diagnostics;
+pub mod memory;
 pub mod passes;

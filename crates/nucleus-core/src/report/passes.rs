@@ -4,9 +4,11 @@
 use crate::constraints::damp::Damping;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
-use crate::input::frame::{BendSolver, Bending, ClothFrame, ForceField, FrameInput, PushOut};
+use crate::input::fields::PointField;
+use crate::input::frame::{BendSolver, Bending, ClothFrame, ColliderFrame, ForceField, FrameInput, PushOut};
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
+use crate::integrate::local_wind::feels_wind;
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::output::PassCost;
@@ -46,7 +48,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
 }
 
 /// The cost of effects on whole cloths, of deformation that stays, and of gusts.
-fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 6] {
+fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> [PassCost; 9] {
     let steps = f64::from(schedule.substeps * schedule.steps);
     let cost = |name, wanted: fn(&WholeEffect) -> bool, length: fn(&ClothModel<R>) -> usize| {
         let sweeps: Vec<_> = schedule.wholes.iter().filter(|whole| wanted(&whole.effect)).collect();
@@ -72,10 +74,24 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
             false => links,
         }
     };
-    let gusty = |cloth: &ClothModel<R>, settings: &ClothFrame| match is_gusty(frame) {
-        true if settings.feels_wind && !cloth.triangles.is_empty() => cloth.points().len(),
-        _ => 0,
+    let windy = |cloth: &ClothModel<R>, settings: &ClothFrame| match feels_wind(cloth, settings) {
+        true => cloth.points().len(),
+        false => 0,
     };
+    let gusty = if is_gusty(frame) { sum(&windy) } else { 0 };
+    let of_cloths =
+        |wanted: fn(&ClothFrame) -> bool| frame.cloths.iter().filter(|cloth| wanted(cloth)).count();
+    let of_colliders = |wanted: fn(&ColliderFrame) -> bool| {
+        frame.colliders.iter().filter(|collider| wanted(collider)).count()
+    };
+    let shadows = of_cloths(|cloth| cloth.wind_field.casts_shadow())
+        + of_colliders(|collider| collider.wind_field.casts_shadow());
+    let pushes = of_cloths(|cloth| cloth.wind_field.pushes_air())
+        + of_colliders(|collider| collider.wind_field.pushes_air());
+    let has_points = |field: Option<PointField>| field.is_some_and(|field| field.is_on());
+    let of_points = frame.cloths.iter().filter(|cloth| has_points(cloth.point_field)).count()
+        + frame.colliders.iter().filter(|collider| has_points(collider.point_field)).count();
+    let points: usize = solver.model.cloths.iter().map(|cloth| cloth.points().len()).sum();
     let is_on = |field: Option<ForceField>| field.is_some_and(|field| field.is_on());
     let fields_of_colliders = frame.colliders.iter().filter(|collider| is_on(collider.field)).count();
     let in_fields = (0..frame.cloths.len()).map(|cloth| {
@@ -89,7 +105,10 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
         cost("shape", |effect| matches!(effect, WholeEffect::Shape(_)), |cloth| cloth.shape.rows()),
         cost("attract", |effect| matches!(effect, WholeEffect::Attract(_)), |cloth| cloth.points().len()),
         PassCost { name: "yield", rows: sum(&yields), sweeps: steps },
-        PassCost { name: "gusts", rows: sum(&gusty), sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "gusts", rows: gusty, sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "wind shadow", rows: shadows * sum(&windy), sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "air push", rows: pushes * sum(&windy), sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "point field", rows: of_points * points, sweeps: f64::from(schedule.substeps) },
         PassCost { name: "force field", rows: in_fields, sweeps: f64::from(schedule.substeps) },
     ]
 }

@@ -32,12 +32,16 @@ pub struct State<R> {
     pub step_length: f64,
     /// Displacement before constraints and contacts, in metres. Written by prediction, read by the velocity update.
     pub predicted: Vec<Row4<R>>,
+    /// Sums of corrections in metres; empty where every cloth corrects its links one after another. Written and read in
+    /// a sweep.
+    pub corrections: Vec<Row4<R>>,
     /// Normal of unit length; empty where no cloth feels air. Written once per substep.
     pub normal: Vec<Row4<R>>,
     /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
     pub area: Vec<Row4<R>>,
-    /// What gusts add to the wind, in m/s; empty while the wind is steady. Written once per substep.
-    pub gust: Vec<Row4<R>>,
+    /// What gusts, wind shadows and pushed air add to the wind, in m/s; empty where nothing does. Written once per
+    /// substep.
+    pub added_wind: Vec<Row4<R>>,
     /// How far the wind has carried the air since the start, in metres.
     pub wind_travel: [f64; 3],
     /// The gas in each chamber of each cloth that has pressure.

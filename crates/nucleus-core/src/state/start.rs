@@ -19,9 +19,13 @@ impl<R: Real> State<R> {
             depenetration_by_cloth: Vec::new(),
             step_length: 0.0,
             predicted: vec![Row4::ZERO; rows],
+            corrections: vec![
+                Row4::ZERO;
+                if models.iter().any(|m| !m.valence.is_empty()) { rows } else { 0 }
+            ],
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
-            gust: Vec::new(),
+            added_wind: Vec::new(),
             wind_travel: [0.0; 3],
             chambers: Vec::new(),
             rotations: Vec::new(),

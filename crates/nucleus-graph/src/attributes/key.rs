@@ -219,6 +219,12 @@ impl<T> Key<T> {
         self
     }
 
+    /// Without effect here; `reason` is a clause that says why.
+    pub(super) const fn elsewhere(mut self, reason: &'static str) -> Self {
+        self.row.effect = Effect::Elsewhere(reason);
+        self
+    }
+
     /// Not an attribute of Maya.
     pub(super) const fn extension(mut self) -> Self {
         self.row.extension = true;

@@ -81,7 +81,7 @@ node_table! {
         /// Which objects it meets, and which of the two gives way.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");
         /// Colour in which Maya draws the thickness.
-        DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]);
+        DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]).elsewhere("only Maya's viewport draws it");
     }
     "Dynamic Properties" {
         /// Evens out the velocities of linked points: vibrations die down, free fall is untouched.
@@ -96,14 +96,14 @@ node_table! {
         LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
     }
     "Wind Field Generation" {
-        /// How much the wind closes in again behind this object.
-        WIND_SHADOW_DIFFUSION: f64 = float("windShadowDiffusion", "wsdi", 0.0).soft(0.0, 1.0);
-        /// How far behind it this object keeps the wind from others.
-        WIND_SHADOW_DISTANCE: f64 = float("windShadowDistance", "wsds", 0.0).soft(0.0, 50.0);
-        /// How far the air that this object moves is felt by others.
-        AIR_PUSH_DISTANCE: f64 = float("airPushDistance", "apds", 0.0).soft(0.0, 50.0);
-        /// How much the air that it pushes curls.
-        AIR_PUSH_VORTICITY: f64 = float("airPushVorticity", "apvy", 0.0).soft(0.0, 1.0);
+        /// How much wind gets in behind this object: the tangent of the angle from which it comes.
+        WIND_SHADOW_DIFFUSION: f64 = float("windShadowDiffusion", "wsdi", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::wind_shadow");
+        /// How far behind its surface this object keeps the solver's wind from others: all of it close by, none at this distance.
+        WIND_SHADOW_DISTANCE: f64 = float("windShadowDistance", "wsds", 0.0).soft(0.0, 50.0).unit("scene units").solved("nucleus_core::integrate::wind_shadow");
+        /// How far from its surface the air that this object moves is felt by others. At rest it slows the wind.
+        AIR_PUSH_DISTANCE: f64 = float("airPushDistance", "apds", 0.0).soft(0.0, 50.0).unit("scene units").solved("nucleus_core::integrate::air_push");
+        /// How much of the air that it pushes flows back at its sides.
+        AIR_PUSH_VORTICITY: f64 = float("airPushVorticity", "apvy", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::air_push");
     }
     "Force Field Generation" {
         /// A force field on the surface: along its normals, away from it on the side of its normals, or on both sides.
@@ -114,16 +114,16 @@ node_table! {
         FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0).solved("nucleus_core::contact::force_field");
         /// The surface's field from the surface (0) to its reach (1).
         FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING).solved("nucleus_core::contact::force_field");
-        /// A force field round every point, and what its strength goes by.
-        POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]);
-        /// Strength of the points' field on others: above 0 it pushes them away.
-        POINT_FIELD_MAGNITUDE: f64 = float("pointFieldMagnitude", "pfma", 1.0).soft(-10.0, 10.0);
+        /// A force field round every point. Its strength and reach are in m/s² and scene units, or both times the thickness.
+        POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]).solved("nucleus_core::contact::point_field");
+        /// Strength of the points' field on others, 1 is an acceleration of 10 m/s²: above 0 it pushes them away. The fields of several points add up.
+        POINT_FIELD_MAGNITUDE: f64 = float("pointFieldMagnitude", "pfma", 1.0).soft(-10.0, 10.0).solved("nucleus_core::contact::point_field");
         /// Strength of the points' field within the object: above 0 it pulls together.
-        SELF_ATTRACT: f64 = float("selfAttract", "sfat", 0.0).soft(-10.0, 10.0);
-        /// How far the points' field reaches.
-        POINT_FIELD_DISTANCE: f64 = float("pointFieldDistance", "pfdi", 2.0).min(0.0).soft(0.0, 100.0);
-        /// The points' field from the point (0) to its reach (1).
-        POINT_FIELD_DROPOFF: Cow<'static, [RampPoint]> = ramp("pointFieldDropoff", "pfdo", FALLING);
+        SELF_ATTRACT: f64 = float("selfAttract", "sfat", 0.0).soft(-10.0, 10.0).solved("nucleus_core::contact::point_field");
+        /// How far the points' field reaches beyond the thickness.
+        POINT_FIELD_DISTANCE: f64 = float("pointFieldDistance", "pfdi", 2.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::point_field");
+        /// The points' field from the thickness (0) to its reach (1).
+        POINT_FIELD_DROPOFF: Cow<'static, [RampPoint]> = ramp("pointFieldDropoff", "pfdo", FALLING).solved("nucleus_core::contact::point_field");
     }
     "Quality Settings" {
         /// Passes for collisions with itself in 1/24 s.
@@ -205,11 +205,11 @@ node_table! {
     }
     "Force Field Maps" {
         /// Texture that varies field magnitude.
-        FIELD_MAGNITUDE_MAP: f64 = texture("fieldMagnitudeMap", "fmmp", 0.0);
+        FIELD_MAGNITUDE_MAP: f64 = texture("fieldMagnitudeMap", "fmmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on field magnitude at each point.
-        FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv");
+        FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv").solved("nucleus_core::model::vertex_maps");
         /// Whether field magnitude is varied by nothing, by point, or by a texture.
-        FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES);
+        FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Nucleus (open)" {
         /// A material to take values from: one of `nucleus presets`, or a file of your own, `"mine.ron"`. What is set here counts more.

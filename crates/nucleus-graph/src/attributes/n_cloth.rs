@@ -1,6 +1,6 @@
 //! Cloth.
 
-use super::key::{Plugged, choice, float, floats, int, plug, texture, toggle};
+use super::key::{Plugged, choice, float, floats, int, node, plug, texture, toggle};
 use super::kind::Data;
 use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::node_type::node_table;
@@ -15,11 +15,11 @@ node_table! {
         /// Out of use in Maya.
         SELF_COLLISION_SOFTNESS: f64 = float("selfCollisionSoftness", "scsf", 0.0).min(0.0).max(1.0).unused();
         /// What Maya draws of the solver's data.
-        SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]);
+        SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness"), (5, "Stretch Links"), (6, "Bend Links"), (7, "Weighting")]).elsewhere("only Maya's viewport draws it");
     }
     "Dynamic Properties" {
-        /// A mesh to take rest lengths and angles from, in place of the input mesh; it has the same points and faces. Connect it: `connections: [("rest.worldMesh[0]", "cloth1.restShapeMesh")]`.
-        REST_SHAPE_MESH: Plugged = plug("restShapeMesh", "rsmh", Data::Mesh).solved("nucleus_graph::compile::soft_body");
+        /// A mesh to take rest lengths and angles from, in place of the input mesh; it has the same points and faces.
+        REST_SHAPE_MESH: Plugged = node("restShapeMesh", "rsmh", Some(Data::Mesh)).solved("nucleus_graph::compile::soft_body");
         /// Classic: whether a count belongs to a link, to the object however finely it is divided, or to the world whatever its size too. Physical: a stiffness never depends on the mesh.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]).solved("nucleus_graph::compile::soft_body");
         /// Resistance of links that are longer than at rest.
@@ -58,16 +58,16 @@ node_table! {
         IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::integrate::predict");
         /// Does not feel the solver's wind.
         IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::integrate::aerodynamics");
-        /// Force of the air at right angles to the motion.
-        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).solved("nucleus_core::integrate::aerodynamics");
+        /// Force of the air at right angles to the motion: v² sin α cos α times this is the acceleration of 1 kg/m² (Classic: of a point of 1 kg) at an angle of attack α. A thin plate has 0.6 for each unit of its lift coefficient's slope.
+        LIFT: f64 = float("lift", "lft", 0.05).soft(0.0, 2.0).unit("1/m").solved("nucleus_core::integrate::aerodynamics");
         /// Force of the air against the motion, as far as the surface faces it.
         DRAG: f64 = float("drag", "drg", 0.05).min(0.0).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::integrate::aerodynamics");
         /// Share of `drag` that also acts along the surface.
         TANGENTIAL_DRAG: f64 = float("tangentialDrag", "tdrg", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::aerodynamics");
     }
     "Wind Field Generation" {
-        /// Lets parts of the object keep the wind from other parts.
-        WIND_SELF_SHADOW: bool = toggle("windSelfShadow", "wssh", false);
+        /// Lets parts of the object keep the wind from other parts, within `windShadowDistance`.
+        WIND_SELF_SHADOW: bool = toggle("windSelfShadow", "wssh", false).solved("nucleus_core::integrate::wind_shadow");
     }
     "Pressure" {
         /// Whether pressure is set by hand, or follows from the gas inside.
@@ -92,10 +92,10 @@ node_table! {
         BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]).solved("nucleus_core::constraints::angle");
         /// Whether contact comes last in a step with shape attraction. It always does here, as at 1 in Maya.
         COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("nucleus_core::schedule");
-        /// Solves links in the order of their distance from contacts and constraints.
-        SORT_LINKS: bool = toggle("sortLinks", "stlk", false);
-        /// Whether links are solved one after another, or all from the same state.
-        EVALUATION_ORDER: Choice = choice("evaluationOrder", "evo", 0, &[(0, "Sequential"), (1, "Parallel")]);
+        /// Solves links outwards from the points that constraints hold, in each block of points; contacts come after them anyhow.
+        SORT_LINKS: bool = toggle("sortLinks", "stlk", false).solved("nucleus_core::model::link_order").fixed();
+        /// Whether links are solved one after another, or all from the same state: without bias by their order, but less of the error in one iteration.
+        EVALUATION_ORDER: Choice = choice("evaluationOrder", "evo", 0, &[(0, "Sequential"), (1, "Parallel")]).solved("nucleus_core::constraints::parallel").fixed();
         /// Links all corners of faces with more than three.
         ADD_CROSS_LINKS: bool = toggle("addCrossLinks", "aclk", true).solved("nucleus_core::constraints::stretch").fixed();
         /// `crossoverPush` of the object against itself.
@@ -112,6 +112,12 @@ node_table! {
         SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: flexural rigidity of the cloth, the moment on a width of 1 m that bends it to a radius of 1 m. Below 0 it comes from `bendResistance`, 1e-4 N·m for 1.
         BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("nucleus_core::constraints::bend").extension();
+    }
+    "Initial State" {
+        /// Moves each point at the start along its normal by a random length of up to this, so that a symmetric sheet folds under load instead of staying flat. The rest shape stays as modelled.
+        INITIAL_PERTURBATION: f64 = float("initialPerturbation", "initialPerturbation", 0.0).min(0.0).soft(0.0, 0.1).unit("scene units").solved("nucleus_graph::compile::perturbation").fixed().extension();
+        /// Which random lengths: the same seed gives the same ones.
+        INITIAL_PERTURBATION_SEED: i64 = int("initialPerturbationSeed", "initialPerturbationSeed", 0).solved("nucleus_graph::compile::perturbation").fixed().extension();
     }
     "Caching" {
         /// What a cache keeps of this object.
@@ -133,13 +139,13 @@ node_table! {
         /// Factor on bend at each point.
         BEND_PER_VERTEX: Vec<f64> = floats("bendPerVertex", "bdpv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies bend angle dropoff.
-        BEND_ANGLE_DROPOFF_MAP: f64 = texture("bendAngleDropoffMap", "badm", 0.0);
+        BEND_ANGLE_DROPOFF_MAP: f64 = texture("bendAngleDropoffMap", "badm", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on bend angle dropoff at each point.
-        BEND_ANGLE_DROPOFF_PER_VERTEX: Vec<f64> = floats("bendAngleDropoffPerVertex", "badv");
+        BEND_ANGLE_DROPOFF_PER_VERTEX: Vec<f64> = floats("bendAngleDropoffPerVertex", "badv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies restitution angle.
-        RESTITUTION_ANGLE_MAP: f64 = texture("restitutionAngleMap", "ranm", 0.0);
+        RESTITUTION_ANGLE_MAP: f64 = texture("restitutionAngleMap", "ranm", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on restitution angle at each point.
-        RESTITUTION_ANGLE_PER_VERTEX: Vec<f64> = floats("restitutionAnglePerVertex", "rapv");
+        RESTITUTION_ANGLE_PER_VERTEX: Vec<f64> = floats("restitutionAnglePerVertex", "rapv").solved("nucleus_core::model::vertex_maps");
         /// Texture that varies rigidity.
         RIGIDITY_MAP: f64 = texture("rigidityMap", "rimp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on rigidity at each point.
@@ -181,9 +187,9 @@ node_table! {
         /// Whether bend is varied by nothing, by point, or by a texture.
         BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether bend angle dropoff is varied by nothing, by point, or by a texture.
-        BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES);
+        BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether restitution angle is varied by nothing, by point, or by a texture.
-        RESTITUTION_ANGLE_MAP_TYPE: Choice = choice("restitutionAngleMapType", "ramt", 2, MAP_TYPES);
+        RESTITUTION_ANGLE_MAP_TYPE: Choice = choice("restitutionAngleMapType", "ramt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Whether rigidity is varied by nothing, by point, or by a texture.
         RIGIDITY_MAP_TYPE: Choice = choice("rigidityMapType", "rmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
         /// Whether deform is varied by nothing, by point, or by a texture.
@@ -204,16 +210,16 @@ node_table! {
     "Hidden" {
         /// Left over from early versions of Maya.
         NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).hidden().unused();
-        /// An experiment of Maya's with stretch.
-        MINIMAL_STRETCH: bool = toggle("minimalStretch", "msso", false).hidden();
-        /// An experiment of Maya's with bending.
-        MINIMAL_BEND: bool = toggle("minimalBend", "mbso", false).hidden();
-        /// An experiment of Maya's with shear.
-        MINIMAL_SHEAR: bool = toggle("minimalShear", "mshs", false).hidden();
+        /// Classic: stretch and compression get one iteration in a substep at most. Maya does not document it.
+        MINIMAL_STRETCH: bool = toggle("minimalStretch", "msso", false).hidden().solved("nucleus_graph::compile::soft_body");
+        /// Classic: bending gets one iteration in a substep at most. Maya does not document it.
+        MINIMAL_BEND: bool = toggle("minimalBend", "mbso", false).hidden().solved("nucleus_graph::compile::soft_body");
+        /// Classic: shear gets one iteration in a substep at most. Maya does not document it.
+        MINIMAL_SHEAR: bool = toggle("minimalShear", "mshs", false).hidden().solved("nucleus_graph::compile::soft_body");
         /// An experiment of Maya's with coarser levels of links.
-        STRETCH_HIERARCHY_LEVELS: i64 = int("stretchHierarchyLevels", "shlv", 0).min(0.0).soft(0.0, 10.0).hidden();
+        STRETCH_HIERARCHY_LEVELS: i64 = int("stretchHierarchyLevels", "shlv", 0).min(0.0).soft(0.0, 10.0).hidden().elsewhere("Maya neither shows nor documents this experiment");
         /// How much of those levels is used.
-        STRETCH_HIERARCHY_PERCENT: f64 = float("stretchHierarchyPercent", "shpe", 25.0).soft(0.0, 100.0).hidden();
+        STRETCH_HIERARCHY_PERCENT: f64 = float("stretchHierarchyPercent", "shpe", 25.0).soft(0.0, 100.0).hidden().elsewhere("Maya neither shows nor documents this experiment");
     }
     "Connections" {
         /// The solved mesh in world space.

@@ -19,7 +19,7 @@ node_table! {
     N_RIGID = "nRigid", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, NO_USE_TO_COLLIDERS];
     "Collisions" {
         /// What Maya draws of the solver's data.
-        SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off")]);
+        SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off")]).elsewhere("only Maya's viewport draws it");
         /// Takes part in collisions with itself: a collider does not.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", false);
     }

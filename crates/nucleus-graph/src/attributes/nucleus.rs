@@ -51,7 +51,7 @@ node_table! {
         /// Collision passes in 1/24 s, shared among the substeps.
         MAX_COLLISION_ITERATIONS: i64 = int("maxCollisionIterations", "mcit", 4).min(0.0).max(1000000.0).soft(0.0, 100.0).unit("per 1/24 s").solved("nucleus_core::schedule");
         /// Whether Maya prints how long frames or substeps take.
-        TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]);
+        TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]).elsewhere("`nucleus run` says how long it takes");
     }
     "Scale Attributes" {
         /// How fast simulated time runs against the time of the animation.
@@ -70,16 +70,18 @@ node_table! {
     "Nucleus (open)" {
         /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.
         RESISTANCE_MODEL: Choice = choice("resistanceModel", "resistanceModel", 1, &[(0, "Classic"), (1, "Physical")]).solved("nucleus_core::schedule").fixed().extension();
+        /// Lift as in Maya, where it goes with speeds in scene units per second: 1 / `spaceScale` times as strong. For scenes from Maya.
+        LIFT_IN_SCENE_UNITS: bool = toggle("liftInSceneUnits", "liftInSceneUnits", false).solved("nucleus_graph::compile::frame").extension();
         /// Physical: evaluations of every list in 1/24 s. More only lessens the error.
         EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("nucleus_core::schedule").extension();
     }
     "Hidden" {
         /// How deep a contact may press into the thickness.
-        COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden();
+        COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden().unused();
         /// Kinds of element pairs that are tested between objects.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden();
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().elsewhere("the `collisionFlag` of each object counts");
         /// Kinds of element pairs that are tested within an object.
-        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden();
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden().elsewhere("the `selfCollisionFlag` of each object counts");
     }
     "Connections" {
         /// Current state of each active object.

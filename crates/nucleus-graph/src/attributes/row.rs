@@ -58,6 +58,9 @@ pub enum Effect {
     NotYet,
     /// Without effect in Maya: setting it is a warning.
     Never,
+    /// Without effect here, for this reason; Maya uses it outside its solver, or another attribute stands for it.
+    /// Setting it is a warning.
+    Elsewhere(&'static str),
 }
 
 /// Prints the name.

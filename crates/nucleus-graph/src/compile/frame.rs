@@ -7,6 +7,7 @@
 use nalgebra::Vector3;
 use nucleus_core::{
     ClothFrame, ClothId, ColliderFrame, FrameInput, GroundPlane, Pin, PointId, ResistanceModel, Stiffness,
+    WindField,
 };
 
 use crate::animation::Affine;
@@ -124,12 +125,23 @@ impl EvaluationInterval<'_> {
         let number = |key: &Key<f64>| to.get(node, key);
         // A negative stiffness is unset: the resistance applies.
         let stiffness = |key: &Key<f64>, scale: f64| Some(number(key) * scale).filter(|_| number(key) >= 0.0);
-        let resistance = |key: &Key<f64>, scale: f64| self.resistance(cloth, number(key) * scale);
+        let resistance = |key: &Key<f64>, scale: f64, minimal: &Key<bool>| {
+            self.resistance(cloth, number(key) * scale, minimal)
+        };
+        let thickness = self.thickness(node, cloth.default_thickness) * scales.thickness;
         ClothFrame {
-            stretch_resistance: resistance(&n_cloth::STRETCH_RESISTANCE, scales.stretch),
-            compression_resistance: resistance(&n_cloth::COMPRESSION_RESISTANCE, scales.compression),
-            shear_resistance: resistance(&n_cloth::SHEAR_RESISTANCE, 1.0),
-            bend_resistance: resistance(&n_cloth::BEND_RESISTANCE, scales.bend),
+            stretch_resistance: resistance(
+                &n_cloth::STRETCH_RESISTANCE,
+                scales.stretch,
+                &n_cloth::MINIMAL_STRETCH,
+            ),
+            compression_resistance: resistance(
+                &n_cloth::COMPRESSION_RESISTANCE,
+                scales.compression,
+                &n_cloth::MINIMAL_STRETCH,
+            ),
+            shear_resistance: resistance(&n_cloth::SHEAR_RESISTANCE, 1.0, &n_cloth::MINIMAL_SHEAR),
+            bend_resistance: resistance(&n_cloth::BEND_RESISTANCE, scales.bend, &n_cloth::MINIMAL_BEND),
             stiffness: Stiffness {
                 stretch: stiffness(&n_cloth::STRETCH_STIFFNESS, scales.stretch),
                 compression: stiffness(&n_cloth::COMPRESSION_STIFFNESS, scales.compression),
@@ -141,13 +153,13 @@ impl EvaluationInterval<'_> {
             damp: number(&n_base::DAMP) * scales.damp,
             drag: number(&n_cloth::DRAG) * scales.drag,
             tangential_drag: number(&n_cloth::TANGENTIAL_DRAG) * scales.tangential_drag,
-            lift: number(&n_cloth::LIFT) * scales.lift,
+            lift: number(&n_cloth::LIFT) * scales.lift * self.lift_scale(),
             feels_gravity: !to.get(node, &n_cloth::IGNORE_SOLVER_GRAVITY),
             feels_wind: !to.get(node, &n_cloth::IGNORE_SOLVER_WIND),
             local_force: Vector3::from(to.get(node, &n_base::LOCAL_FORCE)),
             local_wind: Vector3::from(to.get(node, &n_base::LOCAL_WIND)),
             collide: to.get(node, &n_base::COLLIDE),
-            thickness: self.thickness(node, cloth.default_thickness) * scales.thickness,
+            thickness,
             friction: number(&n_base::FRICTION) * scales.friction,
             stickiness: number(&n_base::STICKINESS) * scales.stickiness,
             bounce: number(&n_base::BOUNCE) * scales.bounce,
@@ -158,31 +170,45 @@ impl EvaluationInterval<'_> {
             elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
             layer: number(&n_base::COLLISION_LAYER),
             self_collision: self.self_collision(cloth),
-            bending: self.bending(node),
+            bending: self.bending(cloth),
             yield_strain: self.yield_strain(node, number(&n_cloth::STRETCH_RESISTANCE) * scales.stretch),
             pressure: self.pressure(node),
             rigidity: number(&n_cloth::RIGIDITY) * scales.rigidity,
             deform_resistance: number(&n_cloth::DEFORM_RESISTANCE) * scales.deform,
             input_attract: self.input_attract(cloth),
-            field: self.force_field(node),
+            field: self.force_field(node, scales.field_magnitude),
+            point_field: self.point_field(node, thickness),
+            wind_field: WindField {
+                self_shadow: to.get(node, &n_cloth::WIND_SELF_SHADOW),
+                ..self.wind_field(node)
+            },
         }
+    }
+
+    /// Factor on lift: Maya reads speeds in scene units per second.
+    fn lift_scale(&self) -> f64 {
+        let as_in_maya = self.to.get(self.nucleus.node, &nucleus::LIFT_IN_SCENE_UNITS);
+        if as_in_maya { self.nucleus.units.per_metre() } else { 1.0 }
     }
 
     fn collider_frame(&self, collider: &ColliderSource) -> ColliderFrame {
         let (node, to) = (collider.node, &self.to);
         let (start, end) = self.collider_motion(collider);
+        let thickness = self.thickness(node, collider.default_thickness);
         ColliderFrame {
             start,
             end,
             collide: to.get(node, &n_base::COLLIDE),
-            thickness: self.thickness(node, collider.default_thickness),
+            thickness,
             friction: to.get(node, &n_base::FRICTION),
             stickiness: to.get(node, &n_base::STICKINESS),
             bounce: to.get(node, &n_base::BOUNCE),
             collide_strength: to.get(node, &n_base::COLLIDE_STRENGTH),
             push_out: self.push_out(node, collider.default_thickness),
             trapped_check: to.get(node, &n_rigid::TRAPPED_CHECK),
-            field: self.force_field(node),
+            field: self.force_field(node, 1.0),
+            point_field: self.point_field(node, thickness),
+            wind_field: self.wind_field(node),
         }
     }
 

@@ -7,7 +7,9 @@
 //! | what compiling one nucleus shares                    | `compiler.rs`                      |
 //! | shape, mass and constraint lists of cloth; colliders | `objects.rs`                       |
 //! | pressure, shape, yielding, the input mesh            | `soft_body.rs`                     |
+//! | settings that another setting switches off           | `contradictions.rs`                |
 //! | particles                                            | `particles.rs`                     |
+//! | a random perturbation of the start                   | `perturbation.rs`                  |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
@@ -26,12 +28,14 @@ mod animated_mesh;
 mod attachments;
 mod camera;
 mod compiler;
+mod contradictions;
 mod frame;
 mod geometry;
 mod initial_state;
 mod map_values;
 mod objects;
 mod particles;
+mod perturbation;
 mod program;
 mod soft_body;
 mod sources;

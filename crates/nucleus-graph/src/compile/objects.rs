@@ -8,12 +8,13 @@ use crate::graph::{Graph, NodeId};
 use super::animated_mesh::AnimatedMesh;
 use super::compiler::{CompiledNucleus, Compiler};
 use super::initial_state::PlacedObject;
+use super::map_values::MapOfCloth;
 use super::program::ObjectKind;
 use super::soft_body::{self, area};
 use super::sources::{ClothSource, ColliderSource, MapScales};
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::{self, CLASSIC};
-use super::vertex_maps::CompiledMaps;
+use super::vertex_maps::{CompiledMaps, FIELD_MAGNITUDE};
 
 impl Compiler<'_> {
     /// Compiles all objects and constraints, except broken ones and those made from a broken mesh. The result is
@@ -34,6 +35,7 @@ impl Compiler<'_> {
             self.collider(placed);
         }
         self.program.attachments = self.attachments();
+        self.order_links();
         let cloths = self.program.cloths.iter().map(|cloth| cloth.node);
         let objects: Vec<NodeId> =
             cloths.chain(self.program.colliders.iter().map(|collider| collider.node)).collect();
@@ -50,6 +52,7 @@ impl Compiler<'_> {
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let rest = self.rest_surface(id, mesh, &surface)?;
         self.check_pressure(id, &surface);
+        self.warn_of_contradictions(id);
         let [input, rest] =
             [Some(surface), rest].map(|surface| surface.map(|s| self.program.units.surface(s)));
         // The rest shape is the mesh to the solver; where it differs from the input mesh, that is the start.
@@ -64,6 +67,7 @@ impl Compiler<'_> {
         if start.positions.is_empty() {
             start.positions = moved.unwrap_or_default();
         }
+        self.perturb(id, &surface, &mut start.positions);
         let point_mass = self.start.get(id, &n_base::POINT_MASS) * scales.mass;
         let mass = match self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) {
             CLASSIC => Mass::PerPoint(point_mass),
@@ -145,9 +149,19 @@ impl Compiler<'_> {
         self.check_inputs(id, &[particle::CURRENT_TIME.row.name]);
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let motion = self.collider_motion(mesh)?;
+        self.warn_of_contradictions(id);
         let surface = self.program.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());
-        match self.program.model.collider(Collider { surface }) {
+        let before = self.findings.errors();
+        let field_map = self.map_values(&MapOfCloth { cloth: id, mesh, points, map: &FIELD_MAGNITUDE });
+        if self.findings.errors() > before {
+            return None;
+        }
+        let added = self.program.model.collider(Collider { surface }).and_then(|collider| {
+            self.program.model.set_field_map(collider, field_map.unwrap_or_default())?;
+            Ok(collider)
+        });
+        match added {
             Ok(collider) => {
                 let kind = ObjectKind::Collider(ColliderId(self.program.first_collider + collider.0));
                 self.add_object(id, kind, points, faces, 0.0);

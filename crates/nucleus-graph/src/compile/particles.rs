@@ -90,6 +90,7 @@ impl EvaluationInterval<'_> {
                 elements: Elements::Points,
                 edges: false,
             },
+            point_field: self.point_field(node, radius),
             ..ClothFrame::default()
         }
     }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    BendSolver, Bending, ClothId, ClothLists, FieldSide, ForceField, InputAttract, InputMesh,
-    PASCALS_PER_PRESSURE, Pin, PointId, Pressure, Surface,
+    BendSolver, Bending, COUNT_PERIOD, ClothId, ClothLists, FieldSide, ForceField, InputAttract, InputMesh,
+    LinkOrder, PASCALS_PER_PRESSURE, Pin, PointField, PointId, Pressure, Surface, WindField,
 };
 
 use crate::animation::sin_cos_degrees;
@@ -24,6 +24,8 @@ const FLIP_TRACKING: Choice = Choice(2);
 const MANUAL: Choice = Choice(0);
 /// `inputAttractMethod: lockValuesOf10OrGreater`.
 const LOCKS: Choice = Choice(1);
+/// `evaluationOrder: parallel`.
+const PARALLEL: Choice = Choice(1);
 /// `scalingRelation`.
 const LINK: Choice = Choice(0);
 const OBJECT_SPACE: Choice = Choice(1);
@@ -73,13 +75,14 @@ pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLis
 
 impl EvaluationInterval<'_> {
     /// How the hinges of a cloth measure their angles.
-    pub(super) fn bending(&self, node: NodeId) -> Bending {
-        let number = |key: &Key<f64>| self.to.get(node, key);
-        let limit = number(&n_cloth::RESTITUTION_ANGLE);
+    pub(super) fn bending(&self, source: &ClothSource) -> Bending {
+        let number = |key: &Key<f64>| self.to.get(source.node, key);
+        let given = number(&n_cloth::RESTITUTION_ANGLE);
+        let limit = if given < NO_ANGLE { given * source.scales.restitution_angle } else { given };
         Bending {
             angle_scale: number(&n_cloth::BEND_ANGLE_SCALE),
-            angle_dropoff: number(&n_cloth::BEND_ANGLE_DROPOFF),
-            solver: match self.to.get(node, &n_cloth::BEND_SOLVER) {
+            angle_dropoff: number(&n_cloth::BEND_ANGLE_DROPOFF) * source.scales.angle_dropoff,
+            solver: match self.to.get(source.node, &n_cloth::BEND_SOLVER) {
                 SIMPLE => BendSolver::Simple,
                 FLIP_TRACKING => BendSolver::FlipTracking,
                 _ => BendSolver::Signed,
@@ -89,6 +92,7 @@ impl EvaluationInterval<'_> {
                 true if limit < 180.0 => sin_cos_degrees(limit.max(0.0) / 2.0).0,
                 _ => f64::INFINITY,
             },
+            yield_half_angle: if given < NO_ANGLE { limit.to_radians() / 2.0 } else { f64::INFINITY },
         }
     }
 
@@ -126,8 +130,9 @@ impl EvaluationInterval<'_> {
         }
     }
 
-    /// The force field of an object. Its magnitude of 1 is an acceleration of 10 m/s² at the surface, about that of gravity.
-    pub(super) fn force_field(&self, node: NodeId) -> Option<ForceField> {
+    /// The force field of an object. Its magnitude of 1 is an acceleration of 10 m/s² at the surface, about that of
+    /// gravity. `scale` is a factor on it.
+    pub(super) fn force_field(&self, node: NodeId, scale: f64) -> Option<ForceField> {
         let side = match self.to.get(node, &n_base::FORCE_FIELD) {
             Choice(1) => FieldSide::AlongNormal,
             Choice(2) => FieldSide::Single,
@@ -135,23 +140,61 @@ impl EvaluationInterval<'_> {
             _ => return None,
         };
         let ramp = self.to.get(node, &n_base::FIELD_SCALE);
-        let last = (ForceField::SAMPLES - 1) as f64;
         Some(ForceField {
             side,
-            magnitude: self.to.get(node, &n_base::FIELD_MAGNITUDE) * FIELD_ACCELERATION,
+            magnitude: self.to.get(node, &n_base::FIELD_MAGNITUDE) * FIELD_ACCELERATION * scale,
             distance: self.nucleus.units.length(self.to.get(node, &n_base::FIELD_DISTANCE)),
-            falloff: std::array::from_fn(|k| ramp_at(&ramp, k as f64 / last)),
+            falloff: samples(&ramp),
         })
+    }
+
+    /// The force fields round the points of an object of this thickness in metres.
+    pub(super) fn point_field(&self, node: NodeId, thickness: f64) -> Option<PointField> {
+        let number = |key: &Key<f64>| self.to.get(node, key);
+        let relative = match self.to.get(node, &n_base::POINT_FORCE_FIELD) {
+            Choice(1) => true,
+            Choice(2) => false,
+            _ => return None,
+        };
+        let units = self.nucleus.units;
+        let scale = if relative { thickness * units.per_metre() } else { 1.0 };
+        Some(PointField {
+            magnitude: number(&n_base::POINT_FIELD_MAGNITUDE) * FIELD_ACCELERATION * scale,
+            self_attract: number(&n_base::SELF_ATTRACT) * FIELD_ACCELERATION * scale,
+            radius: thickness,
+            distance: units.length(number(&n_base::POINT_FIELD_DISTANCE) * scale),
+            falloff: samples(&self.to.get(node, &n_base::POINT_FIELD_DROPOFF)),
+        })
+    }
+
+    /// What an object does to the wind that others feel.
+    pub(super) fn wind_field(&self, node: NodeId) -> WindField {
+        let number = |key: &Key<f64>| self.to.get(node, key);
+        WindField {
+            shadow_distance: self.nucleus.units.length(number(&n_base::WIND_SHADOW_DISTANCE)),
+            shadow_diffusion: number(&n_base::WIND_SHADOW_DIFFUSION),
+            self_shadow: false,
+            push_distance: self.nucleus.units.length(number(&n_base::AIR_PUSH_DISTANCE)),
+            push_vorticity: number(&n_base::AIR_PUSH_VORTICITY),
+        }
     }
 
     /// A resistance as the solver takes it. Physical: as it is. Classic: a count, scaled as `scalingRelation` says and no
     /// higher than `maxIterations`.
-    pub(super) fn resistance(&self, source: &ClothSource, value: f64) -> f64 {
+    /// `minimal` limits it to one iteration in a substep.
+    pub(super) fn resistance(&self, source: &ClothSource, value: f64, minimal: &Key<bool>) -> f64 {
         if self.to.get(self.nucleus.node, &nucleus::RESISTANCE_MODEL) != CLASSIC {
             return value;
         }
         let limit = self.to.get(source.node, &n_base::MAX_ITERATIONS).max(0) as f64;
-        (value * self.count_scale(source)).min(limit)
+        let count = (value * self.count_scale(source)).min(limit);
+        if self.to.get(source.node, minimal) { count.min(self.substeps_per_count()) } else { count }
+    }
+
+    /// Substeps in the time that counts are given for.
+    fn substeps_per_count(&self) -> f64 {
+        let seconds = self.to.get(self.nucleus.node, &nucleus::TIME_SCALE) * self.seconds;
+        self.to.get(self.nucleus.node, &nucleus::SUB_STEPS) as f64 * COUNT_PERIOD / seconds
     }
 
     /// Factor on the counts of a cloth in the Classic reading: `scalingRelation`. In Object Space the count grows with the
@@ -278,6 +321,33 @@ impl Compiler<'_> {
         Some(rest)
     }
 
+    /// The order in which the links of each cloth are solved; the constraints are compiled before.
+    pub(super) fn order_links(&mut self) {
+        let graph = &self.scene.graph;
+        for (cloth, source) in (0..).map(ClothId).zip(&self.program.cloths) {
+            let node = graph.node(source.node);
+            if !node.node_type().is_a(&n_cloth::N_CLOTH) {
+                continue;
+            }
+            if self.start.get(source.node, &n_cloth::EVALUATION_ORDER) == PARALLEL {
+                self.program.model.set_link_order(cloth, LinkOrder::Parallel);
+            } else if self.start.get(source.node, &n_cloth::SORT_LINKS) {
+                let held = self.program.attachments.iter().flat_map(|attachment| &attachment.points);
+                let held: Vec<PointId> =
+                    held.filter(|held| held.cloth == cloth).map(|held| held.point).collect();
+                if held.is_empty() {
+                    let place = self.scene.source.place(&format!("{}.sortLinks", node.name()));
+                    let message = format!(
+                        "`sortLinks` of `{}` has no effect: no constraint holds a point of it",
+                        node.name()
+                    );
+                    self.findings.warning(&place, message);
+                }
+                self.program.model.set_link_order(cloth, LinkOrder::Outwards(held));
+            }
+        }
+    }
+
     /// Warns of pressure in a mesh that cannot hold it.
     pub(super) fn check_pressure(&mut self, cloth: NodeId, surface: &Surface) {
         let node = self.scene.graph.node(cloth);
@@ -306,6 +376,11 @@ impl Compiler<'_> {
     }
 }
 
+/// A ramp at evenly spaced positions.
+fn samples(ramp: &[RampPoint]) -> [f64; ForceField::SAMPLES] {
+    std::array::from_fn(|k| ramp_at(ramp, k as f64 / (ForceField::SAMPLES - 1) as f64))
+}
+
 /// A ramp at a position: before its first point and behind its last it is constant.
 fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
     let mut points: Vec<RampPoint> = ramp.to_vec();
@@ -332,7 +407,7 @@ pub(super) fn area(surface: &Surface) -> f64 {
 }
 
 /// Normals of unit length, weighted by area; zero for a point of no face.
-fn normals(surface: &Surface) -> Vec<Vector3<f64>> {
+pub(super) fn normals(surface: &Surface) -> Vec<Vector3<f64>> {
     let mut normals = vec![Vector3::zeros(); surface.positions.len()];
     for triangle in surface.faces.triangles() {
         let [a, b, c] = triangle.map(|k| surface.positions[k as usize]);

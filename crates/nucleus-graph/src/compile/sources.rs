@@ -86,6 +86,9 @@ pub(super) struct MapScales {
     pub(super) input_attract: f64,
     pub(super) rigidity: f64,
     pub(super) deform: f64,
+    pub(super) angle_dropoff: f64,
+    pub(super) restitution_angle: f64,
+    pub(super) field_magnitude: f64,
 }
 
 impl MapScales {
@@ -108,5 +111,8 @@ impl MapScales {
         input_attract: 1.0,
         rigidity: 1.0,
         deform: 1.0,
+        angle_dropoff: 1.0,
+        restitution_angle: 1.0,
+        field_magnitude: 1.0,
     };
 }

@@ -200,6 +200,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             angle_dropoff: 0.25,
             solver: BendSolver::FlipTracking,
             yield_sine: 0.0,
+            yield_half_angle: 0.0,
         },
         // Tension 2 of a resistance of 1.
         yield_strain: 2.0,

@@ -28,6 +28,9 @@ maps! {
     INPUT_ATTRACT: n_cloth::INPUT_ATTRACT_PER_VERTEX, INPUT_ATTRACT_MAP, INPUT_ATTRACT_MAP_TYPE;
     RIGIDITY: n_cloth::RIGIDITY_PER_VERTEX, RIGIDITY_MAP, RIGIDITY_MAP_TYPE;
     DEFORM: n_cloth::DEFORM_PER_VERTEX, DEFORM_MAP, DEFORM_MAP_TYPE;
+    ANGLE_DROPOFF: n_cloth::BEND_ANGLE_DROPOFF_PER_VERTEX, BEND_ANGLE_DROPOFF_MAP, BEND_ANGLE_DROPOFF_MAP_TYPE;
+    RESTITUTION_ANGLE: n_cloth::RESTITUTION_ANGLE_PER_VERTEX, RESTITUTION_ANGLE_MAP, RESTITUTION_ANGLE_MAP_TYPE;
+    FIELD_MAGNITUDE: n_base::FIELD_MAGNITUDE_PER_VERTEX, FIELD_MAGNITUDE_MAP, FIELD_MAGNITUDE_MAP_TYPE;
     WRINKLE: n_cloth::WRINKLE_PER_VERTEX, WRINKLE_MAP, WRINKLE_MAP_TYPE;
     MASS: n_base::MASS_PER_VERTEX, MASS_MAP, MASS_MAP_TYPE;
     DAMP: n_base::DAMP_PER_VERTEX, DAMP_MAP, DAMP_MAP_TYPE;
@@ -99,6 +102,8 @@ impl Compiler<'_> {
         let [stickiness, bounce] = [&STICKINESS, &BOUNCE].map(|map| SplitMap::new(read(map)));
         let [collide_strength, input_attract] =
             [&COLLIDE_STRENGTH, &INPUT_ATTRACT].map(|map| SplitMap::new(read(map)));
+        let [angle_dropoff, restitution_angle, field_magnitude] =
+            [&ANGLE_DROPOFF, &RESTITUTION_ANGLE, &FIELD_MAGNITUDE].map(|map| SplitMap::new(read(map)));
         let [rigidity, deform] = [&RIGIDITY, &DEFORM].map(|map| SplitMap::normalized(read(map)));
         let [stretch, compression, bend] = [stretch, compression, read(&BEND)].map(SplitMap::normalized);
         self.check_mass(cloth, &mass);
@@ -123,6 +128,9 @@ impl Compiler<'_> {
             input_attract: input_attract.scale,
             rigidity: rigidity.scale,
             deform: deform.scale,
+            angle_dropoff: angle_dropoff.scale,
+            restitution_angle: restitution_angle.scale,
+            field_magnitude: field_magnitude.scale,
         };
         let factors = VertexMaps {
             mass: mass.factors,
@@ -142,6 +150,9 @@ impl Compiler<'_> {
             input_attract: input_attract.factors,
             rigidity: rigidity.factors,
             deform: deform.factors,
+            angle_dropoff: angle_dropoff.factors,
+            yield_angle: restitution_angle.factors,
+            field_magnitude: field_magnitude.factors,
         };
         Some(CompiledMaps { scales, factors })
     }

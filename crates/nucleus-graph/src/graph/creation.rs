@@ -140,6 +140,23 @@ impl Graph {
         self.connect_active(particles, nucleus)
     }
 
+    /// Makes a mesh the rest shape of a cloth.
+    ///
+    /// # Errors
+    /// When the cloth has a rest shape already.
+    pub fn set_rest_shape(&mut self, cloth: NodeId, mesh: NodeId) -> Result<(), GraphError> {
+        let shape = Plug::element(mesh, &surface_shape::WORLD_MESH, 0);
+        self.connect(shape, Plug::new(cloth, &n_cloth::REST_SHAPE_MESH))
+    }
+
+    /// The mesh that [`Graph::set_rest_shape`] gives a cloth.
+    pub fn rest_shape(&self, cloth: NodeId) -> Option<NodeId> {
+        let is_mesh = |plug: &Plug| *plug == Plug::element(plug.node, &surface_shape::WORLD_MESH, 0);
+        let into = |wire: &&super::Connection| wire.to.attribute.name == n_cloth::REST_SHAPE_MESH.row.name;
+        let from = self.arriving(cloth).find(into).map(|wire| wire.from);
+        from.filter(is_mesh).map(|plug| plug.node)
+    }
+
     /// Makes an emitter emit into particles.
     ///
     /// # Errors

@@ -106,6 +106,14 @@ fn recreate(graph: &Graph, creations: &BTreeMap<NodeId, Creation>) -> (Graph, BT
         let _ = recreated.add(node.name(), node.node_type());
     }
     let there = |recreated: &Graph, id: NodeId| recreated.find(graph.node(id).name());
+    for (id, _) in &nodes {
+        if let (Some(cloth), Some(mesh)) =
+            (there(&recreated, *id), graph.rest_shape(*id).and_then(|mesh| there(&recreated, mesh)))
+        {
+            // The nodes are new, so nothing is connected yet.
+            let _ = recreated.set_rest_shape(cloth, mesh);
+        }
+    }
     let stage = |creation: &Creation| match creation {
         Creation::Object { .. } => 0,
         Creation::Constraint { .. } => 1,

@@ -103,6 +103,7 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     let target = match row.name {
         "parent" => node.parent(),
         "blendTarget" => graph.blend_target(id),
+        "restShapeMesh" => graph.rest_shape(id),
         name => short.named(id, name),
     };
     if let Some(target) = target {

@@ -8,4 +8,5 @@ mod mutations;
 mod particles;
 mod pulling;
 mod scenes;
+mod soft_bodies;
 mod wiring;

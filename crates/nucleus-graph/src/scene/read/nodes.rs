@@ -284,11 +284,12 @@ impl NodeReader<'_, '_> {
         }
         let lacks = match row.effect {
             Effect::Solved(_) if self.declaration.node_type.has_no_use_for(row) => {
-                "has no effect on such a node"
+                "has no effect on such a node".to_owned()
             }
             Effect::Solved(_) => return,
-            Effect::NotYet => "has no effect yet",
-            Effect::Never => "has no effect: nothing uses it, not even in Maya",
+            Effect::NotYet => "has no effect yet".to_owned(),
+            Effect::Never => "has no effect: nothing uses it, not even in Maya".to_owned(),
+            Effect::Elsewhere(reason) => format!("has no effect: {reason}"),
         };
         self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.declaration.name));
     }

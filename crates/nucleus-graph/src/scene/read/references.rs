@@ -48,6 +48,7 @@ pub(super) fn connect(
     let resolved = resolve(graph, references, findings);
     set_parents(graph, references, &resolved, findings);
     set_blend_targets(graph, references, &resolved, source, findings);
+    set_rest_shapes(graph, references, &resolved, findings);
     let mut resolver = Resolver {
         ends: connections.ends(graph),
         all: graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect(),
@@ -148,6 +149,21 @@ fn set_blend_targets(
                 format!("`blend` of `{}` does nothing: there is no `blendTarget`", node.name()),
             );
             warning.help("add `blendTarget: \"...\"`, a mesh of as many points");
+        }
+    }
+}
+
+/// Connects the rest shapes of cloths.
+fn set_rest_shapes(
+    graph: &mut Graph,
+    references: &References,
+    resolved: &BTreeMap<(NodeId, &'static str), NodeId>,
+    findings: &mut Findings,
+) {
+    for reference in references.all.iter().filter(|r| r.row == &n_cloth::REST_SHAPE_MESH.row) {
+        let Some(&mesh) = resolved.get(&(reference.node, reference.row.name)) else { continue };
+        if let Err(error) = graph.set_rest_shape(reference.node, mesh) {
+            findings.error(&reference.span, error.to_string());
         }
     }
 }

@@ -1,0 +1,112 @@
+//! What is added to the wind at each point: gusts, then the shadows of objects, then the air that objects push.
+//!
+//! Once per substep, from the positions at its start. The column is empty where nothing is added.
+
+use nalgebra::Vector3;
+
+use crate::contact::collider::ColliderState;
+use crate::contact::placed_surface::PlacedSurface;
+use crate::input::fields::WindField;
+use crate::input::frame::{ClothFrame, FrameInput};
+use crate::integrate::air_push::AirPush;
+use crate::integrate::gusts::{GustField, is_gusty};
+use crate::integrate::wind_shadow::WindShadow;
+use crate::math::{Real, Row4};
+use crate::model::{ClothModel, ColliderModel};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
+
+/// All objects of a solver at a time of the frame.
+pub struct Objects<'a, R> {
+    /// The cloths.
+    pub cloths: &'a [ClothModel<R>],
+    /// The colliders, and where they are.
+    pub colliders: (&'a [ColliderModel], &'a [ColliderState]),
+    /// The time as a share of the frame.
+    pub time: f64,
+}
+
+/// Whether a cloth feels the solver's wind.
+pub fn feels_wind<R>(cloth: &ClothModel<R>, settings: &ClothFrame) -> bool {
+    settings.feels_wind && !cloth.triangles.is_empty()
+}
+
+/// Sets what is added to the wind at every point that feels it.
+pub fn update_local_wind<R: Real>(
+    objects: &Objects<'_, R>,
+    state: &mut State<R>,
+    frame: &FrameInput,
+    pool: &ThreadPool,
+) {
+    state.added_wind.clear();
+    if state.normal.is_empty() {
+        return;
+    }
+    let gusts = is_gusty(frame).then(|| GustField::new(state.wind_travel, frame, objects.time));
+    let shadows = surfaces(objects, state, frame, WindField::casts_shadow, |surface, settings, cloth, _| {
+        WindShadow::new(surface, settings, cloth, frame.wind)
+    });
+    let pushes = surfaces(objects, state, frame, WindField::pushes_air, AirPush::new);
+    if gusts.is_none() && shadows.is_empty() && pushes.is_empty() {
+        return;
+    }
+    state.added_wind.resize(state.normal.len(), Row4::ZERO);
+    let State { anchor, displacement, added_wind, .. } = state;
+    let added = DisjointSlice::new(added_wind);
+    for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
+        if !feels_wind(cloth, settings) {
+            continue;
+        }
+        pool.parallel_for(cloth.blocks.len(), |block| {
+            let rows = cloth.blocks.range(block);
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            let run = unsafe { added.run(rows.clone()) };
+            for (row, added) in rows.zip(run) {
+                let moved = displacement[row as usize].xyz().map(R::to_f64);
+                let place = Vector3::from(anchor[row as usize]) + Vector3::from(moved);
+                let mut wind = frame.wind;
+                wind += gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(place));
+                wind *= shadows.iter().map(|shadow| shadow.share(place, [at as u32, row])).product::<f64>();
+                for push in pushes.iter().filter(|push| push.cloth != Some(at)) {
+                    wind = push.blend(wind, place);
+                }
+                *added = Row4::new((wind - frame.wind).into(), R::ZERO);
+            }
+        });
+    }
+}
+
+/// Makes something of the surface of every object whose settings want it: of its surface, its settings, the index of
+/// the cloth, and the velocities of its corners in m/s.
+fn surfaces<R: Real, T>(
+    objects: &Objects<'_, R>,
+    state: &State<R>,
+    frame: &FrameInput,
+    wanted: fn(&WindField) -> bool,
+    make: impl Fn(PlacedSurface, &WindField, Option<usize>, Vec<Vector3<f64>>) -> T,
+) -> Vec<T> {
+    let mut made = Vec::new();
+    let (models, states) = objects.colliders;
+    for ((model, placed), settings) in models.iter().zip(states).zip(&frame.colliders) {
+        if wanted(&settings.wind_field) {
+            let place = |point| placed.point(point, objects.time);
+            let surface = PlacedSurface::new(model.boundary.triangles.clone(), place);
+            let moved =
+                placed.start.iter().zip(&placed.end).map(|(start, end)| (end - start) / frame.duration);
+            made.push(make(surface, &settings.wind_field, None, moved.collect()));
+        }
+    }
+    for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
+        // Particles have no surface.
+        if wanted(&settings.wind_field) && !cloth.surface_triangles().is_empty() {
+            let first = cloth.points().start;
+            let triangles = cloth.surface_triangles().into_iter().map(|t| t.map(|row| row - first)).collect();
+            let surface = PlacedSurface::new(triangles, |at| state.position(first + at).into());
+            let velocity = |row: u32| Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
+            made.push(make(surface, &settings.wind_field, Some(at), cloth.points().map(velocity).collect()));
+        }
+    }
+    made
+}

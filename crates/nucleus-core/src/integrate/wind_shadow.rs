@@ -1,0 +1,65 @@
+//! Wind shadows: an object keeps the solver's wind from what is behind it (`windShadowDistance`).
+//!
+//! From a point a ray goes against the wind. Where it meets the surface after a distance d, the surface takes away
+//! 1 - (d / D)² of the wind, D being the distance at which the wind has closed in again. With a diffusion the ray is the
+//! mean of seven, of which six leave at an angle whose tangent is the diffusion: the shadow then has soft edges and
+//! fills up behind a small object. Maya's own falloffs are not published.
+
+use nalgebra::Vector3;
+
+use crate::contact::placed_surface::PlacedSurface;
+use crate::input::fields::WindField;
+
+/// Directions round the wind, evenly spaced.
+const AROUND: [[f64; 2]; 6] = [
+    [1.0, 0.0],
+    [0.5, 0.866_025_403_784_438_6],
+    [-0.5, 0.866_025_403_784_438_6],
+    [-1.0, 0.0],
+    [-0.5, -0.866_025_403_784_438_6],
+    [0.5, -0.866_025_403_784_438_6],
+];
+
+/// The shadow of one object.
+pub struct WindShadow {
+    surface: PlacedSurface,
+    /// The cloth that it is, and whether it shadows itself.
+    cloth: Option<usize>,
+    shadows_itself: bool,
+    /// From a point to as far as an object can be that shadows it.
+    rays: Vec<Vector3<f64>>,
+}
+
+impl WindShadow {
+    /// The shadow of a surface in this wind.
+    pub fn new(
+        surface: PlacedSurface,
+        settings: &WindField,
+        cloth: Option<usize>,
+        wind: Vector3<f64>,
+    ) -> Self {
+        let mut rays = Vec::new();
+        if let Some(along) = wind.try_normalize(0.0) {
+            rays.push(along * -settings.shadow_distance);
+            let diffusion = settings.shadow_diffusion.clamp(0.0, 1.0);
+            let side = along.cross(&if along.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() });
+            if let Some(side) = side.try_normalize(0.0).filter(|_| diffusion > 0.0) {
+                let sides = [side, along.cross(&side)];
+                let tilted = AROUND.map(|[x, y]| (sides[0] * x + sides[1] * y) * diffusion - along);
+                rays.extend(tilted.map(|ray| ray.normalize() * settings.shadow_distance));
+            }
+        }
+        Self { surface, cloth, shadows_itself: settings.self_shadow, rays }
+    }
+
+    /// The share of the wind that gets to a place, which is this row of this cloth; `place` in metres.
+    pub fn share(&self, place: Vector3<f64>, [cloth, row]: [u32; 2]) -> f64 {
+        let is_own = self.cloth == Some(cloth as usize);
+        if self.rays.is_empty() || is_own && !self.shadows_itself {
+            return 1.0;
+        }
+        let own = is_own.then_some(row);
+        let through = |ray: &Vector3<f64>| self.surface.first_hit(place, *ray, own).map_or(1.0, |at| at * at);
+        self.rays.iter().map(through).sum::<f64>() / self.rays.len() as f64
+    }
+}

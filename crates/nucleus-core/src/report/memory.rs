@@ -1,0 +1,73 @@
+//! How much memory the points and rows of a solver take.
+
+use crate::math::Real;
+use crate::model::ClothModel;
+use crate::model::rows::RowList;
+use crate::solver::Solver;
+use crate::state::State;
+
+/// Bytes of the columns of points and the lists of rows, without contact; see [`Solver::memory`].
+pub fn bytes<R: Real>(solver: &Solver<R>) -> usize {
+    of_state(&solver.state) + solver.model.cloths.iter().map(of_cloth).sum::<usize>()
+}
+
+/// Every column is named, so that a new one does not compile until it is counted.
+fn of_state<R: Real>(state: &State<R>) -> usize {
+    let State {
+        anchor,
+        displacement,
+        velocity,
+        start,
+        depenetration_by_collider,
+        depenetration_by_cloth,
+        step_length: _,
+        predicted,
+        corrections,
+        normal,
+        area,
+        added_wind,
+        wind_travel: _,
+        chambers,
+        rotations,
+        inverse_mass,
+    } = state;
+    let rows = [
+        displacement,
+        velocity,
+        start,
+        depenetration_by_collider,
+        depenetration_by_cloth,
+        predicted,
+        corrections,
+        normal,
+        area,
+        added_wind,
+    ];
+    let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
+    let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]);
+    rows + size_of_val(&anchor[..]) + chambers + size_of_val(&inverse_mass[..])
+}
+
+fn of_cloth<R: Real>(cloth: &ClothModel<R>) -> usize {
+    let maps = &cloth.strength_maps;
+    let links = [&cloth.stretch, &cloth.shear].into_iter().map(of_list).sum::<usize>();
+    let angles = [&cloth.bend_angles, &cloth.bend_six_angles].into_iter().map(of_list).sum::<usize>();
+    let maps = [&maps.stretch, &maps.bend, &maps.bend_six, &maps.damp, &maps.angles, &maps.angles_six];
+    let per_point = [&cloth.attract, &cloth.field_map].into_iter().map(|map| size_of_val(&map[..]));
+    let triangles = cloth.triangles.iter().map(|triangles| size_of_val(&triangles[..]));
+    links
+        + of_list(&cloth.bend)
+        + of_list(&cloth.bend_six)
+        + angles
+        + maps.into_iter().map(of_list).sum::<usize>()
+        + per_point.sum::<usize>()
+        + triangles.sum::<usize>()
+        + size_of_val(&cloth.air[..])
+        + size_of_val(&cloth.valence[..])
+        + cloth.pressure.bytes()
+        + cloth.shape.bytes()
+}
+
+fn of_list<G>(list: &RowList<G>) -> usize {
+    size_of_val(list.groups())
+}
