@@ -140,7 +140,8 @@ fn caches(root: &Path) -> anyhow::Result<()> {
 
 fn features(root: &Path) -> anyhow::Result<()> {
     let table = features::table(FEATURE_RUNS)?;
-    let page = format!("{}\n{}\n\n{table}", features::HEAD, clock::describe_machine().join("\n"));
+    let machine = clock::describe_machine().join("\n");
+    let page = format!("{}\n{machine}\n\n{table}\n{}", features::HEAD, features::alone::table()?);
     Ok(result_cache::write_atomic(&root.join("docs").join("features.md"), page.as_bytes())?)
 }
 

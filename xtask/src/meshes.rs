@@ -23,7 +23,7 @@ use mesh::{Mesh, ring};
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 10] = [
+const ALL: [Entry; 14] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -34,6 +34,10 @@ const ALL: [Entry; 10] = [
     ("fifty_layers", fifty_layers),
     ("balloon", soft::balloon),
     ("trampoline", soft::trampoline),
+    ("slinky", soft::slinky),
+    ("aeroplane", soft::aeroplane),
+    ("bridge", soft::bridge),
+    ("disc", soft::disc),
 ];
 
 /// Writes all of them.

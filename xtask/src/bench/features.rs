@@ -1,5 +1,7 @@
 //! Cost of each feature: one at a time is added to the same sheet.
 
+pub mod alone;
+
 use nalgebra::Vector3;
 use nucleus_core::{
     BuildError, ClothFrame, ClothLists, FrameInput, GroundPlane, Mass, ModelBuilder, PassCost, Solver,
@@ -80,6 +82,7 @@ and no passes, and its difference in time is noise.
 /// When the solver rejects the sheet.
 pub fn run(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
     report.show(table(repeat)?);
+    report.show(alone::table()?);
     Ok(())
 }
 

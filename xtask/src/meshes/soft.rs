@@ -1,4 +1,5 @@
-//! Meshes of soft bodies: a balloon with an open neck, and the round bed of a trampoline.
+//! Meshes of soft bodies: a balloon with an open neck, the round bed of a trampoline, a slinky, a paper aeroplane, a
+//! rope bridge, and the specimen of a drape test.
 
 use super::mesh::{Mesh, ring};
 
@@ -24,13 +25,58 @@ pub fn balloon() -> Mesh {
 
 /// A flat disc of radius 60 that faces up: its rim first, then ring by ring to the centre.
 pub fn trampoline() -> Mesh {
-    const RIM: usize = 48;
-    let rows = (0..14).map(|k| ring(RIM, 60.0 * (1.0 - f64::from(k) / 14.0), 0.0)).collect();
-    let mut mesh = Mesh::rows(rows, true);
+    let radii: Vec<f64> = (0..14).map(|k| 60.0 * (1.0 - f64::from(k) / 14.0)).collect();
+    flat_disc(48, &radii)
+}
+
+/// The specimen of Cusick's drape test: a disc 30 across, finer where it hangs over a pedestal of 18.
+pub fn disc() -> Mesh {
+    flat_disc(48, &[15.0, 13.4, 11.8, 10.2, 8.6, 4.3])
+}
+
+fn flat_disc(around: usize, radii: &[f64]) -> Mesh {
+    let mut mesh = Mesh::rows(radii.iter().map(|radius| ring(around, *radius, 0.0)).collect(), true);
     mesh.faces.iter_mut().for_each(|face| face.reverse());
-    let last = mesh.points.len() - RIM;
+    let last = mesh.points.len() - around;
     mesh.points.push([0.0; 3]);
     let centre = mesh.points.len() - 1;
-    mesh.faces.extend((0..RIM).map(|k| vec![last + k, last + (k + 1) % RIM, centre]));
+    mesh.faces.extend((0..around).map(|k| vec![last + k, last + (k + 1) % around, centre]));
     mesh
+}
+
+/// A coil of ribbon: seven turns of radius 4, each 0.3 below the one before, of twelve rows of two points; 1.2 wide.
+pub fn slinky() -> Mesh {
+    let row = |k: u32| {
+        let turn = std::f64::consts::TAU * f64::from(k) / 12.0;
+        [3.4, 4.6].map(|r| [r * turn.cos(), -0.3 * f64::from(k) / 12.0, r * turn.sin()]).to_vec()
+    };
+    Mesh::rows((0..=84).map(row).collect(), false)
+}
+
+/// A paper dart, 20 long and 24 wide at its tail, that points along -z: two wings that rise to the sides, and a tail that is
+/// bent up. Nine points a row, seven rows from the nose on.
+pub fn aeroplane() -> Mesh {
+    let row = |k: u32| {
+        let along = f64::from(k) / 6.0;
+        let up = if k == 6 { TAIL } else { 0.0 };
+        let point = |i: i32| {
+            let x = f64::from(i) / 4.0 * (1.0 + 11.0 * along);
+            [x, 0.2 * x.abs() + up, 20.0 * along - 10.0]
+        };
+        (-4..=4).map(point).collect()
+    };
+    Mesh::rows((0..7).map(row).collect(), false)
+}
+
+/// How far the last row of the aeroplane is bent up.
+const TAIL: f64 = 0.5;
+
+/// A rope bridge along x, 600 long and 80 wide: 24 planks with gaps between them, and a net of 35 on either side. Four
+/// points a row: rail, deck, deck, rail; two rows a plank.
+pub fn bridge() -> Mesh {
+    let row = |k: u32| {
+        let x = f64::from(k / 2) * 25.0 + f64::from(k % 2) * 22.0 - 298.5;
+        vec![[x, 35.0, -46.0], [x, 0.0, -40.0], [x, 0.0, 40.0], [x, 35.0, 46.0]]
+    };
+    Mesh::rows((0..48).map(row).collect(), false)
 }
