@@ -3,7 +3,8 @@ use std::path::Path;
 use nalgebra::Vector3;
 use nucleus_core::{
     BendSolver, Bending, ClothFrame, ClothId, ColliderFrame, Elements, FieldSide, ForceField, FrameInput,
-    InputAttract, PointId, Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
+    InputAttract, PointField, PointId, Pressure, PushOut, ResistanceModel, SelfCollision, Stiffness,
+    WindField,
 };
 use proptest::prelude::*;
 
@@ -161,7 +162,9 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         restitutionAngle: 0, restitutionTension: 2, pressureMethod: volumeTrackingModel, startPressure: 0.1, \
         incompressibility: 2, pumpRate: 0.3, airTightness: 0.4, pressureDamping: 0.5, sealHoles: false, \
         forceField: doubleSided, fieldMagnitude: 3, fieldDistance: 4, rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
-        selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace";
+        selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace, windShadowDistance: 33, \
+        windShadowDiffusion: 0.34, windSelfShadow: true, airPushDistance: 35, airPushVorticity: 0.36, \
+        pointForceField: worldspace, pointFieldMagnitude: 37, selfAttract: 38, pointFieldDistance: 39";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
         compression_resistance: 2.0,
@@ -221,6 +224,20 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             distance: 4.0,
             falloff: std::array::from_fn(|k| 1.0 - k as f64 / 16.0),
         }),
+        point_field: Some(PointField {
+            magnitude: 370.0,
+            self_attract: 380.0,
+            radius: 17.0,
+            distance: 39.0,
+            falloff: std::array::from_fn(|k| 1.0 - k as f64 / 16.0),
+        }),
+        wind_field: WindField {
+            shadow_distance: 33.0,
+            shadow_diffusion: 0.34,
+            self_shadow: true,
+            push_distance: 35.0,
+            push_vorticity: 0.36,
+        },
     };
     assert_eq!(program(&sheet("", set)).first_input().cloths, [expected]);
 }
