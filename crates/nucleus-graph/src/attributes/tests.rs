@@ -99,7 +99,7 @@ fn attributes_are_found_by_short_names_and_by_vector_components() {
 }
 
 /// Sections that hold what cloth and its solver do; the others are of caches, connections and classic particles.
-const SOLVED_GROUPS: [&str; 17] = [
+const SOLVED_GROUPS: [&str; 16] = [
     "Gravity and Wind",
     "Ground Plane",
     "Solver Attributes",
@@ -114,7 +114,6 @@ const SOLVED_GROUPS: [&str; 17] = [
     "Wind Field Generation",
     "Force Field Generation",
     "Force Field Maps",
-    "Initial State",
     "Nucleus (open)",
     "Hidden",
 ];

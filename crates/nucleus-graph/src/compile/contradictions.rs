@@ -73,17 +73,17 @@ static DEPENDENCIES: [Dependency; 17] = [
     needs(
         &n_base::FIELD_MAGNITUDE.row,
         Need::Choice(&n_base::FORCE_FIELD, None),
-        "write `forceField: singleSided`, `doubleSided` or `alongnormal`",
+        "write `forceField: singleSided`, `doubleSided` or `alongNormal`",
     ),
     needs(
         &n_base::POINT_FIELD_MAGNITUDE.row,
         Need::Choice(&n_base::POINT_FORCE_FIELD, None),
-        "write `pointForceField: worldspace` or `thicknessrelative`",
+        "write `pointForceField: worldspace` or `thicknessRelative`",
     ),
     needs(
         &n_base::SELF_ATTRACT.row,
         Need::Choice(&n_base::POINT_FORCE_FIELD, None),
-        "write `pointForceField: worldspace` or `thicknessrelative`",
+        "write `pointForceField: worldspace` or `thicknessRelative`",
     ),
     needs(
         &n_cloth::INPUT_ATTRACT_METHOD.row,

@@ -205,8 +205,8 @@ fn unused_settings_of_a_map_give_a_warning() {
         ),
         (
             "restitutionAngleMapType: perVertex",
-            "`restitutionAngleMapType` of `c` has no effect yet",
-            "restitutionAngleMapType",
+            "`restitutionAngleMapType` of `c` has no effect: there is no `restitutionAnglePerVertex`",
+            "perVertex",
         ),
     ] {
         let text = hanging(fields);

@@ -65,7 +65,7 @@ fn the_air_and_the_fields_of_objects_are_in_metres() {
         (field.magnitude, field.self_attract, field.radius, field.distance),
         (20.0, 30.0, 0.005, 0.04)
     );
-    let relative = fields.replace("worldspace", "thicknessrelative");
+    let relative = fields.replace("worldspace", "thicknessRelative");
     let input = program(&sheet("spaceScale: 0.01", &relative)).first_input();
     let field = input.cloths[0].point_field.expect("it is on");
     assert_eq!((field.magnitude, field.distance), (10.0, 0.02), "times the thickness in scene units");
@@ -143,7 +143,7 @@ fn settings_that_make_no_sense_are_named_with_what_to_do() {
         (
             "selfAttract: 2",
             "warning at 2: `selfAttract` of `c` has no effect: `pointForceField` is off | write `pointForceField: \
-             worldspace` or `thicknessrelative`",
+             worldspace` or `thicknessRelative`",
         ),
         (
             "minimalBend: true",
