@@ -9,7 +9,7 @@ use crate::attributes::{
 };
 
 use super::error::GraphError;
-use super::node::{NodeId, Plug};
+use super::node::{Connection, NodeId, Plug};
 use super::nodes::Graph;
 use super::setting::Setting;
 
@@ -152,7 +152,7 @@ impl Graph {
     /// The mesh that [`Graph::set_rest_shape`] gives a cloth.
     pub fn rest_shape(&self, cloth: NodeId) -> Option<NodeId> {
         let is_mesh = |plug: &Plug| *plug == Plug::element(plug.node, &surface_shape::WORLD_MESH, 0);
-        let into = |wire: &&super::Connection| wire.to.attribute.name == n_cloth::REST_SHAPE_MESH.row.name;
+        let into = |wire: &&Connection| wire.to.attribute.name == n_cloth::REST_SHAPE_MESH.row.name;
         let from = self.arriving(cloth).find(into).map(|wire| wire.from);
         from.filter(is_mesh).map(|plug| plug.node)
     }
