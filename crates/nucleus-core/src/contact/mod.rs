@@ -34,6 +34,7 @@
 //! |---|---|
 //! | boxes, and the bounding volume hierarchy | [`bvh`] |
 //! | points, edges and triangles of a mesh, in groups; pseudonormals | [`boundary`] |
+//! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
 //! | force fields of objects | [`force_field`] |
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
@@ -89,10 +90,12 @@ pub mod cloth;
 pub mod collider;
 pub mod contact_state;
 pub mod depenetration;
+pub mod exclusion;
 pub mod force_field;
 pub mod ground;
 pub mod material;
 pub mod narrow_phase;
+pub mod pair_filter;
 pub mod push_out;
 pub mod response;
 pub mod restitution;

@@ -6,9 +6,11 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the attributes and motion of a frame | [`frame`] |
+//! | links of dynamic constraints | [`links`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
 pub mod frame;
+pub mod links;
 pub mod validation;
 
 /// A cloth of a model, counted in the order in which the builder received them.
