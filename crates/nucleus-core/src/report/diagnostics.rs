@@ -5,8 +5,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use nalgebra::Vector3;
 
-use crate::constraints::link::pass::max_weld_gap;
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
+use crate::constraints::link::pass::max_weld_gap;
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::contact::ClothStep;

@@ -10,8 +10,8 @@ use crate::input::frame::FrameInput;
 use crate::input::links::{ConstraintFrame, Link};
 use crate::math::Real;
 
-use super::rows::NO_LINK;
 use super::lists::{CombinedList, ConstraintLinks, Links};
+use super::rows::NO_LINK;
 
 /// Load in N/m that breaks half-strong glue (`glueStrength` 0.5).
 pub const LOAD_OF_HALF: f64 = 100.0;

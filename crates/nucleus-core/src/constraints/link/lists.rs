@@ -159,7 +159,12 @@ impl<R: Real> ConstraintLinks<R> {
     }
 
     /// Lays out links.
-    pub(super) fn new(links: Vec<Link>, layout: Layout, (cloths, colliders): Models<'_, R>, blocks: &AllBlocks) -> Self {
+    pub(super) fn new(
+        links: Vec<Link>,
+        layout: Layout,
+        (cloths, colliders): Models<'_, R>,
+        blocks: &AllBlocks,
+    ) -> Self {
         let mut own = Self { broken: vec![false; links.len()], ..Self::empty(layout) };
         let (mut pairs, mut combined) = (Vec::new(), Vec::new());
         for (at, link) in (0..).zip(&links) {
@@ -223,7 +228,13 @@ impl<R: Real> ConstraintLinks<R> {
     }
 
     /// One sweep over all links that are not on surfaces.
-    pub(super) fn sweep(&mut self, displacement: &mut [Row4<R>], pass: &LinkPass<R>, blocks: usize, pool: &ThreadPool) {
+    pub(super) fn sweep(
+        &mut self,
+        displacement: &mut [Row4<R>],
+        pass: &LinkPass<R>,
+        blocks: usize,
+        pool: &ThreadPool,
+    ) {
         let points = DisjointSlice::new(displacement);
         let pairs = &self.pairs;
         if pairs.len() > 0 {
@@ -375,4 +386,3 @@ impl<R: Real> Links<R> {
         }
     }
 }
-

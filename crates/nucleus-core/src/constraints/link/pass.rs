@@ -66,8 +66,7 @@ pub fn max_weld_gap<R: Real>(
         links.constraints.iter().zip(&frame.constraints).filter(|(own, _)| own.layout.is_weld)
     {
         let prescribed = Prescribed { colliders: colliders, frame: settings };
-        let whole =
-            own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && !link.on_surface);
+        let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && !link.on_surface);
         for (link, _) in whole {
             let ends = Ends::new(link, &model.cloths);
             let length = vector(link, &ends, state, prescribed, 1.0).norm();
@@ -98,13 +97,6 @@ pub fn relax_links<R: Real>(
     if !own.surface.is_empty() {
         let settings = &frame.constraints[sweep.constraint];
         let prescribed = Prescribed { colliders: colliders, frame: settings };
-        own.relax_surface(
-            sweep,
-            settings,
-            prescribed,
-            (&model.cloths, &model.colliders),
-            state,
-            [time, h],
-        );
+        own.relax_surface(sweep, settings, prescribed, (&model.cloths, &model.colliders), state, [time, h]);
     }
 }

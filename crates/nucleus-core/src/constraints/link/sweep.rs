@@ -12,4 +12,3 @@ pub struct LinkSweep<R> {
     /// Along surfaces.
     pub tangent: LinkStrength<R>,
 }
-

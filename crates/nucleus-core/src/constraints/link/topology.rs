@@ -87,4 +87,3 @@ impl Topology {
         self.surfaces.iter().find(|(known, _)| *known == id).map(|(_, faces)| faces)
     }
 }
-
