@@ -33,6 +33,12 @@ pub struct FrameStatistics {
     /// Edges of cloth that intersect faces of cloth.
     #[serde(alias = "tangled")]
     pub intersections: u64,
+    /// Broken links of constraints. This and the next are left out where they are zero.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub broken_links: u64,
+    /// Largest error of a weld, in metres.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub max_weld_gap: f64,
     /// In joules.
     pub kinetic_energy: f64,
     pub finite: bool,
@@ -41,6 +47,11 @@ pub struct FrameStatistics {
     pub sanitized: u64,
     #[serde(skip)]
     pub first_sanitized: Option<InvalidInput>,
+}
+
+/// Whether a figure is zero.
+fn is_zero<T: Default + PartialEq>(figure: &T) -> bool {
+    *figure == T::default()
 }
 
 impl FrameStatistics {
@@ -58,6 +69,8 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            broken_links,
+            max_weld_gap,
             kinetic_energy,
             finite,
             sanitized,
@@ -77,6 +90,8 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            broken_links,
+            max_weld_gap,
             kinetic_energy,
             finite,
             sanitized: sanitized.count,
@@ -97,6 +112,8 @@ impl FrameStatistics {
             pairs_unresolved: self.pairs_unresolved,
             depenetrating: self.depenetrating,
             intersections: self.intersections,
+            broken_links: self.broken_links,
+            max_weld_gap: self.max_weld_gap,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()

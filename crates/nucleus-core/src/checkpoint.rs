@@ -34,7 +34,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver 6";
+const KIND: [u8; 8] = *b"solver 7";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -76,7 +76,7 @@ pub fn restore<R: Real>(
 /// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
 /// rebuilt.
 fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
-    let Solver { model: _, state, contact, pool: _ } = solver;
+    let Solver { model: _, state, contact, links, pool: _ } = solver;
     // The ignored fields are rebuilt, or every frame writes them before it reads them.
     let ContactSystem {
         collider_states,
@@ -94,6 +94,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         ground_materials,
         material_maps: _,
         cloth_contacts,
+        pair_filter,
         touches,
         ground,
     } = contact;
@@ -106,10 +107,12 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     collider_states.save(out);
     cloth_contacts.save(out);
     ground.save(out);
+    pair_filter.save(out);
+    links.save(out);
 }
 
 fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
-    let Solver { state, contact, .. } = solver;
+    let Solver { state, contact, links, .. } = solver;
     load_column(&mut contact.interval_bounds, from)?;
     load_column(&mut contact.bounds_violated, from)?;
     contact.collider_materials = Encode::decode(from)?;
@@ -118,7 +121,9 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     state.load(from)?;
     contact.collider_states.load(from)?;
     contact.cloth_contacts.load(from)?;
-    contact.ground.load(from)
+    contact.ground.load(from)?;
+    contact.pair_filter.load(from)?;
+    links.load(from)
 }
 
 /// Contacts of a cloth near a collider that moves are valid for one frame only: the checkpoint keeps of them the points
@@ -198,6 +203,8 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
     if let Some(ClothContacts { elements, .. }) = &mut solver.contact.cloth_contacts {
         elements.refit();
     }
+    let models = (&solver.model.cloths[..], &solver.model.colliders[..]);
+    solver.links.rebuild(models);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
 }
 
@@ -253,7 +260,15 @@ fn references_are_valid<R: Real>(solver: &Solver<R>) -> bool {
         .is_none_or(|contacts| cloth_contacts_are_valid(contacts, &solver.model.cloths));
     let in_range = |column: &[Vector3<f64>]| column.iter().all(is_in_range);
     let mut colliders = solver.contact.collider_states.iter();
-    pairs && cloth_contacts && colliders.all(|collider| in_range(&collider.start) && in_range(&collider.end))
+    let links = solver.links.are_valid(&solver.model.cloths, &solver.model.colliders);
+    let rows = solver.state.anchor.len();
+    let sizes = solver.model.colliders.iter().map(|collider| collider.positions.len());
+    let filter = solver.contact.pair_filter.is_valid(rows, sizes);
+    links
+        && filter
+        && pairs
+        && cloth_contacts
+        && colliders.all(|collider| in_range(&collider.start) && in_range(&collider.end))
 }
 
 fn pairs_are_valid<R: Real>(

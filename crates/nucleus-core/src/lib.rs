@@ -46,12 +46,17 @@ mod state;
 mod step;
 
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
+pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
+pub use contact::pair_filter::MAX_EXCLUSIONS;
 pub use input::fields::{PointField, WindField};
 pub use input::frame::{
     BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
     Stiffness,
+};
+pub use input::links::{
+    ConstraintFrame, ExcludedSide, Exclusion, Falloff, Link, LinkForce, LinkMethod, LinkSide,
 };
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};

@@ -152,6 +152,10 @@ pub struct StepReport {
     pub depenetrating: u64,
     /// Edges of cloth that intersect faces of cloth at the end of the frame, in untangling.
     pub intersections: u64,
+    /// Links of dynamic constraints that are broken at the end of the frame.
+    pub broken_links: u64,
+    /// Largest distance in metres of two places that are welded, beyond their distance at rest, at the end of the frame.
+    pub max_weld_gap: f64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -177,6 +181,8 @@ impl Default for StepReport {
             pairs_unresolved: 0,
             depenetrating: 0,
             intersections: 0,
+            broken_links: 0,
+            max_weld_gap: 0.0,
             kinetic_energy: 0.0,
             finite: true,
             sanitized: Sanitized::default(),

@@ -1,12 +1,15 @@
-//! The solver: its data in four groups (model, state, contact, threads), and its public methods.
+//! The solver: its data in five groups (model, state, contact, links, threads), and its public methods.
 
 use nalgebra::Vector3;
 
 use crate::bytes::RestoreError;
+use crate::constraints::link::lists::Links;
+use crate::constraints::link::sizes::ModelSizes;
 use crate::constraints::whole;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
+use crate::input::links::Link;
 use crate::input::validation::LastPositions;
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
@@ -27,6 +30,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) state: State<R>,
     /// Colliders in motion, contacts, and their candidates.
     pub(crate) contact: ContactSystem<R>,
+    /// The links of dynamic constraints.
+    pub(crate) links: Links<R>,
     pub(crate) pool: ThreadPool,
 }
 
@@ -125,7 +130,8 @@ impl<R: Real> Solver<R> {
         let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
         drop(cloths);
         let model = Model { cloths: models, colliders };
-        let mut solver = Self { model, state, contact, pool };
+        let links = Links::new(&model.cloths);
+        let mut solver = Self { model, state, contact, links, pool };
         update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
         solver
     }
@@ -138,7 +144,7 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         counters: &'a mut ContactCounters,
     ) -> ContactPass<'a, R> {
-        let Self { model, state, contact, pool } = self;
+        let Self { model, state, contact, pool, .. } = self;
         ContactPass { model, frame, schedule, span, pool, state, contact, counters }
     }
 
@@ -173,6 +179,15 @@ impl<R: Real> LastPositions for Solver<R> {
 
     fn cloth_points(&self, cloth: ClothId) -> usize {
         self.model.cloths[cloth.index()].points().len()
+    }
+
+    fn has_link(&self, link: &Link) -> bool {
+        let Model { cloths, colliders } = &self.model;
+        let sizes = ModelSizes {
+            cloths: &|cloth| cloths.get(cloth).map(|cloth| cloth.points().len()),
+            colliders: &|collider| colliders.get(collider).map(|collider| collider.positions.len()),
+        };
+        sizes.has(link)
     }
 }
 

@@ -15,11 +15,16 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use crate::constraints::damp::damp;
+use crate::constraints::link::glue::break_links;
+use crate::constraints::link::pass::{begin_links, relax_links};
+use crate::constraints::link::surface::slide_links;
+use crate::constraints::link::velocity::{apply_link_forces, damp_links};
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
+use crate::contact::exclusion::update_pair_filter;
 use crate::contact::force_field::apply_force_fields;
 use crate::contact::point_field::apply_point_fields;
 use crate::contact::push_out::push_out;
@@ -98,7 +103,10 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
         collider.begin_frame(&motion.start, &motion.end);
     }
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
-    solver.contact.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
+    let Solver { model, state, contact, links, .. } = solver;
+    let links_changed = begin_links(links, model, state, &contact.collider_states, frame);
+    update_pair_filter(contact, model, links, frame, links_changed);
+    contact.ground.begin_frame(frame.plane.as_ref(), &state.anchor, &contact.pair_filter);
 }
 
 /// All substeps of a frame, unless the observer ends it before.
@@ -112,7 +120,8 @@ fn solve_substeps<R: CompiledReal>(
     let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
     // Alternating sweeps have two balances, one per direction: pinned or resting cloth would tremble between them.
     // Only cloth that moves freely is stirred by sweeps in one direction.
-    let alternates_direction = frame.pins.is_empty() && !solver.contact.touches;
+    let alternates_direction =
+        frame.pins.is_empty() && !solver.contact.touches && !solver.links.hold_anything();
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
         update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
@@ -120,13 +129,14 @@ fn solve_substeps<R: CompiledReal>(
             f64::from(substep - 1) / f64::from(schedule.substeps),
             frame.duration / f64::from(schedule.substeps),
         );
-        let Solver { model, state, contact, pool } = solver;
+        let Solver { model, state, contact, links, pool } = solver;
         let objects =
             Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
         update_local_wind(&objects, state, frame, pool);
         push_out(model, state, contact, frame, time);
         apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
         apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
+        apply_link_forces(links, (model, &contact.collider_states), state, frame, [time, length]);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
@@ -140,6 +150,11 @@ fn solve_substeps<R: CompiledReal>(
         }
         let substep_length = schedule.h * f64::from(schedule.steps);
         damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+        let end = f64::from(substep) / f64::from(schedule.substeps);
+        let Solver { model, state, contact, links, .. } = solver;
+        damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
+        let has_broken = break_links(links, frame, substep_length);
+        update_pair_filter(contact, model, links, frame, has_broken);
         solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
@@ -162,6 +177,9 @@ fn solve_time_step<R: CompiledReal>(
     solver.state.store_step_start(schedule.h, can_touch);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
     predict(&solver.model.cloths, &mut solver.state, now, &solver.pool);
+    let Solver { model, state, contact, links, .. } = solver;
+    let models = (&model.cloths[..], &model.colliders[..]);
+    slide_links(links, models, state, &contact.collider_states, frame, [span.to, schedule.h]);
     for pass in &schedule.passes {
         observer.should_continue()?;
         match pass {
@@ -187,6 +205,13 @@ fn solve_time_step<R: CompiledReal>(
                     [span.to, schedule.h],
                     &solver.pool,
                 );
+            }
+            Pass::Links(at) => {
+                observer.enter(Stage::Constraints);
+                let Solver { model, state, contact, links, pool } = solver;
+                let sweep = &schedule.links[*at];
+                let read = (&*model, &contact.collider_states[..], frame);
+                relax_links(links, sweep, read, state, [span.to, schedule.h], pool);
             }
             Pass::ClothContact => {
                 let pass = &mut solver.contact_pass(frame, schedule, span, counters);

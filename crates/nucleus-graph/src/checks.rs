@@ -102,7 +102,7 @@ pub const MAX_STRETCH: &str = "maxStretch";
 pub const RENAMED: &[(&str, &str)] =
     &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
-static FORMS: [Form; 12] = [
+static FORMS: [Form; 15] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
@@ -192,6 +192,35 @@ static FORMS: [Form; 12] = [
         bound: Bound::AtMost,
         limit: |_| 0.0,
         figure: |sample, _| Some(if sample.report.finite { 0.0 } else { 1.0 }),
+    },
+    Form {
+        name: "maxWeldGap",
+        doc: "Nothing that is welded is farther apart than at rest by more than this many metres.",
+        parameters: &["distance"],
+        values: Values::Numbers,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |sample, _| Some(sample.report.max_weld_gap),
+    },
+    Form {
+        name: "maxBroken",
+        doc: "No more links of constraints break than this.",
+        parameters: &["links"],
+        values: Values::Counts,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |sample, _| Some(sample.report.broken_links as f64),
+    },
+    Form {
+        name: "tornBy",
+        doc: "From this frame on at least so many links of constraints are broken.",
+        parameters: &["frame", "links"],
+        values: Values::Counts,
+        bound: Bound::AtLeast,
+        limit: |arguments| arguments[1],
+        figure: |sample, arguments| {
+            (sample.frame as f64 >= arguments[0]).then_some(sample.report.broken_links as f64)
+        },
     },
     Form {
         name: "separatedBy",

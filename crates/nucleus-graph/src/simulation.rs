@@ -20,7 +20,7 @@ mod combined;
 mod nucleus_run;
 
 /// Identifies the layout of a checkpoint; the number increases whenever the layout changes.
-const CHECKPOINT_KIND: [u8; 8] = *b"nuclei 1";
+const CHECKPOINT_KIND: [u8; 8] = *b"nuclei 2";
 
 /// A run of a program, at one of its frames.
 ///

@@ -161,9 +161,9 @@ fn scene(parts: &[u8], seeds: &[Seed], shift: usize) -> Scene {
         });
         let component = |selection| Component { object: graph.node(*object).name().to_owned(), selection };
         let components = vec![
-            component(Selection::Points { first: 0, last: 3 }),
-            component(Selection::Points { first: 4, last: 4 }),
-            component(Selection::Points { first: 1, last: 2 }),
+            component(Selection::points(0, 3)),
+            component(Selection::points(4, 4)),
+            component(Selection::points(1, 2)),
         ];
         let row = &dynamic_constraint::COMPONENTS.row;
         graph.set(constraint, row, Setting::Fixed(Value::Components(components.clone()))).unwrap();

@@ -23,6 +23,9 @@ pub struct Info {
     /// Verify every frame of the cache and count the bytes of each channel, even in a file larger than 500 MB.
     #[arg(long)]
     verify: bool,
+    /// Of a scene: list the points, edges and faces that its constraints select.
+    #[arg(long)]
+    points: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -58,7 +61,7 @@ impl Info {
         let info = scene_info::SceneInfo::of(&scene, &program);
         match self.json {
             true => output::print_json(&info.as_json())?,
-            false => output::print(&info.as_text(&self.file.display().to_string())?)?,
+            false => output::print(&info.as_text(&self.file.display().to_string(), self.points)?)?,
         }
         Ok(Outcome::Success)
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use nucleus_core::{ClothId, FrameInput, PassCost, PhysicalStiffness, ResistanceModel, classic_stiffness};
 use nucleus_graph::Simulation;
-use nucleus_graph::compile::{Object, ObjectKind, Program};
+use nucleus_graph::compile::{NamedSelection, Object, ObjectKind, Program};
 use nucleus_graph::scene::{Scene, TimeSpan};
 use serde_json::{Value, json};
 
@@ -18,6 +18,7 @@ pub struct SceneInfo {
     nodes: Vec<(String, &'static str)>,
     nuclei: Vec<NucleusFacts>,
     objects: Vec<ObjectFacts>,
+    selections: Vec<NamedSelection>,
 }
 
 /// A nucleus with its objects and the cost of its passes.
@@ -57,11 +58,13 @@ impl SceneInfo {
             })
             .collect();
         let objects = program.objects().iter().map(|object| facts(object, program, &simulation, &nuclei));
-        Self { time: program.time(), nodes, objects: objects.collect(), nuclei }
+        let objects = objects.collect();
+        let selections = program.nuclei().iter().flat_map(|nucleus| nucleus.selections().to_vec()).collect();
+        Self { time: program.time(), nodes, objects, nuclei, selections }
     }
 
-    /// The information as text.
-    pub fn as_text(&self, name: &str) -> Result<String, std::fmt::Error> {
+    /// The information as text; `lists_elements`: with what constraints select.
+    pub fn as_text(&self, name: &str, lists_elements: bool) -> Result<String, std::fmt::Error> {
         let TimeSpan { start, end, fps } = self.time;
         let mut text = format!("{name}: frames {start} to {end} at {} per second\n", figures::number(fps));
         for nucleus in &self.nuclei {
@@ -72,6 +75,9 @@ impl SceneInfo {
         }
         for object in &self.objects {
             writeln!(text, "object {}", object.line())?;
+        }
+        for selection in self.selections.iter().filter(|_| lists_elements) {
+            writeln!(text, "{}", selection_line(selection))?;
         }
         let passes = || self.nuclei.iter().flat_map(|nucleus| &nucleus.passes);
         let total: f64 = passes().map(PassCost::evaluations).sum();
@@ -102,11 +108,43 @@ impl SceneInfo {
         let node = |(name, node_type): &(String, &str)| json!({ "name": name, "type": node_type });
         json!({
             "frames": { "start": self.time.start, "end": self.time.end, "per_second": self.time.fps },
+            "selections": self.selections.iter().map(selection_json).collect::<Vec<_>>(),
             "nodes": self.nodes.iter().map(node).collect::<Vec<_>>(),
             "objects": self.objects.iter().map(ObjectFacts::as_json).collect::<Vec<_>>(),
             "nuclei": self.nuclei.iter().map(NucleusFacts::as_json).collect::<Vec<_>>(),
         })
     }
+}
+
+/// `select hand: sheet.vtx[3, 5:8], 5 points`.
+fn selection_line(selection: &NamedSelection) -> String {
+    let NamedSelection { owner, object, kind, elements } = selection;
+    let count = figures::count(elements.len(), kind.noun());
+    format!("select {owner}: {object}.{}[{}], {count}", kind.word(), ranges(elements))
+}
+
+fn selection_json(selection: &NamedSelection) -> Value {
+    let NamedSelection { owner, object, kind, elements } = selection;
+    json!({ "owner": owner, "object": object, "kind": kind.noun(), "count": elements.len(), "elements": elements })
+}
+
+/// `3, 5:8`: numbers in order, runs as their ends; the first twelve.
+fn ranges(elements: &[u32]) -> String {
+    let mut sorted = elements.to_vec();
+    sorted.sort_unstable();
+    let mut runs: Vec<[u32; 2]> = Vec::new();
+    for at in sorted {
+        match runs.last_mut() {
+            Some(run) if run[1] + 1 == at => run[1] = at,
+            _ => runs.push([at; 2]),
+        }
+    }
+    let more = if runs.len() > 12 { ", ..." } else { "" };
+    let run = |[first, last]: &[u32; 2]| match first == last {
+        true => first.to_string(),
+        false => format!("{first}:{last}"),
+    };
+    runs.iter().take(12).map(run).collect::<Vec<_>>().join(", ") + more
 }
 
 impl NucleusFacts {

@@ -9,11 +9,15 @@ use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::contact::pair_filter::PairFilter;
 use crate::contact::response::{Adhesion, Push, coulomb_correction};
 use crate::contact::time_step::PositionWriter;
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::schedule::StepInterval;
+
+/// Height in metres of points that do not collide with the plane.
+const FAR_ABOVE: f64 = 1e12;
 
 /// A point of a plane in metres, and its unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,8 +62,8 @@ impl<R: Real> Default for Ground<R> {
 
 impl<R: Real> Ground<R> {
     /// Takes up the plane of a frame. It starts where the last frame left it; a plane that appears or turns over
-    /// at once does not move.
-    pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]]) {
+    /// at once does not move. Points that do not collide with it are far above it.
+    pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]], filter: &PairFilter) {
         let now = ground.map(Plane::new);
         let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
         self.start = now.map(|now| self.end.filter(|last| !turns_over(last)).unwrap_or(now));
@@ -68,6 +72,10 @@ impl<R: Real> Ground<R> {
             heights.clear();
             let of = |plane: Plane| anchors.iter().map(move |&anchor| R::from_f64(plane.height(anchor)));
             heights.extend(plane.into_iter().flat_map(of));
+            if !filter.is_empty() {
+                let excluded = (0..).zip(heights.iter_mut()).filter(|(row, _)| filter.excludes_ground(*row));
+                excluded.for_each(|(_, height)| *height = R::from_f64(FAR_ABOVE));
+            }
         }
     }
 
@@ -242,10 +250,10 @@ mod tests {
     fn a_plane_moves_within_a_frame_from_where_the_last_one_left_it() {
         let mut ground = Ground::<f64>::default();
         let up = [0.0, 1.0, 0.0];
-        ground.begin_frame(Some(&plane([0.0; 3], up)), &[[0.0, 1.0, 0.0]]);
+        ground.begin_frame(Some(&plane([0.0; 3], up)), &[[0.0, 1.0, 0.0]], &PairFilter::default());
         let step = ground.in_step(half_way()).expect("a plane");
         assert_eq!(step.height_now(0, [0.0; 3]), 1.0, "one that appears is there from the start");
-        ground.begin_frame(Some(&plane([0.0, 0.2, 0.0], up)), &[[0.0, 1.0, 0.0]]);
+        ground.begin_frame(Some(&plane([0.0, 0.2, 0.0], up)), &[[0.0, 1.0, 0.0]], &PairFilter::default());
         let step = ground.in_step(half_way()).expect("a plane");
         assert!((step.height_now(0, [0.0; 3]) - 0.9).abs() < 1e-12);
         assert!((step.velocity(0, [0.0; 3], 0.5)[1] - 0.2).abs() < 1e-12, "it rises by 0.1 m in 0.5 s");
@@ -255,8 +263,12 @@ mod tests {
     fn a_plane_that_tilts_is_halfway_tilted_in_the_middle_of_the_frame() {
         let mut ground = Ground::<f64>::default();
         let (at, slope) = ([[1.0, 0.0, 0.0]], 0.3f64);
-        ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &at);
-        ground.begin_frame(Some(&plane([0.0; 3], [-slope.sin(), slope.cos(), 0.0])), &at);
+        ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &at, &PairFilter::default());
+        ground.begin_frame(
+            Some(&plane([0.0; 3], [-slope.sin(), slope.cos(), 0.0])),
+            &at,
+            &PairFilter::default(),
+        );
         let step = ground.in_step(half_way()).expect("a plane");
         let expected = (slope / 2.0).sin();
         assert!((step.height_now(0, [0.0; 3]) + expected).abs() < 1e-12, "below it by the sine of the angle");
@@ -265,8 +277,16 @@ mod tests {
     #[test]
     fn a_plane_that_turns_over_does_not_sweep() {
         let mut ground = Ground::<f64>::default();
-        ground.begin_frame(Some(&plane([0.0; 3], [0.0, 1.0, 0.0])), &[[0.0, 1.0, 0.0]]);
-        ground.begin_frame(Some(&plane([0.0; 3], [0.0, -1.0, 0.0])), &[[0.0, 1.0, 0.0]]);
+        ground.begin_frame(
+            Some(&plane([0.0; 3], [0.0, 1.0, 0.0])),
+            &[[0.0, 1.0, 0.0]],
+            &PairFilter::default(),
+        );
+        ground.begin_frame(
+            Some(&plane([0.0; 3], [0.0, -1.0, 0.0])),
+            &[[0.0, 1.0, 0.0]],
+            &PairFilter::default(),
+        );
         let step = ground.in_step(half_way()).expect("a plane");
         assert_eq!(step.height_now(0, [0.0; 3]), -1.0);
     }

@@ -36,6 +36,7 @@
 //! | points, edges and triangles of a mesh, in groups; pseudonormals | [`boundary`] |
 //! | force fields of surfaces, and of points | [`force_field`], [`point_field`] |
 //! | the nearest point of a surface, and what a ray hits | [`placed_surface`] |
+//! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`] |
@@ -90,10 +91,12 @@ pub mod cloth;
 pub mod collider;
 pub mod contact_state;
 pub mod depenetration;
+pub mod exclusion;
 pub mod force_field;
 pub mod ground;
 pub mod material;
 pub mod narrow_phase;
+pub mod pair_filter;
 pub mod placed_surface;
 pub mod point_field;
 pub mod push_out;

@@ -10,6 +10,7 @@ use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::motion_bounds::MotionBox;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
@@ -50,6 +51,8 @@ pub struct ContactSystem<R: Real> {
     pub contact_mask: Vec<bool>,
     /// Whether each cloth has a contact without certificate.
     pub has_unproven: Vec<AtomicBool>,
+    /// Elements that do not collide with each other.
+    pub pair_filter: PairFilter,
     /// Whether the last frame had a contact.
     pub touches: bool,
     /// The ground plane.
@@ -84,6 +87,7 @@ impl<R: Real> ContactSystem<R> {
             cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
             contact_mask: Vec::with_capacity(models.len()),
             has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
+            pair_filter: PairFilter::default(),
             // Cloth that starts from a saved state may be in contact; only a frame can tell.
             touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
             ground: Ground::default(),

@@ -3,9 +3,12 @@
 //! Animation is evaluated once per frame and interpolated linearly inside it (§2.4), so every moving thing has two
 //! positions, at the start of the frame and at its end.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use crate::input::fields::{FALLOFF_SAMPLES, PointField, WindField};
+use crate::input::links::{ConstraintFrame, Exclusion};
 use crate::input::{ClothId, PointId};
 
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
@@ -59,6 +62,10 @@ pub struct FrameInput {
     pub wind_noise: f64,
     /// Input meshes that attract or drag a cloth, at most one per cloth.
     pub input_meshes: Vec<InputMesh>,
+    /// The dynamic constraints, in the same order in every frame.
+    pub constraints: Vec<ConstraintFrame>,
+    /// Elements that do not collide with each other, [`MAX_EXCLUSIONS`](crate::MAX_EXCLUSIONS) at most.
+    pub exclusions: Vec<Arc<Exclusion>>,
 }
 
 impl Default for FrameInput {
@@ -80,6 +87,8 @@ impl Default for FrameInput {
             pins: Vec::new(),
             wind_noise: 0.0,
             input_meshes: Vec::new(),
+            constraints: Vec::new(),
+            exclusions: Vec::new(),
         }
     }
 }

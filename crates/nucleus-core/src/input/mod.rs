@@ -7,10 +7,12 @@
 //! |---|---|
 //! | the attributes and motion of a frame | [`frame`] |
 //! | what objects do to the air and to each other at a distance | [`fields`] |
+//! | links of dynamic constraints | [`links`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
 pub mod fields;
 pub mod frame;
+pub mod links;
 pub mod validation;
 
 /// A cloth of a model, counted in the order in which the builder received them.

@@ -11,12 +11,13 @@
 
 use std::borrow::Cow;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::input::fields::{PointField, WindField};
 use crate::input::frame::{
     ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
 };
+use crate::input::links::{ConstraintFrame, Falloff, Link};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
@@ -41,6 +42,8 @@ pub enum InvalidInput {
     Collider(ColliderId),
     /// Gravity, wind, the ground plane or another setting of the solver.
     Setting,
+    /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
+    Constraint(u32),
     /// The duration of the frame, which must be above zero.
     Duration,
 }
@@ -74,6 +77,8 @@ pub trait LastPositions {
     fn cloth_point(&self, cloth: ClothId, point: PointId) -> Vector3<f64>;
     /// How many points a cloth has.
     fn cloth_points(&self, cloth: ClothId) -> usize;
+    /// Whether all that a link refers to exists, and its numbers are finite.
+    fn has_link(&self, link: &Link) -> bool;
 }
 
 /// The frame with every invalid value replaced, and what was replaced. A valid frame is not copied.
@@ -98,6 +103,11 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
         sanitize_collider(id, collider, last.collider(id), &mut sanitized);
     }
     sanitize_pins(&mut frame, last, &mut sanitized);
+    for (at, constraint) in (0..).zip(&mut frame.constraints) {
+        if sanitize_constraint(constraint, last) {
+            sanitized.add(InvalidInput::Constraint(at));
+        }
+    }
     let meshes = std::mem::take(&mut frame.input_meshes);
     let (valid, invalid): (Vec<_>, Vec<_>) = meshes.into_iter().partition(|mesh| is_valid_mesh(mesh, last));
     invalid.iter().for_each(|mesh| sanitized.add(InvalidInput::InputMesh(mesh.cloth)));
@@ -120,6 +130,7 @@ fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
         && (0..).map(ColliderId).zip(&frame.colliders).all(is_valid_collider)
         && frame.pins.iter().all(|pin| is_in_range(&pin.start) && is_in_range(&pin.end))
         && frame.input_meshes.iter().all(|mesh| is_valid_mesh(mesh, last))
+        && frame.constraints.iter().all(|constraint| is_valid_constraint(constraint, last))
 }
 
 fn is_valid_mesh(mesh: &InputMesh, last: &impl LastPositions) -> bool {
@@ -178,6 +189,8 @@ fn settings_of(frame: &FrameInput) -> FrameInput {
         colliders: Vec::new(),
         pins: Vec::new(),
         input_meshes: Vec::new(),
+        constraints: Vec::new(),
+        exclusions: Vec::new(),
         ..*frame
     }
 }
@@ -250,6 +263,53 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle].into_iter();
     let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
     vectors | numbers | yields | fields | sanitize_pressure(&mut cloth.pressure)
+}
+
+fn is_valid_constraint(constraint: &ConstraintFrame, last: &impl LastPositions) -> bool {
+    let links = constraint.formed.iter().flatten().all(|link| last.has_link(link));
+    links && !sanitize_constraint(&mut ConstraintFrame { formed: None, ..constraint.clone() }, last)
+}
+
+/// Replaces invalid numbers of a constraint, and drops invalid links; whether there were any.
+fn sanitize_constraint(constraint: &mut ConstraintFrame, last: &impl LastPositions) -> bool {
+    let mut replaced = sanitize_numbers([
+        (&mut constraint.strength, 0.0),
+        (&mut constraint.tangent_strength, 0.0),
+        (&mut constraint.rest_scale, 1.0),
+        (&mut constraint.friction, 0.0),
+        (&mut constraint.damp, 0.0),
+        (&mut constraint.motion_drag, 0.0),
+        (&mut constraint.glue_strength, 1.0),
+        (&mut constraint.glue_scale, 1.0),
+    ]);
+    let [least, most] = &mut constraint.iterations;
+    replaced |= sanitize_numbers([(least, 0.0), (most, MAX_COORDINATE)]);
+    if constraint.keep_off.is_some_and(|distance| !distance.is_finite()) {
+        constraint.keep_off = None;
+        replaced = true;
+    }
+    let is_finite = |ramp: &Falloff| ramp.distance.is_finite() && ramp.samples.iter().all(|x| x.is_finite());
+    if constraint.force.is_some_and(|force| !force.acceleration.is_finite() || !is_finite(&force.falloff)) {
+        constraint.force = None;
+        replaced = true;
+    }
+    if constraint.dropoff.as_ref().is_some_and(|dropoff| !is_finite(dropoff)) {
+        constraint.dropoff = None;
+        replaced = true;
+    }
+    let is_space = |(linear, offset): &(Matrix3<f64>, Vector3<f64>)| {
+        linear.iter().all(|x| x.is_finite()) && is_in_range(offset)
+    };
+    if !constraint.space.iter().all(is_space) {
+        constraint.space = ConstraintFrame::default().space;
+        replaced = true;
+    }
+    if let Some(links) = &mut constraint.formed {
+        let before = links.len();
+        links.retain(|link| last.has_link(link));
+        replaced |= links.len() < before;
+    }
+    replaced
 }
 
 fn sanitize_pressure(pressure: &mut Pressure) -> bool {

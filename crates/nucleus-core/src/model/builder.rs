@@ -195,6 +195,11 @@ impl ModelBuilder {
         self.cloths[cloth.index()].positions()
     }
 
+    /// The colliders, by their ids.
+    pub fn colliders(&self) -> &[Collider] {
+        &self.colliders
+    }
+
     /// Adds a collider.
     ///
     /// # Errors

@@ -59,6 +59,69 @@ impl Blocks {
     }
 }
 
+/// A division of rows of the columns into blocks, each swept by one task.
+pub trait Partition {
+    /// The number of blocks.
+    fn len(&self) -> usize;
+    /// The block of a point.
+    fn of(&self, point: u32) -> u32;
+    /// A padding point without mass for a block, or (`block` = `len()`) for interface rows; see
+    /// [`Blocks::padding_point`].
+    fn padding_point(&self, block: usize) -> u32;
+    /// All rows, padding among them.
+    fn span(&self) -> Range<u32>;
+}
+
+impl Partition for Blocks {
+    fn len(&self) -> usize {
+        self.len()
+    }
+    fn of(&self, point: u32) -> u32 {
+        self.of(point)
+    }
+    fn padding_point(&self, block: usize) -> u32 {
+        self.padding_point(block)
+    }
+    fn span(&self) -> Range<u32> {
+        self.first..self.first + self.points
+    }
+}
+
+/// The blocks of several cloths, whose rows follow each other in the columns.
+#[derive(Debug, Clone, Default)]
+pub struct AllBlocks {
+    cloths: Vec<Blocks>,
+    /// Number of blocks before each cloth.
+    before: Vec<usize>,
+}
+
+impl AllBlocks {
+    /// The blocks of these cloths, counted through.
+    pub fn new(cloths: impl Iterator<Item = Blocks>) -> Self {
+        let cloths: Vec<Blocks> = cloths.collect();
+        let count = |sum: &mut usize, blocks: &Blocks| Some(std::mem::replace(sum, *sum + blocks.len()));
+        let before = cloths.iter().scan(0, count).collect();
+        Self { cloths, before }
+    }
+}
+
+impl Partition for AllBlocks {
+    fn len(&self) -> usize {
+        self.before.last().zip(self.cloths.last()).map_or(0, |(before, last)| before + last.len())
+    }
+    fn of(&self, point: u32) -> u32 {
+        let cloth = self.cloths.partition_point(|blocks| blocks.first <= point) - 1;
+        self.before[cloth] as u32 + self.cloths[cloth].of(point)
+    }
+    fn padding_point(&self, block: usize) -> u32 {
+        let cloth = self.before.partition_point(|&before| before <= block) - 1;
+        self.cloths[cloth].padding_point(block - self.before[cloth])
+    }
+    fn span(&self) -> Range<u32> {
+        0..self.cloths.last().map_or(0, |last| last.first + last.columns())
+    }
+}
+
 /// A row before it is laid out; its points determine its block and colour.
 pub trait Row: Copy {
     /// Four rows side by side.
@@ -99,13 +162,13 @@ impl<G> Default for RowList<G> {
 
 impl<G> RowList<G> {
     /// Lays out rows; within a colour they keep their order.
-    pub fn new<T: Row<Group = G>>(rows: &[T], blocks: &Blocks) -> Self {
+    pub fn new<T: Row<Group = G>>(rows: &[T], blocks: &impl Partition) -> Self {
         Self::in_levels(rows, &[], blocks)
     }
 
     /// Lays out rows level by level, each of which is coloured for itself: in a block, and among the interface rows,
     /// rows of a lower level come first. `levels` has one entry per row, or is empty for a single level.
-    pub fn in_levels<T: Row<Group = G>>(rows: &[T], levels: &[u32], blocks: &Blocks) -> Self {
+    pub fn in_levels<T: Row<Group = G>>(rows: &[T], levels: &[u32], blocks: &impl Partition) -> Self {
         let mut list = Self { rows: rows.len(), ..Self::default() };
         if rows.is_empty() {
             return list;
@@ -181,6 +244,17 @@ impl<G> RowList<G> {
         }
     }
 
+    /// The index of the first lane group of a batch, for columns beside the groups.
+    pub fn first_group(&self, batch: RowBatch) -> usize {
+        match batch {
+            RowBatch::Interior(block) => self.interior.get(block).map_or(0, |range| range.start as usize),
+            RowBatch::Interface(..) if self.rows == 0 => 0,
+            RowBatch::Interface(colour, task) => {
+                self.interface[colour].start as usize + task * GROUPS_PER_TASK as usize
+            }
+        }
+    }
+
     /// The interface rows of one task.
     pub fn interface(&self, colour: usize, task: usize) -> &[G] {
         let Range { start, end } = self.interface[colour].clone();
@@ -197,8 +271,9 @@ struct Colours {
 }
 
 impl Colours {
-    fn new(blocks: &Blocks) -> Self {
-        Self { first: blocks.first, taken: vec![0; blocks.points as usize] }
+    fn new(blocks: &impl Partition) -> Self {
+        let span = blocks.span();
+        Self { first: span.start, taken: vec![0; span.len()] }
     }
 
     /// The rows by level, and in each by colour.

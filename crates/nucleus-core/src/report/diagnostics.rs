@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::Vector3;
 
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
+use crate::constraints::link::pass::max_weld_gap;
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::contact::ClothStep;
@@ -60,6 +61,14 @@ pub fn report<R: Real>(
             .cloth_contacts
             .as_ref()
             .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
+        broken_links: solver.links.broken(),
+        max_weld_gap: max_weld_gap(
+            &solver.links,
+            &solver.model,
+            &solver.state,
+            &solver.contact.collider_states,
+            frame,
+        ),
         kinetic_energy,
         finite,
         ..StepReport::default()

@@ -2,6 +2,7 @@
 //! absent.
 
 use crate::constraints::damp::Damping;
+use crate::constraints::link::sweep::LinkSweep;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
 use crate::input::fields::PointField;
@@ -32,6 +33,14 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
     passes.extend(whole_passes(solver, frame, &schedule));
+    let pass = |sweep: &LinkSweep<R>| {
+        let own = |pass: &&Pass| matches!(pass, Pass::Links(at) if schedule.links[*at].constraint == sweep.constraint);
+        let sweeps = schedule.passes.iter().filter(own).count() as f64 * f64::from(steps);
+        let formed = frame.constraints[sweep.constraint].formed.as_ref().map(Vec::len);
+        let rows = formed.or_else(|| solver.links.constraints.get(sweep.constraint).map(|own| own.rows()));
+        PassCost { name: "links", rows: rows.unwrap_or_default(), sweeps }
+    };
+    passes.extend(schedule.links.iter().map(pass));
     let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
         let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
         cloth.damps && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()

@@ -24,12 +24,14 @@ use std::borrow::Cow;
 
 use crate::constraints::angle::AngleStrength;
 use crate::constraints::bend::BendStrength;
+use crate::constraints::link::sweep::LinkSweep;
 use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
 use crate::constraints::strength_map::Sides;
 use crate::constraints::stretch::LinkStrength;
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, Pressure, ResistanceModel};
+use crate::input::links::LinkMethod;
 use crate::math::Real;
-use crate::schedule::resistance::{PhysicalStiffness, Share, share, steps};
+use crate::schedule::resistance::{PhysicalStiffness, STIFFNESS_PER_RESISTANCE, Share, share, steps};
 
 /// One sweep of one effect over one cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +80,8 @@ pub enum Pass {
     Constraints(std::ops::Range<usize>),
     /// An effect on a whole cloth, of [`Schedule::wholes`].
     Whole(usize),
+    /// One pass over the links of a constraint, of [`Schedule::links`].
+    Links(usize),
     /// One pass over the contacts of cloth with itself and with other cloth.
     ClothContact,
     /// One pass over the contacts with colliders and the ground plane.
@@ -113,6 +117,8 @@ pub struct Schedule<R> {
     pub sweeps: Vec<Sweep<R>>,
     /// All effects on whole cloths of a time step.
     pub wholes: Vec<WholeSweep>,
+    /// All passes over links of a time step, by their constraints.
+    pub links: Vec<LinkSweep<R>>,
     /// The passes of a time step, in order; the same in every one.
     pub passes: Vec<Pass>,
 }
@@ -127,8 +133,8 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { evaluations } => steps(evaluations, substep),
         };
         let h = substep / f64::from(steps);
-        let (sweeps, wholes, passes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut schedule = Self { substeps, steps, splits: 1, h, sweeps, wholes, passes };
+        let (sweeps, wholes, links, passes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut schedule = Self { substeps, steps, splits: 1, h, sweeps, wholes, links, passes };
         schedule.plan(frame);
         schedule
     }
@@ -139,8 +145,8 @@ impl<R: Real> Schedule<R> {
             return Cow::Borrowed(self);
         }
         let h = self.h / f64::from(splits);
-        let (sweeps, wholes, passes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut split = Self { splits, h, sweeps, wholes, passes, ..*self };
+        let (sweeps, wholes, links, passes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut split = Self { splits, h, sweeps, wholes, links, passes, ..*self };
         split.plan(frame);
         Cow::Owned(split)
     }
@@ -159,6 +165,7 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps, &mut self.wholes),
         };
         self.push_outwards(frame);
+        self.join(frame);
         let self_collides = |cloth: &ClothFrame| cloth.self_collision.on;
         let has_cloth_contact = frame.cloths.len() > 1 || frame.cloths.iter().any(self_collides);
         if !has_cloth_contact {
@@ -166,6 +173,26 @@ impl<R: Real> Schedule<R> {
         }
         if has_cloth_contact || frame.colliders.iter().any(|collider| collider.collide) {
             self.passes.push(Pass::Safeguard);
+        }
+    }
+
+    /// Adds the passes over links before the last contact passes: springs first, then welds, which are exact.
+    ///
+    /// Classic passes are due like those of cloth, at equal parts of the substep.
+    fn join(&mut self, frame: &FrameInput) {
+        let is_weld = |at: &usize| frame.constraints[*at].method == LinkMethod::Weld;
+        let (welds, springs): (Vec<usize>, Vec<usize>) =
+            (0..frame.constraints.len()).filter(|&at| frame.constraints[at].pulls()).partition(is_weld);
+        for at in springs.into_iter().chain(welds) {
+            let (sweep, count) = link_sweep(frame, at, self.h);
+            let links = self.links.len();
+            self.links.push(sweep);
+            // Contact comes last; the passes before it are divided into equal parts.
+            let contact = |pass: &Pass| matches!(pass, Pass::ClothContact | Pass::ColliderContact);
+            let last = self.passes.iter().rposition(|pass| !contact(pass)).map_or(0, |last| last + 1);
+            for k in (1..=count as usize).rev() {
+                self.passes.insert(last * k / count as usize, Pass::Links(links));
+            }
         }
     }
 
@@ -375,6 +402,42 @@ fn physical<R: Real>(
     passes
 }
 
+/// One pass over the links of a constraint in a time step of `h` seconds, and the number of such passes.
+fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<R>, u32) {
+    let constraint = &frame.constraints[at];
+    let [least, most] = constraint.iterations;
+    let is_weld = constraint.method == LinkMethod::Weld;
+    let is_classic = frame.resistance == ResistanceModel::Classic;
+    let counts = |strength: f64| {
+        let own = share(strength.clamp(least, most.max(least)), h);
+        if is_weld { Share { sweeps: own.sweeps.max(1), strength: 1.0 } } else { own }
+    };
+    let sweeps = match is_classic {
+        true => counts(constraint.strength.max(constraint.tangent_strength)).sweeps,
+        false => share(least, h).sweeps,
+    };
+    let sweeps = sweeps.max(1);
+    let side = |strength: f64| match (is_classic, is_weld) {
+        (_, true) => (1.0, 0.0),
+        // Fewer evaluations than passes are weaker ones.
+        (true, _) => ((strength * h / COUNT_PERIOD / f64::from(sweeps)).min(1.0), 0.0),
+        (false, _) if strength > 0.0 => (1.0, 1.0 / (strength * STIFFNESS_PER_RESISTANCE * h * h)),
+        (false, _) => (0.0, 0.0),
+    };
+    let strength = |(share, compliance): (f64, f64)| {
+        let pulls_only = constraint.method == LinkMethod::RubberBand;
+        let both = |x: f64| R::from_f64(x.min(1e30));
+        LinkStrength {
+            share: Sides { above: both(share), below: if pulls_only { R::ZERO } else { both(share) } },
+            compliance: Sides { above: both(compliance), below: both(compliance) },
+            rest_scale: R::from_f64(constraint.rest_scale),
+        }
+    };
+    let [normal, tangent] =
+        [constraint.strength, constraint.tangent_strength].map(|strength_of| strength(side(strength_of)));
+    (LinkSweep { constraint: at, normal, tangent }, sweeps)
+}
+
 fn angle_strength<R: Real>(cloth: &ClothFrame) -> AngleStrength<R> {
     AngleStrength {
         scale: R::from_f64(cloth.bending.angle_scale),
@@ -428,6 +491,7 @@ mod tests {
                 WholeEffect::Shape(_) => "R",
                 WholeEffect::Attract(_) => "A",
             }),
+            Pass::Links(_) => String::from("L"),
             Pass::ClothContact => String::from("M"),
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),

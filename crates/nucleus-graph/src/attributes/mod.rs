@@ -14,6 +14,7 @@
 //! **Invariant:** reading, writing, defaults, ranges, warnings and reference pages all use these rows. There are no
 //! other attributes.
 
+mod component;
 pub mod dynamic_constraint;
 mod fields;
 mod key;
@@ -31,6 +32,8 @@ mod row;
 mod scene_nodes;
 mod value;
 
+pub use component::read_component;
+pub(crate) use component::read_which;
 pub use fields::{
     air_field, drag_field, dyn_base, field, gravity_field, newton_field, radial_field, turbulence_field,
     uniform_field, volume_axis_field, vortex_field,
@@ -42,7 +45,7 @@ pub use row::{Attribute, Effect, Range};
 pub use scene_nodes::{
     camera, mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere, surface_shape, time, transform,
 };
-pub use value::{Choice, ColorPoint, Component, Painting, RampPoint, Selection, Value};
+pub use value::{Choice, ColorPoint, Component, ElementKind, Painting, RampPoint, Selection, Value, Which};
 
 /// All node types that a scene can name, in the order of the reference pages.
 pub fn node_types() -> &'static [&'static NodeType] {

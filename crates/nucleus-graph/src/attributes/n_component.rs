@@ -1,6 +1,6 @@
 //! Parts of objects, as constraints see them. Made by the short form of a constraint.
 
-use super::key::{Plugged, choice, float, floats, int, ints, plug};
+use super::key::{Plugged, choice, float, floats, int, ints, plug, text, texture};
 use super::kind::Data;
 use super::n_base::MAP_TYPES;
 use super::node_type::node_table;
@@ -9,21 +9,25 @@ use super::value::Choice;
 node_table! {
     /// A part of one object that a constraint takes hold of.
     N_COMPONENT = "nComponent", inherits None, hides [];
+    "Nucleus (open)" {
+        /// Elements by meaning, with semicolons between: `border`, `corners`, `where(y > 1.49)`, `group(collar)`, `mask(tear.png)`.
+        SELECT: String = text("select", "select").solved("nucleus_graph::compile::constraints::select").extension();
+    }
     "Component" {
         /// Kind of elements: points, edges, faces, or the object as a whole.
-        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::attachments");
+        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::constraints");
         /// Which elements: those listed, those on borders, or all.
-        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::attachments");
+        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::constraints");
         /// Factor on the constraint's strength here.
-        STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0);
+        STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on the constraint's glue strength here.
-        GLUE_STRENGTH: f64 = float("glueStrength", "gst", 1.0).soft(0.0, 1.0);
+        GLUE_STRENGTH: f64 = float("glueStrength", "gst", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
         /// Weight of this side against the other.
-        WEIGHT: f64 = float("weight", "wgh", 1.0).soft(0.0, 1.0);
+        WEIGHT: f64 = float("weight", "wgh", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on the constraint's tangent strength here.
-        TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0);
+        TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
         /// The elements listed.
-        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::attachments").multi();
+        COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::constraints").multi();
     }
     "Connections" {
         /// The object it is a part of.
@@ -39,22 +43,22 @@ node_table! {
     }
     "Component Maps" {
         /// Texture that varies strength.
-        STRENGTH_MAP: f64 = float("strengthMap", "stnm", 1.0);
+        STRENGTH_MAP: f64 = texture("strengthMap", "stnm", 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on strength at each point.
-        STRENGTH_PER_VERTEX: Vec<f64> = floats("strengthPerVertex", "spv");
+        STRENGTH_PER_VERTEX: Vec<f64> = floats("strengthPerVertex", "spv").solved("nucleus_graph::compile::constraints");
         /// Texture that varies glue strength.
-        GLUE_STRENGTH_MAP: f64 = float("glueStrengthMap", "gstm", 1.0);
+        GLUE_STRENGTH_MAP: f64 = texture("glueStrengthMap", "gstm", 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on glue strength at each point.
-        GLUE_STRENGTH_PER_VERTEX: Vec<f64> = floats("glueStrengthPerVertex", "gspv");
+        GLUE_STRENGTH_PER_VERTEX: Vec<f64> = floats("glueStrengthPerVertex", "gspv").solved("nucleus_graph::compile::constraints");
         /// Texture that varies weight.
-        WEIGHT_MAP: f64 = float("weightMap", "wemp", 1.0);
+        WEIGHT_MAP: f64 = texture("weightMap", "wemp", 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on weight at each point.
-        WEIGHT_PER_VERTEX: Vec<f64> = floats("weightPerVertex", "wpv");
+        WEIGHT_PER_VERTEX: Vec<f64> = floats("weightPerVertex", "wpv").solved("nucleus_graph::compile::constraints");
         /// Whether strength is varied by nothing, by point, or by a texture.
-        STRENGTH_MAP_TYPE: Choice = choice("strengthMapType", "smt", 2, MAP_TYPES);
+        STRENGTH_MAP_TYPE: Choice = choice("strengthMapType", "smt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
         /// Whether glue strength is varied by nothing, by point, or by a texture.
-        GLUE_STRENGTH_MAP_TYPE: Choice = choice("glueStrengthMapType", "gsmt", 2, MAP_TYPES);
+        GLUE_STRENGTH_MAP_TYPE: Choice = choice("glueStrengthMapType", "gsmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
         /// Whether weight is varied by nothing, by point, or by a texture.
-        WEIGHT_MAP_TYPE: Choice = choice("weightMapType", "wmt", 2, MAP_TYPES);
+        WEIGHT_MAP_TYPE: Choice = choice("weightMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
     }
 }

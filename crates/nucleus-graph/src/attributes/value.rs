@@ -87,7 +87,7 @@ pub struct ColorPoint {
     pub interpolation: Choice,
 }
 
-/// A component of an object: `cloth1.vtx[0:64]`.
+/// A component of an object: `cloth1.vtx[0:64]`, `cloth1.e[border]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Component {
     /// Name of the object's node.
@@ -97,29 +97,91 @@ pub struct Component {
 }
 
 /// Elements of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Selection {
     /// The whole object: `cloth1`.
     Object,
-    /// All points: `cloth1.vtx[*]`.
-    AllPoints,
-    /// A range of points, including both ends: `cloth1.vtx[3]`, `cloth1.vtx[0:64]`.
-    Points {
-        /// The first point.
-        first: u32,
-        /// The last point, not before the first.
-        last: u32,
-    },
+    /// Elements of one kind: `cloth1.vtx[3]`.
+    Elements(ElementKind, Which),
+}
+
+/// A kind of elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ElementKind {
+    /// Points: `vtx`.
+    Point,
+    /// Edges: `e`, in the order in which the faces first name them.
+    Edge,
+    /// Faces: `f`.
+    Face,
+}
+
+/// Which elements of a kind.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Which {
+    /// All of them: `*`.
+    All,
+    /// From one to another, both included: `3`, `0:64`. The first is not after the last.
+    Range(u32, u32),
+    /// Those on borders: edges of one face, and their points.
+    Border,
+    /// Points of a border with one face only. Of edges and faces: those with such a point.
+    Corners,
+    /// Those whose points all satisfy an expression in start positions: `where(y > 1.49)`.
+    Where(String),
+    /// Those of a group of an OBJ file: `group(collar)`.
+    Group(String),
+    /// Those whose points all lie on an image where it is brighter than one half: `mask(tear.png)`.
+    Mask(String),
+}
+
+impl ElementKind {
+    /// Each with its name in components.
+    pub const WORDS: [(&'static str, Self); 3] = [("vtx", Self::Point), ("e", Self::Edge), ("f", Self::Face)];
+
+    /// Its name in components.
+    pub fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, kind)| *kind == self).map_or("", |(word, _)| word)
+    }
+
+    /// Its name in messages.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Edge => "edge",
+            Self::Face => "face",
+        }
+    }
+}
+
+impl Selection {
+    /// Points from one to another, both included.
+    pub fn points(first: u32, last: u32) -> Self {
+        Self::Elements(ElementKind::Point, Which::Range(first, last))
+    }
+}
+
+impl fmt::Display for Which {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => write!(f, "*"),
+            Self::Range(first, last) if first == last => write!(f, "{first}"),
+            Self::Range(first, last) => write!(f, "{first}:{last}"),
+            Self::Border => write!(f, "border"),
+            Self::Corners => write!(f, "corners"),
+            Self::Where(text) => write!(f, "where({text})"),
+            Self::Group(name) => write!(f, "group({name})"),
+            Self::Mask(file) => write!(f, "mask({file})"),
+        }
+    }
 }
 
 impl fmt::Display for Component {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let object = &self.object;
-        match self.selection {
+        match &self.selection {
             Selection::Object => write!(f, "{object}"),
-            Selection::AllPoints => write!(f, "{object}.vtx[*]"),
-            Selection::Points { first, last } if first == last => write!(f, "{object}.vtx[{first}]"),
-            Selection::Points { first, last } => write!(f, "{object}.vtx[{first}:{last}]"),
+            Selection::Elements(kind, which) => write!(f, "{object}.{}[{which}]", kind.word()),
         }
     }
 }

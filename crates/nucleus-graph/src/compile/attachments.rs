@@ -1,31 +1,26 @@
-//! Transform constraints: the points they hold, and the pins that move these points in a frame.
+//! Pins of transform constraints: the points they hold, and the motion of these points in a frame.
 
 use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, Pin, PointId};
 
-use crate::attributes::{Choice, Component, Selection, dynamic_constraint, n_component, nucleus};
+use crate::attributes::dynamic_constraint;
 use crate::graph::{EvalContext, NodeId};
 
 use super::compiler::Compiler;
+use super::constraints::kinds::Values;
+use super::constraints::member::MemberObject;
 use super::program::{EvaluationInterval, NucleusProgram};
 use super::sources::{AttachedPoint, AttachmentSource};
-
-/// `constraintType: transform`.
-const TRANSFORM: Choice = Choice(0);
-/// `elements` of a component.
-const LISTED: Choice = Choice(0);
-const ALL: Choice = Choice(2);
-/// `componentType` of a component.
-const POINT: Choice = Choice(2);
-const OBJECT: Choice = Choice(6);
 
 /// Attachment state of each constraint during a run: positions of its points in constraint space, in scene units, or
 /// `None` while it is disabled. If the constraint never moves, the positions are in world space, in metres.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AttachmentState {
     pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
+    /// Whether each constraint of links has been formed and is enabled.
+    pub(crate) formed: Vec<bool>,
 }
 
 impl NucleusProgram {
@@ -45,11 +40,10 @@ impl Compiler<'_> {
         let mut attachments: Vec<AttachmentSource> = Vec::new();
         let mut taken: BTreeSet<(ClothId, PointId)> = BTreeSet::new();
         for id in self.constraints() {
-            self.check_named_points(id);
-            let node = self.scene.graph.node(id);
-            if self.start.get(id, &dynamic_constraint::CONSTRAINT_TYPE) != TRANSFORM {
+            if !Values::new(&self.start, id).pins() {
                 continue;
             }
+            let node = self.scene.graph.node(id);
             let points = self.attached_points(id);
             let place = self.scene.source.place(node.name());
             if points.iter().any(|held| taken.contains(&(held.cloth, held.point))) {
@@ -69,44 +63,13 @@ impl Compiler<'_> {
         attachments
     }
 
-    /// The constraints of the nucleus, in the order of their names.
-    fn constraints(&self) -> Vec<NodeId> {
-        let graph = &self.scene.graph;
-        let elements = graph.elements(self.program.node, &nucleus::INPUT_CURRENT);
-        let mut constraints: Vec<NodeId> = elements.into_iter().map(|(_, plug)| plug.node).collect();
-        constraints.sort_by_key(|id| graph.node(*id).name());
-        constraints.dedup();
-        constraints
-    }
-
-    /// Reports points that a constraint names and the cloth does not have.
-    fn check_named_points(&mut self, constraint: NodeId) {
-        let graph = &self.scene.graph;
-        let node = graph.node(constraint);
-        for (k, component) in node.get(&dynamic_constraint::COMPONENTS).iter().enumerate() {
-            let Component { object, selection: Selection::Points { last, .. } } = component else { continue };
-            let Some(cloth) = graph.find(object).and_then(|object| self.cloth_of(object)) else { continue };
-            let points = self.program.model.positions(cloth).len();
-            if *last as usize >= points {
-                let place = self.scene.source.place(&format!("{}.components[{k}]", node.name()));
-                let error = self.findings.error(&place, format!("`{object}` has no point {last}"));
-                error.help(format!("its points are numbered 0 to {}", points - 1));
-            }
-        }
-    }
-
     /// The points of a constraint, each once, in the order of its components.
     fn attached_points(&mut self, constraint: NodeId) -> Vec<AttachedPoint> {
-        let graph = &self.scene.graph;
         let mut seen = BTreeSet::new();
         let mut held = Vec::new();
-        for (_, member) in graph.elements(constraint, &dynamic_constraint::COMPONENT_IDS) {
-            let Some(cloth) =
-                graph.source(member.node, &n_component::OBJECT_ID).and_then(|id| self.cloth_of(id))
-            else {
-                continue;
-            };
-            for point in self.points_of(member.node, cloth) {
+        for member in self.members_of(constraint) {
+            let MemberObject::Cloth(cloth) = member.object else { continue };
+            for &point in member.elements.corners() {
                 if seen.insert((cloth, point)) {
                     let start = self.program.model.positions(cloth)[point as usize];
                     held.push(AttachedPoint { cloth, point: PointId(point), start });
@@ -114,32 +77,6 @@ impl Compiler<'_> {
             }
         }
         held
-    }
-
-    /// The points of a component that exist.
-    fn points_of(&mut self, member: NodeId, cloth: ClothId) -> Vec<u32> {
-        let all = self.program.model.positions(cloth).len() as u32;
-        let node = self.scene.graph.node(member);
-        let (kind, elements) = (node.get(&n_component::COMPONENT_TYPE), node.get(&n_component::ELEMENTS));
-        if elements == ALL || kind == OBJECT {
-            return (0..all).collect();
-        }
-        let name = node.name();
-        if kind != POINT || elements != LISTED {
-            let place = self.scene.source.place(name);
-            self.findings.warning(&place, format!("only points can be held so far: `{name}` holds nothing"));
-            return Vec::new();
-        }
-        let listed = node.get(&n_component::COMPONENT_INDICES);
-        // `check_named_points` covers components that the constraint's short form makes.
-        let missing = listed.iter().find(|&&point| point >= all).filter(|_| node.created_by().is_none());
-        if let Some(point) = missing {
-            let place = self.scene.source.place(&format!("{name}.componentIndices"));
-            let error =
-                self.findings.error(&place, format!("`{name}` lists point {point}, which is not there"));
-            error.help(format!("the points are numbered 0 to {}", all - 1));
-        }
-        listed.into_iter().filter(|point| *point < all).collect()
     }
 }
 

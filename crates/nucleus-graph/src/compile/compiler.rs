@@ -62,6 +62,8 @@ impl<'a> Compiler<'a> {
             cloths: Vec::new(),
             colliders: Vec::new(),
             attachments: Vec::new(),
+            constraints: Vec::new(),
+            selections: Vec::new(),
             start: first,
             first_cloth: previous.map_or(0, |previous| previous.cloths().end),
             first_collider: previous.map_or(0, |previous| previous.colliders().end),

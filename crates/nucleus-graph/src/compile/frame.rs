@@ -77,6 +77,8 @@ impl EvaluationInterval<'_> {
             pins: self.locked_and_pinned(attachments, position),
             wind_noise: to.get(nucleus, &nucleus::WIND_NOISE),
             input_meshes: self.input_meshes(),
+            constraints: self.constraint_frames(&mut attachments.formed, position),
+            exclusions: self.exclusions(),
         }
     }
 

@@ -98,10 +98,16 @@ impl Geometry {
         if own.node_type() != &mesh::MESH {
             return Ok(None);
         }
-        let file = own.get(&mesh::FILE);
-        let file = NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start));
+        let file = self.file_of(scene, node).unwrap_or_default();
         let uvs = read_obj_uvs(scene.source.path(&file))?;
         Ok(Some(uvs).filter(|uvs| uvs.iter().any(Option::is_some)))
+    }
+
+    /// The file that a node's mesh is read from, at the first frame of the scene; `None` for other meshes.
+    pub(super) fn file_of(&self, scene: &Scene, node: NodeId) -> Option<String> {
+        let own = scene.graph.node(node);
+        let file = (own.node_type() == &mesh::MESH).then(|| own.get(&mesh::FILE))?;
+        Some(NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start)))
     }
 
     /// Whether the points of a node are constant in mesh space.

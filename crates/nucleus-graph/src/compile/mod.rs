@@ -15,7 +15,8 @@
 //! | meshes, and how many points they have                | `geometry.rs`                      |
 //! | mesh sequences and blends                            | `animated_mesh.rs`                 |
 //! | vertex maps                                          | `vertex_maps.rs`, `map_values.rs`  |
-//! | transform constraints                                | `attachments.rs`                   |
+//! | pins of transform constraints                        | `attachments.rs`                   |
+//! | all other constraints, and selections of elements    | `constraints/`                     |
 //! | thickness, self-collision, push-out                  | `thickness.rs`                     |
 //! | cameras                                              | `camera.rs`                        |
 //! | scene units to metres, start frames                  | `units.rs`                         |
@@ -28,6 +29,7 @@ mod animated_mesh;
 mod attachments;
 mod camera;
 mod compiler;
+mod constraints;
 mod contradictions;
 mod frame;
 mod geometry;
@@ -58,7 +60,7 @@ use program::ProgramData;
 pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
 pub(crate) use geometry::max_points;
-pub use program::{NucleusProgram, Object, ObjectKind, Program};
+pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
 
 /// Compiles a scene.
 ///

@@ -36,6 +36,7 @@ impl Compiler<'_> {
         }
         self.program.attachments = self.attachments();
         self.order_links();
+        self.program.constraints = self.constraint_sources();
         let cloths = self.program.cloths.iter().map(|cloth| cloth.node);
         let objects: Vec<NodeId> =
             cloths.chain(self.program.colliders.iter().map(|collider| collider.node)).collect();
@@ -53,17 +54,30 @@ impl Compiler<'_> {
         let rest = self.rest_surface(id, mesh, &surface)?;
         self.check_pressure(id, &surface);
         self.warn_of_contradictions(id);
+        let given = surface.positions.len();
+        let tearing = self.tearing(id, mesh, &surface);
         let [input, rest] =
             [Some(surface), rest].map(|surface| surface.map(|s| self.program.units.surface(s)));
+        let split = |surface: Surface| match &tearing {
+            Some(tearing) => tearing.split(surface),
+            None => surface,
+        };
+        let [input, rest] = [input, rest].map(|surface| surface.map(split));
         // The rest shape is the mesh to the solver; where it differs from the input mesh, that is the start.
         let (surface, moved) = match (input, rest) {
             (Some(input), Some(rest)) => (rest, Some(input.positions)),
             (input, _) => (input?, None),
         };
         self.warn_of_stiffness(id);
-        let maps = self.vertex_maps(id, mesh, surface.positions.len());
-        let start = self.start_state(id, mesh, surface.positions.len());
-        let (CompiledMaps { scales, factors }, mut start) = (maps?, start?);
+        let maps = self.vertex_maps(id, mesh, given);
+        let start = self.start_state(id, mesh, given);
+        let (CompiledMaps { scales, mut factors }, mut start) = (maps?, start?);
+        if let Some(tearing) = &tearing {
+            let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
+            factors = tearing.maps(factors, is_classic);
+            tearing.extend(&mut start.positions);
+            tearing.extend(&mut start.velocities);
+        }
         if start.positions.is_empty() {
             start.positions = moved.unwrap_or_default();
         }
@@ -102,6 +116,7 @@ impl Compiler<'_> {
             faces: face_count,
             area,
             followed,
+            tearing,
         });
         Some(())
     }

@@ -51,6 +51,7 @@ impl Compiler<'_> {
             faces: 0,
             area: 0.0,
             followed: None,
+            tearing: None,
         };
         self.program.cloths.push(source);
         Some(())

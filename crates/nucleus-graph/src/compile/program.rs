@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use nucleus_core::{ClothId, ColliderId, Faces, ModelBuilder};
 
-use crate::attributes::{FromValue, Key};
+use crate::attributes::{ElementKind, FromValue, Key};
 use crate::checks::Check;
 use crate::diagnostic::Diagnostic;
 use crate::graph::{EvalContext, Graph, NodeId};
 use crate::scene::document::{Record, TimeSpan};
 
 use super::camera::{self, Camera};
+use super::constraints::member::ConstraintSource;
 use super::sources::{AttachmentSource, ClothSource, ColliderSource};
 use super::units::Units;
 
@@ -45,6 +46,8 @@ pub struct NucleusProgram {
     pub(super) cloths: Vec<ClothSource>,
     pub(super) colliders: Vec<ColliderSource>,
     pub(super) attachments: Vec<AttachmentSource>,
+    pub(super) constraints: Vec<ConstraintSource>,
+    pub(super) selections: Vec<NamedSelection>,
     /// Start frame.
     pub(super) start: i64,
     /// Count of cloths in the nuclei before this one.
@@ -66,6 +69,19 @@ pub struct Object {
     pub faces: Faces,
     /// Radius of its particles in scene units; `None` for a mesh.
     pub radius: Option<f64>,
+}
+
+/// The elements of an object that a constraint names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedSelection {
+    /// Name of the constraint.
+    pub owner: String,
+    /// Name of the object.
+    pub object: String,
+    /// The kind of elements.
+    pub kind: ElementKind,
+    /// Their numbers.
+    pub elements: Vec<u32>,
 }
 
 /// The role of an object in the solver.
@@ -211,6 +227,11 @@ impl NucleusProgram {
     /// The model that its solver starts from. Metres, kilograms.
     pub fn model(&self) -> &ModelBuilder {
         &self.model
+    }
+
+    /// The elements that its constraints name, in the order of the constraints and their components.
+    pub fn selections(&self) -> &[NamedSelection] {
+        &self.selections
     }
 
     /// Its start frame.

@@ -38,7 +38,7 @@ const DAMPING: f64 = PASCALS_PER_PRESSURE / 24.0;
 const STEP: Choice = Choice(0);
 const LINEAR: Choice = Choice(1);
 /// m/s² for a `fieldMagnitude` of 1.
-const FIELD_ACCELERATION: f64 = 10.0;
+pub(super) const FIELD_ACCELERATION: f64 = 10.0;
 /// Faces of the mesh for which Object Space means the same as Link: those of a polyPlane as Maya makes it.
 const REFERENCE_FACES: f64 = 100.0;
 
@@ -216,7 +216,7 @@ impl EvaluationInterval<'_> {
             let Some(followed) = &source.followed else { continue };
             if self.input_attract(source).is_on() {
                 let [start, end] =
-                    [&self.from, &self.to].map(|moment| self.followed_points(followed, moment));
+                    [&self.from, &self.to].map(|moment| self.followed_points(source, followed, moment));
                 meshes.push(InputMesh { cloth, start, end });
             }
         }
@@ -235,7 +235,8 @@ impl EvaluationInterval<'_> {
             if is_dynamic && (!locks || strength <= 0.0) {
                 continue;
             }
-            let [start, end] = [&self.from, &self.to].map(|moment| self.followed_points(followed, moment));
+            let [start, end] =
+                [&self.from, &self.to].map(|moment| self.followed_points(source, followed, moment));
             for (index, (start, end)) in start.into_iter().zip(end).enumerate() {
                 let point = PointId(index as u32);
                 let factor = followed.factors.get(index).copied().unwrap_or(1.0);
@@ -248,9 +249,17 @@ impl EvaluationInterval<'_> {
     }
 
     /// The points of an input mesh in metres.
-    fn followed_points(&self, followed: &FollowedMesh, moment: &EvalContext) -> Vec<Vector3<f64>> {
+    fn followed_points(
+        &self,
+        source: &ClothSource,
+        followed: &FollowedMesh,
+        moment: &EvalContext,
+    ) -> Vec<Vector3<f64>> {
         let (placement, points) = (moment.placement(followed.mesh), followed.shape.at(moment));
-        points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
+        let mut points: Vec<Vector3<f64>> =
+            points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect();
+        source.tearing.iter().for_each(|tearing| tearing.extend(&mut points));
+        points
     }
 }
 
@@ -382,7 +391,7 @@ fn samples(ramp: &[RampPoint]) -> [f64; ForceField::SAMPLES] {
 }
 
 /// A ramp at a position: before its first point and behind its last it is constant.
-fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
+pub(super) fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
     let mut points: Vec<RampPoint> = ramp.to_vec();
     points.sort_by(|a, b| a.position.total_cmp(&b.position));
     let next = points.partition_point(|point| point.position <= position);

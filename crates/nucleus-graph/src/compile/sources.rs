@@ -7,6 +7,7 @@ use nucleus_core::{ClothId, PointId};
 use crate::graph::NodeId;
 
 use super::animated_mesh::AnimatedMesh;
+use super::constraints::split_mesh::Tearing;
 
 /// Source of the frames of a cloth or of particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,8 @@ pub(super) struct ClothSource {
     pub(super) area: f64,
     /// The live input mesh, where anything follows it.
     pub(super) followed: Option<FollowedMesh>,
+    /// How its mesh is split, where it can tear.
+    pub(super) tearing: Option<Tearing>,
 }
 
 /// The live input mesh of a cloth that follows it.

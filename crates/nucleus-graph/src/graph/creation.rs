@@ -4,8 +4,9 @@
 use std::collections::BTreeSet;
 
 use crate::attributes::{
-    Choice, Component, Key, Plugged, Selection, Value, dyn_base, dynamic_constraint, field, mesh, n_base,
-    n_cloth, n_component, n_particle, n_rigid, nucleus, particle, point_emitter, surface_shape, time,
+    Choice, Component, ElementKind, Key, Plugged, Selection, Value, Which, dyn_base, dynamic_constraint,
+    field, mesh, n_base, n_cloth, n_component, n_particle, n_rigid, nucleus, particle, point_emitter,
+    surface_shape, time,
 };
 
 use super::error::GraphError;
@@ -13,10 +14,13 @@ use super::node::{Connection, NodeId, Plug};
 use super::nodes::Graph;
 use super::setting::Setting;
 
-/// Maya's indices of `componentType` (point, object) and of `elements` (listed, all).
+/// Maya's indices of `componentType` and of `elements`.
 const POINT: Choice = Choice(2);
+const EDGE: Choice = Choice(3);
+const FACE: Choice = Choice(4);
 const OBJECT: Choice = Choice(6);
 const LISTED: Choice = Choice(0);
+const BORDERS: Choice = Choice(1);
 const ALL: Choice = Choice(2);
 
 /// The arguments of a creation command.
@@ -209,8 +213,8 @@ impl Graph {
         self.connect(Plug::new(nucleus, &nucleus::START_FRAME), Plug::new(object, &particle::START_FRAME))
     }
 
-    /// Connects a constraint to a nucleus, and its components to the constraint: one component node per object.
-    /// Components of objects that do not exist are left out.
+    /// Connects a constraint to a nucleus, and its components to the constraint: one component node per object and
+    /// kind of elements. Components of objects that do not exist are left out.
     ///
     /// # Errors
     /// When the constraint is connected already.
@@ -220,19 +224,19 @@ impl Graph {
         components: &[Component],
         nucleus: NodeId,
     ) -> Result<(), GraphError> {
-        let mut objects: Vec<&str> = Vec::new();
+        let part = |component: &Component| (component.object.clone(), component_type(&component.selection));
+        let mut parts: Vec<(String, Choice)> = Vec::new();
         for component in components {
-            if !objects.contains(&component.object.as_str()) {
-                objects.push(&component.object);
+            if !parts.contains(&part(component)) {
+                parts.push(part(component));
             }
         }
-        for (c, name) in (0..).zip(objects) {
-            let Some(object) = self.find(name).filter(|id| self.node(*id).node_type().is_a(&n_base::N_BASE))
-            else {
-                continue;
-            };
-            let parts = components.iter().filter(|component| component.object == name);
-            let member = self.create_member(constraint, parts.map(|component| component.selection))?;
+        for (c, own) in (0..).zip(parts) {
+            let object = self.find(&own.0).filter(|id| self.node(*id).node_type().is_a(&n_base::N_BASE));
+            let Some(object) = object else { continue };
+            let selections = components.iter().filter(|component| part(component) == own);
+            let selections = selections.map(|component| &component.selection);
+            let member = self.create_member(constraint, own.1, selections)?;
             self.connect(Plug::new(object, &n_base::NUCLEUS_ID), Plug::new(member, &n_component::OBJECT_ID))?;
             let id = Plug::element(constraint, &dynamic_constraint::COMPONENT_IDS, c);
             self.connect(Plug::new(member, &n_component::OUT_COMPONENT), id)?;
@@ -245,26 +249,34 @@ impl Graph {
         self.connect(current, Plug::element(nucleus, &nucleus::INPUT_CURRENT, k))
     }
 
-    /// Adds the component node of one object.
-    fn create_member(
+    /// Adds the component node of elements of one kind. Selections by meaning, other than all borders, are the text of
+    /// `select`, one after another with semicolons between.
+    fn create_member<'a>(
         &mut self,
         constraint: NodeId,
-        parts: impl Iterator<Item = Selection>,
+        component_type: Choice,
+        selections: impl Iterator<Item = &'a Selection>,
     ) -> Result<NodeId, GraphError> {
         let member = self.add_created("nComponent", &n_component::N_COMPONENT, constraint);
-        let (mut component_type, mut elements, mut listed) = (POINT, LISTED, Vec::new());
-        for part in parts {
-            match part {
-                Selection::Object => (component_type, elements) = (OBJECT, ALL),
-                Selection::AllPoints => elements = ALL,
-                Selection::Points { first, last } => listed.extend(first..=last),
+        let (mut elements, mut listed, mut meanings) = (LISTED, Vec::new(), Vec::new());
+        for selection in selections {
+            match selection {
+                Selection::Object | Selection::Elements(_, Which::All) => elements = ALL,
+                Selection::Elements(_, Which::Range(first, last)) => listed.extend(*first..=*last),
+                Selection::Elements(_, meaning) => meanings.push(meaning.to_string()),
             }
         }
-        let set = [
+        if elements != ALL && listed.is_empty() && meanings == ["border"] {
+            (elements, meanings) = (BORDERS, Vec::new());
+        }
+        let mut set = vec![
             (&n_component::COMPONENT_TYPE.row, Value::Choice(component_type)),
             (&n_component::ELEMENTS.row, Value::Choice(elements)),
             (&n_component::COMPONENT_INDICES.row, Value::Ints(listed)),
         ];
+        if !meanings.is_empty() {
+            set.push((&n_component::SELECT.row, Value::Text(meanings.join("; "))));
+        }
         for (row, value) in set {
             self.set_created(member, row, Setting::Fixed(value))?;
         }
@@ -294,5 +306,15 @@ impl Graph {
             .filter(|wire| inputs.iter().any(|key| key.row.name == wire.to.attribute.name));
         let taken: BTreeSet<u32> = taken.filter_map(|wire| wire.to.index).collect();
         (0..).find(|index| !taken.contains(index)).unwrap_or_default()
+    }
+}
+
+/// Maya's index of the kind of elements of a selection.
+fn component_type(selection: &Selection) -> Choice {
+    match selection {
+        Selection::Object => OBJECT,
+        Selection::Elements(ElementKind::Point, _) => POINT,
+        Selection::Elements(ElementKind::Edge, _) => EDGE,
+        Selection::Elements(ElementKind::Face, _) => FACE,
     }
 }

@@ -96,6 +96,11 @@ impl Graph {
 }
 
 impl<'g> EvalContext<'g> {
+    /// The graph.
+    pub(crate) fn graph(&self) -> &Graph {
+        self.graph
+    }
+
     /// The frame.
     pub fn frame(&self) -> f64 {
         self.frame

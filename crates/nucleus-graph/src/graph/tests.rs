@@ -74,8 +74,7 @@ fn a_constraint_gets_one_component_node_per_member() {
     graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
     let before = wires(&graph);
     let pin = graph.add("pin", &dynamic_constraint::DYNAMIC_CONSTRAINT).expect("free");
-    let part =
-        |first, last| Component { object: "cloth1".into(), selection: Selection::Points { first, last } };
+    let part = |first, last| Component { object: "cloth1".into(), selection: Selection::points(first, last) };
     graph.create_constraint(pin, &[part(4, 4), part(0, 2)], nucleus).expect("not wired yet");
     let found: Vec<_> = wires(&graph).into_iter().filter(|wire| !before.contains(wire)).collect();
     let mut expected = [

@@ -4,6 +4,7 @@
 //! |--------------------------------------------------|-----------------------------|
 //! | which statements of an OBJ file are read         | [`read_obj`]                |
 //! | texture coordinates                              | [`read_obj_uvs`], [`poly_plane_uvs`] |
+//! | groups of faces                                  | [`read_obj_groups`]         |
 //! | which faces are dropped as degenerate            | [`drop_degenerate_faces`]   |
 //! | the size of a primitive, before it is made       | [`Primitive::size`]         |
 //! | Maya's point order of plane, cube, sphere and cylinder | [`poly_plane`], [`poly_cube`], [`poly_sphere`], [`poly_cylinder`] |
@@ -16,7 +17,7 @@ mod obj;
 mod primitive;
 
 pub use degenerate::drop_degenerate_faces;
-pub use obj::{ObjError, ObjFault, read_obj, read_obj_uvs};
+pub use obj::{ObjError, ObjFault, read_obj, read_obj_groups, read_obj_uvs};
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,
 };

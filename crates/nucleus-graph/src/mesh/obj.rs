@@ -13,10 +13,12 @@ use nucleus_core::Surface;
 use crate::files;
 
 pub use error::{ObjError, ObjFault};
+pub use groups::read_obj_groups;
 use statement::{Fault, Statements, Word, number, words};
 pub use uvs::read_obj_uvs;
 
 mod error;
+mod groups;
 mod statement;
 #[cfg(test)]
 mod tests;

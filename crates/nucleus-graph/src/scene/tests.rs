@@ -49,8 +49,7 @@ fn everything_in_a_scene_is_read() {
     assert_eq!(node("cloth1").get(&n_base::FRICTION), 0.3);
     assert_eq!(node("nucleus1").at(&nucleus::WIND_SPEED, 12.0), 3.0);
     assert_eq!(node("sheet").get(&poly_plane::SUBDIVISIONS_HEIGHT), 4);
-    let part =
-        |first, last| Component { object: "cloth1".into(), selection: Selection::Points { first, last } };
+    let part = |first, last| Component { object: "cloth1".into(), selection: Selection::points(first, last) };
     assert_eq!(node("pin").get(&dynamic_constraint::COMPONENTS), [part(0, 0), part(3, 4)]);
 }
 

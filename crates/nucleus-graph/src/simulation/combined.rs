@@ -146,6 +146,8 @@ pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: b
         depenetrating: if are_consecutive { b.depenetrating } else { a.depenetrating + b.depenetrating },
         intersections: if are_consecutive { b.intersections } else { a.intersections + b.intersections },
         kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
+        broken_links: if are_consecutive { b.broken_links } else { a.broken_links + b.broken_links },
+        max_weld_gap: a.max_weld_gap.max(b.max_weld_gap),
         finite: a.finite && b.finite,
         sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
         stopped: a.stopped || b.stopped,

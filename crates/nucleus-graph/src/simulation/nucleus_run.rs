@@ -80,9 +80,11 @@ impl<R: Real> NucleusRun<R> {
 
     /// Appends the state to a checkpoint.
     pub(super) fn save(&self, out: &mut Vec<u8>) {
-        let Self { solver, attachments: AttachmentState { held }, now, evaluated, was_skipped } = self;
+        let Self { solver, attachments: AttachmentState { held, formed }, now, evaluated, was_skipped } =
+            self;
         solver.save().encode(out);
         held.encode(out);
+        formed.encode(out);
         (*now, (*evaluated, *was_skipped)).encode(out);
     }
 
@@ -96,11 +98,12 @@ impl<R: Real> NucleusRun<R> {
         let nucleus = &program.nuclei()[nucleus];
         let solver = Vec::decode(from).ok_or(RestoreError::Damaged)?;
         let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let formed: Vec<bool> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let (now, (evaluated, was_skipped)) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
-        if !nucleus.accepts_attachments(&held) {
+        if !nucleus.accepts_attachments(&held) || !nucleus.accepts_constraints(&formed) {
             return Err(RestoreError::OtherModel);
         }
         let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
-        Ok(Self { solver, attachments: AttachmentState { held }, now, evaluated, was_skipped })
+        Ok(Self { solver, attachments: AttachmentState { held, formed }, now, evaluated, was_skipped })
     }
 }

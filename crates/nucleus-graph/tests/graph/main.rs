@@ -1,6 +1,7 @@
 //! Properties of all graphs and scenes.
 
 mod animation;
+mod constraints;
 mod independence;
 mod maps;
 mod materials;

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use nucleus_graph::animation::{Curve, Key, Tangent};
-use nucleus_graph::attributes::{Attribute, Component, Kind, NodeType, Selection, node_types};
+use nucleus_graph::attributes::{
+    Attribute, Component, ElementKind, Kind, NodeType, Selection, Which, node_types,
+};
 use nucleus_graph::checks::Check;
 use nucleus_graph::compile::compile;
 use nucleus_graph::graph::{CLOCK, Connection, Creation, Graph, NodeId, Plug, Setting};
@@ -235,7 +237,11 @@ fn create(graph: &mut Graph, node: NodeId, other: NodeId, nucleus: NodeId) {
         Creation::Object { mesh: Some(other), nucleus }
     } else if is(node, "dynamicConstraint") && is(other, "nBase") {
         let object = graph.node(other).name().to_owned();
-        let components = vec![Component { object, selection: Selection::AllPoints }];
+        let kinds = ElementKind::WORDS.map(|(_, kind)| kind);
+        let which = [Which::All, Which::Border, Which::Range(0, 2), Which::Where("x > 0".to_owned())];
+        let choice = graph.iter().count();
+        let selection = Selection::Elements(kinds[choice % 3], which[choice % 4].clone());
+        let components = vec![Component { object, selection }];
         Creation::Constraint { components, nucleus }
     } else {
         return;
@@ -374,7 +380,10 @@ fn particles_with_explicit_connections_stay_on_their_nucleus() {
 fn a_refused_setting_keeps_the_components_of_a_constraint() {
     let (mut graph, nucleus) = particles_of_a_nucleus();
     let constraint = graph.add("c", type_named("dynamicConstraint")).expect("a free name");
-    let components = vec![Component { object: "b".to_owned(), selection: Selection::AllPoints }];
+    let components = vec![Component {
+        object: "b".to_owned(),
+        selection: Selection::Elements(ElementKind::Point, Which::All),
+    }];
     graph.create(constraint, &Creation::Constraint { components, nucleus }).expect("it has a member");
     let before = graph.clone();
     let (member, node) =

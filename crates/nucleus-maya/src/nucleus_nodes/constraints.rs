@@ -1,6 +1,8 @@
 //! Constraints: their type, which Maya does not store, and their components.
 
-use nucleus_graph::attributes::{Choice, Component, Selection, Value, dynamic_constraint, n_component};
+use nucleus_graph::attributes::{
+    Choice, Component, ElementKind, Selection, Value, Which, dynamic_constraint, n_component, read_component,
+};
 use nucleus_graph::graph::{Creation, NodeId as OwnId, Setting};
 
 use crate::omissions::Cause;
@@ -69,7 +71,7 @@ impl Importer<'_> {
     fn listed(&self, from: NodeId, parts: &[Part]) -> Vec<Component> {
         let stored = self.scene.string(from, &[dynamic_constraint::COMPONENTS.row.name]);
         if let Some(text) = stored.filter(|_| self.is_own) {
-            return text.split(' ').filter_map(component).collect();
+            return texts(&text).into_iter().filter_map(|text| read_component(text).ok()).collect();
         }
         parts.iter().flat_map(components).collect()
     }
@@ -136,21 +138,23 @@ impl Importer<'_> {
     }
 }
 
-/// A component as a scene of ours writes it: `cloth1.vtx[0:8]`.
-fn component(text: &str) -> Option<Component> {
-    let Some((object, index)) = text.split_once(".vtx[") else {
-        return (!text.is_empty())
-            .then(|| Component { object: text.to_owned(), selection: Selection::Object });
-    };
-    let index = index.strip_suffix(']')?;
-    let selection = match index {
-        "*" => Selection::AllPoints,
-        index => {
-            let (first, last) = index.split_once(':').unwrap_or((index, index));
-            Selection::Points { first: first.parse().ok()?, last: last.parse().ok()? }
+/// The texts of components that are separated by spaces; those inside of brackets belong to an expression.
+fn texts(list: &str) -> Vec<&str> {
+    let (mut depth, mut texts, mut from) = (0i32, Vec::new(), 0);
+    for (at, c) in list.char_indices() {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            ' ' if depth == 0 => {
+                texts.push(&list[from..at]);
+                from = at + 1;
+            }
+            _ => {}
         }
-    };
-    Some(Component { object: object.to_owned(), selection })
+    }
+    texts.push(&list[from..]);
+    texts.retain(|text| !text.is_empty());
+    texts
 }
 
 /// The components of a plain part: the object, all its points, or runs of points.
@@ -159,9 +163,9 @@ fn components(part: &Part) -> Vec<Component> {
     match (part.kind, part.elements) {
         (WHOLE, _) => vec![of(Selection::Object)],
         (_, LISTED) => {
-            runs(&part.list).into_iter().map(|(first, last)| of(Selection::Points { first, last })).collect()
+            runs(&part.list).into_iter().map(|(first, last)| of(Selection::points(first, last))).collect()
         }
-        _ => vec![of(Selection::AllPoints)],
+        _ => vec![of(Selection::Elements(ElementKind::Point, Which::All))],
     }
 }
 

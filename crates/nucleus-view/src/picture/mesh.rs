@@ -167,7 +167,37 @@ fn point_normals(object: &Object) -> Vec<Vec3> {
             sums[*point as usize] += normal;
         }
     }
+    for seam in seams(object) {
+        let sum = seam.iter().fold(Vec3::zeros(), |sum, &point| sum + sums[point as usize]);
+        seam.iter().for_each(|&point| sums[point as usize] = sum);
+    }
     sums.iter().map(unit).collect()
+}
+
+/// Distance in scene units up to which points that coincide at rest count as one, as Maya merges them.
+const MERGE_DISTANCE: f32 = 1e-3;
+
+/// Points of a tearable cloth that coincide at rest and still do, in groups: the seam between them is smooth.
+fn seams(object: &Object) -> Vec<Vec<u32>> {
+    let Some(rest) = object.rest else { return Vec::new() };
+    let mut order: Vec<u32> = (0..rest.len() as u32).collect();
+    let bits = |point: &u32| rest[*point as usize].map(f32::to_bits);
+    order.sort_by_key(|point| (bits(point), *point));
+    let mut seams = Vec::new();
+    for twins in order.chunk_by(|a, b| bits(a) == bits(b)).filter(|twins| twins.len() > 1) {
+        let mut left = twins.to_vec();
+        while let Some(&first) = left.first() {
+            let place = |point: u32| Vec3::from(object.positions[point as usize]);
+            let is_near =
+                |point: &u32| *point == first || (place(*point) - place(first)).norm() <= MERGE_DISTANCE;
+            let (near, far): (Vec<u32>, Vec<u32>) = left.iter().partition(|point| is_near(point));
+            left = far;
+            if near.len() > 1 {
+                seams.push(near);
+            }
+        }
+    }
+    seams
 }
 
 /// A unit normal per corner of a face, in order; the faces of a point share one unless they meet in a hard edge.

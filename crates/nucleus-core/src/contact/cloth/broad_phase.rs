@@ -41,7 +41,9 @@ const GROUPS_PER_TASK: usize = 64;
 pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
     let ContactPass { model: Model { cloths, .. }, frame, span: now, state, pool, contact, counters, .. } =
         pass;
-    let ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. } = &mut **contact else {
+    let ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, pair_filter, .. } =
+        &mut **contact
+    else {
         return;
     };
     let is_within = now.to <= cloth_contacts.interval[1] + 1e-9;
@@ -73,6 +75,7 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
             displacement,
             interval_share,
             strength: &material_maps.strength,
+            filter: pair_filter,
         },
         refresh,
         pool,

@@ -5,6 +5,7 @@ use crate::contact::cloth::elements::ElementGroups;
 use crate::contact::cloth::search::SearchInput;
 use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
 use crate::contact::material::ContactMaterial;
+use crate::contact::pair_filter::PairFilter;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
 
@@ -17,8 +18,8 @@ pub fn find_intersections<R: Real>(
 ) {
     untangling.is_search_due = false;
     untangling.intersections.clear();
-    let SearchInput { cloths, anchors, displacement: [_, displacement], strength, .. } = *input;
-    let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength };
+    let SearchInput { cloths, anchors, displacement: [_, displacement], strength, filter, .. } = *input;
+    let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength, filter };
     for group in 0..elements.groups.len() as u32 {
         elements.query(&elements.swept_bound(group), |other| {
             search.find_between(group, other, &mut untangling.intersections)
@@ -41,6 +42,7 @@ struct IntersectionSearch<'a, R> {
     anchors: &'a [[f64; 3]],
     displacement: &'a [Row4<R>],
     strength: &'a [R],
+    filter: &'a PairFilter,
 }
 
 impl<R: Real> IntersectionSearch<'_, R> {
@@ -60,8 +62,10 @@ impl<R: Real> IntersectionSearch<'_, R> {
         let faces = &self.cloths[theirs.cloth as usize].boundary.triangles[theirs.group.triangles.clone()];
         for &edge in edges.iter().filter(|edge| has_full_strength(*edge)) {
             for &face in faces.iter().filter(|face| has_full_strength(*face)) {
-                let is_joined = face.iter().any(|point| edge.contains(point));
-                if !is_joined && pierces(edge.map(position), face.map(position)) {
+                let is_joined =
+                    face.iter().any(|point| edge.contains(point)) || self.filter.excludes(&edge, &face);
+                let is_new = || !self.filter.tears() || !self.coincide_at_rest(edge, face);
+                if !is_joined && pierces(edge.map(position), face.map(position)) && is_new() {
                     found.push(Intersection {
                         edge,
                         wings: [edge[0]; 2],
@@ -71,6 +75,14 @@ impl<R: Real> IntersectionSearch<'_, R> {
                 }
             }
         }
+    }
+
+    /// Whether an edge and a face have points in one place at rest: torn from each other, they have no side to be on.
+    fn coincide_at_rest(&self, edge: [u32; 2], face: [u32; 3]) -> bool {
+        let (rest, cloth) = (&self.elements.rest_positions, &self.elements.cloth);
+        let coincide =
+            |a: u32, b: u32| cloth[a as usize] == cloth[b as usize] && rest[a as usize] == rest[b as usize];
+        edge.iter().any(|&a| face.iter().any(|&b| coincide(a, b)))
     }
 
     /// Chooses corrections between two cloths: the first belongs on the side of the second where most of it is.

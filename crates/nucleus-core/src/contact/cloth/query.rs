@@ -309,7 +309,9 @@ impl<'a, R: Real> ClothPair<'a, R> {
             self.rest,
         )?;
         let [ours, theirs] = [points.0[0], points.1[0]].map(|point| elements.cloth[point as usize]);
-        if untangling.is_disabled(&points.0, &points.1, [ours, theirs]) {
+        if untangling.is_disabled(&points.0, &points.1, [ours, theirs])
+            || input.filter.excludes(&points.0, &points.1)
+        {
             return None;
         }
         let is_free = |point: u32| elements.is_free_point[point as usize];

@@ -6,6 +6,7 @@ use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::ElementGroups;
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
+use crate::contact::pair_filter::PairFilter;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 
@@ -38,6 +39,8 @@ pub struct SearchInput<'a, R> {
     pub interval_share: f64,
     /// A factor on the collide strength of each point; empty without a map.
     pub strength: &'a [R],
+    /// Elements that do not collide.
+    pub filter: &'a PairFilter,
 }
 
 /// A search, shared by its tasks.

@@ -135,6 +135,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
                 bounds_violated,
                 collider_materials,
                 material_maps,
+                pair_filter,
                 ..
             },
         ..
@@ -169,6 +170,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
             state: state_of,
             motion_bounds: bounds,
             bounds_violated,
+            filter: (pair_filter, list.collider),
             step,
             frame_shifts,
         }

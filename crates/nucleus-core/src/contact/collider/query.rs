@@ -12,6 +12,7 @@ use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::contacts::{ColliderContacts, FoundContacts};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::{Boxes, ColliderState};
+use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
@@ -29,6 +30,8 @@ pub struct ColliderQuery<'a, R> {
     pub motion_bounds: MotionBounds<'a, R>,
     /// Whether each point has a new bound.
     pub bounds_violated: &'a [bool],
+    /// Elements that do not collide, and the index of the collider.
+    pub filter: (&'a PairFilter, usize),
     /// Both objects at the start of the step.
     pub step: &'a ColliderStep<'a, R>,
     /// The offset from the moving frame of the bounds to the origin of the collider's boxes, at both ends of the
@@ -213,6 +216,10 @@ impl<R: Real> ColliderQuery<'_, R> {
         theirs: [u32; M],
         group: u32,
     ) -> Option<ColliderContact<R, N, M>> {
+        let (filter, collider) = self.filter;
+        if filter.excludes_collider(&ours, collider, &theirs) {
+            return None;
+        }
         ColliderContact::candidate(ours, theirs, group, self.step, &self.motion_bounds)
     }
 

@@ -92,7 +92,7 @@ impl Uvs {
 }
 
 /// The index from 0 of an OBJ number, which counts from 1 or backwards from -1. `None` if it is malformed or 0.
-fn counted(word: &[u8], count: usize) -> Option<usize> {
+pub(super) fn counted(word: &[u8], count: usize) -> Option<usize> {
     let number = std::str::from_utf8(word).ok()?.parse::<i64>().ok().filter(|number| *number != 0)?;
     let from_0 = if number > 0 { number - 1 } else { number.checked_add(count as i64)? };
     u32::try_from(from_0).ok().map(|at| at as usize)

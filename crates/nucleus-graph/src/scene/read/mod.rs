@@ -8,13 +8,11 @@
 //! | how the fields of a record are read                  | `fields.rs`     |
 //! | how `nodes` are read                                 | `declaration.rs`, `nodes.rs` |
 //! | how a setting is read: values, keys, maps            | `setting.rs`, `value.rs`, `keys.rs` |
-//! | how components (`"cloth1.vtx[0:8]"`) are read        | `component.rs`  |
 //! | how material presets are found and read              | `preset.rs`     |
 //! | how names of nodes become connections                | `references.rs` |
 //! | how `connections` are read                           | `connections.rs` |
 
 mod checks;
-mod component;
 mod connections;
 mod declaration;
 mod fields;

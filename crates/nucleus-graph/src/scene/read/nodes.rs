@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, time};
+use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, read_component, time};
 use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
 use crate::memory::NODE;
@@ -12,7 +12,6 @@ use crate::scene::document::Source;
 use crate::scene::preset::Preset;
 use crate::scene::syntax::{Node, Value, Word};
 
-use super::component;
 use super::connections::Connections;
 use super::declaration::{Declaration, read_declarations};
 use super::references::{self, Reference, References};
@@ -259,7 +258,7 @@ impl NodeReader<'_, '_> {
         let mut components = Vec::with_capacity(items.len());
         for item in items {
             let Some(text) = text(label, item, self.findings) else { continue };
-            match component::read(text) {
+            match read_component(text) {
                 Ok(component) => {
                     let place = format!("{}.{}[{}]", self.declaration.name, row.name, components.len());
                     self.source.note(place, &item.span);

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::attributes::{
-    Attribute, Choice, Component, NodeType, Selection, dyn_base, dynamic_constraint, n_base, n_cloth,
-    n_particle, nucleus, particle, surface_shape, transform,
+    Attribute, Component, ElementKind, NodeType, Selection, Which, dyn_base, dynamic_constraint, n_base,
+    n_cloth, n_particle, nucleus, particle, surface_shape, transform,
 };
 use crate::compile::max_points;
 use crate::diagnostic::{Findings, nearest};
@@ -222,7 +222,6 @@ impl Resolver<'_> {
     }
 
     fn connect_constraint(&mut self, id: NodeId) {
-        warn_of_unsolved_type(self.graph, id, self.source, self.findings);
         let listed = self.graph.node(id).setting(&dynamic_constraint::COMPONENTS).is_some();
         if !listed && self.has_explicit_connections(id) {
             return;
@@ -264,14 +263,16 @@ impl Resolver<'_> {
     fn check_points(&mut self, id: NodeId, components: &[Component]) -> bool {
         let before = self.findings.errors();
         for (k, component) in components.iter().enumerate() {
-            let Component { object, selection: Selection::Points { first, last } } = component else {
+            let Component { object, selection: Selection::Elements(kind, Which::Range(first, last)) } =
+                component
+            else {
                 continue;
             };
             let place = self.source.place(&format!("{}.components[{k}]", self.graph.node(id).name()));
             let Some(node) = self.graph.find(object) else { continue };
             let mesh = self.resolved.get(&(node, n_base::INPUT_MESH.row.name)).copied();
             let count = max_points(self.graph, self.source, node, mesh);
-            if count.is_some_and(|count| u64::from(*last) >= count) {
+            if *kind == ElementKind::Point && count.is_some_and(|count| u64::from(*last) >= count) {
                 self.findings.error(&place, format!("`{object}` has no point {last}")).help(match count {
                     Some(count @ 1..) => format!("its points are numbered 0 to {}", count - 1),
                     _ => "it has no points".to_owned(),
@@ -280,9 +281,10 @@ impl Resolver<'_> {
             }
             let count = u64::from(last - first) + 1;
             if let Err(refused) = self.source.budget_mut().claim(count.saturating_mul(memory::HELD_POINT)) {
-                let error =
-                    self.findings.error(&place, format!("to constrain {count} points takes {refused}"));
-                error.help(refused.help("constrain fewer points"));
+                let error = self
+                    .findings
+                    .error(&place, format!("to constrain {count} {}s takes {refused}", kind.noun()));
+                error.help(refused.help(&format!("constrain fewer {}s", kind.noun())));
             }
         }
         self.findings.errors() == before
@@ -366,18 +368,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Warns if constraints of this type have no effect yet.
-fn warn_of_unsolved_type(graph: &Graph, constraint: NodeId, source: &Source, findings: &mut Findings) {
-    let node = graph.node(constraint);
-    if node.get(&dynamic_constraint::CONSTRAINT_TYPE) != Choice(0) {
-        let name = node.name();
-        let place = source.place(&format!("{name}.constraintType"));
-        findings
-            .warning(&place, format!("constraints of this type have no effect yet: `{name}` does nothing"));
-    }
-}
-
-/// Refuses components of missing objects, and of objects other than cloth and particles.
+/// Refuses components of missing objects, and of nodes other than cloth, particles and colliders.
 fn check_components(
     graph: &Graph,
     constraint: NodeId,
@@ -398,14 +389,14 @@ fn check_components(
         let object = component.object.as_str();
         let place = source.place(&format!("{name}.components[{k}]"));
         match references.names.get(object) {
-            Some(&Some(id)) if is_cloth(graph, id) || is_particles(graph, id) => {}
+            Some(&Some(id)) if is_object(graph, id) => {}
             // Reading the node has reported a mistake.
             Some(None) => {}
             _ if !reported.insert(object) => {}
             Some(&Some(id)) => refuse_object(graph, id, component, &place, findings),
             None => {
-                let cloths = graph.of_type(&n_cloth::N_CLOTH).map(|(_, node)| node.name());
-                let near = nearest(object, cloths);
+                let objects = graph.of_type(&n_base::N_BASE).map(|(_, node)| node.name());
+                let near = nearest(object, objects);
                 findings.error(&place, format!("there is no node `{object}`")).did_you_mean(near);
             }
         }
@@ -416,8 +407,8 @@ fn is_cloth(graph: &Graph, node: NodeId) -> bool {
     graph.node(node).node_type().is_a(&n_cloth::N_CLOTH)
 }
 
-fn is_particles(graph: &Graph, node: NodeId) -> bool {
-    graph.node(node).node_type().is_a(&n_particle::N_PARTICLE)
+fn is_object(graph: &Graph, node: NodeId) -> bool {
+    graph.node(node).node_type().is_a(&n_base::N_BASE)
 }
 
 /// Reports an object of a wrong type. Suggests the cloth if the object is its mesh.
@@ -429,8 +420,9 @@ fn refuse_object(
     findings: &mut Findings,
 ) {
     let (object, found) = (&component.object, graph.node(id).node_type().name);
-    let message =
-        format!("only points of cloth and particles can be constrained, but `{object}` is of type {found}");
+    let message = format!(
+        "only parts of cloth, particles and colliders can be constrained, but `{object}` is of type {found}"
+    );
     let error = findings.error(place, message);
     let mut fed = graph.targets(id, &surface_shape::WORLD_MESH).map(|plug| plug.node);
     if let Some(cloth) = fed.find(|&node| is_cloth(graph, node)) {

@@ -341,11 +341,14 @@ fn pins_hold_points_of_cloth_that_are_there() {
         &pinned("p.vtx[0]"),
         &[(
             "\"p.vtx[0]\"",
-            "only points of cloth and particles can be constrained, but `p` is of type polyPlane",
+            "only parts of cloth, particles and colliders can be constrained, but `p` is of type polyPlane",
             "did you mean `c1.vtx[0]`?",
         )],
     );
-    assert_eq!(reported(&pinned("c1.e[0]"))[0].1, "only points (`vtx`) are supported, not `e`");
+    assert_eq!(
+        reported(&pinned("c1.cv[0]"))[0].1,
+        "`cv` is no kind of elements: points are `vtx`, edges `e`, faces `f`"
+    );
     // A range is checked against its object before it is expanded.
     for last in [9, u32::MAX] {
         let (range, message) = (format!("c1.vtx[0:{last}]"), format!("`c1` has no point {last}"));

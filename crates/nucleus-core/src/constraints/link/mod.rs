@@ -1,0 +1,30 @@
+//! Links of dynamic constraints, between any places of cloths, colliders and the constraint's own space.
+//!
+//! A constraint has a list of [`Link`]s, formed by the caller. They are laid out by their number of free points, coloured
+//! across all cloths, and swept as one pass of the time step ([`Pass::Links`](crate::schedule::Pass::Links)) between the
+//! constraints of cloth and contact. Single points that are joined alike are rows of [`stretch`](super::stretch); all
+//! other links are combinations of one to six points.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | the projection of a link | [`rows`] |
+//! | which points a link has, and where prescribed sides are | [`ends`] |
+//! | the state of links, and their lists | [`lists`], [`sizes`] |
+//! | the start of a frame, and one pass | [`pass`], planned as [`sweep`](mod@sweep) |
+//! | links on surfaces, and sliding | [`surface`], [`topology`] |
+//! | broken links | [`glue`] |
+//! | forces, damping and drag along links | [`velocity`] |
+//! | which elements do not collide because they are joined | [`Links::clusters`](lists::Links::clusters) |
+//!
+//! Broken links and the places of sliding links are state and part of a checkpoint; rows are rebuilt from the links.
+
+pub mod ends;
+pub mod glue;
+pub mod lists;
+pub mod pass;
+pub mod rows;
+pub mod sizes;
+pub mod surface;
+pub mod sweep;
+pub mod topology;
+pub mod velocity;

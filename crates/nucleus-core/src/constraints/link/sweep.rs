@@ -1,0 +1,14 @@
+//! One pass over the links of a constraint, as the schedule plans it.
+
+use crate::constraints::stretch::LinkStrength;
+
+/// One pass over the links of a constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkSweep<R> {
+    /// The constraint, by its index.
+    pub constraint: usize,
+    /// Along links, and along the normals of surfaces.
+    pub normal: LinkStrength<R>,
+    /// Along surfaces.
+    pub tangent: LinkStrength<R>,
+}

@@ -1,0 +1,172 @@
+//! Pair filter: elements that do not collide with each other, because a constraint says so or because they are joined.
+//!
+//! The broad phase asks it for every candidate. Empty columns, in scenes without such constraints, cost a length check.
+
+use crate::bytes::checkpoint_struct;
+use crate::input::links::{ExcludedSide, Exclusion};
+use crate::math::Real;
+use crate::model::{ClothModel, ColliderModel};
+
+/// Exclusions in a frame, at most: each has a bit. More have no effect.
+pub const MAX_EXCLUSIONS: usize = 64;
+
+/// The exclusions that have a point on their first and on their second side, as bits.
+type Sides = [u64; 2];
+
+/// Which elements do not collide.
+#[derive(Debug, Clone, Default)]
+pub struct PairFilter {
+    /// By row: the lowest row that it is welded to; empty where nothing is welded.
+    clusters: Vec<u32>,
+    /// By row; empty without exclusions.
+    cloths: Vec<Sides>,
+    /// By point of each collider; empty without exclusions.
+    colliders: Vec<Vec<Sides>>,
+    /// The exclusions with everything on one side.
+    everything: Sides,
+    /// Whether welds can break: elements that coincide at rest then part.
+    tears: bool,
+}
+
+checkpoint_struct!([] PairFilter {
+    columns: [], values: [clusters, cloths, colliders, everything, tears], parts: [], rebuilt: [],
+});
+
+impl PairFilter {
+    /// Whether it excludes nothing.
+    pub fn is_empty(&self) -> bool {
+        self.clusters.is_empty() && self.cloths.is_empty()
+    }
+
+    /// Whether its columns fit these numbers of rows and of points of colliders.
+    pub fn is_valid(&self, rows: usize, colliders: impl ExactSizeIterator<Item = usize>) -> bool {
+        let of_rows = |length: usize| length == 0 || length == rows;
+        let of_colliders = self.colliders.is_empty()
+            || self.colliders.len() == colliders.len()
+                && self.colliders.iter().zip(colliders).all(|(points, count)| points.len() == count);
+        of_rows(self.clusters.len())
+            && of_rows(self.cloths.len())
+            && self.colliders.is_empty() == self.cloths.is_empty()
+            && of_colliders
+    }
+
+    /// Whether elements that coincide at rest may have been torn from each other.
+    pub fn tears(&self) -> bool {
+        self.tears
+    }
+
+    /// Whether two elements of cloth do not collide.
+    #[inline]
+    pub fn excludes(&self, ours: &[u32], theirs: &[u32]) -> bool {
+        !self.is_empty()
+            && (self.are_joined(ours, theirs) || meet(self.of_cloth(ours), self.of_cloth(theirs)))
+    }
+
+    /// Whether an element of cloth and one of a collider do not collide.
+    #[inline]
+    pub fn excludes_collider(&self, ours: &[u32], collider: usize, theirs: &[u32]) -> bool {
+        if self.cloths.is_empty() {
+            return false;
+        }
+        let points = &self.colliders[collider];
+        let of_collider = theirs.iter().fold([u64::MAX; 2], |all, &point| both(all, points[point as usize]));
+        meet(self.of_cloth(ours), of_collider)
+    }
+
+    /// Whether a point does not collide with the ground plane.
+    #[inline]
+    pub fn excludes_ground(&self, point: u32) -> bool {
+        !self.cloths.is_empty() && meet(self.of_cloth(&[point]), self.everything)
+    }
+
+    /// Whether two elements have points that are welded to each other.
+    #[inline]
+    pub fn are_joined(&self, ours: &[u32], theirs: &[u32]) -> bool {
+        let cluster = |point: &u32| self.clusters[*point as usize];
+        !self.clusters.is_empty() && ours.iter().any(|p| theirs.iter().any(|q| cluster(p) == cluster(q)))
+    }
+
+    fn of_cloth(&self, points: &[u32]) -> Sides {
+        if self.cloths.is_empty() {
+            return [0; 2];
+        }
+        points.iter().fold([u64::MAX; 2], |all, &point| both(all, self.cloths[point as usize]))
+    }
+
+    /// Takes up the points that are welded to others, and whether welds can break.
+    pub fn set_welds(&mut self, clusters: Vec<u32>, tears: bool) {
+        self.clusters = clusters;
+        self.tears |= tears;
+    }
+
+    /// Whether there are exclusions.
+    pub fn has_exclusions(&self) -> bool {
+        !self.cloths.is_empty()
+    }
+
+    /// Whether another filter treats a row otherwise.
+    pub fn differs_at(&self, other: &Self, row: usize) -> bool {
+        let cluster = |filter: &Self| filter.clusters.get(row).copied().unwrap_or(row as u32);
+        let sides = |filter: &Self| filter.cloths.get(row).copied().unwrap_or_default();
+        cluster(self) != cluster(other) || sides(self) != sides(other)
+    }
+
+    /// Whether another filter treats a collider otherwise.
+    pub fn differs_in_colliders(&self, other: &Self) -> bool {
+        self.colliders != other.colliders
+    }
+
+    /// Takes up exclusions.
+    pub fn set_exclusions<R: Real>(
+        &mut self,
+        exclusions: &[std::sync::Arc<Exclusion>],
+        cloths: &[ClothModel<R>],
+        colliders: &[ColliderModel],
+        rows: usize,
+    ) {
+        self.everything = [0; 2];
+        if exclusions.is_empty() {
+            self.cloths.clear();
+            self.colliders.clear();
+            return;
+        }
+        self.cloths = vec![[0; 2]; rows];
+        self.colliders = colliders.iter().map(|collider| vec![[0; 2]; collider.positions.len()]).collect();
+        for (bit, exclusion) in exclusions.iter().take(MAX_EXCLUSIONS).enumerate() {
+            for (side, members) in exclusion.sides.iter().enumerate() {
+                let mark = |sides: &mut Sides| sides[side] |= 1 << bit;
+                match members {
+                    ExcludedSide::Everything => {
+                        self.cloths.iter_mut().for_each(mark);
+                        self.colliders.iter_mut().flatten().for_each(mark);
+                        mark(&mut self.everything);
+                    }
+                    ExcludedSide::Points(of_cloths, of_colliders) => {
+                        for (cloth, point) in of_cloths {
+                            let Some(model) = cloths.get(cloth.index()) else { continue };
+                            if point.index() < model.points().len() {
+                                mark(&mut self.cloths[model.place(point.index()) as usize]);
+                            }
+                        }
+                        for (collider, point) in of_colliders {
+                            let points = self.colliders.get_mut(collider.index());
+                            points
+                                .and_then(|points| points.get_mut(point.index()))
+                                .into_iter()
+                                .for_each(mark);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn both(a: Sides, b: Sides) -> Sides {
+    [a[0] & b[0], a[1] & b[1]]
+}
+
+/// Whether one is on the first side of an exclusion and the other on the second.
+fn meet(a: Sides, b: Sides) -> bool {
+    (a[0] & b[1]) | (a[1] & b[0]) != 0
+}

@@ -1,0 +1,256 @@
+//! Links of dynamic constraints: what is joined to what, and how strongly in a frame.
+//!
+//! A link joins two places. Each is a point, a point of an edge or a point of a face of a cloth, given by barycentric
+//! weights; or it is prescribed: a place on a collider, or a place in the constraint's own space. A prescribed place
+//! moves along a straight line inside the frame and cannot be pushed.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::bytes::{Encode, Reader, encode_struct};
+use crate::input::{ClothId, ColliderId, PointId};
+
+/// One end of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LinkSide {
+    /// A place on a cloth: up to three points with weights that add up to 1. Unused points have weight 0.
+    Cloth {
+        /// The cloth.
+        cloth: ClothId,
+        /// Its points.
+        points: [PointId; 3],
+        /// Their barycentric weights.
+        weights: [f64; 3],
+    },
+    /// A place on a collider.
+    Collider {
+        /// The collider.
+        collider: ColliderId,
+        /// Its points.
+        points: [PointId; 3],
+        /// Their barycentric weights.
+        weights: [f64; 3],
+    },
+    /// A place in the space of the constraint (see [`ConstraintFrame::space`]), in metres.
+    Space(Vector3<f64>),
+}
+
+impl LinkSide {
+    /// A point of a cloth.
+    pub fn point(cloth: ClothId, point: PointId) -> Self {
+        Self::Cloth { cloth, points: [point; 3], weights: [1.0, 0.0, 0.0] }
+    }
+
+    /// Whether the solver moves it.
+    pub fn is_free(&self) -> bool {
+        matches!(self, Self::Cloth { .. })
+    }
+}
+
+/// A link. Formed by the caller, kept by the solver until its constraint is formed anew.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// What is joined. With `on_surface` the second side is a face.
+    pub sides: [LinkSide; 2],
+    /// Distance to hold in metres, before [`ConstraintFrame::rest_scale`]; on a surface along its normal, with sign.
+    pub rest: f64,
+    /// Strength is split: one along the normal of the face on the second side, another along the face.
+    pub on_surface: bool,
+    /// Factor on the strength, 0 to 1 (product of both components').
+    pub strength: f64,
+    /// Factor on the tangent strength.
+    pub tangent_strength: f64,
+    /// Factor on the glue strength (product of both components').
+    pub glue: f64,
+    /// How much each side pushes the other: 0 never does.
+    pub weight: [f64; 2],
+    /// Length of the edge that it stands for in metres, or 1 for single points: the load that breaks it is per length.
+    pub length: f64,
+}
+
+impl Link {
+    /// A link of full strength between two places at this distance.
+    pub fn new(sides: [LinkSide; 2], rest: f64) -> Self {
+        Self {
+            sides,
+            rest,
+            on_surface: false,
+            strength: 1.0,
+            tangent_strength: 1.0,
+            glue: 1.0,
+            weight: [1.0; 2],
+            length: 1.0,
+        }
+    }
+}
+
+/// How links hold (`constraintMethod`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinkMethod {
+    /// Rigid at any strength.
+    Weld,
+    /// Springs in both directions.
+    Spring,
+    /// Springs that only pull.
+    RubberBand,
+}
+
+/// A force along links (`force`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkForce {
+    /// Relative acceleration in m/s² of the two ends towards each other.
+    pub acceleration: f64,
+    /// Factor over the length of the link.
+    pub falloff: Falloff,
+}
+
+/// A sampled ramp over a distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Falloff {
+    /// In metres.
+    pub distance: f64,
+    /// From zero (first) to the distance (last), evenly spaced; the last one beyond.
+    pub samples: [f64; Self::SAMPLES],
+}
+
+impl Falloff {
+    /// The number of samples.
+    pub const SAMPLES: usize = 17;
+
+    /// The value at a length in metres, between samples in straight lines.
+    pub fn at(&self, length: f64) -> f64 {
+        let last = Self::SAMPLES - 1;
+        let share = if self.distance > 0.0 { (length / self.distance).clamp(0.0, 1.0) } else { 1.0 };
+        let low = ((share * last as f64) as usize).min(last - 1);
+        let [a, b] = [self.samples[low], self.samples[low + 1]];
+        a + (b - a) * (share * last as f64 - low as f64)
+    }
+}
+
+/// The attributes of one constraint in one frame. The constraints of all frames have the same order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConstraintFrame {
+    /// Links formed at the start of this frame, which replace those before; `None` keeps them.
+    pub formed: Option<Vec<Link>>,
+    /// How they hold.
+    pub method: LinkMethod,
+    /// `strength`: evaluations in 1/24 s (Classic) or a stiffness (Physical).
+    pub strength: f64,
+    /// The same along surfaces.
+    pub tangent_strength: f64,
+    /// Factor on rest lengths.
+    pub rest_scale: f64,
+    /// Evaluations in 1/24 s, at least and at most.
+    pub iterations: [f64; 2],
+    /// `glueStrength`: 0 breaks at once, 1 never. Its [`breaking_load`](crate::breaking_load) is in newtons per metre of
+    /// edge, or newtons per point. When it becomes 1, broken links heal. Read only if `can_break`.
+    pub glue_strength: f64,
+    /// Factor on the breaking load.
+    pub glue_scale: f64,
+    /// Whether links ever break. Fixed from frame to frame.
+    pub can_break: bool,
+    /// Whether links on surfaces slide: their second side moves to the nearest place of the surface in every time step.
+    pub slides: bool,
+    /// Resistance against sliding: 0 none, 1 does not slide.
+    pub friction: f64,
+    /// Distance in metres that sliding points keep from the surface on their side (`localCollide`).
+    pub keep_off: Option<f64>,
+    /// Whether that side is the one where they began.
+    pub single_sided: bool,
+    /// Damping of the relative velocity along links.
+    pub damp: f64,
+    /// Share of the relative velocity that is taken: 0 none, 1 locks.
+    pub motion_drag: f64,
+    /// A force along links.
+    pub force: Option<LinkForce>,
+    /// Factor on the strength over the present length; `None` is 1 everywhere.
+    pub dropoff: Option<Falloff>,
+    /// The space of the constraint at the start and at the end of the frame: `linear * place + offset`, in metres.
+    pub space: [(Matrix3<f64>, Vector3<f64>); 2],
+}
+
+impl Default for ConstraintFrame {
+    /// Springs with Maya's defaults, without links.
+    fn default() -> Self {
+        Self {
+            formed: None,
+            method: LinkMethod::Spring,
+            strength: 20.0,
+            tangent_strength: 10.0,
+            rest_scale: 1.0,
+            iterations: [0.0, 5000.0],
+            glue_strength: 1.0,
+            glue_scale: 1.0,
+            can_break: false,
+            slides: false,
+            friction: 0.0,
+            keep_off: None,
+            single_sided: true,
+            damp: 0.0,
+            motion_drag: 0.0,
+            force: None,
+            dropoff: None,
+            space: [(Matrix3::identity(), Vector3::zeros()); 2],
+        }
+    }
+}
+
+impl ConstraintFrame {
+    /// Whether its links pull at all.
+    pub fn pulls(&self) -> bool {
+        self.method == LinkMethod::Weld || self.strength > 0.0 || self.tangent_strength > 0.0
+    }
+}
+
+/// Elements that do not collide with each other.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exclusion {
+    /// The points of both sides. An element belongs to a side if all of its points do.
+    pub sides: [ExcludedSide; 2],
+}
+
+/// One side of an exclusion.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ExcludedSide {
+    /// Everything in the scene, with the ground plane.
+    Everything,
+    /// Points of cloths and of colliders.
+    Points(Vec<(ClothId, PointId)>, Vec<(ColliderId, PointId)>),
+}
+
+impl Default for ExcludedSide {
+    fn default() -> Self {
+        Self::Points(Vec::new(), Vec::new())
+    }
+}
+
+/// Kind, object, points and numbers.
+type PackedSide = (u8, (u32, ([u32; 3], [f64; 3])));
+
+impl Encode for LinkSide {
+    const SIZE: usize = <PackedSide as Encode>::SIZE;
+    fn encode(&self, out: &mut Vec<u8>) {
+        let packed: PackedSide = match *self {
+            Self::Cloth { cloth, points, weights } => (0, (cloth.0, (points.map(|point| point.0), weights))),
+            Self::Collider { collider, points, weights } => {
+                (1, (collider.0, (points.map(|point| point.0), weights)))
+            }
+            Self::Space(place) => (2, (0, ([0; 3], place.into()))),
+        };
+        packed.encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        let (kind, (id, (points, weights))) = PackedSide::decode(from)?;
+        let points = points.map(PointId);
+        match kind {
+            0 => Some(Self::Cloth { cloth: ClothId(id), points, weights }),
+            1 => Some(Self::Collider { collider: ColliderId(id), points, weights }),
+            2 => Some(Self::Space(weights.into())),
+            _ => None,
+        }
+    }
+}
+
+encode_struct!([] Link {
+    sides: [LinkSide; 2], rest: f64, on_surface: bool, strength: f64, tangent_strength: f64, glue: f64,
+    weight: [f64; 2], length: f64,
+});

@@ -1,0 +1,353 @@
+//! Links of dynamic constraints: periods, welds, glue, sliding, momentum, and elements that do not collide.
+
+mod scenes;
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nucleus_core::{
+    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, ConstraintFrame,
+    ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkMethod, LinkSide, Mass,
+    ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView, StepReport, Surface,
+};
+use proptest::prelude::*;
+use scenes::{LINKS, Vec3, frame, grid, pins, sphere, still};
+
+const PHYSICAL: ResistanceModel = ResistanceModel::Physical { evaluations: 96.0 };
+
+fn point(cloth: u32, point: u32) -> LinkSide {
+    LinkSide::point(ClothId(cloth), PointId(point))
+}
+
+/// A face or an edge of a cloth with weights.
+fn place(cloth: u32, points: [u32; 3], weights: [f64; 3]) -> LinkSide {
+    LinkSide::Cloth { cloth: ClothId(cloth), points: points.map(PointId), weights }
+}
+
+/// Free points of one kilogram each.
+fn points(places: &[Vec3]) -> Cloth {
+    let surface = Surface { positions: places.to_vec(), ..Surface::default() };
+    Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE)
+}
+
+fn model(cloths: impl IntoIterator<Item = Cloth>) -> ModelBuilder {
+    let mut builder = ModelBuilder::new();
+    for cloth in cloths {
+        builder.cloth(cloth).expect("a good mesh");
+    }
+    builder
+}
+
+/// A frame of `cloths` cloths without contact, with one constraint.
+fn tied(cloths: usize, resistance: ResistanceModel, constraint: ConstraintFrame) -> FrameInput {
+    let settings = ClothFrame { collide: false, ..still() };
+    FrameInput { cloths: vec![settings; cloths], constraints: vec![constraint], ..frame(3, resistance) }
+}
+
+/// Steps through `frames` frames; links are formed in the first.
+fn run(solver: &mut Solver<f64>, input: &mut FrameInput, frames: usize) -> StepReport {
+    let mut report = StepReport::default();
+    for _ in 0..frames {
+        report = solver.step(input, &mut ());
+        input.constraints.iter_mut().for_each(|constraint| constraint.formed = None);
+    }
+    report
+}
+
+// EVIDENCE: N2.4-3  a spring between components has the stiffness that its strength says
+#[test]
+fn a_spring_swings_with_the_period_of_its_stiffness() {
+    for strength in [0.2, 1.0] {
+        let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::new(1.2, 0.0, 0.0)])]), 1);
+        let link = Link::new([point(0, 0), LinkSide::Space(Vec3::zeros())], 1.0);
+        let constraint = ConstraintFrame { formed: Some(vec![link]), strength, ..ConstraintFrame::default() };
+        let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(1, PHYSICAL, constraint) };
+        // Times at which the point passes the rest length inwards.
+        let (mut passes, mut last) = (Vec::new(), 0.2);
+        for k in 1..240 {
+            run(&mut solver, &mut input, 1);
+            let x = solver.point(ClothId(0), 0).x - 1.0;
+            if last > 0.0 && x <= 0.0 {
+                passes.push((f64::from(k) - x / (x - last)) / 24.0);
+            }
+            last = x;
+        }
+        let period = (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f64;
+        let theory = TAU / (strength * STIFFNESS_PER_RESISTANCE).sqrt();
+        assert!((period / theory - 1.0).abs() < 0.01, "{strength}: {period} s, not {theory}");
+    }
+}
+
+#[test]
+fn a_rubber_band_pulls_and_does_not_push() {
+    for (start, moves) in [(0.5, false), (2.0, true)] {
+        let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::x() * start])]), 1);
+        let link = Link::new([point(0, 0), LinkSide::Space(Vec3::zeros())], 1.0);
+        let method = LinkMethod::RubberBand;
+        let constraint = ConstraintFrame { formed: Some(vec![link]), method, ..ConstraintFrame::default() };
+        let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(1, PHYSICAL, constraint) };
+        run(&mut solver, &mut input, 1);
+        assert_eq!(solver.point(ClothId(0), 0).x != start, moves);
+    }
+}
+
+/// Two sheets of one square metre, one below the other, welded along the seam; the upper is pinned at its top.
+fn hung_sheets(side: u32, method: LinkMethod) -> (Surface, ModelBuilder, ConstraintFrame) {
+    let upper = grid(side, side, Vec3::x(), -Vec3::y());
+    let mut lower = upper.clone();
+    lower.positions.iter_mut().for_each(|p| p.y -= 1.0);
+    let cloth = |surface: &Surface| Cloth::new(surface.clone(), Mass::PerArea(0.2), LINKS);
+    let step = 1.0 / f64::from(side - 1);
+    let seam = |k: u32| {
+        let link = Link::new([point(0, (side - 1) * side + k), point(1, k)], 0.0);
+        Link { length: if k == 0 || k == side - 1 { step / 2.0 } else { step }, ..link }
+    };
+    let formed = Some((0..side).map(seam).collect());
+    let constraint = ConstraintFrame { formed, method, ..ConstraintFrame::default() };
+    (upper.clone(), model([cloth(&upper), cloth(&lower)]), constraint)
+}
+
+// EVIDENCE: N2.4-3  welded points stay together
+#[test]
+fn a_weld_drifts_by_less_than_a_ten_thousandth_of_its_size_at_any_resistance() {
+    for (resistance, solved) in
+        [(1.0, PHYSICAL), (20.0, PHYSICAL), (2000.0, PHYSICAL), (20.0, ResistanceModel::Classic)]
+    {
+        let (upper, builder, constraint) = hung_sheets(11, LinkMethod::Weld);
+        let mut solver: Solver<f64> = Solver::new(builder, 1);
+        let mut input = tied(2, solved, constraint);
+        input.pins = pins(&upper, 0..11);
+        input.cloths.iter_mut().for_each(|cloth| cloth.stretch_resistance = resistance);
+        let mut most = 0.0f64;
+        for _ in 0..24 {
+            most = most.max(run(&mut solver, &mut input, 1).max_weld_gap);
+        }
+        assert!(most < 1e-4, "{resistance}: {most} m");
+    }
+}
+
+// EVIDENCE: N2.4-5  glue lets go at a load
+#[test]
+fn glue_breaks_at_the_stated_load_on_any_mesh() {
+    for side in [6, 11, 21] {
+        let (upper, builder, constraint) = hung_sheets(side, LinkMethod::Weld);
+        let masses: f64 = builder.cloths()[1].point_masses().iter().sum();
+        let limit = 30.0;
+        let glue_strength = limit / (limit + LOAD_OF_HALF);
+        let constraint = ConstraintFrame { can_break: true, glue_strength, ..constraint };
+        let mut solver: Solver<f64> = Solver::new(builder, 1);
+        let mut input = tied(2, PHYSICAL, constraint);
+        input.pins = pins(&upper, 0..side as usize);
+        input.cloths.iter_mut().for_each(|cloth| cloth.damp = 2.0);
+        input.cloths.iter_mut().for_each(|cloth| cloth.stretch_damp = 5.0);
+        // The load is the weight of the lower sheet, a metre wide, as gravity grows slowly.
+        let mut broken_at = None;
+        for k in 0..400 {
+            let gravity = 0.5 * f64::from(k);
+            input.gravity = Vec3::new(0.0, -gravity, 0.0);
+            if run(&mut solver, &mut input, 1).broken_links > 0 {
+                broken_at = Some(gravity * masses);
+                break;
+            }
+        }
+        let load = broken_at.expect("it breaks");
+        assert!((load / limit - 1.0).abs() < 0.05, "{side} points: {load} N/m, not {limit}");
+    }
+}
+
+#[test]
+fn broken_links_heal_when_nothing_can_break_them() {
+    let (upper, builder, constraint) = hung_sheets(6, LinkMethod::Weld);
+    let weak = ConstraintFrame { can_break: true, glue_strength: 0.0, ..constraint };
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let mut input = tied(2, PHYSICAL, weak);
+    input.pins = pins(&upper, 0..6);
+    assert_eq!(run(&mut solver, &mut input, 4).broken_links, 6);
+    input.constraints[0].glue_strength = 1.0;
+    assert_eq!(run(&mut solver, &mut input, 1).broken_links, 0);
+    assert!(run(&mut solver, &mut input, 12).max_weld_gap < 1e-4);
+}
+
+/// Momentum and angular momentum of free points of one kilogram.
+fn momenta(solver: &Solver<f64>, counts: &[usize]) -> [Vec3; 2] {
+    let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
+    for (cloth, &count) in (0..).map(ClothId).zip(counts) {
+        let mut velocities = Vec::new();
+        solver.velocities(cloth, 1.0, &mut velocities);
+        for (k, velocity) in (0..count).zip(velocities) {
+            let velocity = Vec3::from(velocity.map(f64::from));
+            linear += velocity;
+            angular += solver.point(cloth, k).cross(&velocity);
+        }
+    }
+    [linear, angular]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn links_between_any_elements_keep_the_momentum_of_free_objects(
+        places in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 6),
+        (a, b) in (0.0..1.0f64, 0.0..1.0f64),
+        kinds in (0usize..3, 0usize..3),
+        (damp, drag, force) in (0.0..1.0f64, 0.0..1.0f64, -2.0..2.0f64),
+        weld: bool,
+    ) {
+        let places: Vec<Vec3> = places.into_iter().map(Vec3::from).collect();
+        let weights = |kind: usize, share: f64| match kind {
+            0 => [1.0, 0.0, 0.0],
+            1 => [share, 1.0 - share, 0.0],
+            _ => [share / 2.0, share / 2.0, 1.0 - share],
+        };
+        let sides = [place(0, [0, 1, 2], weights(kinds.0, a)), place(1, [0, 1, 2], weights(kinds.1, b))];
+        let method = if weld { LinkMethod::Weld } else { LinkMethod::Spring };
+        let falloff = Falloff { distance: 10.0, samples: [1.0; Falloff::SAMPLES] };
+        let constraint = ConstraintFrame {
+            formed: Some(vec![Link::new(sides, 0.3)]),
+            method,
+            damp,
+            motion_drag: drag,
+            force: Some(LinkForce { acceleration: force, falloff }),
+            ..ConstraintFrame::default()
+        };
+        let mut solver: Solver<f64> = Solver::new(model([points(&places[..3]), points(&places[3..])]), 1);
+        let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(2, PHYSICAL, constraint) };
+        run(&mut solver, &mut input, 3);
+        let [linear, angular] = momenta(&solver, &[3, 3]);
+        prop_assert!(linear.norm() < 1e-4, "momentum {linear}");
+        // Drag acts across the line between the ends too, which turns them.
+        prop_assert!(drag > 0.05 || angular.norm() < 0.05, "angular momentum {angular}");
+    }
+}
+
+#[test]
+fn links_on_a_face_keep_the_momentum_of_both_sides() {
+    let face = [Vec3::zeros(), Vec3::x(), Vec3::z()];
+    let mut sheet = Surface { positions: face.to_vec(), ..Surface::default() };
+    sheet.faces.push(&[0, 1, 2]);
+    let sheet = Cloth::new(sheet, Mass::PerPoint(1.0), LINKS);
+    let link =
+        Link { on_surface: true, ..Link::new([point(0, 0), place(1, [0, 1, 2], [0.4, 0.3, 0.3])], 0.2) };
+    let constraint = ConstraintFrame { formed: Some(vec![link]), ..ConstraintFrame::default() };
+    let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::new(0.1, 0.5, 0.5)]), sheet]), 1);
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(2, PHYSICAL, constraint) };
+    input.cloths[0].collide = true; // faces exist only where contact is possible
+    run(&mut solver, &mut input, 6);
+    let [linear, _] = momenta(&solver, &[1, 3]);
+    assert!(linear.norm() < 1e-4, "{linear}");
+    assert!(solver.point(ClothId(0), 0).y < 0.5);
+}
+
+/// A bead on a ball, pushed along it.
+fn bead_on_ball(friction: f64, speed: f64) -> (ModelBuilder, FrameInput) {
+    let ball = sphere(0.5, Vec3::zeros());
+    let start = Vec3::new(0.0, 0.51, 0.0);
+    let mut bead = points(&[start]);
+    bead.start.velocities = vec![Vec3::x() * speed];
+    let mut builder = model([bead]);
+    builder.collider(Collider { surface: ball.clone() }).expect("a good mesh");
+    let top = ball.faces.triangles().find(|corners| corners.contains(&0)).expect("a face at the pole");
+    let weights = top.map(|corner| if corner == 0 { 1.0 } else { 0.0 });
+    let foot = LinkSide::Collider { collider: ColliderId(0), points: top.map(PointId), weights };
+    let link = Link { on_surface: true, ..Link::new([point(0, 0), foot], 0.01) };
+    let constraint = ConstraintFrame {
+        formed: Some(vec![link]),
+        slides: true,
+        friction,
+        keep_off: Some(0.01),
+        strength: 20.0,
+        ..ConstraintFrame::default()
+    };
+    let mut input = tied(1, PHYSICAL, constraint);
+    input.gravity = Vec3::zeros();
+    input.colliders = vec![ColliderFrame::default()];
+    (builder, input)
+}
+
+// EVIDENCE: N2.4-4  a sliding point stays on its surface at speed
+#[test]
+fn a_sliding_point_leaves_the_surface_by_less_than_its_thickness_at_speed() {
+    let (builder, mut input) = bead_on_ball(0.0, 6.0);
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let mut turned = 0.0;
+    for _ in 0..24 {
+        let before = solver.point(ClothId(0), 0);
+        run(&mut solver, &mut input, 1);
+        let now = solver.point(ClothId(0), 0);
+        turned += before.angle(&now);
+        let height = now.norm() - 0.5;
+        assert!(height > 0.002 && height < 0.02, "{height} m above the ball");
+    }
+    assert!(turned > 10.0, "it has gone round the ball by {turned} rad");
+}
+
+#[test]
+fn sliding_with_full_friction_does_not_slide() {
+    let (builder, mut input) = bead_on_ball(1.0, 2.0);
+    input.constraints[0].tangent_strength = 20.0;
+    input.constraints[0].damp = 10.0;
+    input.constraints[0].motion_drag = 0.5;
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    run(&mut solver, &mut input, 72);
+    assert!((solver.point(ClothId(0), 0) - Vec3::new(0.0, 0.51, 0.0)).norm() < 0.01);
+}
+
+// EVIDENCE: N2.2-7  links have the same bits on any number of threads
+#[test]
+fn links_give_the_same_bits_on_any_number_of_threads_and_after_a_restart() {
+    let build = || {
+        let (upper, builder, constraint) = hung_sheets(40, LinkMethod::Weld);
+        let mut input = tied(2, PHYSICAL, constraint);
+        input.constraints[0].can_break = true;
+        input.constraints[0].glue_strength = 0.04;
+        input.pins = pins(&upper, [0]);
+        (builder, input)
+    };
+    let (builder, mut input) = build();
+    let mut one: Solver<f64> = Solver::new(builder, 1);
+    run(&mut one, &mut input, 3);
+    let (builder, mut input) = build();
+    let mut two: Solver<f64> = Solver::new(builder, 2);
+    let report = run(&mut two, &mut input, 3);
+    assert_eq!(one.state_hash(), two.state_hash());
+    assert!(report.broken_links > 0, "some have torn, {} remain whole", 40 - report.broken_links);
+    let (builder, _) = build();
+    let mut restored: Solver<f64> = Solver::restored(builder, 1, &two.save()).expect("a checkpoint");
+    run(&mut two, &mut input, 3);
+    run(&mut restored, &mut input, 3);
+    assert_eq!(two.state_hash(), restored.state_hash());
+}
+
+#[test]
+fn excluded_cloth_falls_through_and_other_cloth_does_not() {
+    for excluded in [false, true] {
+        let lower = grid(5, 5, Vec3::x(), Vec3::z());
+        let mut upper = lower.clone();
+        upper.positions.iter_mut().for_each(|p| *p += Vec3::new(0.02, 0.05, 0.02));
+        let cloth = |surface: &Surface| Cloth::new(surface.clone(), Mass::PerArea(0.2), LINKS);
+        let mut solver: Solver<f64> = Solver::new(model([cloth(&lower), cloth(&upper)]), 1);
+        let members =
+            |cloth| ExcludedSide::Points((0..25).map(|k| (ClothId(cloth), PointId(k))).collect(), Vec::new());
+        let exclusion = Arc::new(Exclusion { sides: [members(0), members(1)] });
+        let mut input = FrameInput {
+            cloths: vec![ClothFrame { thickness: 0.005, ..still() }; 2],
+            pins: pins(&lower, 0..25),
+            exclusions: if excluded { vec![exclusion] } else { Vec::new() },
+            ..frame(3, PHYSICAL)
+        };
+        run(&mut solver, &mut input, 12);
+        assert_eq!(solver.point(ClothId(1), 12).y < -0.1, excluded);
+    }
+}
+
+#[test]
+fn links_to_points_that_do_not_exist_are_dropped_and_counted() {
+    let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::zeros()])]), 1);
+    let wrong = Link::new([point(0, 7), LinkSide::Space(Vec3::zeros())], 0.0);
+    let other = Link::new([point(3, 0), LinkSide::Space(Vec3::zeros())], f64::NAN);
+    let constraint = ConstraintFrame { formed: Some(vec![wrong, other]), ..ConstraintFrame::default() };
+    let mut input = tied(1, PHYSICAL, constraint);
+    assert_eq!(solver.step(&input, &mut ()).sanitized.count, 1);
+    assert!(run(&mut solver, &mut input, 2).finite);
+}

@@ -1,0 +1,434 @@
+//! Forming links: which elements of the members are joined, and where, from positions at a time.
+
+use nalgebra::Vector3;
+use nucleus_core::{ClothId, Link, LinkSide, PointId};
+
+use crate::attributes::{ElementKind, RampPoint, dynamic_constraint as con};
+use crate::compile::soft_body::ramp_at;
+
+use super::kinds::{self, Values};
+use super::member::{Member, MemberObject, Places};
+use super::near::{Foot, Nearby, barycentric, distance, foot};
+
+type Point = Vector3<f64>;
+
+/// `componentRelation`.
+const ALL_TO_FIRST: i32 = 0;
+const ALL_TO_ALL: i32 = 1;
+/// `connectionMethod`.
+const IN_ORDER: i32 = 0;
+const MAX_DISTANCE: i32 = 1;
+/// `restLengthMethod: constant`.
+const CONSTANT: i32 = 1;
+
+/// What forming links needs of a constraint.
+pub(super) struct Forming<'a> {
+    pub(super) values: Values<'a>,
+    pub(super) members: &'a [Member],
+    pub(super) places: &'a Places,
+    pub(super) seams: &'a [(ClothId, [u32; 2], [u32; 2])],
+    /// Metres per scene unit.
+    pub(super) metres: f64,
+}
+
+/// A place on an element of a member.
+#[derive(Clone, Copy)]
+struct Place {
+    side: LinkSide,
+    at: Point,
+    /// The element, for its strength.
+    element: u32,
+}
+
+impl Member {
+    fn side(&self, points: [u32; 3], weights: [f64; 3]) -> LinkSide {
+        let points = points.map(PointId);
+        match self.object {
+            MemberObject::Cloth(cloth) => LinkSide::Cloth { cloth, points, weights },
+            MemberObject::Collider(collider) => LinkSide::Collider { collider, points, weights },
+        }
+    }
+}
+
+impl Forming<'_> {
+    /// All links of the constraint. Their order does not depend on positions, other than through what is near.
+    pub(super) fn links(&self) -> Vec<Link> {
+        let links = match self.values.kind {
+            kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE => self.to_surface(),
+            kinds::WELD_BORDERS => self.borders(),
+            kinds::TEARABLE => self.seams(),
+            _ => self.pairs(),
+        };
+        let constant = self.values.choice(&con::REST_LENGTH_METHOD) == CONSTANT;
+        let rest = |link: &Link| match constant {
+            true if link.rest < 0.0 => -1.0,
+            true => 1.0,
+            false => link.rest,
+        };
+        links.into_iter().map(|link| Link { rest: rest(&link), ..link }).collect()
+    }
+
+    /// Links from every point to the constraint's own space, where `local` puts it.
+    pub(super) fn to_space(&self, local: impl Fn(Point) -> Point) -> Vec<Link> {
+        let mut links = Vec::new();
+        for member in self.members.iter().filter(|member| matches!(member.object, MemberObject::Cloth(_))) {
+            for (point, element) in member.points() {
+                let at = self.places.point(member.object, point);
+                let side = member.side([point; 3], [1.0, 0.0, 0.0]);
+                let [strength, tangent, glue, weight] = member.factors(element);
+                links.push(Link {
+                    strength,
+                    tangent_strength: tangent,
+                    glue,
+                    weight: [weight, 1.0],
+                    ..Link::new([side, LinkSide::Space(local(at))], 0.0)
+                });
+            }
+        }
+        links
+    }
+
+    /// Links between pairs of elements.
+    fn pairs(&self) -> Vec<Link> {
+        let mut links = Vec::new();
+        for [a, b] in self.joined_members() {
+            for [x, y] in self.element_pairs(a, b) {
+                self.join((&self.members[a], x), (&self.members[b], y), &mut links);
+            }
+        }
+        links
+    }
+
+    /// The members that are joined, by their indices.
+    fn joined_members(&self) -> Vec<[usize; 2]> {
+        let count = self.members.len();
+        let mut joined: Vec<[usize; 2]> = match self.values.choice(&con::COMPONENT_RELATION) {
+            ALL_TO_FIRST => (1..count).map(|k| [k, 0]).collect(),
+            ALL_TO_ALL => (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect(),
+            _ => (1..count).map(|k| [k - 1, k]).collect(),
+        };
+        // Maya connects within a component by itself when there is no other.
+        if self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || count == 1 {
+            joined.extend((0..count).map(|k| [k, k]));
+        }
+        joined
+    }
+
+    /// The elements of two members that are joined, by `connectionMethod`, thinned out by `connectionDensity`.
+    fn element_pairs(&self, a: usize, b: usize) -> Vec<[u32; 2]> {
+        let [from, to] = [a, b].map(|k| &self.members[k]);
+        let pairs = match self.values.choice(&con::CONNECTION_METHOD) {
+            IN_ORDER if a == b => self.in_order_within(from),
+            IN_ORDER => {
+                let count = from.elements.len().min(to.elements.len()) as u32;
+                (0..count).map(|k| [k, k]).collect()
+            }
+            MAX_DISTANCE => self.within_distance(from, to, a == b),
+            _ => self.nearest_pairs(from, to, a == b),
+        };
+        self.thinned(pairs, [from, to])
+    }
+
+    /// One component in order: every element with the next.
+    fn in_order_within(&self, member: &Member) -> Vec<[u32; 2]> {
+        (1..member.elements.len() as u32).map(|k| [k - 1, k]).collect()
+    }
+
+    fn corners(&self, member: &Member, element: u32) -> Vec<Point> {
+        let points = member.elements.face(element as usize).iter();
+        points.map(|&point| self.places.point(member.object, point)).collect()
+    }
+
+    fn all_corners(&self, member: &Member) -> Vec<Vec<Point>> {
+        (0..member.elements.len() as u32).map(|element| self.corners(member, element)).collect()
+    }
+
+    /// Whether two elements of one member are neighbours, which are not joined.
+    fn touch(member: &Member, x: u32, y: u32) -> bool {
+        let [x, y] = [x, y].map(|element| member.elements.face(element as usize));
+        x.iter().any(|point| y.contains(point))
+    }
+
+    fn within_distance(&self, from: &Member, to: &Member, same: bool) -> Vec<[u32; 2]> {
+        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
+        let (ours, theirs) = (self.all_corners(from), self.all_corners(to));
+        let nearby = Nearby::new(theirs.iter().map(Vec::as_slice));
+        let mut pairs = Vec::new();
+        for (x, corners) in (0..).zip(&ours) {
+            let low = corners.iter().map(|corner| corner.x).fold(f64::INFINITY, f64::min);
+            let high = corners.iter().map(|corner| corner.x).fold(f64::NEG_INFINITY, f64::max);
+            let mut found: Vec<u32> = nearby
+                .within([low, high], reach)
+                .filter(|&y| !same || x < y && !Self::touch(from, x, y))
+                .filter(|&y| distance(corners, &theirs[y as usize]) <= reach)
+                .collect();
+            found.sort_unstable();
+            pairs.extend(found.into_iter().map(|y| [x, y]));
+        }
+        pairs
+    }
+
+    /// Pairs that are nearest to each other, then again among those that are left: each element has one partner.
+    fn nearest_pairs(&self, from: &Member, to: &Member, same: bool) -> Vec<[u32; 2]> {
+        let (ours, theirs) = (self.all_corners(from), self.all_corners(to));
+        let mut left: [Vec<u32>; 2] = [&ours, &theirs].map(|all| (0..all.len() as u32).collect());
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        while !left[0].is_empty() && !left[1].is_empty() {
+            let nearby = Nearby::new(left[1].iter().map(|&y| theirs[y as usize].as_slice()));
+            let mut found: Vec<(f64, u32, u32)> = Vec::new();
+            for &x in &left[0] {
+                let corners = &ours[x as usize];
+                let of = |at: u32| match left[1][at as usize] {
+                    y if same && (x == y || Self::touch(from, x, y)) => f64::INFINITY,
+                    y => distance(corners, &theirs[y as usize]),
+                };
+                let middle = corners.iter().map(|corner| corner.x).sum::<f64>() / corners.len() as f64;
+                let nearest = match corners.len() {
+                    1 => nearby.nearest(middle, of),
+                    // The distance of a wide element is not bounded by that of its middle.
+                    _ => (0..left[1].len() as u32)
+                        .map(|at| (of(at), at))
+                        .reduce(|a, b| if b.0 < a.0 { b } else { a }),
+                };
+                found.extend(
+                    nearest.filter(|(d, _)| d.is_finite()).map(|(d, at)| (d, x, left[1][at as usize])),
+                );
+            }
+            found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+            let before = pairs.len();
+            let mut taken = [vec![false; ours.len()], vec![false; theirs.len()]];
+            for (_, x, y) in found {
+                let is_free = !taken[0][x as usize]
+                    && !taken[1][y as usize]
+                    && !(same && (taken[0][y as usize] || taken[1][x as usize]));
+                if is_free {
+                    (taken[0][x as usize], taken[1][y as usize]) = (true, true);
+                    if same {
+                        (taken[0][y as usize], taken[1][x as usize]) = (true, true);
+                    }
+                    pairs.push([x, y]);
+                }
+            }
+            if pairs.len() == before {
+                break;
+            }
+            left[0].retain(|&x| !taken[0][x as usize]);
+            left[1].retain(|&y| !taken[1][y as usize]);
+        }
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// Keeps each pair with the probability of `connectionDensity`, over its length by `connectionDensityRange`.
+    fn thinned(&self, mut pairs: Vec<[u32; 2]>, [from, to]: [&Member; 2]) -> Vec<[u32; 2]> {
+        let density = self.values.number(&con::CONNECTION_DENSITY);
+        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
+        if density >= 1.0 && ramp.iter().all(|point: &RampPoint| point.value >= 1.0) {
+            return pairs;
+        }
+        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
+        pairs.retain(|&[x, y]| {
+            let length = distance(&self.corners(from, x), &self.corners(to, y));
+            let share = density * ramp_at(&ramp, (length / reach.max(f64::MIN_POSITIVE)).min(1.0));
+            chance(x, y) < share
+        });
+        pairs
+    }
+
+    /// Adds the links that join two elements: one for a point, two for an edge, three for a face. Two edges hinge, faces
+    /// are attached rigidly.
+    fn join(&self, (from, x): (&Member, u32), (to, y): (&Member, u32), links: &mut Vec<Link>) {
+        let sizes = [from, to].map(|member| member.kind);
+        let ((from, x), (to, y)) =
+            if sizes[0] > sizes[1] { ((to, y), (from, x)) } else { ((from, x), (to, y)) };
+        let (ours, theirs) = (self.corners(from, x), self.corners(to, y));
+        let points = from.elements.face(x as usize);
+        let on_face = to.kind == ElementKind::Face;
+        let middle = ours.iter().sum::<Point>() / ours.len() as f64;
+        let whole = foot(&theirs, middle);
+        for (k, &corner) in ours.iter().enumerate().take(3) {
+            let on = match on_face && ours.len() > 1 {
+                true => rigid_foot(&theirs, whole, corner),
+                false => foot(&theirs, corner),
+            };
+            let side = from.side([points[k]; 3], [1.0, 0.0, 0.0]);
+            let a = Place { side, at: corner, element: x };
+            let b = self.place(to, y, &on);
+            links.push(self.link([(from, a), (to, b)], on_face.then(|| normal(&theirs, &on))));
+        }
+    }
+
+    fn place(&self, member: &Member, element: u32, on: &Foot) -> Place {
+        let points = member.elements.face(element as usize);
+        let side = member.side(on.corners.map(|corner| points[corner]), on.weights);
+        Place { side, at: on.place, element }
+    }
+
+    /// The link of two places; on a surface with this normal, its rest length is along it.
+    fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], normal: Option<Point>) -> Link {
+        let line = a.at - b.at;
+        let rest = normal.map_or(line.norm(), |normal| line.dot(&normal));
+        let (ours, theirs) = (from.factors(a.element), to.factors(b.element));
+        let [strength, tangent_strength, glue] = [0, 1, 2].map(|k| ours[k] * theirs[k]);
+        Link {
+            on_surface: normal.is_some(),
+            strength,
+            tangent_strength,
+            glue,
+            weight: [ours[3], theirs[3]],
+            ..Link::new([a.side, b.side], rest)
+        }
+    }
+
+    /// Links from all points to the closest places of the first member, a surface.
+    fn to_surface(&self) -> Vec<Link> {
+        let Some((surface, others)) = self.members.split_first() else { return Vec::new() };
+        let faces = self.all_corners(surface);
+        let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
+        let mut links = Vec::new();
+        for member in others {
+            for (point, element) in member.points() {
+                let at = self.places.point(member.object, point);
+                let of = |face: u32| (foot(&faces[face as usize], at).place - at).norm();
+                let Some((_, face)) = nearby.nearest(at.x, of) else { continue };
+                let on = foot(&faces[face as usize], at);
+                let normal = normal(&faces[face as usize], &on);
+                let from = Place { side: member.side([point; 3], [1.0, 0.0, 0.0]), at, element };
+                let to = self.place(surface, face, &on);
+                let mut link = self.link([(member, from), (surface, to)], Some(normal));
+                // Beside an edge the distance is not along the normal, but its side is.
+                link.rest = (at - on.place).norm() * if link.rest < 0.0 { -1.0 } else { 1.0 };
+                links.push(link);
+            }
+        }
+        links
+    }
+
+    /// The welds of a tearable surface, each for half of its edge.
+    fn seams(&self) -> Vec<Link> {
+        let glue = self.members.first().map_or(1.0, |member| member.factors(0)[2]);
+        let weld = |(cloth, points, edge): &(ClothId, [u32; 2], [u32; 2])| {
+            let place = |point: u32| self.places.point(MemberObject::Cloth(*cloth), point);
+            let sides = points.map(|point| LinkSide::point(*cloth, PointId(point)));
+            Link { glue, length: (place(edge[0]) - place(edge[1])).norm() / 2.0, ..Link::new(sides, 0.0) }
+        };
+        self.seams.iter().map(weld).collect()
+    }
+
+    /// Links from the points of borders to the closest places of other borders, within `maxDistance`.
+    fn borders(&self) -> Vec<Link> {
+        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
+        let within = self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || self.members.len() == 1;
+        let mut links = Vec::new();
+        let mut joined = std::collections::BTreeSet::new();
+        for (a, from) in self.members.iter().enumerate() {
+            for (b, to) in self.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
+                let edges = self.all_corners(to);
+                let nearby = Nearby::new(edges.iter().map(Vec::as_slice));
+                let along = (a == b).then(|| Chains::new(to, &edges));
+                for (point, element) in from.points() {
+                    let at = self.places.point(from.object, point);
+                    let near =
+                        along.as_ref().map(|chains| chains.near(point, 2.0 * reach)).unwrap_or_default();
+                    let of = |edge: u32| match near.contains(&edge) {
+                        true => f64::INFINITY,
+                        false => (foot(&edges[edge as usize], at).place - at).norm(),
+                    };
+                    let found = nearby.nearest(at.x, of).filter(|(distance, _)| *distance <= reach);
+                    let Some((_, edge)) = found else { continue };
+                    let on = snapped(foot(&edges[edge as usize], at), &edges[edge as usize]);
+                    let to_point = to.elements.face(edge as usize)[on.corners[0]];
+                    if on.weights[0] == 1.0 {
+                        // Two points that find each other are one weld.
+                        let [p, q] = [(from.object.key(), point), (to.object.key(), to_point)];
+                        if !joined.insert([p.min(q), p.max(q)]) {
+                            continue;
+                        }
+                    }
+                    let from_place = Place { side: from.side([point; 3], [1.0, 0.0, 0.0]), at, element };
+                    let to_place = self.place(to, edge, &on);
+                    let link = self.link([(from, from_place), (to, to_place)], None);
+                    links.push(Link { length: from.border_length(point, self.places), ..link });
+                }
+            }
+        }
+        links
+    }
+}
+
+/// A foot that is a corner where it is within a thousandth of the edge of one.
+fn snapped(on: Foot, edge: &[Point]) -> Foot {
+    let near = (0..edge.len()).find(|&k| {
+        on.corners[..2][..].contains(&k)
+            && (edge[k] - on.place).norm() <= 1e-3 * (edge[edge.len() - 1] - edge[0]).norm()
+    });
+    near.map_or(on, |k| Foot { corners: [k; 3], weights: [1.0, 0.0, 0.0], place: edge[k] })
+}
+
+/// The place of a triangle's plane below a point, so that several links hold an element rigidly.
+fn rigid_foot(polygon: &[Point], whole: Foot, corner: Point) -> Foot {
+    let triangle = triangle_of(polygon, &whole);
+    let places = triangle.map(|k| polygon[k]);
+    let Some(weights) = barycentric(places, corner) else { return whole };
+    let place = (0..3).map(|k| places[k] * weights[k]).sum();
+    Foot { corners: triangle, weights, place }
+}
+
+/// The triangle of a polygon's fan that a foot is on.
+fn triangle_of(polygon: &[Point], on: &Foot) -> [usize; 3] {
+    let [a, b, c] = on.corners;
+    if a != b && b != c && a != c { on.corners } else { [0, 1, polygon.len() - 1] }
+}
+
+fn normal(polygon: &[Point], on: &Foot) -> Point {
+    let [a, b, c] = triangle_of(polygon, on).map(|k| polygon[k]);
+    (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+}
+
+/// A number from 0 to 1 that depends on two numbers alone (SplitMix64).
+fn chance(x: u32, y: u32) -> f64 {
+    let mut z = (u64::from(x) << 32 | u64::from(y)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Border edges by their points, to find those that are near along the border.
+struct Chains<'a> {
+    member: &'a Member,
+    lengths: Vec<f64>,
+    of_point: std::collections::BTreeMap<u32, Vec<u32>>,
+}
+
+impl<'a> Chains<'a> {
+    fn new(member: &'a Member, edges: &[Vec<Point>]) -> Self {
+        let mut of_point: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
+        for edge in 0..member.elements.len() as u32 {
+            for &point in member.elements.face(edge as usize) {
+                of_point.entry(point).or_default().push(edge);
+            }
+        }
+        let length = |edge: &Vec<Point>| (edge[edge.len() - 1] - edge[0]).norm();
+        Self { member, lengths: edges.iter().map(length).collect(), of_point }
+    }
+
+    /// The edges that a walk along the border from a point reaches within a length.
+    fn near(&self, point: u32, length: f64) -> Vec<u32> {
+        let mut found: Vec<u32> = Vec::new();
+        let mut open = vec![(point, 0.0)];
+        while let Some((point, walked)) = open.pop() {
+            for &edge in self.of_point.get(&point).into_iter().flatten() {
+                if found.contains(&edge) {
+                    continue;
+                }
+                found.push(edge);
+                let reached = walked + self.lengths[edge as usize];
+                if reached <= length {
+                    let ends = self.member.elements.face(edge as usize).iter();
+                    open.extend(ends.filter(|&&end| end != point).map(|&end| (end, reached)));
+                }
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,158 @@
+//! The ten kinds of constraints: the values that Maya writes when it creates each, as defaults that a scene overrides.
+
+use std::borrow::Cow;
+
+use nucleus_core::Falloff;
+
+use crate::attributes::{Choice, FromValue, Key, RampPoint, dynamic_constraint as con};
+use crate::compile::soft_body::ramp_at;
+use crate::graph::{EvalContext, NodeId};
+
+/// Kinds by their number in `constraintType`.
+pub(super) const TRANSFORM: i32 = 0;
+pub(super) const POINT_TO_SURFACE: i32 = 2;
+pub(super) const SLIDE_ON_SURFACE: i32 = 3;
+pub(super) const WELD_BORDERS: i32 = 4;
+pub(super) const FORCE: i32 = 5;
+pub(super) const MATCH: i32 = 6;
+pub(super) const TEARABLE: i32 = 7;
+pub(super) const DISABLE_COLLISION: i32 = 8;
+pub(super) const EXCLUDE_PAIRS: i32 = 9;
+
+/// What each kind writes, where that differs from the defaults of the node. `type: transform` means pins unless one of
+/// [`SOFT`] is given.
+const WRITTEN: &[(i32, &str, f64)] = &[
+    (TRANSFORM, "constraintRelation", 0.0),
+    (1, "componentRelation", 1.0),
+    (1, "connectionMethod", 2.0),
+    (SLIDE_ON_SURFACE, "connectionUpdate", 1.0),
+    (SLIDE_ON_SURFACE, "friction", 0.1),
+    (SLIDE_ON_SURFACE, "strength", 0.02),
+    (SLIDE_ON_SURFACE, "tangentStrength", 0.2),
+    (SLIDE_ON_SURFACE, "localCollide", 1.0),
+    (WELD_BORDERS, "componentRelation", 1.0),
+    (WELD_BORDERS, "constraintMethod", 0.0),
+    (WELD_BORDERS, "connectionMethod", 1.0),
+    (WELD_BORDERS, "maxDistance", 0.05),
+    (WELD_BORDERS, "connectWithinComponent", 1.0),
+    (FORCE, "constraintRelation", 0.0),
+    (FORCE, "strength", 0.0),
+    (FORCE, "tangentStrength", 0.0),
+    (FORCE, "force", 1.0),
+    (FORCE, "dropoffDistance", 1.0),
+    (MATCH, "strength", 0.8),
+    (MATCH, "tangentStrength", 0.2),
+    (MATCH, "restLengthScale", 0.0),
+    (TEARABLE, "componentRelation", 1.0),
+    (TEARABLE, "constraintMethod", 0.0),
+    (TEARABLE, "connectionMethod", 1.0),
+    (TEARABLE, "connectWithinComponent", 1.0),
+    (TEARABLE, "glueStrength", 0.1),
+    (TEARABLE, "maxDistance", 0.01),
+    (DISABLE_COLLISION, "constraintRelation", 0.0),
+    (DISABLE_COLLISION, "strength", 0.0),
+    (DISABLE_COLLISION, "tangentStrength", 0.0),
+    (DISABLE_COLLISION, "excludeCollisions", 1.0),
+    (EXCLUDE_PAIRS, "componentRelation", 1.0),
+    (EXCLUDE_PAIRS, "connectionMethod", 2.0),
+    (EXCLUDE_PAIRS, "strength", 0.0),
+    (EXCLUDE_PAIRS, "tangentStrength", 0.0),
+    (EXCLUDE_PAIRS, "excludeCollisions", 1.0),
+];
+
+/// Attributes that turn the pins of a transform constraint into springs, or add a force to them.
+pub(super) const SOFT: &[&str] = &[
+    "strength",
+    "tangentStrength",
+    "constraintMethod",
+    "constraintRelation",
+    "glueStrength",
+    "glueStrengthScale",
+    "restLengthMethod",
+    "restLength",
+    "restLengthScale",
+    "force",
+    "damp",
+    "motionDrag",
+    "strengthDropoff",
+    "dropoff",
+    "dropoffDistance",
+];
+
+/// The strength ramp of a force field: 1 at its centre, 0 at its distance.
+const FALLING: &[RampPoint] = &[
+    RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) },
+    RampPoint { position: 1.0, value: 0.0, interpolation: Choice(1) },
+];
+
+/// A constraint node at a time: its values, with the defaults of its kind.
+#[derive(Clone, Copy)]
+pub(in crate::compile) struct Values<'a> {
+    pub(super) at: &'a EvalContext<'a>,
+    pub(super) node: NodeId,
+    pub(super) kind: i32,
+}
+
+impl<'a> Values<'a> {
+    pub(in crate::compile) fn new(at: &'a EvalContext<'a>, node: NodeId) -> Self {
+        Self { at, node, kind: at.get(node, &con::CONSTRAINT_TYPE).0 }
+    }
+
+    fn written<T: FromValue>(&self, key: &Key<T>) -> Option<f64> {
+        if self.at.graph().is_given(self.node, key) {
+            return None;
+        }
+        let row = WRITTEN.iter().find(|(kind, name, _)| *kind == self.kind && *name == key.row.name);
+        row.map(|(_, _, value)| *value)
+    }
+
+    pub(super) fn number(&self, key: &Key<f64>) -> f64 {
+        self.written(key).unwrap_or_else(|| self.at.get(self.node, key))
+    }
+
+    pub(super) fn choice(&self, key: &Key<Choice>) -> i32 {
+        self.written(key).map_or_else(|| self.at.get(self.node, key).0, |value| value as i32)
+    }
+
+    pub(super) fn toggle(&self, key: &Key<bool>) -> bool {
+        self.written(key).map_or_else(|| self.at.get(self.node, key), |value| value != 0.0)
+    }
+
+    /// Whether an attribute ever has a value for which `holds` is true, as far as keys show.
+    pub(super) fn ever(&self, key: &Key<f64>, holds: impl Fn(f64) -> bool) -> bool {
+        self.at.graph().changes(self.node, key) || holds(self.number(key))
+    }
+
+    /// The ramp over the distance, with the distance in metres; `None` where it is 1 everywhere.
+    pub(super) fn dropoff(&self, metres: impl Fn(f64) -> f64) -> Option<Falloff> {
+        let given = self.at.graph().is_given(self.node, &con::STRENGTH_DROPOFF);
+        let ramp: Cow<'static, [RampPoint]> = match self.kind {
+            FORCE if !given => Cow::Borrowed(FALLING),
+            _ => self.at.get(self.node, &con::STRENGTH_DROPOFF),
+        };
+        let last = (Falloff::SAMPLES - 1) as f64;
+        let distance = self.number(&con::DROPOFF) * self.number(&con::DROPOFF_DISTANCE);
+        let samples: [f64; Falloff::SAMPLES] = std::array::from_fn(|k| ramp_at(&ramp, k as f64 / last));
+        let is_one = samples.iter().all(|sample| *sample == 1.0);
+        (!is_one).then(|| Falloff { distance: metres(distance), samples })
+    }
+
+    /// Whether the constraint pins points to its transform.
+    pub(in crate::compile) fn pins(&self) -> bool {
+        let graph = self.at.graph();
+        self.kind == TRANSFORM && !SOFT.iter().any(|name| graph.is_given_by_name(self.node, name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_written_value_is_of_an_attribute_that_exists() {
+        let written = WRITTEN.iter().map(|(_, name, _)| *name).chain(SOFT.iter().copied());
+        for name in written {
+            assert!(con::DYNAMIC_CONSTRAINT.attribute(name).is_some(), "{name}");
+        }
+    }
+}

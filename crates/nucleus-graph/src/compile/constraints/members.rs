@@ -1,0 +1,304 @@
+//! From the nodes of a constraint to its members and sources.
+
+use std::sync::Arc;
+
+use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId};
+
+use crate::attributes::{Choice, ElementKind, dynamic_constraint as con, n_base, n_component, nucleus};
+use crate::compile::compiler::Compiler;
+use crate::compile::map_values::{MapAttributes, MapOfCloth};
+use crate::compile::program::NamedSelection;
+use crate::graph::NodeId;
+
+use super::kinds::{self, Values};
+use super::member::{ConstraintSource, Member, MemberObject, Part};
+use super::select::{Elements, Selected};
+use super::split_mesh::Tearing;
+
+/// `componentType: object`.
+const OBJECT: Choice = Choice(6);
+
+static STRENGTH: MapAttributes = MapAttributes {
+    values: &n_component::STRENGTH_PER_VERTEX,
+    texture: &n_component::STRENGTH_MAP,
+    kind: &n_component::STRENGTH_MAP_TYPE,
+};
+static GLUE: MapAttributes = MapAttributes {
+    values: &n_component::GLUE_STRENGTH_PER_VERTEX,
+    texture: &n_component::GLUE_STRENGTH_MAP,
+    kind: &n_component::GLUE_STRENGTH_MAP_TYPE,
+};
+static WEIGHT: MapAttributes = MapAttributes {
+    values: &n_component::WEIGHT_PER_VERTEX,
+    texture: &n_component::WEIGHT_MAP,
+    kind: &n_component::WEIGHT_MAP_TYPE,
+};
+
+impl Compiler<'_> {
+    /// All constraints that are links or exclusions, in the order of their names.
+    pub(in crate::compile) fn constraint_sources(&mut self) -> Vec<ConstraintSource> {
+        let mut sources = Vec::new();
+        for node in self.constraints() {
+            if Values::new(&self.start, node).pins() {
+                continue;
+            }
+            let before = self.findings.errors();
+            let members = self.members_of(node);
+            if self.findings.errors() > before {
+                continue;
+            }
+            if self.check_members(node, &members) {
+                sources.extend(self.sources_of(node, members));
+            }
+        }
+        let exclusions = sources.iter().filter(|source| source.exclusion.is_some()).count();
+        if exclusions > MAX_EXCLUSIONS {
+            let place = self.scene.source.place(self.scene.graph.node(self.program.node).name());
+            let message = format!("{exclusions} constraints exclude collisions, and {MAX_EXCLUSIONS} can");
+            self.findings.error(&place, message).help("join several of them into one");
+        }
+        sources
+    }
+
+    /// The constraints of the nucleus, in the order of their names.
+    pub(in crate::compile) fn constraints(&self) -> Vec<NodeId> {
+        let graph = &self.scene.graph;
+        let elements = graph.elements(self.program.node, &nucleus::INPUT_CURRENT);
+        let mut constraints: Vec<NodeId> = elements.into_iter().map(|(_, plug)| plug.node).collect();
+        constraints.sort_by_key(|id| graph.node(*id).name());
+        constraints.dedup();
+        constraints.retain(|id| !self.broken.contains(id));
+        constraints
+    }
+
+    /// The links of a constraint, a force to its origin, and what does not collide.
+    fn sources_of(&self, node: NodeId, members: Vec<Member>) -> Vec<ConstraintSource> {
+        let values = Values::new(&self.start, node);
+        let to_space = values.choice(&con::CONSTRAINT_RELATION) == 0;
+        let used = |key| values.ever(key, |value| value > 0.0);
+        let drags = used(&con::DAMP) || used(&con::MOTION_DRAG);
+        let forces = values.ever(&con::FORCE, |force| force != 0.0);
+        let pulls = used(&con::STRENGTH)
+            || used(&con::TANGENT_STRENGTH)
+            || values.choice(&con::CONSTRAINT_METHOD) == 0
+                && values.kind != kinds::DISABLE_COLLISION
+                && values.kind != kinds::EXCLUDE_PAIRS;
+        let excludes = values.toggle(&con::EXCLUDE_COLLISIONS);
+        let breaks = |glue: &f64| *glue < 1.0;
+        let can_break = values.ever(&con::GLUE_STRENGTH, |glue| glue < 1.0)
+            || members.iter().any(|member| breaks(&member.scalars[2]) || member.maps[1].iter().any(breaks));
+        let mut parts = Vec::new();
+        if pulls || drags || forces && !to_space {
+            parts.push(Some(Part::Links));
+        }
+        if forces && to_space {
+            parts.push(Some(Part::ForceToOrigin));
+        }
+        let mut exclusion = excludes.then(|| Arc::new(exclusion(&values, &members)));
+        if parts.is_empty() && excludes {
+            parts.push(None);
+        }
+        let source = |part| ConstraintSource {
+            node,
+            members: members.clone(),
+            moves: self.scene.graph.moves(node),
+            part,
+            exclusion: exclusion.take(),
+            can_break,
+            seams: self.seams_of(node),
+        };
+        parts.into_iter().map(source).collect()
+    }
+
+    /// The welds of a tearable surface.
+    fn seams_of(&self, node: NodeId) -> Vec<(ClothId, [u32; 2], [u32; 2])> {
+        let of_cloth = |(cloth, tearing): (ClothId, &Tearing)| {
+            let own = tearing.seams.iter().filter(|seam| seam.constraint == node);
+            own.map(|seam| (cloth, seam.points, seam.edge)).collect::<Vec<_>>()
+        };
+        let cloths = (0..).map(ClothId).zip(&self.program.cloths);
+        cloths
+            .filter_map(|(cloth, source)| Some((cloth, source.tearing.as_ref()?)))
+            .flat_map(of_cloth)
+            .collect()
+    }
+
+    /// Reports members that a constraint cannot join.
+    fn check_members(&mut self, node: NodeId, members: &[Member]) -> bool {
+        let values = Values::new(&self.start, node);
+        let (kind, relation) = (values.kind, values.choice(&con::CONSTRAINT_RELATION));
+        let within = values.toggle(&con::CONNECT_WITHIN_COMPONENT);
+        let name = self.scene.graph.node(node).name();
+        let listed = self.scene.graph.node(node).setting(&con::COMPONENTS).is_some();
+        if members.is_empty() {
+            let message = format!("`{name}` does nothing: it has no members");
+            if listed || !self.scene.graph.elements(node, &con::COMPONENT_IDS).is_empty() {
+                self.findings.warning(&self.scene.source.place(name), message);
+            }
+            return false;
+        }
+        let is_passive = |member: &Member| matches!(member.object, MemberObject::Collider(_));
+        let objects: std::collections::BTreeSet<_> =
+            members.iter().map(|member| member.object.key()).collect();
+        let needs_two = matches!(
+            kind,
+            kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE | kinds::MATCH | kinds::EXCLUDE_PAIRS
+        );
+        let surface_first = matches!(kind, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
+        let all_passive = members.iter().all(is_passive) && kind != kinds::DISABLE_COLLISION;
+        let problem = if all_passive {
+            Some((
+                "joins only passive objects, which nothing moves",
+                "name a part of a cloth or of particles",
+            ))
+        } else if needs_two && members.len() < 2 {
+            Some(("has one member, and this kind joins two", "name parts of both objects in `components`"))
+        } else if surface_first && members[0].kind != ElementKind::Face {
+            Some((
+                "needs a surface as its first component",
+                "name the surface first: a whole object, or faces (`cloth1.f[*]`)",
+            ))
+        } else if kind == kinds::SLIDE_ON_SURFACE && objects.len() < 2 {
+            Some(("slides an object on itself", "name another object first"))
+        } else if kind == kinds::MATCH && members[0].points().len() != members[1].points().len() {
+            Some(("matches objects of different numbers of points", "both meshes need the same points"))
+        } else if relation == 1 && members.len() == 1 && !within && !joins_itself(kind) {
+            Some((
+                "joins a component to itself",
+                "name another component, or set `connectWithinComponent: true`",
+            ))
+        } else {
+            None
+        };
+        if let Some((problem, help)) = problem {
+            let place = self.scene.source.place(&format!("{name}.components"));
+            let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
+            let message = format!("`{name}` {problem}: {}", crate::diagnostic::listed(&names));
+            self.findings.error(&place, message).help(help);
+        }
+        problem.is_none()
+    }
+
+    /// The members of a constraint with their elements.
+    pub(in crate::compile) fn members_of(&mut self, constraint: NodeId) -> Vec<Member> {
+        let graph = &self.scene.graph;
+        let surfaces = Values::new(&self.start, constraint).kind;
+        let surfaces = matches!(surfaces, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
+        let mut members = Vec::new();
+        for (_, plug) in graph.elements(constraint, &con::COMPONENT_IDS) {
+            let Some(object) = graph.source(plug.node, &n_component::OBJECT_ID) else { continue };
+            let Some(target) = self.member_object(object) else { continue };
+            let is_surface = surfaces && members.is_empty();
+            if let Some(member) = self.member([constraint, plug.node, object], target, is_surface) {
+                members.push(member);
+            }
+        }
+        members
+    }
+
+    fn member_object(&self, object: NodeId) -> Option<MemberObject> {
+        let cloth = self.cloth_of(object).map(MemberObject::Cloth);
+        let collider = self.program.colliders.iter().position(|collider| collider.node == object);
+        cloth.or(collider.map(|at| MemberObject::Collider(ColliderId(at as u32))))
+    }
+
+    /// One member. A whole object that is the surface of a constraint stands for its faces.
+    fn member(
+        &mut self,
+        [constraint, component, object]: [NodeId; 3],
+        target: MemberObject,
+        is_surface: bool,
+    ) -> Option<Member> {
+        let (faces, points) = match target {
+            // The elements of a mesh that can tear are numbered as it was given.
+            MemberObject::Cloth(cloth) => match &self.program.cloths[cloth.index()].tearing {
+                Some(tearing) => (tearing.faces.clone(), tearing.points),
+                None => {
+                    let surface = &self.program.model.cloths()[cloth.index()].surface;
+                    (surface.faces.clone(), surface.positions.len())
+                }
+            },
+            MemberObject::Collider(collider) => {
+                let surface = &self.program.model.colliders()[collider.index()].surface;
+                (surface.faces.clone(), surface.positions.len())
+            }
+        };
+        let graph = &self.scene.graph;
+        let mesh = graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
+        let of = Selected { owner: constraint, object, mesh };
+        let elements = Elements::new(&faces, points);
+        let is_whole = graph.node(component).get(&n_component::COMPONENT_TYPE) == OBJECT;
+        let (kind, chosen) = match is_whole && is_surface && !faces.is_empty() {
+            true => (ElementKind::Face, (0..faces.len() as u32).collect()),
+            false => self.selected(&of, component, &elements),
+        };
+        let [owner, named] = [constraint, object].map(|id| self.scene.graph.node(id).name().to_owned());
+        self.program.selections.push(NamedSelection { owner, object: named, kind, elements: chosen.clone() });
+        if chosen.is_empty() {
+            return None;
+        }
+        let mut all = Faces::default();
+        let tearing = match target {
+            MemberObject::Cloth(cloth) => self.program.cloths[cloth.index()].tearing.as_ref(),
+            MemberObject::Collider(_) => None,
+        };
+        for &at in &chosen {
+            match tearing.filter(|_| kind == ElementKind::Face) {
+                Some(tearing) => all.push(tearing.split_faces().face(at as usize)),
+                None => all.push(&elements.corners(kind, at)),
+            }
+        }
+        // Points that were split are all of their twins.
+        if let Some(tearing) = tearing.filter(|_| kind == ElementKind::Point) {
+            chosen.iter().flat_map(|&at| tearing.twins_of(at)).for_each(|twin| all.push(&[twin]));
+        }
+        let twins = tearing.map(|tearing| tearing.twins.clone()).unwrap_or_default();
+        let number = |key| self.start.get(component, key);
+        let scalars = [
+            number(&n_component::STRENGTH),
+            number(&n_component::TANGENT_STRENGTH),
+            number(&n_component::GLUE_STRENGTH),
+            number(&n_component::WEIGHT),
+        ];
+        let maps = [&STRENGTH, &GLUE, &WEIGHT].map(|map| {
+            let map_of = MapOfCloth { cloth: component, mesh, points, map };
+            let mut values = self.map_values(&map_of).unwrap_or_default();
+            if !values.is_empty() {
+                let more: Vec<f64> = twins.iter().map(|&twin| values[twin as usize]).collect();
+                values.extend(more);
+            }
+            values
+        });
+        let name = self.scene.graph.node(object).name().to_owned();
+        Some(Member { object: target, kind, elements: all, scalars, maps, name })
+    }
+}
+
+/// Whether a kind joins the elements of one component with each other.
+fn joins_itself(kind: i32) -> bool {
+    matches!(kind, 1 | kinds::WELD_BORDERS | kinds::TEARABLE | kinds::DISABLE_COLLISION)
+}
+
+/// What does not collide: for `disableCollision` the members with anything, else the first member with the others, or
+/// the only member with itself.
+fn exclusion(values: &Values<'_>, members: &[Member]) -> Exclusion {
+    let side = |members: &[Member]| {
+        let (mut cloths, mut colliders) = (Vec::new(), Vec::new());
+        for member in members {
+            for (point, _) in member.points() {
+                match member.object {
+                    MemberObject::Cloth(cloth) => cloths.push((cloth, PointId(point))),
+                    MemberObject::Collider(collider) => colliders.push((collider, PointId(point))),
+                }
+            }
+        }
+        ExcludedSide::Points(cloths, colliders)
+    };
+    let sides = match members {
+        _ if values.kind == kinds::DISABLE_COLLISION => [side(members), ExcludedSide::Everything],
+        [only] => [side(std::slice::from_ref(only)), side(std::slice::from_ref(only))],
+        [first, others @ ..] => [side(std::slice::from_ref(first)), side(others)],
+        [] => Default::default(),
+    };
+    Exclusion { sides }
+}

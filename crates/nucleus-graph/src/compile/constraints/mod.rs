@@ -1,0 +1,24 @@
+//! Dynamic constraints: from nodes to the links, pins and exclusions of each frame.
+//!
+//! | You want to know...                                    | Read         |
+//! |--------------------------------------------------------|--------------|
+//! | what each of Maya's ten kinds stands for               | `kinds.rs`   |
+//! | which objects and elements are members               | `members.rs`, `member.rs` |
+//! | which elements a component selects                     | `select.rs`  |
+//! | which elements are joined, and where                   | `forming.rs` |
+//! | the closest places of elements                         | `near.rs`    |
+//! | meshes that are split where they can tear              | `tearing.rs`, `split_mesh.rs` |
+//! | the attributes of a frame; keyed `enable`              | `frame.rs`   |
+//!
+//! A transform constraint without any attribute of springs pins its points; see `attachments.rs`. Every other kind is
+//! links of the solver, exclusions of its contact, or both.
+
+mod forming;
+mod frame;
+pub(super) mod kinds;
+pub(super) mod member;
+mod members;
+mod near;
+mod select;
+pub(super) mod split_mesh;
+mod tearing;

@@ -1,0 +1,234 @@
+//! Tearable surfaces: a mesh that is split where it can tear, and the welds that keep it whole until then.
+//!
+//! As in Maya the split exists from the start: every face that meets a tearable point gets a point of its own there, and
+//! faces that share an edge are joined at both of its ends. Topology never changes, and a tear runs along edges. A weld
+//! stands for half of its edge, so the load that tears it is per length of edge.
+
+use std::collections::BTreeMap;
+
+use nucleus_core::{Faces, Surface, VertexMaps};
+
+use crate::graph::NodeId;
+
+/// A cloth mesh that is split where it can tear.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::compile) struct Tearing {
+    /// The faces of the mesh as it was given.
+    pub(super) faces: Faces,
+    /// The number of its points; further points are twins.
+    pub(super) points: usize,
+    /// The point that each further point was split off.
+    pub(in crate::compile) twins: Vec<u32>,
+    /// The faces of the split mesh.
+    split: Faces,
+    pub(super) seams: Vec<Seam>,
+}
+
+/// Two points that a weld joins: one end of an edge that can tear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Seam {
+    pub(super) constraint: NodeId,
+    pub(super) points: [u32; 2],
+    /// The ends of the edge, in the mesh as it was given.
+    pub(super) edge: [u32; 2],
+}
+
+impl Tearing {
+    /// Splits a mesh. `tears` gives the constraint that can tear an edge at one of its ends.
+    pub(super) fn new(faces: &Faces, points: usize, tears: impl Fn([u32; 2], u32) -> Option<NodeId>) -> Self {
+        // Corners of faces round a point stay together where an edge between them cannot tear.
+        let corners = faces.corners();
+        let mut parents: Vec<usize> = (0..corners.len()).collect();
+        let mut found: BTreeMap<[u32; 2], Vec<[usize; 2]>> = BTreeMap::new();
+        let mut first = 0;
+        for face in faces.iter() {
+            for k in 0..face.len() {
+                let next = (k + 1) % face.len();
+                let (a, b) = (face[k], face[next]);
+                let ends = if a < b { [first + k, first + next] } else { [first + next, first + k] };
+                found.entry([a.min(b), a.max(b)]).or_default().push(ends);
+            }
+            first += face.len();
+        }
+        let mut torn: Vec<(NodeId, [u32; 2], [usize; 2])> = Vec::new();
+        for (edge, sides) in &found {
+            for pair in sides.windows(2) {
+                for end in 0..2 {
+                    let ours = [pair[0][end], pair[1][end]];
+                    match tears(*edge, edge[end]) {
+                        Some(constraint) => torn.push((constraint, *edge, ours)),
+                        None => {
+                            let [x, y] = ours.map(|corner| root(&mut parents, corner));
+                            parents[x.max(y)] = x.min(y);
+                        }
+                    }
+                }
+            }
+        }
+        // The first group of corners of a point keeps it, every other gets a twin.
+        let (mut twins, mut own) = (Vec::new(), vec![u32::MAX; corners.len()]);
+        let mut taken = vec![false; points];
+        for corner in 0..corners.len() {
+            let group = root(&mut parents, corner);
+            if own[group] == u32::MAX {
+                let point = corners[corner];
+                let is_taken = std::mem::replace(&mut taken[point as usize], true);
+                own[group] = if is_taken { (points + twins.len()) as u32 } else { point };
+                if is_taken {
+                    twins.push(point);
+                }
+            }
+        }
+        let mut split = Faces::default();
+        let mut first = 0;
+        for face in faces.iter() {
+            let corners: Vec<u32> = (0..face.len()).map(|k| own[root(&mut parents, first + k)]).collect();
+            split.push(&corners);
+            first += face.len();
+        }
+        let mut seams = Vec::new();
+        for (constraint, edge, sides) in torn {
+            let points = sides.map(|corner| own[root(&mut parents, corner)]);
+            if points[0] != points[1] {
+                seams.push(Seam { constraint, points, edge });
+            }
+        }
+        Self { faces: faces.clone(), points, twins, split, seams }
+    }
+
+    /// A column of points, with twins where their originals are.
+    pub(in crate::compile) fn extend<T: Clone>(&self, column: &mut Vec<T>) {
+        if !column.is_empty() {
+            let twins: Vec<T> = self.twins.iter().map(|&twin| column[twin as usize].clone()).collect();
+            column.extend(twins);
+        }
+    }
+
+    /// The split mesh.
+    pub(in crate::compile) fn split(&self, mut surface: Surface) -> Surface {
+        self.extend(&mut surface.positions);
+        Surface { faces: self.split.clone(), ..surface }
+    }
+
+    /// Vertex maps of the split mesh. `shares_mass`: masses are given by point, and twins share that of their original.
+    pub(in crate::compile) fn maps(&self, mut maps: VertexMaps, shares_mass: bool) -> VertexMaps {
+        let VertexMaps {
+            mass,
+            stretch,
+            compression,
+            bend,
+            rest_length,
+            damp,
+            drag,
+            tangential_drag,
+            lift,
+            thickness,
+            friction,
+            stickiness,
+            bounce,
+            collide_strength,
+            input_attract,
+            rigidity,
+            deform,
+        } = &mut maps;
+        if shares_mass && mass.is_empty() {
+            *mass = vec![1.0; self.points];
+        }
+        let columns = [
+            stretch,
+            compression,
+            bend,
+            rest_length,
+            damp,
+            drag,
+            tangential_drag,
+            lift,
+            thickness,
+            friction,
+            stickiness,
+            bounce,
+            collide_strength,
+            input_attract,
+            rigidity,
+            deform,
+        ];
+        columns.into_iter().for_each(|column| self.extend(column));
+        if shares_mass {
+            let mut copies = vec![1.0; self.points];
+            self.twins.iter().for_each(|&twin| copies[twin as usize] += 1.0);
+            mass.iter_mut().zip(&copies).for_each(|(mass, copies)| *mass /= copies);
+        }
+        self.extend(mass);
+        maps
+    }
+
+    /// The twins of a point of the mesh as it was given.
+    pub(super) fn twins_of(&self, point: u32) -> impl Iterator<Item = u32> + '_ {
+        (self.points as u32..).zip(&self.twins).filter(move |(_, twin)| **twin == point).map(|(at, _)| at)
+    }
+
+    pub(super) fn split_faces(&self) -> &Faces {
+        &self.split
+    }
+}
+
+fn root(parents: &mut [usize], mut at: usize) -> usize {
+    while parents[at] != at {
+        parents[at] = parents[parents[at]];
+        at = parents[at];
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attributes::dynamic_constraint as con;
+
+    /// Two quads by two, nine points.
+    fn quads() -> Faces {
+        let mut faces = Faces::default();
+        for corner in [0, 1, 3, 4] {
+            faces.push(&[corner, corner + 1, corner + 4, corner + 3]);
+        }
+        faces
+    }
+
+    fn constraint() -> NodeId {
+        let mut graph = crate::graph::Graph::new();
+        graph.add("tear", &con::DYNAMIC_CONSTRAINT).expect("a free name")
+    }
+
+    #[test]
+    fn every_face_gets_points_of_its_own_where_all_points_tear() {
+        let id = constraint();
+        let tearing = Tearing::new(&quads(), 9, |_, _| Some(id));
+        assert_eq!(tearing.twins.len(), 16 - 9);
+        let mut corners = tearing.split.corners().to_vec();
+        corners.sort_unstable();
+        assert_eq!(corners, (0..16).collect::<Vec<u32>>());
+        // Four inner edges, each welded at both ends.
+        assert_eq!(tearing.seams.len(), 8);
+    }
+
+    #[test]
+    fn a_path_of_edges_splits_the_points_along_it_but_not_where_it_ends_inside() {
+        let id = constraint();
+        let along = |edge: [u32; 2], _: u32| (edge == [1, 4]).then_some(id);
+        let tearing = Tearing::new(&quads(), 9, along);
+        assert_eq!(tearing.twins, [1], "point 4 is where the tear ends");
+        let across = |edge: [u32; 2], _: u32| [[1, 4], [4, 7]].contains(&edge).then_some(id);
+        let tearing = Tearing::new(&quads(), 9, across);
+        assert_eq!(tearing.twins.len(), 3);
+        assert_eq!(tearing.seams.len(), 4);
+    }
+
+    #[test]
+    fn twins_share_the_mass_of_their_point() {
+        let id = constraint();
+        let tearing = Tearing::new(&quads(), 9, |_, _| Some(id));
+        let maps = tearing.maps(VertexMaps::default(), true);
+        assert!((maps.mass.iter().sum::<f64>() - 9.0).abs() < 1e-12);
+        assert_eq!(maps.mass.len(), 16);
+    }
+}

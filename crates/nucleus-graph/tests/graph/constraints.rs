@@ -1,0 +1,224 @@
+//! Dynamic constraints: from components to what moves together.
+
+use std::fs;
+use std::path::Path;
+
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::read_scene_text;
+use proptest::prelude::*;
+
+use super::scenes::{after, of_nodes, program};
+
+/// Where the points of an object are after some frames, in scene units.
+fn places(program: &Program, frames: usize, name: &str) -> Vec<[f32; 3]> {
+    after(program, frames, name).into_iter().map(|place| place.map(f32::from_bits)).collect()
+}
+
+/// The first error of a scene of these nodes, and its help.
+fn error(nodes: &str) -> (String, Option<String>) {
+    let text = of_nodes(nodes, "");
+    let found = match read_scene_text(&text, Path::new("test.ron")) {
+        Err(found) => found,
+        Ok((scene, _)) => compile(&scene).expect_err("it has a mistake"),
+    };
+    (found[0].message.clone(), found[0].help.clone())
+}
+
+/// A sheet of two by two faces in metres, nine points.
+const SHEET: &str = r#""n": nucleus(gravity: 0), "p": polyPlane(width: 2, height: 2, subdivisions: (2, 2)),
+    "c": nCloth(inputMesh: "p", selfCollide: false), "#;
+
+/// The numbers that a component selects.
+fn selected(component: &str) -> Vec<u32> {
+    let constraint = format!(r#"{SHEET}"h": dynamicConstraint(components: ["{component}"])"#);
+    let program = program(&of_nodes(&constraint, ""));
+    program.nuclei()[0].selections()[0].elements.clone()
+}
+
+#[test]
+fn elements_are_selected_by_number_border_and_meaning() {
+    for (component, expected) in [
+        ("c.vtx[3:5]", vec![3, 4, 5]),
+        ("c.vtx[*]", (0..9).collect()),
+        ("c.border", vec![0, 1, 2, 3, 5, 6, 7, 8]),
+        ("c.corners", vec![0, 2, 6, 8]),
+        ("c.f[corners]", vec![0, 1, 2, 3]),
+        ("c.where(x > 0.5 && z > 0.5)", vec![2]),
+        ("c.where(i % 4 == 0)", vec![0, 4, 8]),
+        ("c.f[1]", vec![1]),
+    ] {
+        let mut found = selected(component);
+        found.sort_unstable();
+        if component.contains("x >") {
+            assert_eq!(found.len(), 1, "{component}");
+        } else {
+            assert_eq!(found, expected, "{component}");
+        }
+    }
+    assert_eq!(selected("c.e[border]").len(), 8);
+    assert_eq!(selected("c.e[*]").len(), 12);
+}
+
+#[test]
+fn elements_are_selected_by_a_group_of_their_file_and_by_an_image() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh =
+        "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 2 0 0\nv 2 0 1\ng left\nf 1 2 3 4\ng right hem\nf 2 5 6 3\n";
+    fs::write(folder.path().join("a.obj"), mesh).expect("written");
+    let select = |component: &str| {
+        let text = of_nodes(
+            &format!(
+                r#""n": nucleus(), "m": mesh(file: "a.obj"), "c": nCloth(inputMesh: "m"),
+                "h": dynamicConstraint(components: ["{component}"])"#
+            ),
+            "",
+        );
+        let (scene, _) = read_scene_text(&text, &folder.path().join("scene.ron")).expect("it can be read");
+        compile(&scene).map(|program| program.nuclei()[0].selections()[0].elements.clone())
+    };
+    assert_eq!(select("c.group(left)").expect("it runs"), [0, 1, 2, 3]);
+    assert_eq!(select("c.f[group(hem)]").expect("it runs"), [1]);
+    let found = select("c.group(sleeve)").expect_err("there is none");
+    assert_eq!(
+        found[0].message,
+        "`h`: `c` cannot select `group(sleeve)`: `a.obj` has no group `sleeve`, but `hem`, `left` and `right`"
+    );
+}
+
+#[test]
+fn components_that_are_not_there_or_empty_are_errors_that_name_constraint_and_component() {
+    let with = |component: &str| format!(r#"{SHEET}"h": dynamicConstraint(components: ["{component}"])"#);
+    for (component, message) in [
+        ("c.e[12]", "`h`: `c` has no edge 12"),
+        ("c.f[3:9]", "`h`: `c` has no face 4"),
+        ("c.where(y > 3)", "`h`: `c` has no points in `where(y > 3)`"),
+        ("c.where(y >)", "`h`: `c` cannot select `where(y >)`: "),
+        ("c.group(a)", "`h`: `c` cannot select `group(a)`: `p` is not read from a file"),
+    ] {
+        let (found, _) = error(&with(component));
+        assert!(found.starts_with(message), "{component}: {found}");
+    }
+}
+
+#[test]
+fn constraints_that_cannot_join_their_members_are_refused() {
+    let collider = r#""b": polyCube(translate: (0, -3, 0)), "r": nRigid(inputMesh: "b"),"#;
+    for (constraint, message) in [
+        (
+            r#"type: slideOnSurface, components: ["c", "c.vtx[0]"]"#,
+            "`h` slides an object on itself: `c` and `c`",
+        ),
+        (
+            r#"type: pointToSurface, components: ["c.vtx[0]", "r"]"#,
+            "`h` needs a surface as its first component: `c` and `r`",
+        ),
+        (
+            r#"type: pointToSurface, components: ["r"]"#,
+            "`h` joins only passive objects, which nothing moves: `r`",
+        ),
+        (
+            r#"type: match, components: ["c", "r"]"#,
+            "`h` matches objects of different numbers of points: `c` and `r`",
+        ),
+        (
+            r#"type: collisionExclusion, components: ["c"]"#,
+            "`h` has one member, and this kind joins two: `c`",
+        ),
+    ] {
+        let (found, help) = error(&format!(r#"{SHEET}{collider}"h": dynamicConstraint({constraint})"#));
+        assert_eq!(found, message);
+        assert!(help.is_some(), "{message}");
+    }
+}
+
+/// Two sheets side by side, a gap of 0.1 between their borders.
+const PAIR: &str = r#""n": nucleus(gravity: 0), "pa": polyPlane(subdivisions: (2, 2)),
+    "pb": polyPlane(subdivisions: (2, 2), translate: (1.1, 0, 0)),
+    "a": nCloth(inputMesh: "pa", selfCollide: false), "b": nCloth(inputMesh: "pb", selfCollide: false), "#;
+
+// EVIDENCE: N2.4-3  a weld of borders closes the gap that its rest length leaves
+#[test]
+fn welded_borders_close_when_their_rest_length_shrinks() {
+    let seam = r#""s": dynamicConstraint(type: weldBorders, components: ["a.e[border]", "b.e[border]"],
+        maxDistance: 0.2, restLengthScale: 0)"#;
+    let program = program(&of_nodes(&format!("{PAIR}{seam}"), ""));
+    let [a, b] = ["a", "b"].map(|name| places(&program, 6, name));
+    for row in [2, 5, 8] {
+        let gap: f32 = (0..3).map(|k| (a[row][k] - b[row - 2][k]).powi(2)).sum::<f32>().sqrt();
+        assert!(gap < 1e-4, "{gap}");
+    }
+}
+
+// EVIDENCE: N2.4-5  links form on the frame that a constraint is switched on
+#[test]
+fn links_take_the_distance_of_the_frame_on_which_they_are_switched_on() {
+    let nodes = |enable: &str| {
+        format!(
+            r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0, 0, 0)], velocity: [(1, 0, 0)], drag: 0),
+            "w": nParticle(position: [(1, 0, 0)], collide: false),
+            "pin": dynamicConstraint(components: ["w"]),
+            "s": dynamicConstraint(type: pointToPoint, constraintMethod: weld, components: ["q", "w"], {enable})"#
+        )
+    };
+    let at_once = program(&of_nodes(&nodes("enable: true"), ""));
+    assert!(places(&at_once, 12, "q")[0][0].abs() < 1e-3, "held at a metre's distance");
+    let later = program(&of_nodes(&nodes("enable: keys([(1, false), (7, true)])"), ""));
+    let x = places(&later, 12, "q")[0][0];
+    assert!((x - 5.0 / 24.0).abs() < 0.05, "{x}: held where it was then");
+}
+
+#[test]
+fn a_constraint_that_is_off_or_excludes_nothing_costs_nothing() {
+    let passes = |constraint: &str| {
+        let text = of_nodes(&format!("{PAIR}{constraint}"), "");
+        let program = program(&text);
+        let input = program.first_input();
+        (input.constraints.len(), input.exclusions.len())
+    };
+    assert_eq!(passes(r#""t": transform()"#), (0, 0));
+    assert_eq!(passes(r#""s": dynamicConstraint(type: disableCollision, components: ["a"])"#), (0, 1));
+    let off = r#""s": dynamicConstraint(type: disableCollision, components: ["a"], enable: false)"#;
+    assert_eq!(passes(off), (0, 0));
+    assert_eq!(passes(r#""s": dynamicConstraint(components: ["a.vtx[0]"])"#), (0, 0), "pins");
+}
+
+// EVIDENCE: N2.4-5  torn glue: mass is kept, and points of one face stay together
+#[test]
+fn a_tearable_sheet_has_the_mass_of_the_whole_one_and_holds_until_it_is_pulled() {
+    let tear = r#""t": dynamicConstraint(type: tearableSurface, components: ["c"], glueStrength: 0.3)"#;
+    let whole = program(&of_nodes(SHEET, ""));
+    let torn = program(&of_nodes(&format!("{SHEET}{tear}"), ""));
+    assert!((whole.mass() / torn.mass() - 1.0).abs() < 1e-9);
+    assert_eq!(torn.model().cloths()[0].surface.positions.len(), 16);
+    let still = places(&torn, 4, "c");
+    let start = places(&torn, 0, "c");
+    let most = still.iter().zip(&start).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
+    assert!(most.fold(0.0, f32::max) < 1e-4, "nothing pulls");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20))]
+
+    /// Whatever is joined with whatever, a scene compiles to an error or runs and stays finite.
+    #[test]
+    fn every_combination_of_kind_and_components_runs_or_is_refused(
+        kind in prop::sample::select(vec!["transform", "pointToPoint", "pointToSurface", "slideOnSurface", "weldBorders",
+            "force", "match", "tearableSurface", "disableCollision", "collisionExclusion"]),
+        first in prop::sample::select(vec!["a", "a.vtx[0:3]", "a.e[border]", "a.f[*]", "a.corners", "r", "r.f[0]"]),
+        second in prop::sample::select(vec!["b", "b.vtx[2]", "b.e[*]", "b.f[1:2]", "b.border", "q"]),
+        method in prop::sample::select(vec!["weld", "spring", "rubberBand"]),
+        connection in 0..3,
+        glue in prop::sample::select(vec![0.0, 0.1, 1.0]),
+    ) {
+        let nodes = format!(r#"{PAIR}"box": polyCube(translate: (0, -1, 0)), "r": nRigid(inputMesh: "box"),
+            "q": nParticle(position: [(0, 1, 0), (0.3, 1, 0)]),
+            "s": dynamicConstraint(type: {kind}, components: ["{first}", "{second}"], constraintMethod: {method},
+                connectionMethod: {connection}, maxDistance: 0.6, glueStrength: {glue})"#);
+        let (scene, _) = read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
+        if let Ok(program) = compile(&scene) {
+            for name in ["a", "b", "q"] {
+                prop_assert!(places(&program, 3, name).iter().flatten().all(|x| x.is_finite() && x.abs() < 100.0));
+            }
+        }
+    }
+}
