@@ -33,6 +33,12 @@ pub struct FrameStatistics {
     /// Edges of cloth that intersect faces of cloth.
     #[serde(alias = "tangled")]
     pub intersections: u64,
+    /// Particles of objects in which they are born and die.
+    #[serde(default)]
+    pub particles: u64,
+    /// Particles that were not born because there was no room.
+    #[serde(default)]
+    pub births_refused: u64,
     /// In joules.
     pub kinetic_energy: f64,
     pub finite: bool,
@@ -58,6 +64,8 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            particles,
+            births_refused,
             kinetic_energy,
             finite,
             sanitized,
@@ -77,6 +85,8 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            particles,
+            births_refused,
             kinetic_energy,
             finite,
             sanitized: sanitized.count,
@@ -97,6 +107,8 @@ impl FrameStatistics {
             pairs_unresolved: self.pairs_unresolved,
             depenetrating: self.depenetrating,
             intersections: self.intersections,
+            particles: self.particles,
+            births_refused: self.births_refused,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()
@@ -124,6 +136,10 @@ pub struct RunStatistics {
     pub depenetrating: Count,
     /// Edges of cloth that intersect faces of cloth.
     pub intersections: Count,
+    /// Particles of objects in which they are born and die.
+    pub particles: Count,
+    /// Particles that were not born because there was no room.
+    pub births_refused: Count,
     /// The first frame with a position or velocity that is not finite.
     pub not_finite: Option<i32>,
     /// Input values that were replaced, over all frames.
@@ -178,6 +194,8 @@ impl RunStatistics {
         self.pairs_unresolved.add(figures.pairs_unresolved, frame);
         self.depenetrating.add(figures.depenetrating, frame);
         self.intersections.add(figures.intersections, frame);
+        self.particles.add(figures.particles, frame);
+        self.births_refused.add(figures.births_refused, frame);
         self.sanitized += figures.sanitized;
         self.first_sanitized = self.first_sanitized.or(figures.first_sanitized.map(|input| (input, frame)));
         if !figures.finite {

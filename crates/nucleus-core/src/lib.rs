@@ -14,6 +14,8 @@
 //! | gravity, inertia, drag, lift and wind | `integrate/` |
 //! | stretch, shear, bend and damping | `constraints/` |
 //! | how contact is found, resolved and certified | `contact/` |
+//! | particles that are born and die | `particles/` |
+//! | force fields of the scene | `fields/` |
 //! | what an observer reads, and the report of a frame | `output.rs`, computed in `report/` |
 //! | how a run is saved and continued | `checkpoint.rs`, encoded by `bytes.rs` |
 //! | threads and disjoint writes | `parallel/` |
@@ -33,12 +35,14 @@ mod checkpoint;
 mod compiled;
 mod constraints;
 mod contact;
+mod fields;
 mod input;
 mod integrate;
 mod math;
 mod model;
 mod output;
 mod parallel;
+mod particles;
 mod report;
 mod schedule;
 mod solver;
@@ -47,18 +51,21 @@ mod step;
 
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
+pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 pub use input::frame::{
-    BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
+    BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
     Stiffness,
 };
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
-pub use model::builder::{Cloth, ClothLists, Collider, Mass, ModelBuilder, Start};
+pub use model::builder::{Cloth, ClothLists, Collider, Mass, ModelBuilder, Particles, Start};
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
-pub use output::{ContactState, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex};
+pub use output::{
+    ContactState, ParticleAge, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+};
 pub use schedule::resistance::{
     BENDING_PER_RESISTANCE, PhysicalStiffness, STIFFNESS_PER_RESISTANCE, classic_stiffness,
 };

@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use crate::input::fields::Field;
 use crate::input::{ClothId, PointId};
 
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
@@ -58,6 +59,12 @@ pub struct FrameInput {
     pub wind_noise: f64,
     /// Input meshes that attract or drag a cloth, at most one per cloth.
     pub input_meshes: Vec<InputMesh>,
+    /// The particles that are born in this frame, in the order of their times.
+    pub births: Vec<Birth>,
+    /// Force fields.
+    pub fields: Vec<Field>,
+    /// Evaluates fields in each substep, not once per frame.
+    pub fields_per_substep: bool,
 }
 
 impl Default for FrameInput {
@@ -79,8 +86,26 @@ impl Default for FrameInput {
             pins: Vec::new(),
             wind_noise: 0.0,
             input_meshes: Vec::new(),
+            births: Vec::new(),
+            fields: Vec::new(),
+            fields_per_substep: false,
         }
     }
+}
+
+/// A particle that is born in a frame. Until the end of its substep it flies freely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Birth {
+    /// The object, which has room for particles.
+    pub cloth: ClothId,
+    /// Time of birth as a share of the frame, 0 to 1.
+    pub time: f64,
+    /// Position at birth in metres.
+    pub position: Vector3<f64>,
+    /// Velocity at birth in m/s.
+    pub velocity: Vector3<f64>,
+    /// Age in seconds at which it dies; infinite for never.
+    pub lifespan: f64,
 }
 
 /// Positions of a cloth's live input mesh in one frame, in metres, point by point in the mesh's order.

@@ -6,8 +6,10 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the attributes and motion of a frame | [`frame`] |
+//! | force fields | [`fields`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
+pub mod fields;
 pub mod frame;
 pub mod validation;
 

@@ -60,6 +60,10 @@ pub fn report<R: Real>(
             .cloth_contacts
             .as_ref()
             .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
+        particles: solver.state.populations.iter().map(|population| population.len() as u64).sum(),
+        births: counters.births,
+        deaths: counters.deaths,
+        births_refused: counters.births_refused,
         kinetic_energy,
         finite,
         ..StepReport::default()

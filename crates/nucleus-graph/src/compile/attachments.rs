@@ -10,7 +10,7 @@ use crate::graph::{EvalContext, NodeId};
 
 use super::compiler::Compiler;
 use super::program::{EvaluationInterval, NucleusProgram};
-use super::sources::{AttachedPoint, AttachmentSource};
+use super::sources::{AttachedPoint, AttachmentSource, EmitterState};
 
 /// `constraintType: transform`.
 const TRANSFORM: Choice = Choice(0);
@@ -21,11 +21,13 @@ const ALL: Choice = Choice(2);
 const POINT: Choice = Choice(2);
 const OBJECT: Choice = Choice(6);
 
-/// Attachment state of each constraint during a run: positions of its points in constraint space, in scene units, or
+/// What constraints and emitters keep from frame to frame. Attachment state of each constraint: positions of its points in constraint space, in scene units, or
 /// `None` while it is disabled. If the constraint never moves, the positions are in world space, in metres.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AttachmentState {
     pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
+    /// What each emitter keeps from frame to frame.
+    pub(crate) emitters: Vec<EmitterState>,
 }
 
 impl NucleusProgram {

@@ -62,6 +62,8 @@ impl<'a> Compiler<'a> {
             cloths: Vec::new(),
             colliders: Vec::new(),
             attachments: Vec::new(),
+            emitters: Vec::new(),
+            fields: Vec::new(),
             start: first,
             first_cloth: previous.map_or(0, |previous| previous.cloths().end),
             first_collider: previous.map_or(0, |previous| previous.colliders().end),
@@ -149,7 +151,7 @@ impl<'a> Compiler<'a> {
     ) {
         self.mass += mass;
         let name = self.scene.graph.node(node).name().to_owned();
-        self.objects.push(Object { name, kind, points, faces, radius: None });
+        self.objects.push(Object { name, kind, points, faces, radius: None, varies: false });
     }
 
     /// Reports an object that the model builder refuses, at the attribute or mesh that causes it.

@@ -8,6 +8,8 @@
 //! | shape, mass and constraint lists of cloth; colliders | `objects.rs`                       |
 //! | pressure, shape, yielding, the input mesh            | `soft_body.rs`                     |
 //! | particles                                            | `particles.rs`                     |
+//! | emitters, and the particles born in a frame          | `emission/`                        |
+//! | force fields                                         | `fields.rs`                        |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
@@ -26,6 +28,8 @@ mod animated_mesh;
 mod attachments;
 mod camera;
 mod compiler;
+mod emission;
+mod fields;
 mod frame;
 mod geometry;
 mod initial_state;
@@ -55,6 +59,7 @@ pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
 pub(crate) use geometry::max_points;
 pub use program::{NucleusProgram, Object, ObjectKind, Program};
+pub(crate) use sources::EmitterState;
 
 /// Compiles a scene.
 ///

@@ -307,7 +307,7 @@ impl Compiler<'_> {
 }
 
 /// A ramp at a position: before its first point and behind its last it is constant.
-fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
+pub(super) fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
     let mut points: Vec<RampPoint> = ramp.to_vec();
     points.sort_by(|a, b| a.position.total_cmp(&b.position));
     let next = points.partition_point(|point| point.position <= position);
