@@ -39,6 +39,12 @@ pub struct FrameStatistics {
     /// Largest error of a weld, in metres.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub max_weld_gap: f64,
+    /// Particles of objects in which they are born and die.
+    #[serde(default)]
+    pub particles: u64,
+    /// Particles that were not born because there was no room.
+    #[serde(default)]
+    pub births_refused: u64,
     /// In joules.
     pub kinetic_energy: f64,
     pub finite: bool,
@@ -71,6 +77,8 @@ impl FrameStatistics {
             intersections,
             broken_links,
             max_weld_gap,
+            particles,
+            births_refused,
             kinetic_energy,
             finite,
             sanitized,
@@ -92,6 +100,8 @@ impl FrameStatistics {
             intersections,
             broken_links,
             max_weld_gap,
+            particles,
+            births_refused,
             kinetic_energy,
             finite,
             sanitized: sanitized.count,
@@ -114,6 +124,8 @@ impl FrameStatistics {
             intersections: self.intersections,
             broken_links: self.broken_links,
             max_weld_gap: self.max_weld_gap,
+            particles: self.particles,
+            births_refused: self.births_refused,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()
@@ -141,6 +153,10 @@ pub struct RunStatistics {
     pub depenetrating: Count,
     /// Edges of cloth that intersect faces of cloth.
     pub intersections: Count,
+    /// Particles of objects in which they are born and die.
+    pub particles: Count,
+    /// Particles that were not born because there was no room.
+    pub births_refused: Count,
     /// The first frame with a position or velocity that is not finite.
     pub not_finite: Option<i32>,
     /// Input values that were replaced, over all frames.
@@ -195,6 +211,8 @@ impl RunStatistics {
         self.pairs_unresolved.add(figures.pairs_unresolved, frame);
         self.depenetrating.add(figures.depenetrating, frame);
         self.intersections.add(figures.intersections, frame);
+        self.particles.add(figures.particles, frame);
+        self.births_refused.add(figures.births_refused, frame);
         self.sanitized += figures.sanitized;
         self.first_sanitized = self.first_sanitized.or(figures.first_sanitized.map(|input| (input, frame)));
         if !figures.finite {

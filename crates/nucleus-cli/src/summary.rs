@@ -65,6 +65,17 @@ impl Summary<'_> {
         if let Some((gap, frame)) = statistics.smallest_gap {
             writeln!(text, "smallest gap {} of the thickness, at frame {frame}", figures::number(gap))?;
         }
+        if statistics.particles.most > 0 {
+            let Count { most, frame, end, .. } = statistics.particles;
+            writeln!(text, "{}, most at frame {frame}: {most}", figures::count(end as usize, "particle"))?;
+        }
+        if statistics.births_refused.total > 0 {
+            let count = figures::count(statistics.births_refused.total as usize, "particle");
+            writeln!(
+                text,
+                "{count} not emitted: the object was full (`maxCount`, or the room found for the scene)"
+            )?;
+        }
         if let Some((input, frame)) = statistics.first_sanitized {
             let count = figures::count(statistics.sanitized as usize, "value");
             writeln!(text, "frame {frame}: {} ({count} sanitized in all)", sanitized(input, self.objects))?;
@@ -279,6 +290,7 @@ mod tests {
             points: 3,
             faces: Faces::default(),
             radius: None,
+            varies: false,
         };
         let objects = [
             object("silk", ObjectKind::Cloth(ClothId(0))),

@@ -27,8 +27,9 @@ use crate::contact::system::ContactSystem;
 use crate::input::frame::Elements;
 use crate::input::validation::is_in_range;
 use crate::math::Real;
-use crate::model::builder::ModelBuilder;
+use crate::model::builder::{Cloth, ModelBuilder};
 use crate::model::{ClothModel, ColliderModel};
+use crate::particles::population::Population;
 use crate::solver::Solver;
 use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
@@ -40,6 +41,9 @@ const KIND: [u8; 8] = *b"solver 7";
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
     let mut bytes = Vec::new();
     (R::SIZE as u8).encode(&mut bytes);
+    let capacity =
+        |population: &Population| solver.model.cloths[population.cloth()].blocks.rows().len() as u64;
+    solver.state.populations.iter().map(capacity).collect::<Vec<_>>().encode(&mut bytes);
     fingerprint(solver).encode(&mut bytes);
     save_fields(solver, &mut bytes);
     save_pairs(solver, &mut bytes);
@@ -48,17 +52,23 @@ pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
 }
 
 /// A solver that continues from where one of the same model was saved; see [`Solver::restored`].
+///
+/// It has the room for particles of the saved one, whatever the builder says, because rows are numbered by it.
 pub fn restore<R: Real>(
-    builder: ModelBuilder,
+    mut builder: ModelBuilder,
     threads: usize,
     bytes: &[u8],
 ) -> Result<Solver<R>, RestoreError> {
-    let mut solver = Solver::build(builder, threads);
     let mut from = Reader::new(verify_checksum(KIND, bytes)?);
     let scalar = u8::decode(&mut from).ok_or(RestoreError::Damaged)?;
     if usize::from(scalar) != R::SIZE {
         return Err(RestoreError::Scalar { found: 8 * u32::from(scalar), wanted: 8 * R::SIZE as u32 });
     }
+    let capacities: Vec<u64> = Encode::decode(&mut from).ok_or(RestoreError::Damaged)?;
+    if !set_capacities(&mut builder, &capacities, bytes.len()) {
+        return Err(RestoreError::OtherModel);
+    }
+    let mut solver = Solver::build(builder, threads);
     if u64::decode(&mut from).ok_or(RestoreError::Damaged)? != fingerprint(&solver) {
         return Err(RestoreError::OtherModel);
     }
@@ -71,6 +81,29 @@ pub fn restore<R: Real>(
     }
     rebuild(&mut solver);
     Ok(solver)
+}
+
+/// Bytes of a row in the columns that every checkpoint stores, at least.
+const ROW_BYTES: u64 = size_of::<[f64; 3]>() as u64;
+
+/// Gives each object of particles the room that it had; false where the objects differ. A damaged number must not take
+/// more memory than a checkpoint of so many bytes can fill.
+fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) -> bool {
+    let mut objects: Vec<_> = builder.cloths.iter_mut().filter(|cloth| cloth.particles.is_some()).collect();
+    let is_valid = |cloth: &&mut Cloth, capacity: u64| {
+        capacity >= cloth.surface.positions.len() as u64 && capacity <= bytes as u64 / ROW_BYTES
+    };
+    if objects.len() != capacities.len()
+        || !objects.iter().zip(capacities).all(|(cloth, &capacity)| is_valid(cloth, capacity))
+    {
+        return false;
+    }
+    for (particles, &capacity) in
+        objects.iter_mut().filter_map(|cloth| cloth.particles.as_mut()).zip(capacities)
+    {
+        particles.capacity = capacity as usize;
+    }
+    true
 }
 
 /// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
@@ -112,13 +145,23 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 }
 
 fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
-    let Solver { state, contact, links, .. } = solver;
+    let Solver { model, state, contact, links, .. } = solver;
     load_column(&mut contact.interval_bounds, from)?;
     load_column(&mut contact.bounds_violated, from)?;
     contact.collider_materials = Encode::decode(from)?;
     contact.ground_materials = Encode::decode(from)?;
     contact.touches = Encode::decode(from)?;
     state.load(from)?;
+    for population in &mut state.populations {
+        population.restored()?;
+        let cloth = &mut model.cloths[population.cloth()];
+        cloth.resize(population.len());
+        let rows = cloth.blocks.rows().start as usize..;
+        state.inverse_mass[rows.start..cloth.blocks.rows().end as usize].fill(R::ZERO);
+        for (row, &mass) in rows.zip(population.masses()) {
+            state.inverse_mass[row] = R::from_f64((1.0 / mass).clamp(1e-30, 1e30));
+        }
+    }
     contact.collider_states.load(from)?;
     contact.cloth_contacts.load(from)?;
     contact.ground.load(from)?;
@@ -225,7 +268,7 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
         let flags =
             [u64::from(cloth.damps), u64::from(cloth.alternates_direction), cloth.triangles.len() as u64];
         let boundary = corners(&cloth.boundary.triangles);
-        [cloth.blocks.len() as u64]
+        [cloth.blocks.max_len() as u64]
             .into_iter()
             .chain(order)
             .chain(lists)
@@ -239,7 +282,11 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
             .chain([collider.positions.len() as u64])
             .fold(HASH_SEED, hash_word)
     });
-    let masses = solver.state.inverse_mass.iter().map(|mass| mass.to_bits());
+    // The masses of particles that are born and die are part of the state.
+    let is_fixed = |&at: &usize| solver.state.population_of(at).is_none();
+    let fixed = (0..solver.model.cloths.len()).filter(is_fixed).map(|at| &solver.model.cloths[at]);
+    let masses =
+        fixed.flat_map(ClothModel::points).map(|row| solver.state.inverse_mass[row as usize].to_bits());
     let rows = [solver.contact.cloth_contacts.is_some() as u64, solver.contact.interval_bounds.len() as u64];
     cloths.chain([0]).chain(colliders).chain(masses).chain(rows).fold(HASH_SEED, hash_word)
 }
@@ -321,9 +368,10 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
 checkpoint_struct!([R: Real] State<R> {
     columns: [anchor, displacement, velocity, chambers, rotations],
     values: [wind_travel],
-    parts: [],
+    parts: [populations],
     rebuilt: [
         start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, corrections, area, added_wind,
+        field,
         inverse_mass
     ],
 });

@@ -14,6 +14,8 @@
 //! | gravity, inertia, drag, lift and wind | `integrate/` |
 //! | stretch, shear, bend and damping | `constraints/` |
 //! | how contact is found, resolved and certified | `contact/` |
+//! | particles that are born and die | `particles/` |
+//! | force fields of the scene | `fields/` |
 //! | what an observer reads, and the report of a frame | `output.rs`, computed in `report/` |
 //! | how a run is saved and continued | `checkpoint.rs`, encoded by `bytes.rs` |
 //! | threads and disjoint writes | `parallel/` |
@@ -33,12 +35,14 @@ mod checkpoint;
 mod compiled;
 mod constraints;
 mod contact;
+mod fields;
 mod input;
 mod integrate;
 mod math;
 mod model;
 mod output;
 mod parallel;
+mod particles;
 mod report;
 mod schedule;
 mod solver;
@@ -49,22 +53,25 @@ pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
 pub use contact::pair_filter::MAX_EXCLUSIONS;
-pub use input::fields::{PointField, WindField};
+pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 pub use input::frame::{
-    BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
+    BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
     Stiffness,
 };
 pub use input::links::{
     ConstraintFrame, ExcludedSide, Exclusion, Falloff, Link, LinkForce, LinkMethod, LinkSide,
 };
+pub use input::object_fields::{PointField, WindField};
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
-pub use model::builder::{Cloth, ClothLists, Collider, LinkOrder, Mass, ModelBuilder, Start};
+pub use model::builder::{Cloth, ClothLists, Collider, LinkOrder, Mass, ModelBuilder, Particles, Start};
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
-pub use output::{ContactState, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex};
+pub use output::{
+    ContactState, ParticleAge, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+};
 pub use schedule::resistance::{
     BENDING_PER_RESISTANCE, PhysicalStiffness, STIFFNESS_PER_RESISTANCE, classic_stiffness,
 };

@@ -41,6 +41,17 @@ pub enum ContactState {
     Intersecting = 4,
 }
 
+/// A particle of an object in which particles are born and die.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParticleAge {
+    /// Its number, counted from 0 over all particles that the object ever had.
+    pub id: u64,
+    /// Time since its birth in seconds.
+    pub age: f64,
+    /// Age at which it dies in seconds; infinite for never.
+    pub lifespan: f64,
+}
+
 /// Read access to the state between substeps. Points are in the order of their mesh.
 pub trait StateView {
     /// Replaces `out` by the positions of a cloth in world space, in units of which `units_per_metre` make a metre.
@@ -51,6 +62,12 @@ pub trait StateView {
     /// between two cloths concerns both. A cloth's row is empty where contact is impossible; the default implementation
     /// knows of none.
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        out.clear();
+    }
+    /// Replaces `out` by the particles of an object in the order of their positions; none where particles are not born
+    /// and do not die.
+    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+        let _ = cloth;
         out.clear();
     }
     /// Replaces `out` by the positions of a collider.
@@ -156,6 +173,14 @@ pub struct StepReport {
     pub broken_links: u64,
     /// Largest distance in metres of two places that are welded, beyond their distance at rest, at the end of the frame.
     pub max_weld_gap: f64,
+    /// Particles at the end of the frame, of objects in which they are born and die.
+    pub particles: u64,
+    /// Particles born in the frame.
+    pub births: u64,
+    /// Particles that died in the frame.
+    pub deaths: u64,
+    /// Particles that were not born because their object was full, or because their position was invalid.
+    pub births_refused: u64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -183,6 +208,10 @@ impl Default for StepReport {
             intersections: 0,
             broken_links: 0,
             max_weld_gap: 0.0,
+            particles: 0,
+            births: 0,
+            deaths: 0,
+            births_refused: 0,
             kinetic_energy: 0.0,
             finite: true,
             sanitized: Sanitized::default(),

@@ -15,16 +15,18 @@ use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel, Model};
-use crate::output::{ContactState, StateView, StepObserver};
+use crate::output::{ContactState, ParticleAge, StateView, StepObserver};
 use crate::output::{PassCost, StepReport};
 use crate::parallel::thread_pool::ThreadPool;
+use crate::particles::population::Population;
 use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
 use crate::state::kinematics::update_anchors;
 
 /// Everything needed to advance a scene by a frame; [`Solver::step`] does it.
 pub struct Solver<R: Real = f32> {
-    /// Fixed once the scene is compiled, except for the anchors in the rows.
+    /// Fixed once the scene is compiled, except for the anchors in the rows, and for how many rows of particles are in
+    /// use.
     pub(crate) model: Model<R>,
     /// The columns that a frame changes.
     pub(crate) state: State<R>,
@@ -129,6 +131,9 @@ impl<R: Real> Solver<R> {
         let colliders: Vec<_> = colliders.map(|(collider, map)| ColliderModel::new(collider, map)).collect();
         let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
         drop(cloths);
+        for population in &state.populations {
+            models[population.cloth()].resize(population.len());
+        }
         let model = Model { cloths: models, colliders };
         let links = Links::new(&model.cloths);
         let mut solver = Self { model, state, contact, links, pool };
@@ -164,7 +169,7 @@ impl<R: Real> Solver<R> {
         let model = &self.model.cloths[cloth.index()];
         let first = model.points().start;
         out.clear();
-        out.extend(model.order.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
+        out.extend(model.places().iter().map(|&place| value(first + place).map(|x| x as f32)));
     }
 }
 
@@ -202,6 +207,11 @@ impl<R: CompiledReal> StateView for Solver<R> {
 
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         R::contact_states(self, out);
+    }
+
+    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+        out.clear();
+        out.extend(self.state.population_of(cloth.index()).into_iter().flat_map(Population::ages));
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

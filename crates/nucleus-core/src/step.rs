@@ -31,6 +31,7 @@ use crate::contact::push_out::push_out;
 use crate::contact::restitution::apply_restitution;
 use crate::contact::safeguard::safeguard;
 use crate::contact::time_step::ContactCounters;
+use crate::fields::update_fields;
 use crate::input::frame::FrameInput;
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
@@ -38,6 +39,8 @@ use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
+use crate::particles::lifecycle::age_particles;
+use crate::particles::population::Population;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
 use crate::schedule::{Direction, Pass, Schedule, TimeStep};
@@ -88,8 +91,13 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
     solver.state.move_anchors();
     solver.state.carry_air(frame);
+    solver.state.populations.iter_mut().for_each(Population::begin_frame);
     for pin in &frame.pins {
-        let row = solver.model.cloths[pin.cloth.index()].place(pin.point.index());
+        let cloth = &solver.model.cloths[pin.cloth.index()];
+        if pin.point.index() >= cloth.points().len() {
+            continue; // a particle that is not alive
+        }
+        let row = cloth.place(pin.point.index());
         let is_moved_elsewhere = solver.state.pin(row, pin, frame.duration);
         if is_moved_elsewhere {
             solver.contact.invalidate_bounds(row as usize);
@@ -137,6 +145,10 @@ fn solve_substeps<R: CompiledReal>(
         apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
         apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
         apply_link_forces(links, (model, &contact.collider_states), state, frame, [time, length]);
+        if substep == 1 || frame.fields_per_substep {
+            let interval = if frame.fields_per_substep { length } else { frame.duration };
+            update_fields(model, state, frame, interval, pool);
+        }
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
@@ -149,6 +161,7 @@ fn solve_substeps<R: CompiledReal>(
             }
         }
         let substep_length = schedule.h * f64::from(schedule.steps);
+        age_particles(solver, frame, schedule, substep, counters);
         damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
         let end = f64::from(substep) / f64::from(schedule.substeps);
         let Solver { model, state, contact, links, .. } = solver;

@@ -46,7 +46,9 @@ impl Audit {
         state: &dyn StateView,
         rules: impl Fn(&CollisionMesh) -> CollisionFilter,
     ) -> Self {
-        let body = |object: &Object| Body::mesh(object.name.clone(), object.points, object.faces.iter());
+        // Particles that are born and die have no rows of their own to follow.
+        let points = |object: &Object| if object.varies { 0 } else { object.points };
+        let body = |object: &Object| Body::mesh(object.name.clone(), points(object), object.faces.iter());
         let world = CollisionMesh::new(objects.iter().map(body).collect());
         let objects: Vec<ObjectKind> = objects.iter().map(|object| object.kind).collect();
         let mut positions = Vec::new();

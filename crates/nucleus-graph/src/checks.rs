@@ -102,7 +102,7 @@ pub const MAX_STRETCH: &str = "maxStretch";
 pub const RENAMED: &[(&str, &str)] =
     &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
-static FORMS: [Form; 15] = [
+static FORMS: [Form; 17] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
@@ -221,6 +221,26 @@ static FORMS: [Form; 15] = [
         figure: |sample, arguments| {
             (sample.frame as f64 >= arguments[0]).then_some(sample.report.broken_links as f64)
         },
+    },
+    Form {
+        name: "minParticles",
+        doc: "From this frame on there are no fewer particles than this, of objects in which they are born and die.",
+        parameters: &["frame", "particles"],
+        values: Values::Counts,
+        bound: Bound::AtLeast,
+        limit: |arguments| arguments[1],
+        figure: |sample, arguments| {
+            (sample.frame as f64 >= arguments[0]).then_some(sample.report.particles as f64)
+        },
+    },
+    Form {
+        name: "maxParticles",
+        doc: "No frame has more particles than this, of objects in which they are born and die.",
+        parameters: &["particles"],
+        values: Values::Counts,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[0],
+        figure: |sample, _| Some(sample.report.particles as f64),
     },
     Form {
         name: "separatedBy",

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use nalgebra::Vector3;
 use nucleus_audit::CollisionMesh;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Encode, FrameInput, Pin, PointId, Reader, Real, RestoreError, Solver,
-    StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
+    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, Pin, PointId, Reader, Real,
+    RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
 };
 
 use crate::audit::{Audit, Audited, Closeness, GroundPlanes, collision_rules};
@@ -291,6 +291,10 @@ impl<R: Real> StateView for Simulation<R> {
 
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         self.combined().contacts(out);
+    }
+
+    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+        self.combined().ages(cloth, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_cache::{ObjectInfo, Playback};
+use nucleus_cache::{ObjectInfo, ObjectKind, Playback};
 
 use crate::error::ExportError;
 
@@ -96,18 +96,36 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     /// # Errors
     /// When the topology changes after the first sample.
     pub(crate) fn require_constant_topology(
-        &self,
+        &mut self,
         object: usize,
         format: &'static str,
     ) -> Result<(), ExportError> {
-        match self.mesh_changes(object).first() {
+        let change = match self.mesh_changes(object).first() {
+            Some(&sample) => Some(sample),
+            None => self.count_change(object)?,
+        };
+        match change {
             None => Ok(()),
-            Some(&sample) => Err(ExportError::MeshChanges {
+            Some(sample) => Err(ExportError::MeshChanges {
                 object: self.object(object).name.clone(),
                 frame: self.samples[sample].frame,
                 format,
             }),
         }
+    }
+
+    /// The first sample at which an object has another number of particles than at the first one. Reads every sample.
+    pub(crate) fn count_change(&mut self, object: usize) -> Result<Option<usize>, ExportError> {
+        if self.object(object).kind != ObjectKind::Particles {
+            return Ok(None);
+        }
+        let first = self.positions(object, 0)?.len();
+        for sample in 1..self.samples.len() {
+            if self.positions(object, sample)?.len() != first {
+                return Ok(Some(sample));
+            }
+        }
+        Ok(None)
     }
 
     /// An object with its first mesh, by its index in [`objects`](Self::objects).

@@ -56,7 +56,10 @@ fn write_object<R: Read + Seek>(
     let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
     file.text(format!("    def {} \"{name}\"\n    {{\n", if is_mesh { "Mesh" } else { "Points" }));
     file.text(format!("        custom string nucleus:name = {}\n", quoted(&info.name)));
-    write_topology(clip, object, is_mesh, file)?;
+    // Particles that come and go have no constant list of ids.
+    if clip.count_change(object)?.is_none() {
+        write_topology(clip, object, is_mesh, file)?;
+    }
     if !is_mesh {
         write_widths(clip.radius(object), file);
     }

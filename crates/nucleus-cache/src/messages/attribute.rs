@@ -49,11 +49,13 @@ impl Attribute {
             || (self.encoding == STRAIN.encoding && run.strain)
     }
 
-    /// The bytes of the values in a message; `None` when its time stamp or its number of points differs.
-    pub fn read<'a>(&self, data: &'a [u8], count: usize, stamp: (i32, u64)) -> Option<&'a [u8]> {
+    /// The bytes of the values in a message; `None` when its time stamp or its number of points differs. Without a
+    /// `count` any number of points is right.
+    pub fn read<'a>(&self, data: &'a [u8], count: Option<usize>, stamp: (i32, u64)) -> Option<&'a [u8]> {
         let (head, values) = data.split_at_checked(HEAD)?;
         let (found, stated) = Stamp::read(head)?;
-        let fits = stated as usize == count && values.len() == self.width * count;
+        let stated = stated as usize;
+        let fits = count.is_none_or(|count| count == stated) && values.len() == self.width * stated;
         (fits && (found.frame, found.log_time()) == stamp).then_some(values)
     }
 }

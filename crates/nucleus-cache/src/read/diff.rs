@@ -173,7 +173,7 @@ impl Comparer {
         (two, at_two): Shown<'_>,
     ) {
         let TimeSample { frame, substep, .. } = sample;
-        let is_comparable = one.rest.len() == two.rest.len();
+        let is_comparable = at_one.len() == at_two.len();
         let is_same = is_comparable && one.faces == two.faces;
         if !is_same && !replace(&mut self.mesh_differs[place], true) {
             self.comparison.differences.push(Difference::Mesh { name: one.name.clone(), frame, substep });

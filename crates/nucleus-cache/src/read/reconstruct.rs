@@ -173,7 +173,7 @@ fn kind(header: &MessageHeader, data: &[u8]) -> Option<Kind> {
             return Some(POINTS);
         }
         let sample = (stamp.frame, header.log_time);
-        let fits = |one: &&&attribute::Attribute| one.read(data, count as usize, sample).is_some();
+        let fits = |one: &&&attribute::Attribute| one.read(data, Some(count as usize), sample).is_some();
         return attribute::ALL.iter().find(fits).map(|one| (one.topic, one.encoding));
     }
     if topology::number(data).is_some() {

@@ -12,7 +12,7 @@ use crate::messages::checkpoint::{self, Checkpoint, TOPIC};
 use crate::messages::points::PointsMessage;
 use crate::read::playback::Playback;
 use crate::read::time_index::TimeSample;
-use crate::run::ObjectInfo;
+use crate::run::{ObjectInfo, ObjectKind};
 
 impl<R: Read + Seek> Playback<R> {
     /// Positions of an object at a time sample, in scene units, one per point of its mesh at that sample. An object at
@@ -87,7 +87,8 @@ impl<R: Read + Seek> Playback<R> {
         if time != log_time {
             return Ok(None); // The last message is of an earlier sample.
         }
-        let count = self.mesh_at(object, log_time)?.1.rest.len();
+        let has = self.mesh_at(object, log_time)?.1;
+        let count = Some(has.rest.len()).filter(|_| has.kind != ObjectKind::Particles);
         self.load(index)?;
         let message = self.chunk.message(channel, log_time);
         let values = message.and_then(|data| attribute.read(data, count, (frame, log_time)));
@@ -146,7 +147,9 @@ impl<R: Read + Seek> Playback<R> {
         let TimeSample { frame, log_time, .. } =
             *self.time_samples.get(sample).ok_or(ReadError::NoTimeSample { sample, time_samples })?;
         let (mesh, has) = self.mesh_at(object, log_time)?;
-        let (count, name) = (has.rest.len(), has.name.clone());
+        // Particles come and go.
+        let count = Some(has.rest.len()).filter(|_| has.kind != ObjectKind::Particles);
+        let name = has.name.clone();
         let Some(latest) = self.load_latest(channel, log_time)? else {
             return Err(ReadError::Nothing { object: name, frame });
         };
@@ -156,7 +159,7 @@ impl<R: Read + Seek> Playback<R> {
         let message = self.latest_message(channel, latest).and_then(PointsMessage::read);
         let points = message.filter(is_whole).ok_or(ReadError::Damaged { frame })?;
         match points.mesh == mesh {
-            true if points.count() == count => Ok(points),
+            true if count.is_none_or(|count| points.count() == count) => Ok(points),
             true => Err(ReadError::Damaged { frame }),
             false => Err(ReadError::MeshLost { object: name, frame }),
         }

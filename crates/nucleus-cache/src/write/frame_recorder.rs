@@ -10,7 +10,7 @@ use crate::messages::attribute::{RestEdges, write_contacts};
 use crate::messages::byte_shuffle::shuffle;
 use crate::messages::points::{self, Stamp};
 use crate::messages::topology;
-use crate::run::{Detail, ObjectInfo, RunInfo, Source};
+use crate::run::{Detail, ObjectInfo, ObjectKind, RunInfo, Source};
 use crate::write::recorder::{Recorder, Track};
 
 /// Records the substeps of one frame. [`Recorder::end_frame`] reports errors.
@@ -89,7 +89,7 @@ impl<W: Write + Seek> Recorder<W> {
             );
         }
         for k in 0..self.tracks.len() {
-            let &Track { source, channel, mesh, points, has_moved, .. } = &self.tracks[k];
+            let &Track { source, channel, mesh, points, kind, has_moved, .. } = &self.tracks[k];
             match source {
                 Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
                     continue;
@@ -97,6 +97,8 @@ impl<W: Write + Seek> Recorder<W> {
                 Source::Collider(id) => state.collider_positions(id, units, &mut self.values),
                 Source::Cloth(id) => state.positions(id, units, &mut self.values),
             }
+            // Particles come and go.
+            let points = if kind == ObjectKind::Particles { self.values.len() } else { points };
             if self.values.len() != points {
                 let (object, found) = (self.tracks[k].name.clone(), self.values.len());
                 return Err(RecordError::PointCount { object, expected: points, found });
@@ -120,7 +122,7 @@ impl<W: Write + Seek> Recorder<W> {
             self.writer.send(&stamp, channel, &self.message)?;
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
-                self.record_attributes(k, id, &stamp)?;
+                self.record_attributes(k, id, points, &stamp)?;
             }
         }
         self.time_samples += 1;
@@ -128,17 +130,23 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// Writes strain and contact states of a cloth.
-    fn record_attributes(&mut self, track: usize, cloth: ClothId, stamp: &Stamp) -> Result<(), RecordError> {
-        let Track { contacts, strain, points, .. } = &self.tracks[track];
+    fn record_attributes(
+        &mut self,
+        track: usize,
+        cloth: ClothId,
+        points: usize,
+        stamp: &Stamp,
+    ) -> Result<(), RecordError> {
+        let Track { contacts, strain, .. } = &self.tracks[track];
         if let Some((channel, _)) = strain {
-            points::write_head(stamp, *points, 0, false, &mut self.message);
+            points::write_head(stamp, points, 0, false, &mut self.message);
             shuffle(&self.strain, &mut self.message);
             self.writer.send(stamp, *channel, &self.message)?;
         }
-        let states = self.contacts.get(cloth.index()).filter(|states| states.len() == *points);
+        let states = self.contacts.get(cloth.index()).filter(|states| states.len() == points);
         // A scene without contact has no contact states.
         if let (Some(channel), Some(states)) = (contacts, states) {
-            points::write_head(stamp, *points, 0, false, &mut self.message);
+            points::write_head(stamp, points, 0, false, &mut self.message);
             write_contacts(states, &mut self.message);
             self.writer.send(stamp, *channel, &self.message)?;
         }

@@ -23,6 +23,8 @@ pub struct BoundaryElements {
     /// The end of each triangle's own edges, and of its own points.
     edge_ends: Vec<u32>,
     point_ends: Vec<u32>,
+    /// Points in use: the first of `points`. Fewer than all where particles are to be born.
+    live: usize,
 }
 
 /// Sorts triangles so that any aligned run of a power of two of them is spatially compact.
@@ -69,7 +71,13 @@ impl BoundaryElements {
         }
         boundary.points.extend(points.clone().filter(|point| !owned_points[(point - points.start) as usize]));
         boundary.triangles = triangles;
+        boundary.live = boundary.points.len();
         boundary
+    }
+
+    /// Uses only the first `points` points of an object without faces.
+    pub fn resize(&mut self, points: usize) {
+        self.live = points.min(self.points.len());
     }
 
     /// The elements owned by one triangle.
@@ -80,7 +88,7 @@ impl BoundaryElements {
     /// All elements in groups of `size` triangles. Free points form groups of their own, of as many.
     pub fn groups(&self, size: usize) -> impl Iterator<Item = ElementGroup> + '_ {
         let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
-        let free = self.points.len() - in_faces;
+        let free = self.live - in_faces;
         let groups = self.triangles.len().div_ceil(size) + free.div_ceil(size);
         (0..groups).map(move |index| self.group(index, size))
     }
@@ -94,7 +102,7 @@ impl BoundaryElements {
         }
         let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
         let from = in_faces + (index - of_triangles) * size;
-        ElementGroup { triangles: 0..0, edges: 0..0, points: from..(from + size).min(self.points.len()) }
+        ElementGroup { triangles: 0..0, edges: 0..0, points: from..(from + size).min(self.live) }
     }
 
     fn owned_by(&self, triangles: Range<usize>) -> ElementGroup {

@@ -59,7 +59,7 @@ pub fn list_contact_states<R: Real>(
     let contact_states = points.contact_states();
     for (model, out) in model.cloths.iter().zip(out) {
         let first = model.points().start;
-        out.extend(model.order.places().iter().map(|&place| contact_states[(first + place) as usize]));
+        out.extend(model.places().iter().map(|&place| contact_states[(first + place) as usize]));
     }
 }
 

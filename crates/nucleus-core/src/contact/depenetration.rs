@@ -48,6 +48,13 @@ impl Depenetration {
         self.suspects.clear();
     }
 
+    /// Renumbers points; forgets those without a number. Numbers keep their order.
+    pub fn renumber(&mut self, number: impl Fn(u32) -> Option<u32>) {
+        let points = std::mem::take(&mut self.points).into_iter();
+        self.points = points.filter_map(|(point, face)| Some((number(point)?, face))).collect();
+        self.suspects = std::mem::take(&mut self.suspects).into_iter().filter_map(number).collect();
+    }
+
     /// Suspects all points that start in the bounding box of a closed collider.
     pub fn suspect_start<R: Real>(
         &mut self,

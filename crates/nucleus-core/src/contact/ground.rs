@@ -79,6 +79,16 @@ impl<R: Real> Ground<R> {
         }
     }
 
+    /// Takes up points whose anchors were set within the frame.
+    pub fn set_anchors(&mut self, points: Range<u32>, anchors: &[[f64; 3]]) {
+        for (heights, plane) in self.heights.iter_mut().zip([self.start, self.end]) {
+            let Some(plane) = plane else { continue };
+            for point in points.clone().map(|point| point as usize) {
+                heights[point] = R::from_f64(plane.height(anchors[point]));
+            }
+        }
+    }
+
     /// Whether the frame has a plane.
     pub fn is_there(&self) -> bool {
         self.end.is_some()

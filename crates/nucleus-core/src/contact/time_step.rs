@@ -25,6 +25,10 @@ pub struct ContactCounters {
     pub candidate_pairs: AtomicU64,
     /// Runs of the broad phase.
     pub broad_phases: AtomicU64,
+    /// Particles born, that died, and that were refused.
+    pub births: u64,
+    pub deaths: u64,
+    pub births_refused: u64,
 }
 
 /// Writes positions, and records depenetration: the part of a push that does not become velocity.

@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::input::fields::{FALLOFF_SAMPLES, PointField, WindField};
+use crate::input::fields::Field;
 use crate::input::links::{ConstraintFrame, Exclusion};
+use crate::input::object_fields::{FALLOFF_SAMPLES, PointField, WindField};
 use crate::input::{ClothId, PointId};
 
 /// Resistances and iteration counts are given per this time, in seconds: one film frame (§2.2, §2.4).
@@ -66,6 +67,12 @@ pub struct FrameInput {
     pub constraints: Vec<ConstraintFrame>,
     /// Elements that do not collide with each other, [`MAX_EXCLUSIONS`](crate::MAX_EXCLUSIONS) at most.
     pub exclusions: Vec<Arc<Exclusion>>,
+    /// The particles that are born in this frame, in the order of their times.
+    pub births: Vec<Birth>,
+    /// Force fields.
+    pub fields: Vec<Field>,
+    /// Evaluates fields in each substep, not once per frame.
+    pub fields_per_substep: bool,
 }
 
 impl Default for FrameInput {
@@ -89,8 +96,26 @@ impl Default for FrameInput {
             input_meshes: Vec::new(),
             constraints: Vec::new(),
             exclusions: Vec::new(),
+            births: Vec::new(),
+            fields: Vec::new(),
+            fields_per_substep: false,
         }
     }
+}
+
+/// A particle that is born in a frame. Until the end of its substep it flies freely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Birth {
+    /// The object, which has room for particles.
+    pub cloth: ClothId,
+    /// Time of birth as a share of the frame, 0 to 1.
+    pub time: f64,
+    /// Position at birth in metres.
+    pub position: Vector3<f64>,
+    /// Velocity at birth in m/s.
+    pub velocity: Vector3<f64>,
+    /// Age in seconds at which it dies; infinite for never.
+    pub lifespan: f64,
 }
 
 /// Positions of a cloth's live input mesh in one frame, in metres, point by point in the mesh's order.

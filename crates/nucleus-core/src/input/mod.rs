@@ -6,13 +6,15 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the attributes and motion of a frame | [`frame`] |
-//! | what objects do to the air and to each other at a distance | [`fields`] |
+//! | force fields of the scene | [`fields`] |
+//! | what objects do to the air and to each other at a distance | [`object_fields`] |
 //! | links of dynamic constraints | [`links`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
 pub mod fields;
 pub mod frame;
 pub mod links;
+pub mod object_fields;
 pub mod validation;
 
 /// A cloth of a model, counted in the order in which the builder received them.

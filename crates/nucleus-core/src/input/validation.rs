@@ -13,11 +13,12 @@ use std::borrow::Cow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::input::fields::{PointField, WindField};
+use crate::input::fields::{Field, FieldKind, Noise};
 use crate::input::frame::{
     ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
 };
 use crate::input::links::{ConstraintFrame, Falloff, Link};
+use crate::input::object_fields::{PointField, WindField};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
@@ -102,6 +103,9 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
     for (id, collider) in (0..).map(ColliderId).zip(&mut frame.colliders) {
         sanitize_collider(id, collider, last.collider(id), &mut sanitized);
     }
+    if sanitize_fields(&mut frame.fields) {
+        sanitized.add(InvalidInput::Setting);
+    }
     sanitize_pins(&mut frame, last, &mut sanitized);
     for (at, constraint) in (0..).zip(&mut frame.constraints) {
         if sanitize_constraint(constraint, last) {
@@ -131,6 +135,7 @@ fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
         && frame.pins.iter().all(|pin| is_in_range(&pin.start) && is_in_range(&pin.end))
         && frame.input_meshes.iter().all(|mesh| is_valid_mesh(mesh, last))
         && frame.constraints.iter().all(|constraint| is_valid_constraint(constraint, last))
+        && frame.fields.iter().all(is_valid_field)
 }
 
 fn is_valid_mesh(mesh: &InputMesh, last: &impl LastPositions) -> bool {
@@ -162,6 +167,50 @@ fn sanitize_collider(
     }
 }
 
+/// Removes invalid fields; whether there were any.
+fn sanitize_fields(fields: &mut Vec<Field>) -> bool {
+    let before = fields.len();
+    fields.retain(is_valid_field);
+    fields.len() < before
+}
+
+/// Whether every number of a field is finite and in range.
+fn is_valid_field(field: &Field) -> bool {
+    let numbers = |numbers: &[f64]| numbers.iter().all(|x| x.abs() <= MAX_COORDINATE);
+    let noise =
+        |noise: &Noise| is_in_range(&noise.frequency) && is_in_range(&noise.phase) && numbers(&[noise.ratio]);
+    let kind = match &field.kind {
+        FieldKind::Gravity { acceleration: vector } | FieldKind::Uniform { force: vector } => {
+            is_in_range(vector)
+        }
+        FieldKind::Radial { force } => numbers(&[*force]),
+        FieldKind::Newton { magnitude, min_distance } => numbers(&[*magnitude, *min_distance]),
+        FieldKind::Drag { magnitude, along, velocity } => {
+            numbers(&[*magnitude]) && is_in_range(velocity) && along.as_ref().is_none_or(is_in_range)
+        }
+        FieldKind::Air { velocity, rate, .. } => is_in_range(velocity) && numbers(&[*rate]),
+        FieldKind::Turbulence { force, noise: waves } => numbers(&[*force]) && noise(waves),
+        FieldKind::Vortex { force, axis } => numbers(&[*force]) && is_in_range(axis),
+        FieldKind::VolumeAxis(axis) => {
+            numbers(&[axis.from_center, axis.from_axis, axis.along_axis, axis.around_axis, axis.turbulence])
+                && is_in_range(&axis.directional)
+                && is_in_range(&axis.axis)
+                && noise(&axis.noise)
+        }
+    };
+    let reach = &field.reach;
+    let is_volume = reach.volume.is_none_or(|volume| {
+        numbers(volume.to_local.as_slice()) && is_in_range(&volume.offset) && numbers(&[volume.section])
+    });
+    kind && is_volume
+        && is_in_range(&reach.center)
+        && numbers(&[reach.attenuation])
+        && numbers(&reach.falloff)
+        && reach.unit > 0.0
+        && reach.max_distance >= 0.0
+        && field.targets.iter().all(|(_, share)| numbers(&[*share]))
+}
+
 fn sanitize_pins(frame: &mut FrameInput, last: &impl LastPositions, sanitized: &mut Sanitized) {
     for pin in &mut frame.pins {
         let (start, end) = (is_in_range(&pin.start), is_in_range(&pin.end));
@@ -191,6 +240,8 @@ fn settings_of(frame: &FrameInput) -> FrameInput {
         input_meshes: Vec::new(),
         constraints: Vec::new(),
         exclusions: Vec::new(),
+        births: Vec::new(),
+        fields: Vec::new(),
         ..*frame
     }
 }

@@ -58,6 +58,12 @@ impl AirForces {
         Some(Self { wind, drag, lift, tangential_drag: cloth.tangential_drag, h })
     }
 
+    /// The share of its velocity through the air that a particle keeps in a step.
+    pub fn remaining(&self) -> f64 {
+        let half = 1.0 + self.drag * self.h / 2.0;
+        1.0 / (half * half)
+    }
+
     /// The forces on a point with these factors.
     pub fn at<R: Real>(&self, factors: &AirFactors) -> Air<R> {
         let remaining = |rate: f64| {

@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 
 use crate::contact::placed_surface::PlacedSurface;
-use crate::input::fields::WindField;
+use crate::input::object_fields::WindField;
 
 /// The air round one object.
 pub struct AirPush {

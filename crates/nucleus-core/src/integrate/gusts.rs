@@ -42,7 +42,8 @@ fn noise(place: Vector3<f64>) -> Vector3<f64> {
     SIZES.iter().map(|&(size, share)| lattice_noise(place / size) * share).sum()
 }
 
-fn lattice_noise(place: Vector3<f64>) -> Vector3<f64> {
+/// Smooth noise of mean zero, a lattice point per unit: each component between -1 and 1.
+pub fn lattice_noise(place: Vector3<f64>) -> Vector3<f64> {
     let low = place.map(f64::floor);
     let share = (place - low).map(|t| t * t * t * (t * (t * 6.0 - 15.0) + 10.0));
     let cell = low.map(|x| x as i64);

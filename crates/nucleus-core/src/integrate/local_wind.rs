@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
 use crate::contact::placed_surface::PlacedSurface;
-use crate::input::fields::WindField;
 use crate::input::frame::{ClothFrame, FrameInput};
+use crate::input::object_fields::WindField;
 use crate::integrate::air_push::AirPush;
 use crate::integrate::gusts::{GustField, is_gusty};
 use crate::integrate::wind_shadow::WindShadow;

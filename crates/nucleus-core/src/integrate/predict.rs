@@ -44,6 +44,7 @@ pub fn predict<R: Real>(
         predicted: DisjointSlice::new(&mut state.predicted),
         normal: &state.normal,
         added_wind: &state.added_wind,
+        field: &state.field,
     };
     for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
         let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
@@ -95,6 +96,8 @@ struct MotionColumns<'a, R> {
     normal: &'a [Row4<R>],
     /// What gusts, wind shadows and pushed air add to the wind in m/s; empty where nothing does.
     added_wind: &'a [Row4<R>],
+    /// Acceleration by fields in m/s²; empty without fields.
+    field: &'a [Row4<R>],
 }
 
 /// Moves a run of points. A pinned point keeps its velocity, which is that of its pin.
@@ -124,6 +127,9 @@ unsafe fn move_points<R: Real>(
         let inverse_mass = x.splat_last();
         let kick = inverse_mass.choose_by_sign(gravity + impulse * inverse_mass, zero);
         let mut kicked = v.lanes() + kick;
+        if let Some(field) = columns.field.get(points.start as usize + k) {
+            kicked = kicked + inverse_mass.choose_by_sign(field.lanes() * h, zero);
+        }
         if let Some(air) = &uniform_air
             && d.0[3] > R::ZERO
         {

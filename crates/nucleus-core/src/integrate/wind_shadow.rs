@@ -8,7 +8,7 @@
 use nalgebra::Vector3;
 
 use crate::contact::placed_surface::PlacedSurface;
-use crate::input::fields::WindField;
+use crate::input::object_fields::WindField;
 
 /// Directions round the wind, evenly spaced.
 const AROUND: [[f64; 2]; 6] = [

@@ -40,6 +40,17 @@ pub enum BuildError {
     /// The mesh has no points at all.
     #[error("the mesh has no points")]
     NoPoints,
+    /// Particles that are born and die have faces, or a lifespan that is negative or NaN.
+    #[error("particles that are born and die have no faces, and lifespans of at least 0 s")]
+    BadParticles,
+    /// More particles at the start than there is room for, or room for none.
+    #[error("there are {points} particles at the start, and room for {capacity}")]
+    Capacity {
+        /// The number of particles at the start.
+        points: usize,
+        /// The room for particles.
+        capacity: usize,
+    },
     /// A column of the start has not one entry per point.
     #[error("there are {given} {what} to start from, but {points} points")]
     StartCount {

@@ -1,6 +1,8 @@
 //! The builder of a solver's objects. It checks every mesh once, and refuses an invalid one with the element named
 //! ([`BuildError`]); later code relies on it.
 
+use std::fmt;
+
 use nalgebra::Vector3;
 
 use crate::input::validation::is_in_range;
@@ -114,6 +116,24 @@ pub struct Cloth {
     pub factors: VertexMaps,
     /// Positions and velocities at the start, where they differ from the mesh at rest.
     pub start: Start,
+    /// Room for particles that are born and die; only without faces.
+    pub particles: Option<Particles>,
+}
+
+/// An object in which particles are born and die. Its points are the first particles; there may be none.
+#[derive(Clone, PartialEq, Default)]
+pub struct Particles {
+    /// The largest number of particles at any time.
+    pub capacity: usize,
+    /// Ages in seconds at which the first particles die, one per point; empty for never.
+    pub lifespans: Vec<f64>,
+}
+
+/// Without the room, which says how far a run goes and nothing about its objects.
+impl fmt::Debug for Particles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Particles").field("lifespans", &self.lifespans).finish_non_exhaustive()
+    }
 }
 
 /// The start of a cloth, one entry per point in the mesh's order. The rest shape is still the mesh.
@@ -128,7 +148,14 @@ pub struct Start {
 impl Cloth {
     /// A cloth without vertex maps, at rest in the shape of its mesh.
     pub fn new(surface: Surface, mass: Mass, lists: ClothLists) -> Self {
-        Self { surface, mass, lists, factors: VertexMaps::default(), start: Start::default() }
+        Self {
+            surface,
+            mass,
+            lists,
+            factors: VertexMaps::default(),
+            start: Start::default(),
+            particles: None,
+        }
     }
 
     /// The positions at the start, in metres.
@@ -173,7 +200,10 @@ impl ModelBuilder {
     /// When the mesh is empty, without area, not finite or names points it does not have, or the mass is
     /// not positive; see [`BuildError`].
     pub fn cloth(&mut self, cloth: Cloth) -> Result<ClothId, BuildError> {
-        check_surface(&cloth.surface)?;
+        match &cloth.particles {
+            Some(particles) => check_particles(&cloth.surface, particles)?,
+            None => check_surface(&cloth.surface)?,
+        }
         let (Mass::PerPoint(mass) | Mass::PerArea(mass)) = cloth.mass;
         if !(mass > 0.0 && mass.is_finite()) {
             return Err(BuildError::BadMass { mass });
@@ -263,6 +293,24 @@ fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
         }
     }
     Ok(())
+}
+
+/// Refuses particles with faces, more of them than there is room for, and lifespans that are no times.
+fn check_particles(surface: &Surface, particles: &Particles) -> Result<(), BuildError> {
+    let (points, capacity) = (surface.positions.len(), particles.capacity);
+    if points > capacity || capacity == 0 {
+        return Err(BuildError::Capacity { points, capacity });
+    }
+    let lifespans = particles.lifespans.len();
+    if lifespans > 0 && lifespans != points {
+        return Err(BuildError::StartCount { what: "lifespans", given: lifespans, points });
+    }
+    if !surface.faces.is_empty()
+        || particles.lifespans.iter().any(|lifespan| lifespan.is_nan() || *lifespan < 0.0)
+    {
+        return Err(BuildError::BadParticles);
+    }
+    if points > 0 { check_surface(surface) } else { Ok(()) }
 }
 
 /// Refuses meshes that the solver cannot handle.

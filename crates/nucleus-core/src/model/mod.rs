@@ -99,8 +99,13 @@ impl<R: Real> ClothModel<R> {
     /// Compiles a cloth whose first row in the columns is `first`. `collides`: contact is possible.
     pub fn new(cloth: &Cloth, order_of_links: &LinkOrder, first: u32, collides: bool) -> Self {
         let surface = &cloth.surface;
-        let order = Order::morton(&surface.positions);
-        let blocks = Blocks::new(first, surface.positions.len());
+        let capacity = cloth.particles.as_ref().map_or(0, |particles| particles.capacity);
+        let rows = surface.positions.len().max(capacity);
+        let order = match cloth.particles {
+            Some(_) => Order::identity(rows),
+            None => Order::morton(&surface.positions),
+        };
+        let blocks = Blocks::new(first, rows);
         let (Mass::PerPoint(point_mass) | Mass::PerArea(point_mass)) = cloth.mass;
         let mut model = Self {
             order,
@@ -210,6 +215,17 @@ impl<R: Real> ClothModel<R> {
     pub fn air_factors(&self, points: &Range<u32>) -> &[AirFactors] {
         let at = |point: u32| (point - self.points().start) as usize;
         if self.air.is_empty() { &[] } else { &self.air[at(points.start)..at(points.end)] }
+    }
+
+    /// Uses only the first `points` rows: those of living particles.
+    pub fn resize(&mut self, points: usize) {
+        self.blocks.resize(points);
+        self.boundary.resize(points);
+    }
+
+    /// The places of all points in use, in the order of the mesh.
+    pub fn places(&self) -> &[u32] {
+        &self.order.places()[..self.points().len()]
     }
 
     /// The number of rows and points with factors of vertex maps.

@@ -19,14 +19,35 @@ const GROUPS_PER_TASK: u32 = 32;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     first: u32,
+    /// Points in use, and the blocks that they are cut into.
     points: u32,
     count: u32,
+    /// Points that there is room for, and the blocks of as many.
+    capacity: u32,
+    max_count: u32,
 }
 
 impl Blocks {
     /// Cuts the points from `first` on into blocks.
     pub fn new(first: u32, points: usize) -> Self {
-        Self { first, points: points as u32, count: (points / POINTS_PER_BLOCK).max(1) as u32 }
+        let (points, count) = (points as u32, block_count(points));
+        Self { first, points, count, capacity: points, max_count: count }
+    }
+
+    /// Cuts only the first `points` into blocks; the rows behind them stay unused.
+    pub fn resize(&mut self, points: usize) {
+        debug_assert!(points as u32 <= self.capacity, "{points} of {}", self.capacity);
+        (self.points, self.count) = (points as u32, block_count(points));
+    }
+
+    /// The rows of all points that there is room for.
+    pub fn rows(&self) -> Range<u32> {
+        self.first..self.first + self.capacity
+    }
+
+    /// The largest number of blocks.
+    pub fn max_len(&self) -> usize {
+        self.max_count as usize
     }
 
     /// The number of blocks.
@@ -50,12 +71,12 @@ impl Blocks {
     /// A padding point without mass, for missing rows of a lane group: one per block, and one (`block` = `len()`) for
     /// interface rows. It never moves, and no two tasks of a loop share it.
     pub fn padding_point(&self, block: usize) -> u32 {
-        self.first + self.points + block as u32
+        self.first + self.capacity + block as u32
     }
 
-    /// The number of points and padding points.
+    /// The number of rows: one per point that there is room for, and the padding points.
     pub fn columns(&self) -> u32 {
-        self.points + self.count + 1
+        self.capacity + self.max_count + 1
     }
 }
 
@@ -83,7 +104,7 @@ impl Partition for Blocks {
         self.padding_point(block)
     }
     fn span(&self) -> Range<u32> {
-        self.first..self.first + self.points
+        self.rows()
     }
 }
 
@@ -120,6 +141,10 @@ impl Partition for AllBlocks {
     fn span(&self) -> Range<u32> {
         0..self.cloths.last().map_or(0, |last| last.first + last.columns())
     }
+}
+
+fn block_count(points: usize) -> u32 {
+    (points / POINTS_PER_BLOCK).max(1) as u32
 }
 
 /// A row before it is laid out; its points determine its block and colour.
@@ -320,7 +345,7 @@ pub fn triangles_by_block(
     place: impl Fn(u32) -> u32,
     blocks: &Blocks,
 ) -> Vec<Vec<[u32; 3]>> {
-    let mut by_block = vec![Vec::new(); blocks.len()];
+    let mut by_block = vec![Vec::new(); blocks.max_len()];
     for triangle in surface.faces.triangles() {
         let triangle = triangle.map(&place);
         let [a, b, c] = triangle.map(|point| blocks.of(point));

@@ -69,6 +69,10 @@ pub fn report<R: Real>(
             &solver.contact.collider_states,
             frame,
         ),
+        particles: solver.state.populations.iter().map(|population| population.len() as u64).sum(),
+        births: counters.births,
+        deaths: counters.deaths,
+        births_refused: counters.births_refused,
         kinetic_energy,
         finite,
         ..StepReport::default()

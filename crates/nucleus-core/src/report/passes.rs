@@ -5,8 +5,9 @@ use crate::constraints::damp::Damping;
 use crate::constraints::link::sweep::LinkSweep;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
-use crate::input::fields::PointField;
+use crate::input::fields::Field;
 use crate::input::frame::{BendSolver, Bending, ClothFrame, ColliderFrame, ForceField, FrameInput, PushOut};
+use crate::input::object_fields::PointField;
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
 use crate::integrate::local_wind::feels_wind;
@@ -49,6 +50,14 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
     passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
     passes.extend(contact_passes(solver, frame, &schedule));
+    let of_field = |field: &Field| -> usize {
+        field.targets.iter().map(|(cloth, _)| solver.model.cloths[cloth.index()].points().len()).sum()
+    };
+    passes.push(PassCost {
+        name: "fields",
+        rows: frame.fields.iter().map(of_field).sum(),
+        sweeps: if frame.fields_per_substep { f64::from(schedule.substeps) } else { 1.0 },
+    });
     let factors: usize = solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>()
         + solver.contact.material_maps.len();
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });

@@ -9,6 +9,7 @@ pub mod start;
 
 use crate::bytes::{HASH_SEED, hash_word};
 use crate::math::{Real, Row4, sub};
+use crate::particles::population::Population;
 
 /// The points of all cloths, in the solver's order; positions in world space.
 #[derive(Debug, Clone)]
@@ -42,6 +43,8 @@ pub struct State<R> {
     /// What gusts, wind shadows and pushed air add to the wind, in m/s; empty where nothing does. Written once per
     /// substep.
     pub added_wind: Vec<Row4<R>>,
+    /// Acceleration by fields in m/s²; empty without fields. Written once per frame, or per substep.
+    pub field: Vec<Row4<R>>,
     /// How far the wind has carried the air since the start, in metres.
     pub wind_travel: [f64; 3],
     /// The gas in each chamber of each cloth that has pressure.
@@ -50,6 +53,8 @@ pub struct State<R> {
     pub rotations: Vec<[f64; 4]>,
     /// Inverse mass in 1/kg of the unpinned point.
     pub inverse_mass: Vec<R>,
+    /// The particles of each object in which particles are born and die.
+    pub populations: Vec<Population>,
 }
 
 /// The gas in one chamber.
@@ -64,6 +69,11 @@ pub struct Chamber {
 }
 
 impl<R: Real> State<R> {
+    /// The particles of an object, by the index of its cloth; `None` where none are born or die.
+    pub fn population_of(&self, cloth: usize) -> Option<&Population> {
+        self.populations.iter().find(|population| population.cloth() == cloth)
+    }
+
     /// The position of a point in metres, in world space.
     pub fn position(&self, row: u32) -> [f64; 3] {
         let (anchor, moved) = (self.anchor[row as usize], self.displacement[row as usize].0);

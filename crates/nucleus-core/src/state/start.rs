@@ -3,6 +3,7 @@
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::model::builder::{Cloth, point_masses};
+use crate::particles::population::Population;
 use crate::state::State;
 
 impl<R: Real> State<R> {
@@ -26,10 +27,12 @@ impl<R: Real> State<R> {
             normal: vec![Row4::ZERO; if air { rows } else { 0 }],
             area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
             added_wind: Vec::new(),
+            field: Vec::new(),
             wind_travel: [0.0; 3],
             chambers: Vec::new(),
             rotations: Vec::new(),
             inverse_mass: vec![R::ZERO; rows],
+            populations: (0..).zip(cloths).filter_map(|(at, cloth)| Population::of(at, cloth)).collect(),
         };
         for (cloth, model) in cloths.iter().zip(models) {
             let masses = point_masses(cloth);

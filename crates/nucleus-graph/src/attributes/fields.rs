@@ -1,4 +1,4 @@
-//! Force fields of Maya's classic dynamics. None is solved yet.
+//! Force fields of Maya's classic dynamics.
 
 use std::borrow::Cow;
 
@@ -48,19 +48,19 @@ pub mod field {
     use super::*;
 
     node_table! {
-        /// Attributes shared by all fields: magnitude, range and volume. Not solved yet.
+        /// Attributes shared by all fields: magnitude, range and volume.
         FIELD = "field", inherits Some(&DYN_BASE), hides [];
         "Field" {
             /// Strength of the field.
-            MAGNITUDE: f64 = float("magnitude", "mag", 1.0);
+            MAGNITUDE: f64 = float("magnitude", "mag", 1.0).solved("nucleus_core::fields::reach");
             /// Falloff with distance; 0 is none.
-            ATTENUATION: f64 = float("attenuation", "att", 0.0);
+            ATTENUATION: f64 = float("attenuation", "att", 0.0).solved("nucleus_core::fields::reach");
             /// Range of the field, if `useMaxDistance` is on.
-            MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0);
+            MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0).solved("nucleus_core::fields::reach");
             /// Acts from each of the owner's points, not from their centroid.
             APPLY_PER_VERTEX: bool = toggle("applyPerVertex", "apv", false);
             /// Whether `maxDistance` limits the range.
-            USE_MAX_DISTANCE: bool = toggle("useMaxDistance", "umd", false);
+            USE_MAX_DISTANCE: bool = toggle("useMaxDistance", "umd", false).solved("nucleus_core::fields::reach");
             /// Their positions.
             INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp");
             /// Their velocities.
@@ -70,17 +70,17 @@ pub mod field {
             /// Length of the time step.
             DELTA_TIME: f64 = float("deltaTime", "dt", 0.0);
             /// Shape of the volume that it acts in.
-            VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "None"), (1, "Cube"), (2, "Sphere"), (3, "Cylinder"), (4, "Cone"), (5, "Torus")]);
+            VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "None"), (1, "Cube"), (2, "Sphere"), (3, "Cylinder"), (4, "Cone"), (5, "Torus")]).solved("nucleus_core::fields::reach");
             /// Acts outside the volume instead.
-            VOLUME_EXCLUSION: bool = toggle("volumeExclusion", "vex", false);
+            VOLUME_EXCLUSION: bool = toggle("volumeExclusion", "vex", false).solved("nucleus_core::fields::reach");
             /// Offset of the volume from the field.
-            VOLUME_OFFSET: [f64; 3] = vector("volumeOffset", "vfo", [0.0, 0.0, 0.0], ["vox", "voy", "voz"]);
+            VOLUME_OFFSET: [f64; 3] = vector("volumeOffset", "vfo", [0.0, 0.0, 0.0], ["vox", "voy", "voz"]).solved("nucleus_core::fields::reach");
             /// Section radius of a torus.
-            SECTION_RADIUS: f64 = float("sectionRadius", "tsr", 0.5);
+            SECTION_RADIUS: f64 = float("sectionRadius", "tsr", 0.5).solved("nucleus_core::fields::reach");
             /// Sweep angle of a round volume.
-            VOLUME_SWEEP: f64 = float("volumeSweep", "vsw", 360.0);
+            VOLUME_SWEEP: f64 = float("volumeSweep", "vsw", 360.0).solved("nucleus_core::fields::reach");
             /// Strength over the distance up to `maxDistance`.
-            FALLOFF_CURVE: Cow<'static, [RampPoint]> = ramp("falloffCurve", "fc", &[]);
+            FALLOFF_CURVE: Cow<'static, [RampPoint]> = ramp("falloffCurve", "fc", &[]).solved("nucleus_core::fields::reach");
         }
         "Connections" {
             /// Particles that it acts on.
@@ -106,9 +106,9 @@ pub mod gravity_field {
         GRAVITY_FIELD = "gravityField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Acceleration, in cm/s² where a scene unit is a centimetre.
-            MAGNITUDE: f64 = float("magnitude", "mag", 9.8);
+            MAGNITUDE: f64 = float("magnitude", "mag", 9.8).solved("nucleus_core::fields::gravity");
             /// Direction of the acceleration.
-            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, -1.0, 0.0], ["dx", "dy", "dz"]);
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, -1.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::gravity");
         }
     }
 }
@@ -122,17 +122,17 @@ pub mod turbulence_field {
         TURBULENCE_FIELD = "turbulenceField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Spatial frequency of the noise.
-            FREQUENCY: f64 = float("frequency", "frq", 1.0);
+            FREQUENCY: f64 = float("frequency", "frq", 1.0).solved("nucleus_core::fields::turbulence");
             /// Offset of the noise along x.
-            PHASE_X: f64 = float("phaseX", "phx", 0.0);
+            PHASE_X: f64 = float("phaseX", "phx", 0.0).solved("nucleus_core::fields::turbulence");
             /// Offset of the noise along y.
-            PHASE_Y: f64 = float("phaseY", "phy", 0.0);
+            PHASE_Y: f64 = float("phaseY", "phy", 0.0).solved("nucleus_core::fields::turbulence");
             /// Offset of the noise along z.
-            PHASE_Z: f64 = float("phaseZ", "phz", 0.0);
+            PHASE_Z: f64 = float("phaseZ", "phz", 0.0).solved("nucleus_core::fields::turbulence");
             /// Count of octaves added to the noise.
-            NOISE_LEVEL: i64 = int("noiseLevel", "nslv", 0);
+            NOISE_LEVEL: i64 = int("noiseLevel", "nslv", 0).solved("nucleus_core::fields::turbulence");
             /// Amplitude of each octave relative to the one before.
-            NOISE_RATIO: f64 = float("noiseRatio", "nsrt", 0.707);
+            NOISE_RATIO: f64 = float("noiseRatio", "nsrt", 0.707).solved("nucleus_core::fields::turbulence");
             /// Interpolation of the noise.
             INTERPOLATION_TYPE: Choice = choice("interpolationType", "intr", 0, &[(0, "Linear"), (1, "Quadratic")]);
         }
@@ -148,7 +148,7 @@ pub mod vortex_field {
         VORTEX_FIELD = "vortexField", inherits Some(&FIELD), hides [];
         "Field" {
             /// The axis of rotation.
-            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 0.0, 0.0], ["axx", "axy", "axz"]);
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 0.0, 0.0], ["axx", "axy", "axz"]).solved("nucleus_core::fields::vortex");
         }
     }
 }
@@ -162,11 +162,11 @@ pub mod drag_field {
         DRAG_FIELD = "dragField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Direction of the drag.
-            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::drag");
             /// Damps motion along `direction` only.
-            USE_DIRECTION: bool = toggle("useDirection", "ud", false);
+            USE_DIRECTION: bool = toggle("useDirection", "ud", false).solved("nucleus_core::fields::drag");
             /// Share of the field's velocity that the drag is relative to.
-            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0);
+            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0).solved("nucleus_core::fields::drag");
             /// Reduces the drag of a field that moves slowly.
             MOTION_ATTENUATION: f64 = float("motionAttenuation", "mna", 0.0);
             /// Reduces the drag on objects that move slowly.
@@ -186,19 +186,19 @@ pub mod air_field {
         AIR_FIELD = "airField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Direction of the air.
-            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::air");
             /// Speed of the air.
-            SPEED: f64 = float("speed", "spd", 0.0);
+            SPEED: f64 = float("speed", "spd", 0.0).solved("nucleus_core::fields::air");
             /// Share of the field's velocity that is added.
-            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0);
+            INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0).solved("nucleus_core::fields::air");
             /// Only accelerates objects, and only along `direction`.
-            COMPONENT_ONLY: bool = toggle("componentOnly", "co", false);
+            COMPONENT_ONLY: bool = toggle("componentOnly", "co", false).solved("nucleus_core::fields::air");
             /// Spread of the air; 1 is a half space.
-            SPREAD: f64 = float("spread", "spr", 0.0);
+            SPREAD: f64 = float("spread", "spr", 0.0).solved("nucleus_core::fields::air");
             /// Whether `spread` applies.
-            ENABLE_SPREAD: bool = toggle("enableSpread", "es", false);
+            ENABLE_SPREAD: bool = toggle("enableSpread", "es", false).solved("nucleus_core::fields::air");
             /// Rotates the direction with the field.
-            INHERIT_ROTATION: bool = toggle("inheritRotation", "ir", false);
+            INHERIT_ROTATION: bool = toggle("inheritRotation", "ir", false).solved("nucleus_core::fields::air");
         }
     }
 }
@@ -226,7 +226,7 @@ pub mod uniform_field {
         UNIFORM_FIELD = "uniformField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Direction of the force.
-            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::uniform");
             /// Out of use in Maya.
             INHERIT_FACTOR: f64 = float("inheritFactor", "inh", 0.0).unused();
         }
@@ -244,27 +244,27 @@ pub mod volume_axis_field {
             /// Strongest at the edge of the volume instead of its centre.
             INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false);
             /// Speed away from the centre.
-            AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0);
+            AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).solved("nucleus_core::fields::volume_axis");
             /// Speed away from the axis.
-            AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0);
+            AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0).solved("nucleus_core::fields::volume_axis");
             /// Speed along the axis.
-            ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0);
+            ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Speed around the axis.
-            AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0);
+            AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Speed along `direction`.
-            DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0);
+            DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Direction of `directionalSpeed`.
-            DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]);
+            DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::volume_axis");
             /// Whether Maya draws arrows.
             DISPLAY_SPEED: bool = toggle("displaySpeed", "dss", true);
             /// Strength of a turbulence that varies with time.
-            TURBULENCE: f64 = float("turbulence", "trb", 0.0);
+            TURBULENCE: f64 = float("turbulence", "trb", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Speed of the turbulence.
-            TURBULENCE_SPEED: f64 = float("turbulenceSpeed", "trs", 0.2);
+            TURBULENCE_SPEED: f64 = float("turbulenceSpeed", "trs", 0.2).solved("nucleus_core::fields::volume_axis");
             /// Spatial frequency of the turbulence.
-            TURBULENCE_FREQUENCY: [f64; 3] = vector("turbulenceFrequency", "tf", [1.0, 1.0, 1.0], ["tfx", "tfy", "tfz"]);
+            TURBULENCE_FREQUENCY: [f64; 3] = vector("turbulenceFrequency", "tf", [1.0, 1.0, 1.0], ["tfx", "tfy", "tfz"]).solved("nucleus_core::fields::volume_axis");
             /// Offset of the turbulence.
-            TURBULENCE_OFFSET: [f64; 3] = vector("turbulenceOffset", "to", [0.0, 0.0, 0.0], ["tox", "toy", "toz"]);
+            TURBULENCE_OFFSET: [f64; 3] = vector("turbulenceOffset", "to", [0.0, 0.0, 0.0], ["tox", "toy", "toz"]).solved("nucleus_core::fields::volume_axis");
             /// Strength of a second turbulence of higher frequency.
             DETAIL_TURBULENCE: f64 = float("detailTurbulence", "dtr", 0.0);
             /// The time of the turbulence.
@@ -282,7 +282,7 @@ pub mod newton_field {
         NEWTON_FIELD = "newtonField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Minimum distance at which it acts.
-            MIN_DISTANCE: f64 = float("minDistance", "min", 0.0);
+            MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).solved("nucleus_core::fields::newton");
             /// Masses of the owner's points.
             OWNER_MASS_DATA: Vec<f64> = floats("ownerMassData", "omd");
         }

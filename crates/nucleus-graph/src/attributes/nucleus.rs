@@ -54,6 +54,8 @@ node_table! {
         TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]).elsewhere("`nucleus run` says how long it takes");
     }
     "Scale Attributes" {
+        /// Evaluates force fields in every substep. Maya evaluates them once per frame.
+        FIELDS_PER_SUBSTEP: bool = toggle("fieldsPerSubstep", "fieldsPerSubstep", false).solved("nucleus_core::fields").extension();
         /// How fast simulated time runs against the time of the animation.
         TIME_SCALE: f64 = float("timeScale", "tisc", 1.0).min(0.0001).max(10000.0).soft(0.01, 10.0).solved("nucleus_graph::compile");
         /// Metres in one scene unit: 1 for a scene in metres, 0.01 for one in centimetres.

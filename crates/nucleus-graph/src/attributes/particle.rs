@@ -22,7 +22,7 @@ node_table! {
     }
     "Dynamic Properties" {
         /// How much of the fields' forces is felt.
-        DYNAMICS_WEIGHT: f64 = float("dynamicsWeight", "dw", 1.0).min(0.0).max(1.0);
+        DYNAMICS_WEIGHT: f64 = float("dynamicsWeight", "dw", 1.0).min(0.0).max(1.0).solved("nucleus_graph::compile::fields");
         /// Feels fields in world space.
         FORCES_IN_WORLD: bool = toggle("forcesInWorld", "fiw", true);
         /// How much of the velocity is kept from frame to frame.
@@ -54,23 +54,25 @@ node_table! {
         /// Emits in world space.
         EMISSION_IN_WORLD: bool = toggle("emissionInWorld", "eiw", true);
         /// No more particles than this; -1 is no bound.
-        MAX_COUNT: i64 = int("maxCount", "mxc", -1);
+        MAX_COUNT: i64 = int("maxCount", "mxc", -1).solved("nucleus_graph::compile::emission");
         /// Share of the particles that is emitted.
-        LEVEL_OF_DETAIL: f64 = float("levelOfDetail", "lod", 1.0).min(0.0).max(1.0);
+        LEVEL_OF_DETAIL: f64 = float("levelOfDetail", "lod", 1.0).min(0.0).max(1.0).solved("nucleus_graph::compile::emission");
         /// How much velocity particles take from their emitter.
-        INHERIT_FACTOR: f64 = float("inheritFactor", "inh", 0.0).min(0.0).soft(0.0, 1.0);
+        INHERIT_FACTOR: f64 = float("inheritFactor", "inh", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_graph::compile::emission");
         /// Where random emission begins.
-        SEED: i64 = int("seed", "sd", 1).multi();
+        SEED: i64 = int("seed", "sd", 1).multi().solved("nucleus_graph::compile::emission");
     }
     "Lifespan" {
         /// How it is decided how long particles live.
-        LIFESPAN_MODE: Choice = choice("lifespanMode", "lfm", 0, &[(0, "Live forever"), (1, "Constant"), (2, "Random range"), (3, "lifespanPP only")]);
+        LIFESPAN_MODE: Choice = choice("lifespanMode", "lfm", 0, &[(0, "Live forever"), (1, "Constant"), (2, "Random range"), (3, "lifespanPP only")]).solved("nucleus_graph::compile::emission");
         /// By how much the time they live varies.
-        LIFESPAN_RANDOM: f64 = float("lifespanRandom", "lfr", 0.0);
+        LIFESPAN_RANDOM: f64 = float("lifespanRandom", "lfr", 0.0).unit("s").solved("nucleus_graph::compile::emission");
+        /// How long particles live: each of them, or in the mean. Maya adds it to a node when it creates particles.
+        LIFESPAN: f64 = float("lifespan", "lifespan", 1.0).min(0.0).unit("s").solved("nucleus_graph::compile::emission").extension();
         /// How long each particle lives in the end.
         FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output();
         /// Where random lifespans begin.
-        GENERAL_SEED: i64 = int("generalSeed", "gsd", 0);
+        GENERAL_SEED: i64 = int("generalSeed", "gsd", 0).solved("nucleus_graph::compile::emission");
     }
     "Time/General" {
         /// Runs expressions after the solver.

@@ -7,15 +7,15 @@ use super::node_type::node_table;
 use super::value::Choice;
 
 node_table! {
-    /// Emits particles. Not solved yet.
+    /// Emits particles from a point, a volume or the surface of a mesh.
     POINT_EMITTER = "pointEmitter", inherits Some(&DYN_BASE), hides [];
     "Emitter" {
         /// Where particles come from: a point, a surface, a curve or a volume.
-        EMITTER_TYPE: Choice = choice("emitterType", "emt", 1, &[(0, "Directional"), (1, "Omni"), (2, "Surface"), (3, "Curve"), (4, "Volume")]);
+        EMITTER_TYPE: Choice = choice("emitterType", "emt", 1, &[(0, "Directional"), (1, "Omni"), (2, "Surface"), (3, "Curve"), (4, "Volume")]).solved("nucleus_graph::compile::emission");
         /// Particles in a second.
-        RATE: f64 = float("rate", "rat", 100.0).min(0.0).soft(0.0, 500.0);
+        RATE: f64 = float("rate", "rat", 100.0).min(0.0).soft(0.0, 500.0).solved("nucleus_graph::compile::emission");
         /// Takes the rate per unit of length or area of a curve or surface.
-        SCALE_RATE_BY_OBJECT_SIZE: bool = toggle("scaleRateByObjectSize", "sro", true);
+        SCALE_RATE_BY_OBJECT_SIZE: bool = toggle("scaleRateByObjectSize", "sro", true).solved("nucleus_graph::compile::emission");
         /// Emits more the faster the emitter moves.
         SCALE_RATE_BY_SPEED: bool = toggle("scaleRateBySpeed", "srs", false);
         /// Takes a rate for each point of the owner.
@@ -27,21 +27,21 @@ node_table! {
         /// After how many frames that is.
         CYCLE_INTERVAL: i64 = int("cycleInterval", "cyi", 1).min(1.0).soft(1.0, 100.0);
         /// Farthest from the emitter that particles begin.
-        MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0).soft(0.0, 10.0).unit("scene units");
+        MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0).soft(0.0, 10.0).unit("scene units").solved("nucleus_graph::compile::emission");
         /// Nearest to the emitter that particles begin.
-        MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).soft(0.0, 10.0).unit("scene units");
+        MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).soft(0.0, 10.0).unit("scene units").solved("nucleus_graph::compile::emission");
         /// Where particles fly to, if the emitter has a direction.
-        DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).soft(-10.0, 10.0);
+        DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
         /// How wide they fan out: 1 is a half space.
-        SPREAD: f64 = float("spread", "spr", 0.0).min(0.0).max(1.0);
+        SPREAD: f64 = float("spread", "spr", 0.0).min(0.0).max(1.0).solved("nucleus_graph::compile::emission");
         /// Factor on the speed they begin with.
-        SPEED: f64 = float("speed", "spd", 1.0).soft(0.0, 10.0);
+        SPEED: f64 = float("speed", "spd", 1.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// How much that speed varies.
-        SPEED_RANDOM: f64 = float("speedRandom", "srnd", 0.0).min(0.0).soft(0.0, 10.0);
+        SPEED_RANDOM: f64 = float("speedRandom", "srnd", 0.0).min(0.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed along a surface.
-        TANGENT_SPEED: f64 = float("tangentSpeed", "tspd", 0.0).soft(0.0, 10.0);
+        TANGENT_SPEED: f64 = float("tangentSpeed", "tspd", 0.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed away from a surface or curve.
-        NORMAL_SPEED: f64 = float("normalSpeed", "nspd", 1.0).soft(0.0, 10.0);
+        NORMAL_SPEED: f64 = float("normalSpeed", "nspd", 1.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// The time it is evaluated for; driven by `time1.outTime`.
         CURRENT_TIME: f64 = float("currentTime", "ct", 0.0);
         /// Rate at each point of the owner.
@@ -65,29 +65,29 @@ node_table! {
         /// Colour of new particles.
         PARTICLE_COLOR: [f64; 3] = vector("particleColor", "pc", [0.5, 0.5, 0.5], ["pcr", "pcg", "pcb"]).min(0.0).max(1.0);
         /// Shape of the volume that particles come from.
-        VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "Cube"), (1, "Sphere"), (2, "Cylinder"), (3, "Cone"), (4, "Torus")]);
+        VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "Cube"), (1, "Sphere"), (2, "Cylinder"), (3, "Cone"), (4, "Torus")]).solved("nucleus_graph::compile::emission");
         /// How far that volume is from the emitter.
-        VOLUME_OFFSET: [f64; 3] = vector("volumeOffset", "vof", [0.0, 0.0, 0.0], ["vfx", "vfy", "vfz"]);
+        VOLUME_OFFSET: [f64; 3] = vector("volumeOffset", "vof", [0.0, 0.0, 0.0], ["vfx", "vfy", "vfz"]).solved("nucleus_graph::compile::emission");
         /// How well points in that volume are found.
         VOLUME_EFFICIENCY: f64 = float("volumeEfficiency", "vef", 0.0).output();
         /// How far round a round volume goes.
-        VOLUME_SWEEP: f64 = float("volumeSweep", "vsw", 360.0).min(0.0).max(360.0).unit("degrees");
+        VOLUME_SWEEP: f64 = float("volumeSweep", "vsw", 360.0).min(0.0).max(360.0).unit("degrees").solved("nucleus_graph::compile::emission");
         /// Radius of a torus' section.
-        SECTION_RADIUS: f64 = float("sectionRadius", "vsr", 0.5).min(0.0).soft(0.0, 1.0).unit("scene units");
+        SECTION_RADIUS: f64 = float("sectionRadius", "vsr", 0.5).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_graph::compile::emission");
         /// Speed away from the middle of a cube or sphere.
-        AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).soft(-10.0, 10.0);
+        AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed away from the axis of a cylinder, cone or torus.
-        AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0).soft(-10.0, 10.0);
+        AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed along the axis.
-        ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0).soft(-10.0, 10.0);
+        ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed round the axis.
-        AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0).soft(-10.0, 10.0);
+        AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Speed in random directions.
-        RANDOM_DIRECTION: f64 = float("randomDirection", "rnd", 0.0).min(0.0).soft(0.0, 1.0);
+        RANDOM_DIRECTION: f64 = float("randomDirection", "rnd", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_graph::compile::emission");
         /// Speed along `direction`.
-        DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0).min(0.0).soft(0.0, 10.0);
+        DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0).min(0.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Multiplies speeds by the size of the volume.
-        SCALE_SPEED_BY_SIZE: bool = toggle("scaleSpeedBySize", "ssz", false);
+        SCALE_SPEED_BY_SIZE: bool = toggle("scaleSpeedBySize", "ssz", false).solved("nucleus_graph::compile::emission");
         /// Whether Maya draws arrows.
         DISPLAY_SPEED: bool = toggle("displaySpeed", "dss", true);
     }

@@ -12,15 +12,19 @@ use super::compiler::Compiler;
 use super::constraints::kinds::Values;
 use super::constraints::member::MemberObject;
 use super::program::{EvaluationInterval, NucleusProgram};
-use super::sources::{AttachedPoint, AttachmentSource};
+use super::sources::{AttachedPoint, AttachmentSource, EmitterState};
 
-/// Attachment state of each constraint during a run: positions of its points in constraint space, in scene units, or
+/// What constraints and emitters keep from frame to frame.
+///
+/// Attachment state of each constraint: positions of its points in constraint space, in scene units, or
 /// `None` while it is disabled. If the constraint never moves, the positions are in world space, in metres.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AttachmentState {
     pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
     /// Whether each constraint of links has been formed and is enabled.
     pub(crate) formed: Vec<bool>,
+    /// What each emitter keeps from frame to frame.
+    pub(crate) emitters: Vec<EmitterState>,
 }
 
 impl NucleusProgram {

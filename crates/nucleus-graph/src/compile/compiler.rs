@@ -64,6 +64,8 @@ impl<'a> Compiler<'a> {
             attachments: Vec::new(),
             constraints: Vec::new(),
             selections: Vec::new(),
+            emitters: Vec::new(),
+            fields: Vec::new(),
             start: first,
             first_cloth: previous.map_or(0, |previous| previous.cloths().end),
             first_collider: previous.map_or(0, |previous| previous.colliders().end),
@@ -151,7 +153,7 @@ impl<'a> Compiler<'a> {
     ) {
         self.mass += mass;
         let name = self.scene.graph.node(node).name().to_owned();
-        self.objects.push(Object { name, kind, points, faces, radius: None });
+        self.objects.push(Object { name, kind, points, faces, radius: None, varies: false });
     }
 
     /// Reports an object that the model builder refuses, at the attribute or mesh that causes it.

@@ -58,8 +58,9 @@ impl EvaluationInterval<'_> {
         let along = |direction: &Key<[f64; 3]>, size: &Key<f64>| {
             unit(space.linear * Vector3::from(to.get(nucleus, direction))) * to.get(nucleus, size)
         };
+        let duration = to.get(nucleus, &nucleus::TIME_SCALE) * self.seconds;
         FrameInput {
-            duration: to.get(nucleus, &nucleus::TIME_SCALE) * self.seconds,
+            duration,
             substeps: to.get(nucleus, &nucleus::SUB_STEPS) as u32,
             collision_iterations: to.get(nucleus, &nucleus::MAX_COLLISION_ITERATIONS) as f64,
             resistance: match to.get(nucleus, &nucleus::RESISTANCE_MODEL) {
@@ -79,6 +80,9 @@ impl EvaluationInterval<'_> {
             input_meshes: self.input_meshes(),
             constraints: self.constraint_frames(&mut attachments.formed, position),
             exclusions: self.exclusions(),
+            fields: self.fields(duration),
+            fields_per_substep: to.get(nucleus, &nucleus::FIELDS_PER_SUBSTEP),
+            births: self.births(&mut attachments.emitters, duration),
         }
     }
 

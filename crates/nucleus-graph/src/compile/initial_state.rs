@@ -20,6 +20,7 @@ use crate::mesh::read_obj;
 use crate::paint::read_vectors;
 
 use super::compiler::Compiler;
+use super::emission::emitter_nodes;
 
 /// An object with its mesh at the start frame, in world space; lengths in scene units. Particles are their own mesh.
 pub(super) struct PlacedObject {
@@ -104,10 +105,13 @@ impl Compiler<'_> {
                 return None;
             }
         };
-        if vectors.is_empty() {
+        if vectors.is_empty() && emitter_nodes(&self.scene.graph, node).is_empty() {
             let message = format!("`{name}` has no particles, and does nothing");
             let warning = self.findings.warning(&self.scene.source.place(name), message);
-            warning.help("say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`");
+            warning.help(
+                "say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`, or emit some with a \
+                 pointEmitter",
+            );
             return None;
         }
         let size = Size { points: vectors.len() as u64, corners: 0 };

@@ -10,6 +10,8 @@
 //! | settings that another setting switches off           | `contradictions.rs`                |
 //! | particles                                            | `particles.rs`                     |
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
+//! | emitters, and the particles born in a frame          | `emission/`                        |
+//! | force fields                                         | `fields.rs`                        |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
@@ -31,6 +33,8 @@ mod camera;
 mod compiler;
 mod constraints;
 mod contradictions;
+mod emission;
+mod fields;
 mod frame;
 mod geometry;
 mod initial_state;
@@ -61,6 +65,7 @@ pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
 pub(crate) use geometry::max_points;
 pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
+pub(crate) use sources::EmitterState;
 
 /// Compiles a scene.
 ///

@@ -37,6 +37,7 @@ impl Compiler<'_> {
         self.program.attachments = self.attachments();
         self.order_links();
         self.program.constraints = self.constraint_sources();
+        self.program.fields = self.fields();
         let cloths = self.program.cloths.iter().map(|cloth| cloth.node);
         let objects: Vec<NodeId> =
             cloths.chain(self.program.colliders.iter().map(|collider| collider.node)).collect();
@@ -93,7 +94,7 @@ impl Compiler<'_> {
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
         let followed = self.followed_mesh(id, mesh, &factors.input_attract);
         let (face_count, area) = (faces.len(), area(&surface));
-        let cloth = Cloth { surface, mass, lists, factors, start };
+        let cloth = Cloth { surface, mass, lists, factors, start, particles: None };
         let kilograms = match mass {
             _ if !cloth.factors.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,

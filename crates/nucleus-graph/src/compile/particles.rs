@@ -2,16 +2,19 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Mass, SelfCollision, Start, VertexMaps,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Mass, Particles, SelfCollision, Start,
+    VertexMaps,
 };
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
 use crate::graph::NodeId;
+use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
+use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
 use super::program::{EvaluationInterval, ObjectKind};
-use super::sources::{ClothSource, MapScales};
+use super::sources::{ClothSource, Emitter, MapScales};
 
 impl Compiler<'_> {
     /// Compiles the particles of a node.
@@ -30,17 +33,23 @@ impl Compiler<'_> {
         };
         let mass = self.start.get(id, &n_particle::POINT_MASS);
         let start = Start { velocities, ..Start::default() };
-        let cloth =
-            Cloth { surface, mass: Mass::PerPoint(mass), lists, factors: VertexMaps::default(), start };
+        let emitters = self.emitters(id, ClothId(self.program.model.cloths().len() as u32));
+        let particles = self.births_and_deaths(id, points, &emitters)?;
+        let varies = particles.is_some();
+        let factors = VertexMaps::default();
+        let cloth = Cloth { surface, mass: Mass::PerPoint(mass), lists, factors, start, particles };
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
                 self.add_object(id, kind, points, Faces::default(), mass * points as f64);
                 let radius = self.start.get(id, &n_particle::RADIUS);
-                self.objects.iter_mut().last().into_iter().for_each(|object| object.radius = Some(radius));
+                if let Some(object) = self.objects.last_mut() {
+                    (object.radius, object.varies) = (Some(radius), varies);
+                }
             }
             Err(error) => return self.report_refused(id, id, &error),
         }
+        self.program.emitters.extend(emitters);
         let (default_thickness, is_dense, scales) = (0.0, false, MapScales::ONE);
         let source = ClothSource {
             node: id,
@@ -55,6 +64,34 @@ impl Compiler<'_> {
         };
         self.program.cloths.push(source);
         Some(())
+    }
+
+    /// Room for particles that are born and die, where there are any; `None` after an error, which is reported.
+    fn births_and_deaths(
+        &mut self,
+        id: NodeId,
+        points: usize,
+        emitters: &[Emitter],
+    ) -> Option<Option<Particles>> {
+        let graph = &self.scene.graph;
+        if emitters.is_empty() && !dies(graph, id) {
+            return Some(None);
+        }
+        let room = self.room_for_particles(id, points, emitters);
+        let claimed = self.geometry.budget.claim(Cost::CLOTH.of(Size { points: room, corners: 0 }));
+        if let Err(refused) = claimed {
+            if refused.is_first {
+                let name = graph.node(id).name();
+                let message = format!("`{name}`, of up to {room} particles, takes {refused}");
+                let place = emitters.first().map_or(name, |emitter| graph.node(emitter.node).name());
+                let error = self.findings.error(&self.scene.source.place(place), message);
+                error.help(refused.help("lower `rate`, shorten the lifespan, or set `maxCount`"));
+            }
+            return None;
+        }
+        let seed = self.start.get(id, &particle::GENERAL_SEED) as u64;
+        let lifespans = Lifespan::new(id, &self.start).of_first(points, seed);
+        Some(Some(Particles { capacity: room as usize, lifespans }))
     }
 }
 

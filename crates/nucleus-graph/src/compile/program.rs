@@ -13,7 +13,7 @@ use crate::scene::document::{Record, TimeSpan};
 
 use super::camera::{self, Camera};
 use super::constraints::member::ConstraintSource;
-use super::sources::{AttachmentSource, ClothSource, ColliderSource};
+use super::sources::{AttachmentSource, ClothSource, ColliderSource, Emitter, FieldSource};
 use super::units::Units;
 
 /// A compiled scene. Cloning is cheap: clones share their data.
@@ -48,6 +48,8 @@ pub struct NucleusProgram {
     pub(super) attachments: Vec<AttachmentSource>,
     pub(super) constraints: Vec<ConstraintSource>,
     pub(super) selections: Vec<NamedSelection>,
+    pub(super) emitters: Vec<Emitter>,
+    pub(super) fields: Vec<FieldSource>,
     /// Start frame.
     pub(super) start: i64,
     /// Count of cloths in the nuclei before this one.
@@ -69,6 +71,8 @@ pub struct Object {
     pub faces: Faces,
     /// Radius of its particles in scene units; `None` for a mesh.
     pub radius: Option<f64>,
+    /// Whether its points are particles that are born and die; `points` is then their number at the start.
+    pub varies: bool,
 }
 
 /// The elements of an object that a constraint names.
@@ -247,6 +251,12 @@ impl NucleusProgram {
     /// Scene units per metre.
     pub fn units_per_metre(&self) -> f64 {
         self.units.per_metre()
+    }
+
+    /// The largest number of particles that an object of particles can have.
+    pub(super) fn room_of(&self, cloth: ClothId) -> u64 {
+        let particles = self.model.cloths()[cloth.index()].particles.as_ref();
+        particles.map_or(0, |particles| particles.capacity as u64)
     }
 
     /// The ids of its cloths in the program.

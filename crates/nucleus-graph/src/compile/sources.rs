@@ -69,6 +69,44 @@ pub(super) struct AttachedPoint {
     pub(super) start: Vector3<f64>,
 }
 
+/// An emitter of one object of particles.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Emitter {
+    /// Its node.
+    pub(super) node: NodeId,
+    /// The node of the particles, and their object.
+    pub(super) particles: NodeId,
+    pub(super) cloth: ClothId,
+    /// The mesh that it emits from.
+    pub(super) mesh: Option<EmittingMesh>,
+    /// Which of the object's emitters it is.
+    pub(super) place: u64,
+}
+
+/// A mesh that an emitter emits from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EmittingMesh {
+    pub(super) mesh: NodeId,
+    pub(super) shape: AnimatedMesh,
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// What an emitter keeps from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct EmitterState {
+    /// Particles emitted so far.
+    pub(crate) emitted: u64,
+    /// Part of the next particle, 0 to 1.
+    pub(crate) remainder: f64,
+}
+
+/// A field, and the objects that it acts on, each with its node.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FieldSource {
+    pub(super) node: NodeId,
+    pub(super) targets: Vec<(ClothId, NodeId)>,
+}
+
 /// Factors on the attributes of a cloth from vertex maps that are uniform.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MapScales {

@@ -124,7 +124,7 @@ fn a_setting_without_effect_yet_is_a_warning_at_its_place() {
     assert_eq!(&text[warning.span.clone()], "playFromCache");
     let inherited = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", lifespanRandom: 1)"#);
     let (_, warnings) = read_scene_text(&inherited, Path::new("test.ron")).expect("a valid scene");
-    assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect yet");
+    assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect on such a node");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+    ClothId, ColliderId, ContactState, ParticleAge, Stage, StateView, StepObserver, StepReport, SubstepIndex,
 };
 
 use crate::compile::{NucleusProgram, Program};
@@ -54,6 +54,11 @@ impl StateView for CombinedState<'_> {
             out.resize(nucleus.cloths().start as usize, Vec::new());
             out.append(&mut own);
         }
+    }
+
+    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+        let (part, id, _) = self.cloth(cloth);
+        part.ages(id, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
@@ -145,6 +150,10 @@ pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: b
         pairs_unresolved: a.pairs_unresolved + b.pairs_unresolved,
         depenetrating: if are_consecutive { b.depenetrating } else { a.depenetrating + b.depenetrating },
         intersections: if are_consecutive { b.intersections } else { a.intersections + b.intersections },
+        particles: if are_consecutive { b.particles } else { a.particles + b.particles },
+        births: a.births + b.births,
+        deaths: a.deaths + b.deaths,
+        births_refused: a.births_refused + b.births_refused,
         kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         broken_links: if are_consecutive { b.broken_links } else { a.broken_links + b.broken_links },
         max_weld_gap: a.max_weld_gap.max(b.max_weld_gap),

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use nucleus_core::{Encode, Reader, Real, RestoreError, Solver};
 
 use crate::attributes::nucleus;
-use crate::compile::{AttachmentState, NucleusProgram, Program};
+use crate::compile::{AttachmentState, EmitterState, NucleusProgram, Program};
 
 /// One nucleus during a run.
 pub(super) struct NucleusRun<R: Real> {
@@ -80,11 +80,12 @@ impl<R: Real> NucleusRun<R> {
 
     /// Appends the state to a checkpoint.
     pub(super) fn save(&self, out: &mut Vec<u8>) {
-        let Self { solver, attachments: AttachmentState { held, formed }, now, evaluated, was_skipped } =
-            self;
+        let Self { solver, attachments, now, evaluated, was_skipped } = self;
+        let AttachmentState { held, formed, emitters } = attachments;
         solver.save().encode(out);
         held.encode(out);
         formed.encode(out);
+        emitters.iter().map(|state| (state.emitted, state.remainder)).collect::<Vec<_>>().encode(out);
         (*now, (*evaluated, *was_skipped)).encode(out);
     }
 
@@ -99,11 +100,15 @@ impl<R: Real> NucleusRun<R> {
         let solver = Vec::decode(from).ok_or(RestoreError::Damaged)?;
         let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let formed: Vec<bool> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let emitters: Vec<(u64, f64)> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let (now, (evaluated, was_skipped)) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let emitters: Vec<EmitterState> =
+            emitters.into_iter().map(|(emitted, remainder)| EmitterState { emitted, remainder }).collect();
         if !nucleus.accepts_attachments(&held) || !nucleus.accepts_constraints(&formed) {
             return Err(RestoreError::OtherModel);
         }
         let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
-        Ok(Self { solver, attachments: AttachmentState { held, formed }, now, evaluated, was_skipped })
+        let attachments = AttachmentState { held, formed, emitters };
+        Ok(Self { solver, attachments, now, evaluated, was_skipped })
     }
 }

@@ -90,10 +90,12 @@ export class Cache {
   async objectAt(object, index, timeIndex, nanoseconds) {
     const { positions, number } = await this.positionsOf(object, index, timeIndex);
     const mesh = await this.meshAt(this.objects[object], nanoseconds);
-    if (mesh.number !== number || mesh.points * 3 !== positions.length) {
+    const isOfMesh = mesh.points * 3 === positions.length;
+    if (mesh.number !== number || (!isOfMesh && mesh.kind !== "particles")) {
       throw new DamagedFrame();
     }
-    return { positions, mesh };
+    // Particles come and go.
+    return { positions, mesh: isOfMesh ? mesh : { ...mesh, points: positions.length / 3, rest: positions } };
   }
 
   // A mesh, with the radius of its particles, which is constant over a run.

@@ -194,7 +194,7 @@ fn find_candidates<R: Real>(
         .map(|material| material.thickness * material.adhesion_range)
         .fold(0.0, f64::max);
     let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
-    cloth_contacts.update_bounds(input.anchors, margin, refresh);
+    cloth_contacts.update_bounds(&input, margin, refresh);
     if !refresh.is_incremental() && cloth_contacts.untangling.may_exist() {
         let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
         find_intersections(elements, materials, &input, untangling);

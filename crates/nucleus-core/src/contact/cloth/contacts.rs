@@ -1,5 +1,6 @@
 //! The state of contact among cloths.
 
+use std::ops::Range;
 use std::sync::RwLock;
 
 use crate::contact::cloth::cache::ContactCache;
@@ -7,11 +8,12 @@ use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::ElementGroups;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::query::SearchTask;
-use crate::contact::cloth::search::RefreshKind;
+use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
+use crate::parallel::thread_pool::ThreadPool;
 
 /// All contact among cloths; empty where a scene has none.
 pub struct ClothContacts<R> {
@@ -55,6 +57,17 @@ impl<R: Real> ClothContacts<R> {
         }
     }
 
+    /// Drops what is known of points whose rows have got other particles, or none: they are searched anew.
+    pub fn forget(&mut self, points: Range<u32>, pool: &ThreadPool) {
+        self.interval[1] = self.interval[0];
+        let Self { elements, cache, buffers, bounds_violated, interval_start, .. } = self;
+        buffers.bounds.forget(points.clone());
+        let rows = points.start as usize..points.end as usize;
+        interval_start[rows.clone()].fill(Row4::ZERO);
+        bounds_violated[rows].fill(true);
+        cache.update(&[], bounds_violated, RefreshKind::Full, (&elements.block, elements.blocks), pool);
+    }
+
     /// Whether any two cloths can collide in this frame.
     pub fn is_enabled(&self) -> bool {
         self.materials.iter().any(Option::is_some)
@@ -62,17 +75,17 @@ impl<R: Real> ClothContacts<R> {
 
     /// Updates the bounds of points and of the groups that contain them: of those that violated theirs, or of
     /// all.
-    pub(super) fn update_bounds(&mut self, anchors: &[[f64; 3]], margin: f32, refresh: RefreshKind) {
+    pub(super) fn update_bounds(&mut self, input: &SearchInput<'_, R>, margin: f32, refresh: RefreshKind) {
+        let (anchors, points) = (input.anchors, || input.cloths.iter().flat_map(ClothModel::points));
         let Self { elements, bounds_violated, buffers, trajectories, .. } = self;
         let SearchBuffers { bounds, groups, .. } = buffers;
-        let violated =
-            (0..).zip(&*bounds_violated).filter(|(_, is_violated)| **is_violated).map(|(point, _)| point);
+        let violated = points().filter(|&point| bounds_violated[point as usize]);
         elements.groups_of(violated.clone(), groups);
         if refresh.is_incremental() {
             bounds.update(anchors, trajectories, violated);
             groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
         } else {
-            bounds.update(anchors, trajectories, 0..anchors.len() as u32);
+            bounds.update(anchors, trajectories, points());
             (0..elements.groups.len() as u32).for_each(|group| elements.set_bound(group, bounds, margin));
         }
         elements.refit();

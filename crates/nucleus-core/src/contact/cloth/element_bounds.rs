@@ -131,6 +131,12 @@ impl ElementBounds {
         }
     }
 
+    /// Empties the boxes of particles that no longer exist.
+    pub fn forget(&mut self, points: std::ops::Range<u32>) {
+        let rows = points.start as usize..points.end as usize;
+        self.boxes.get_mut(rows).unwrap_or_default().fill([Aabb::EMPTY; 2]);
+    }
+
     /// The swept box of some points, inflated by a margin.
     #[inline(always)]
     pub fn bound(&self, points: &[u32], margin: f32) -> SweptBox {

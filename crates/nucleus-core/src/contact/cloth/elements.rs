@@ -76,8 +76,8 @@ impl ElementGroups {
             all.groups.extend(model.boundary.groups(GROUP_SIZE).map(|group| ClothGroup { cloth, group }));
             let corners = model.boundary.triangles.iter().flatten();
             corners.for_each(|&corner| all.is_free_point[corner as usize] = false);
-            let points = model.points();
-            all.cloth[points.start as usize..points.end as usize].fill(cloth);
+            let rows = model.blocks.rows();
+            all.cloth[rows.start as usize..rows.end as usize].fill(cloth);
             for block in 0..model.blocks.len() {
                 let range = model.blocks.range(block);
                 all.block[range.start as usize..range.end as usize].fill(all.blocks);
@@ -144,9 +144,9 @@ impl ElementGroups {
     /// Takes up the shape at rest, and builds the hierarchy over it.
     fn build<R: Real>(&mut self, cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) {
         for model in cloths {
-            let points = model.points();
-            let first = Vector3::from(anchors[points.start as usize]);
-            for row in points.map(|row| row as usize) {
+            let rows = model.blocks.rows();
+            let first = Vector3::from(anchors[rows.start as usize]);
+            for row in rows.map(|row| row as usize) {
                 let away = Vector3::from(anchors[row]) - first;
                 self.rest_positions[row] = [away.x as f32, away.y as f32, away.z as f32];
             }

@@ -291,7 +291,6 @@ impl Resolver<'_> {
     }
 
     fn connect_effect(&mut self, id: NodeId) {
-        self.warn_not_solved(id, "fields and emitters are");
         if let Some(&target) = self.resolved.get(&(id, dyn_base::TARGET.row.name)) {
             self.create(id, &Creation::Effect { target });
         }
@@ -301,12 +300,6 @@ impl Resolver<'_> {
         if let Err(error) = self.graph.create(id, creation) {
             self.findings.error(&self.source.place(self.graph.node(id).name()), error.to_string());
         }
-    }
-
-    fn warn_not_solved(&mut self, id: NodeId, what: &str) {
-        let name = self.graph.node(id).name();
-        let message = format!("{what} not solved yet: `{name}` does nothing");
-        self.findings.warning(&self.source.place(name), message);
     }
 
     /// The nucleus that a node names: `None` if it names none, `Some(None)` if the name is wrong.

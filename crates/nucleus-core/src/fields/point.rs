@@ -1,0 +1,16 @@
+//! A point as a field sees it.
+
+use nalgebra::Vector3;
+
+/// A point in a field.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointInField {
+    /// Position from the centre of the field in metres.
+    pub(super) from_center: Vector3<f64>,
+    /// Velocity in m/s.
+    pub(super) velocity: Vector3<f64>,
+    /// Inverse mass in 1/kg.
+    pub(super) inverse_mass: f64,
+    /// The time in seconds for which the result is kept.
+    pub(super) interval: f64,
+}

@@ -1,0 +1,62 @@
+//! What objects do to the air and to each other at a distance: fields round their points, wind shadows, pushed air.
+
+/// Samples of the falloff of a force field.
+pub const FALLOFF_SAMPLES: usize = 17;
+
+/// Force fields round the points of an object (`pointForceField`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointField {
+    /// Acceleration of other objects' points at the radius, in m/s²; above 0 it pushes away.
+    pub magnitude: f64,
+    /// The same among the object's own points; above 0 it pulls together (`selfAttract`).
+    pub self_attract: f64,
+    /// Radius of each point in metres, from which the distance counts.
+    pub radius: f64,
+    /// How far beyond the radius it reaches, in metres.
+    pub distance: f64,
+    /// Factor from the radius (first) to the distance (last), evenly spaced.
+    pub falloff: [f64; FALLOFF_SAMPLES],
+}
+
+impl PointField {
+    /// Whether it acts at all.
+    pub fn is_on(&self) -> bool {
+        (self.magnitude != 0.0 || self.self_attract != 0.0) && self.distance > 0.0
+    }
+}
+
+/// What a surface does to the wind that others feel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindField {
+    /// How far behind it the solver's wind is kept from others, in metres (`windShadowDistance`).
+    pub shadow_distance: f64,
+    /// How much wind gets in behind it, 0 to 1 (`windShadowDiffusion`).
+    pub shadow_diffusion: f64,
+    /// Whether it shadows itself too (`windSelfShadow`).
+    pub self_shadow: bool,
+    /// How far the air that it moves is felt by others, in metres (`airPushDistance`).
+    pub push_distance: f64,
+    /// How much of that air flows back round it, 0 to 1 (`airPushVorticity`).
+    pub push_vorticity: f64,
+}
+
+impl WindField {
+    /// None.
+    pub const OFF: Self = Self {
+        shadow_distance: 0.0,
+        shadow_diffusion: 0.0,
+        self_shadow: false,
+        push_distance: 0.0,
+        push_vorticity: 0.0,
+    };
+
+    /// Whether it casts a wind shadow.
+    pub fn casts_shadow(&self) -> bool {
+        self.shadow_distance > 0.0
+    }
+
+    /// Whether it pushes air.
+    pub fn pushes_air(&self) -> bool {
+        self.push_distance > 0.0
+    }
+}

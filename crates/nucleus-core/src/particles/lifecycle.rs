@@ -1,0 +1,213 @@
+//! Births and deaths in the solver's columns, at the end of each substep.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::contact::system::ContactSystem;
+use crate::contact::time_step::ContactCounters;
+use crate::fields::update_fields_of;
+use crate::input::frame::{Birth, ClothFrame, FrameInput};
+use crate::input::validation::is_in_range;
+use crate::integrate::aerodynamics::AirForces;
+use crate::math::{Real, Row4};
+use crate::parallel::thread_pool::ThreadPool;
+use crate::particles::population::close_up;
+use crate::schedule::Schedule;
+use crate::solver::Solver;
+use crate::state::State;
+
+/// Removes the particles that have died in a substep, then adds those that were born in it. The substep is counted
+/// from 1.
+pub fn age_particles<R: Real>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    substep: u32,
+    counters: &mut ContactCounters,
+) {
+    let is_last = substep == schedule.substeps;
+    let end = if is_last { 1.0 } else { f64::from(substep) / f64::from(schedule.substeps) };
+    for index in 0..solver.state.populations.len() {
+        let population = &mut solver.state.populations[index];
+        population.advance(frame.duration / f64::from(schedule.substeps));
+        let (cloth, before) = (population.cloth(), population.len());
+        if let Some(kept) = population.remove_dead() {
+            counters.deaths += (before - kept.len()) as u64;
+            remove_rows(solver, cloth, &kept);
+        }
+        add_births(solver, index, frame, [schedule.h, end], counters);
+    }
+}
+
+/// Adds the particles of an object that were born up to `end`, as a share of the frame, in time steps of `h` seconds.
+fn add_births<R: Real>(
+    solver: &mut Solver<R>,
+    index: usize,
+    frame: &FrameInput,
+    [h, end]: [f64; 2],
+    counters: &mut ContactCounters,
+) {
+    let Solver { model, state, contact, pool } = solver;
+    let births = state.populations[index].due(&frame.births, end);
+    let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
+    let object = &mut model.cloths[cloth];
+    let (first, row_of) = (object.points().end, object.blocks.rows().start);
+    let flight = Flight::new(frame, &frame.cloths[cloth], [mass, object.point_mass], h);
+    for birth in births {
+        let age = (end - birth.time) * frame.duration;
+        let (position, velocity) = flight.after(birth, age);
+        let population = &mut state.populations[index];
+        if population.is_full() || !(is_in_range(&position) && is_in_range(&velocity)) || age.is_nan() {
+            counters.births_refused += 1;
+            continue;
+        }
+        counters.births += 1;
+        match population.add(age, birth.lifespan) {
+            true => {
+                let row = row_of + population.len() as u32 - 1;
+                set_row(state, row as usize, position, velocity, mass);
+            }
+            false => counters.deaths += 1,
+        }
+    }
+    let living = state.populations[index].len();
+    let last = row_of + living as u32;
+    if last > first {
+        object.resize(living);
+        begin_contact_of(state, contact, cloth, first..last);
+        if !frame.fields_per_substep {
+            let interval = frame.duration * (1.0 - end).max(f64::EPSILON);
+            update_fields_of((cloth, first..last), state, frame, interval, pool);
+        }
+    }
+}
+
+/// Puts a particle into a row.
+fn set_row<R: Real>(
+    state: &mut State<R>,
+    row: usize,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    mass: f64,
+) {
+    state.inverse_mass[row] = R::from_f64((1.0 / mass).clamp(1e-30, 1e30));
+    state.anchor[row] = position.into();
+    state.displacement[row] = Row4([R::ZERO, R::ZERO, R::ZERO, state.inverse_mass[row]]);
+    state.velocity[row] = Row4::new(velocity.into(), R::ZERO);
+    let columns = [
+        &mut state.predicted,
+        &mut state.start,
+        &mut state.depenetration_by_collider,
+        &mut state.depenetration_by_cloth,
+        &mut state.field,
+    ];
+    columns.into_iter().filter_map(|column| column.get_mut(row)).for_each(|value| *value = Row4::ZERO);
+}
+
+/// New particles take part in contact from the next time step on.
+fn begin_contact_of<R: Real>(
+    state: &State<R>,
+    contact: &mut ContactSystem<R>,
+    cloth: usize,
+    rows: Range<u32>,
+) {
+    contact.ground.set_anchors(rows.clone(), &state.anchor);
+    rows.clone().for_each(|row| contact.invalidate_bounds(row as usize));
+    contact.active_windows[cloth] = [0.0; 2];
+    if let Some(contacts) = &mut contact.cloth_contacts {
+        contacts.interval[1] = contacts.interval[0];
+        contacts.interval_start[rows.start as usize..rows.end as usize].fill(Row4::ZERO);
+    }
+}
+
+/// Closes up the rows of an object; `kept` are the places of the particles that remain, which ascend.
+fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
+    let Solver { model, state, contact, pool } = solver;
+    let points = model.cloths[cloth].points();
+    let rows = points.start as usize..points.end as usize;
+    close_up(&mut state.anchor[rows.clone()], kept);
+    close_up(&mut state.inverse_mass[rows.clone()], kept);
+    for column in [
+        &mut state.displacement,
+        &mut state.velocity,
+        &mut state.predicted,
+        &mut state.start,
+        &mut state.depenetration_by_collider,
+        &mut state.depenetration_by_cloth,
+        &mut state.field,
+    ] {
+        close_up(column.get_mut(rows.clone()).unwrap_or_default(), kept);
+    }
+    let dead = rows.start + kept.len()..rows.end;
+    state.anchor[dead.clone()].fill([0.0; 3]);
+    state.displacement[dead.clone()].fill(Row4::ZERO);
+    state.velocity[dead.clone()].fill(Row4::ZERO);
+    state.inverse_mass[dead].fill(R::ZERO);
+    model.cloths[cloth].resize(kept.len());
+    renumber_contacts(contact, cloth, points.clone(), kept, pool);
+    contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
+}
+
+/// Drops the contacts of an object whose rows have moved: they are searched anew.
+fn renumber_contacts<R: Real>(
+    contact: &mut ContactSystem<R>,
+    cloth: usize,
+    before: Range<u32>,
+    kept: &[u32],
+    pool: &ThreadPool,
+) {
+    before.clone().for_each(|row| contact.invalidate_bounds(row as usize));
+    contact.active_windows[cloth] = [0.0; 2];
+    let number = |row: u32| kept.binary_search(&(row - before.start)).ok().map(|at| before.start + at as u32);
+    for list in contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+        list.clear();
+        list.depenetration.renumber(number);
+    }
+    if let Some(contacts) = &mut contact.cloth_contacts {
+        contacts.forget(before, pool);
+    }
+}
+
+/// Free flight of a new particle to the end of its substep.
+struct Flight {
+    /// In m/s².
+    acceleration: Vector3<f64>,
+    wind: Vector3<f64>,
+    /// Share of the velocity through the air that remains after a time step.
+    remaining: f64,
+    /// Length of a time step in seconds.
+    h: f64,
+}
+
+/// Drag that takes less than this share of a velocity in a time step is none.
+const MIN_DRAG: f64 = 1e-9;
+
+impl Flight {
+    fn new(frame: &FrameInput, cloth: &ClothFrame, [mass, point_mass]: [f64; 2], h: f64) -> Self {
+        let gravity = if cloth.feels_gravity { frame.gravity } else { Vector3::zeros() };
+        let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
+        let air = AirForces::new(frame, cloth, point_mass, h);
+        let remaining = air.map_or(1.0, |air| air.remaining());
+        Self { acceleration: gravity + cloth.local_force / mass, wind, remaining, h }
+    }
+
+    /// Position and velocity at an age within the substep.
+    ///
+    /// A time step of length h takes the velocity u through the air to f (u + h g), and moves by h times that. After n steps
+    /// u = U + (u0 - U) f^n with U = h g f / (1 - f), and the way is h (n U + (u0 - U) f (1 - f^n) / (1 - f)). A new particle
+    /// takes age / h for n, so that its path is the same whenever in a step it is born.
+    fn after(&self, birth: &Birth, age: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let Self { acceleration, wind, remaining: f, h } = *self;
+        if f > 1.0 - MIN_DRAG {
+            let velocity = birth.velocity + acceleration * age;
+            let way = birth.velocity * age + acceleration * (age * (age + h) / 2.0);
+            return (birth.position + way, velocity);
+        }
+        let (steps, last) = (age / h, acceleration * (h * f / (1.0 - f)));
+        let share = libm::pow(f, steps);
+        let apart = birth.velocity - wind - last;
+        let way = (last * steps + apart * (f * (1.0 - share) / (1.0 - f))) * h;
+        (birth.position + wind * age + way, wind + last + apart * share)
+    }
+}

@@ -1,0 +1,17 @@
+//! Particles that are born and die.
+//!
+//! An object of particles has room for a fixed number of them. Living particles are the first rows of the object, in the
+//! order of their birth, and only these rows are swept, so a row without a particle costs nothing. Particles that are near
+//! in time of birth are near in space, so neighbouring rows stay near each other, which contact relies on: this is why the
+//! rows of dead particles are closed up in order, and not filled from the end or kept in a free list.
+//!
+//! Births and deaths happen at the end of each substep. A particle is born at its own time within the substep and flies
+//! freely to the end of it, so that a fast emitter leaves an even trail.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | ages, lifespans and numbers | [`population`] |
+//! | births and deaths in the solver's columns | [`lifecycle`] |
+
+pub mod lifecycle;
+pub mod population;

@@ -1,0 +1,244 @@
+//! Emitters: which particles are born in a frame, where, how fast, and for how long.
+//!
+//! A particle is born whenever the rate, summed over time, passes a whole number. The times of birth are therefore evenly
+//! spaced within frames and across them. Everything random about a particle is a function of the seed and of its number
+//! among those of its emitter, so the same seed gives the same bits, however the run is cut.
+//!
+//! | You want to know…                                | Read          |
+//! |--------------------------------------------------|---------------|
+//! | the times of birth, and the room for particles   | [`Emitter`]   |
+//! | where and how fast, by type of emitter           | `shapes.rs`   |
+//! | emission from the surface of a mesh              | `surface.rs`  |
+//! | the start of a particle                          | `start.rs`    |
+//! | lifespans                                        | `lifespan.rs` |
+//! | random numbers                                   | `random.rs`   |
+
+mod lifespan;
+mod random;
+mod shapes;
+mod start;
+mod surface;
+
+use nalgebra::Vector3;
+use nucleus_core::{Birth, ClothId};
+
+use crate::animation::Affine;
+use crate::attributes::{Choice, particle, point_emitter};
+use crate::graph::{EvalContext, Graph, NodeId};
+
+use super::compiler::Compiler;
+use super::program::EvaluationInterval;
+use super::sources::{Emitter, EmitterState, EmittingMesh};
+
+pub(super) use lifespan::{Lifespan, dies};
+use random::Random;
+use shapes::{Launch, PointShape, VolumeShape};
+
+/// `emitterType`.
+const DIRECTIONAL: Choice = Choice(0);
+const OMNI: Choice = Choice(1);
+const SURFACE: Choice = Choice(2);
+const CURVE: Choice = Choice(3);
+
+impl Compiler<'_> {
+    /// The emitters of an object of particles, in the order of their connections.
+    pub(super) fn emitters(&mut self, particles: NodeId, cloth: ClothId) -> Vec<Emitter> {
+        let nodes = emitter_nodes(&self.scene.graph, particles);
+        let mut emitters = Vec::new();
+        for (place, node) in (0..).zip(nodes) {
+            if self.broken.contains(&node) {
+                continue;
+            }
+            let Some(mesh) = self.emitting_mesh(node) else { continue };
+            emitters.push(Emitter { node, particles, cloth, mesh, place });
+        }
+        emitters
+    }
+
+    /// The mesh that an emitter emits from, if its type needs one; `None` after an error, which is reported.
+    fn emitting_mesh(&mut self, emitter: NodeId) -> Option<Option<EmittingMesh>> {
+        let node = self.scene.graph.node(emitter);
+        let place = self.scene.source.place(&format!("{}.emitterType", node.name()));
+        match self.start.get(emitter, &point_emitter::EMITTER_TYPE) {
+            SURFACE => self.emitting_surface(emitter).map(Some),
+            CURVE => {
+                let message = format!("`{}` emits from a curve, and scenes have no curves yet", node.name());
+                let error = self.findings.error(&place, message);
+                error.help(
+                    "emit from a thin mesh with `emitterType: Surface`, or move an omni emitter along keys",
+                );
+                None
+            }
+            _ => Some(None),
+        }
+    }
+
+    /// The largest number of particles that an object can have at once: as its emitters and lifespans give it over the
+    /// frames of the scene, and no more than `maxCount`.
+    pub(super) fn room_for_particles(&self, node: NodeId, points: usize, emitters: &[Emitter]) -> u64 {
+        let graph = &self.scene.graph;
+        let time = self.scene.time;
+        let (first, last) = (self.program.start, time.end.max(self.program.start));
+        let [mut window, mut sum, mut most] = [0.0f64; 3];
+        let lives = lifespan::longest(graph, node, [first, last]) * time.fps;
+        let mut counts: Vec<f64> = Vec::new();
+        for frame in first..last {
+            let [from, to] = [frame, frame + 1].map(|frame| graph.at(frame as f64));
+            let rates = emitters.iter().map(|emitter| emitter.rate(&from).max(emitter.rate(&to)));
+            counts.push(rates.sum::<f64>() / time.fps);
+            sum += counts[counts.len() - 1];
+            window += counts[counts.len() - 1];
+            // One frame more than a life, for the frames that it touches.
+            let gone = counts.len() as f64 - (lives.ceil() + 2.0);
+            if gone >= 0.0 {
+                window -= counts[gone as usize];
+            }
+            most = most.max(window);
+        }
+        let born = if lives.is_finite() { most } else { sum };
+        // Rates may be keyed above their values at whole frames.
+        let room = (born * 1.05).ceil() + emitters.len() as f64 + 1.0;
+        let all = (points as u64).saturating_add(room as u64).checked_next_power_of_two().unwrap_or(u64::MAX);
+        match self.start.get(node, &particle::MAX_COUNT) {
+            limit if limit >= 0 => all.min((limit as u64).max(points as u64)).max(1),
+            _ => all,
+        }
+    }
+}
+
+/// The emitters connected to an object of particles.
+pub(super) fn emitter_nodes(graph: &Graph, particles: NodeId) -> Vec<NodeId> {
+    let wires = graph.elements(particles, &particle::NEW_PARTICLES).into_iter();
+    let is_emitter = |node: &NodeId| graph.node(*node).node_type().is_a(&point_emitter::POINT_EMITTER);
+    wires.map(|(_, plug)| plug.node).filter(is_emitter).collect()
+}
+
+impl Emitter {
+    /// Particles per second.
+    fn rate(&self, moment: &EvalContext) -> f64 {
+        let rate = moment.get(self.node, &point_emitter::RATE).max(0.0);
+        let detail = moment.get(self.particles, &particle::LEVEL_OF_DETAIL).clamp(0.0, 1.0);
+        let size = match &self.mesh {
+            Some(mesh) if moment.get(self.node, &point_emitter::SCALE_RATE_BY_OBJECT_SIZE) => {
+                mesh.area(moment)
+            }
+            _ => 1.0,
+        };
+        rate * detail * size
+    }
+
+    /// Where new particles come from in an interval.
+    fn launch(&self, interval: &EvaluationInterval<'_>) -> Launch {
+        let (from, to) = (&interval.from, &interval.to);
+        match to.get(self.node, &point_emitter::EMITTER_TYPE) {
+            kind @ (DIRECTIONAL | OMNI) => Launch::Point(PointShape::new(self.node, kind == OMNI, to)),
+            SURFACE | CURVE if self.mesh.is_some() => match self.mesh.as_ref() {
+                Some(mesh) => Launch::Surface(mesh.patches(self.node, [from, to])),
+                None => Launch::Nothing,
+            },
+            SURFACE | CURVE => Launch::Nothing,
+            _ => Launch::Volume(VolumeShape::new(self.node, to)),
+        }
+    }
+}
+
+impl EvaluationInterval<'_> {
+    /// The particles that are born in the interval, in the order of their times; `seconds` is its length of solver time.
+    pub(super) fn births(&self, states: &mut Vec<EmitterState>, seconds: f64) -> Vec<Birth> {
+        states.resize(self.nucleus.emitters.len(), EmitterState::default());
+        let mut births = Vec::new();
+        for (emitter, state) in self.nucleus.emitters.iter().zip(states) {
+            self.emit(emitter, state, seconds, &mut births);
+        }
+        births.sort_by(|a, b| a.time.total_cmp(&b.time));
+        births
+    }
+
+    fn emit(&self, emitter: &Emitter, state: &mut EmitterState, seconds: f64, births: &mut Vec<Birth>) {
+        let rates = [&self.from, &self.to].map(|moment| emitter.rate(moment) * seconds);
+        let total = state.remainder + (rates[0] + rates[1]) / 2.0;
+        if total.is_nan() || total < 1.0 {
+            state.remainder = if total.is_finite() { total } else { 0.0 };
+            return;
+        }
+        let count = total.floor();
+        let first = state.emitted;
+        let remainder = std::mem::replace(&mut state.remainder, total - count);
+        state.emitted = first.saturating_add(count as u64);
+        let launch = emitter.launch(self);
+        let flight = self.flight(emitter, seconds);
+        let lifespan = Lifespan::new(emitter.particles, &self.to);
+        // An object has no room for more.
+        let room = self.nucleus.room_of(emitter.cloth);
+        for k in 0..(count as u64).min(room) {
+            let time = time_of(k as f64 + 1.0 - remainder, rates);
+            let random = Random::new([flight.seed, emitter.place, first + k]);
+            births.extend(flight.birth(emitter.cloth, time, &launch, random, &lifespan));
+        }
+    }
+
+    /// What all particles of an emitter share in the interval.
+    fn flight(&self, emitter: &Emitter, seconds: f64) -> SharedFlight<'_> {
+        let (from, to) = (self.from.placement(emitter.node), self.to.placement(emitter.node));
+        SharedFlight {
+            interval: self,
+            placements: [from, to],
+            seconds,
+            inherit: self.to.get(emitter.particles, &particle::INHERIT_FACTOR),
+            seed: self.to.get(emitter.particles, &particle::SEED) as u64,
+        }
+    }
+}
+
+/// When the number of births reaches `births`, as a share of the interval; the rate goes linearly from the first to the
+/// second, in particles per interval.
+fn time_of(births: f64, [from, to]: [f64; 2]) -> f64 {
+    let root = (from * from + 2.0 * (to - from) * births).max(0.0).sqrt();
+    (2.0 * births / (from + root)).clamp(0.0, 1.0)
+}
+
+/// What all particles of an emitter share in an interval.
+struct SharedFlight<'a> {
+    interval: &'a EvaluationInterval<'a>,
+    /// The placement of the emitter at both ends.
+    placements: [Affine; 2],
+    seconds: f64,
+    inherit: f64,
+    seed: u64,
+}
+
+impl SharedFlight<'_> {
+    fn birth(
+        &self,
+        cloth: ClothId,
+        time: f64,
+        launch: &Launch,
+        mut random: Random,
+        lifespan: &Lifespan,
+    ) -> Option<Birth> {
+        let units = self.interval.nucleus.units;
+        let start = launch.draw(&self.placements, time, self.seconds, &mut random)?;
+        let velocity: Vector3<f64> = start.velocity + start.carried * self.inherit;
+        Some(Birth {
+            cloth,
+            time,
+            position: units.point(start.position),
+            velocity: units.point(velocity),
+            lifespan: lifespan.draw(&mut random),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn births_are_evenly_spaced_at_a_constant_rate_and_denser_as_it_grows() {
+        let even: Vec<f64> = (1..=4).map(|k| time_of(f64::from(k), [4.0, 4.0])).collect();
+        assert_eq!(even, [0.25, 0.5, 0.75, 1.0]);
+        // From none to eight per interval: four births, the k-th at the square root of k / 4.
+        let growing = (1..=4).map(|k| time_of(f64::from(k), [0.0, 8.0]));
+        growing.zip(1..).for_each(|(time, k)| assert!((time * time - f64::from(k) / 4.0).abs() < 1e-12));
+    }
+}
