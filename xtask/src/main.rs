@@ -1,4 +1,4 @@
-//! Maintenance commands: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench`, `interop` and `book`.
+//! Maintenance commands: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench`, `interop`, `fuzz` and `book`.
 //!
 //! | Question                                              | Module          |
 //! |-------------------------------------------------------|-----------------|
@@ -8,6 +8,7 @@
 //! | cost and error, compared with other solvers           | [`mod@bench`]   |
 //! | generated meshes of the gallery                       | [`meshes`]      |
 //! | exports read by other tools                           | [`mod@interop`] |
+//! | mutated Maya scenes                                   | [`fuzz`]        |
 //! | pages with measured figures                           | [`book`]        |
 //! | parser of `ARCHITECTURE.md`                           | [`map`]         |
 //! | files of the repository                               | [`files`]       |
@@ -21,6 +22,7 @@ mod book;
 mod ci;
 mod evidence;
 mod files;
+mod fuzz;
 mod interop;
 mod map;
 mod meshes;
@@ -43,6 +45,8 @@ enum Task {
     Bench(bench::Options),
     /// Exports caches in every format and reads them with other tools, which it installs first.
     Interop(interop::Options),
+    /// Mutates Maya scenes and imports them; keeps the scenes that break the import.
+    Fuzz(fuzz::Options),
     /// Regenerates the pages of docs/ with measured figures; takes an hour or more.
     Book(book::Options),
 }
@@ -56,6 +60,7 @@ fn main() -> ExitCode {
         Task::Meshes => meshes::run(&root),
         Task::Bench(options) => bench::run(&options),
         Task::Interop(options) => interop::run(&root, &options),
+        Task::Fuzz(options) => fuzz::run(&root, &options),
         Task::Book(options) => book::run(&root, &options),
     };
     match result {

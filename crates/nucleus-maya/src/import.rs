@@ -40,7 +40,7 @@ pub(crate) struct Wishes<'s> {
 }
 
 impl<'s> Wishes<'s> {
-    fn of(options: &'s mut ImportOptions<'_>) -> Self {
+    pub(crate) fn of(options: &'s mut ImportOptions<'_>) -> Self {
         let ImportOptions { meshes, folder, physical, write } = options;
         Self { meshes, folder, physical: *physical, write: &mut **write }
     }

@@ -8,6 +8,8 @@
 //! |--------------------------------------------------------|-------------------------------|
 //! | how a scene is imported                                | [`import_scene`]              |
 //! | how a scene of ours is written                         | [`maya_ascii`], `write/`      |
+//! | Maya's attribute presets                               | [`read_maya_preset`]          |
+//! | Maya's caches                                          | [`ncache`]                    |
 //! | what is left out, and why                              | [`omissions`]                 |
 //! | how Maya ASCII is split into statements                | [`ascii`]                     |
 //! | nodes, the DAG, references, attributes                 | [`scene`]                     |
@@ -24,11 +26,14 @@ pub mod ascii;
 mod deform;
 mod import;
 pub mod mesh;
+pub mod ncache;
 mod nucleus_nodes;
 pub mod omissions;
+mod preset;
 pub mod scene;
 mod write;
 
 pub use ascii::ImportError;
 pub use import::{ImportOptions, Imported, WriteFile, import_scene, import_text, is_maya_scene};
+pub use preset::{maya_preset, preset_text, read_maya_preset};
 pub use write::maya_ascii;

@@ -1,11 +1,12 @@
 //! `nucleus diff`: the first difference between two caches, and its size.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
-use nucleus_cache::{Comparison, Difference, PointDifference, compare};
+use nucleus_cache::{Comparison, Difference, Playback, PointDifference, compare};
+use nucleus_maya::ncache::NCache;
 use serde_json::{Value, json};
 
 use crate::process::Outcome;
@@ -13,12 +14,15 @@ use crate::{figures, files, options, output};
 
 /// Compares two caches: reports the first frame, substep, object and point that differ, and the largest distance.
 ///
+/// The second may be an nCache of Maya (.xml, .mc, .mcx): objects go together by name (`nCloth1` and `nClothShape1`), or
+/// if each side has only one; distances are also given as shares of the distance travelled.
+///
 /// Exits with 0 if the caches are equal and with 1 if they differ. Only times that both caches hold are compared.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// A cache (.mcap).
     first: PathBuf,
-    /// The other cache (.mcap).
+    /// The other cache (.mcap), or an nCache (.xml).
     second: PathBuf,
     /// Largest distance, in scene units, that counts as equal; 0 compares bits.
     #[arg(long, default_value_t = 0.0, value_parser = options::not_negative)]
@@ -32,6 +36,9 @@ impl Diff {
     /// Compares the caches. A difference is a problem.
     pub fn run(self) -> Result<Outcome> {
         let mut first = files::open_cache_and_warn(&self.first)?;
+        if is_ncache(&self.second) {
+            return self.against_ncache(&mut first, &NCache::read(&self.second)?);
+        }
         let mut second = files::open_cache_and_warn(&self.second)?;
         let comparison = compare(&mut first, &mut second, self.tolerance)?;
         match self.json {
@@ -39,6 +46,28 @@ impl Diff {
             false => output::print(&self.as_text(&comparison)?)?,
         }
         Ok(if comparison.differences.is_empty() { Outcome::Success } else { Outcome::Problem })
+    }
+
+    /// Compares whole frames of all objects that both have.
+    fn against_ncache(&self, first: &mut Playback, second: &NCache) -> Result<Outcome> {
+        let own: Vec<String> = first.objects().iter().map(|object| object.name.clone()).collect();
+        let pairs = pairs(&own, &second.objects());
+        if pairs.is_empty() {
+            bail!("no object is in both: {} and {}", own.join(", "), second.objects().join(", "));
+        }
+        let (mut within, mut reports) = (true, Vec::new());
+        for (object, name) in pairs {
+            let found = deviation(first, object, second, name)?;
+            within &= found.frames > 0 && found.largest.0 <= self.tolerance;
+            match self.json {
+                true => reports.push(found.as_json(&own[object], name)),
+                false => output::print(&found.as_text(&own[object], name))?,
+            }
+        }
+        if self.json {
+            output::print_json(&json!({ "same": within, "objects": reports }))?;
+        }
+        Ok(if within { Outcome::Success } else { Outcome::Problem })
     }
 
     fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
@@ -91,6 +120,107 @@ impl Diff {
             ),
             _ => "something else differs".to_owned(),
         }
+    }
+}
+
+fn is_ncache(path: &Path) -> bool {
+    let end = path.extension().unwrap_or_default().to_ascii_lowercase();
+    matches!(end.to_str(), Some("xml" | "mc" | "mcx"))
+}
+
+/// Objects that go together: by name without `Shape`, else the only one of each side.
+fn pairs<'a>(own: &[String], others: &[&'a str]) -> Vec<(usize, &'a str)> {
+    let plain = |name: &str| name.replacen("Shape", "", 1).replace(':', "_");
+    let same = |name: &String| others.iter().find(|other| plain(name) == plain(other)).copied();
+    let found: Vec<(usize, &str)> =
+        own.iter().enumerate().filter_map(|(k, name)| Some((k, same(name)?))).collect();
+    match (found.is_empty(), own, others) {
+        (true, [_], [other]) => vec![(0, other)],
+        _ => found,
+    }
+}
+
+/// How far an object of a run is from an nCache, in scene units.
+#[derive(Debug, Default)]
+struct Deviation {
+    frames: usize,
+    /// Frames at which the numbers of points differ.
+    other_counts: usize,
+    /// Distance, frame and point.
+    largest: (f64, i32, usize),
+    squares: f64,
+    points: usize,
+    /// The farthest that a point of the nCache is from where it was first.
+    travelled: f64,
+}
+
+fn deviation(first: &mut Playback, object: usize, second: &NCache, name: &str) -> Result<Deviation> {
+    let samples: Vec<(usize, i32)> = (0..)
+        .zip(first.time_samples())
+        .filter(|(_, sample)| sample.ends_frame())
+        .map(|(k, sample)| (k, sample.frame))
+        .collect();
+    let mut found = Deviation::default();
+    let mut start: Option<&[[f64; 3]]> = None;
+    for (sample, frame) in samples {
+        let Some(points) = second.positions(name, f64::from(frame)) else { continue };
+        let own = first.positions(object, sample)?;
+        if own.len() != points.len() {
+            found.other_counts += 1;
+            continue;
+        }
+        found.frames += 1;
+        let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let start = start.get_or_insert(points);
+        for (point, (a, b)) in own.iter().zip(points).enumerate() {
+            let apart = distance(a.map(f64::from), *b);
+            if apart > found.largest.0 {
+                found.largest = (apart, frame, point);
+            }
+            found.squares += apart * apart;
+            found.points += 1;
+            found.travelled =
+                start.get(point).map_or(found.travelled, |from| found.travelled.max(distance(*from, *b)));
+        }
+    }
+    Ok(found)
+}
+
+impl Deviation {
+    fn rms(&self) -> f64 {
+        (self.squares / self.points.max(1) as f64).sqrt()
+    }
+
+    /// The largest distance over the distance travelled.
+    fn share(&self) -> Option<f64> {
+        (self.travelled > 0.0).then(|| self.largest.0 / self.travelled)
+    }
+
+    fn as_text(&self, own: &str, other: &str) -> String {
+        let (largest, frame, point) = self.largest;
+        let share = self
+            .share()
+            .map(|share| format!(", {} % of the distance travelled", figures::number(100.0 * share)));
+        let counts = match self.other_counts {
+            0 => String::new(),
+            count => format!("; {} with another number of points", figures::count(count, "frame")),
+        };
+        format!(
+            "`{own}` and `{other}`: {} compared, largest distance {} at frame {frame}, point {point}{}; root mean square {}{counts}\n",
+            figures::count(self.frames, "frame"),
+            figures::number(largest),
+            share.unwrap_or_default(),
+            figures::number(self.rms()),
+        )
+    }
+
+    fn as_json(&self, own: &str, other: &str) -> Value {
+        let (largest, frame, point) = self.largest;
+        json!({
+            "object": own, "channel": other, "frames": self.frames, "other_counts": self.other_counts,
+            "largest": { "distance": largest, "frame": frame, "point": point }, "rms": self.rms(),
+            "travelled": self.travelled, "share": self.share(),
+        })
     }
 }
 

@@ -1,25 +1,35 @@
-//! `nucleus import`: makes a scene of a Maya scene.
+//! `nucleus import`: makes a scene of a Maya scene, a preset of a Maya preset, mesh files of an nCache.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use nucleus_cache::atomic_file;
+use nucleus_core::Surface;
 use nucleus_graph::attributes::nucleus;
-use nucleus_maya::{ImportOptions, Imported, import_scene, is_maya_scene};
+use nucleus_graph::mesh::read_obj;
+use nucleus_maya::ncache::NCache;
+use nucleus_maya::{ImportOptions, Imported, import_scene, is_maya_scene, preset_text, read_maya_preset};
 
 use crate::process::Outcome;
 use crate::{figures, files, output};
 
-/// Makes a scene of a Maya scene (.ma). Meshes become OBJ files in a folder beside the scene.
+/// Makes a scene of a Maya scene (.ma), a preset of a Maya preset (.mel), or OBJ files of an nCache (.xml).
+///
+/// The points of an nCache become a file for each object and frame, which a scene can take as a moving mesh
+/// (`file: "points/nClothShape1.####.obj"`) or as an initial state (`startPositions: file("points/nClothShape1.0012.obj")`).
+/// Their faces come from `--mesh NAME=FILE`, since an nCache has none. Meshes of a scene become OBJ files in a folder
+/// beside it.
 ///
 /// Nothing in the file is executed. What is left out is listed with its reason and its effect on the result, here and as
 /// comments in the scene. Resistances keep Maya's meaning (`resistanceModel: classic`) unless `--physical` is given.
 #[derive(Debug, Args)]
 pub struct Import {
-    /// The Maya scene (.ma).
+    /// The Maya scene (.ma), preset (.mel) or nCache (.xml, .mc, .mcx).
     file: PathBuf,
-    /// The scene to write; default: the name of the Maya scene with `.ron`.
+    /// The scene or preset to write, or the folder of the points; default: the name of the file with `.ron`, or without an
+    /// extension.
     #[arg(short, long)]
     out: Option<PathBuf>,
     /// Take a mesh from an OBJ file: `--mesh curtain=curtain.obj`; may be given several times.
@@ -43,6 +53,12 @@ fn mesh(text: &str) -> Result<(String, PathBuf), String> {
 impl Import {
     /// Writes the scene and its meshes.
     pub fn run(self) -> Result<Outcome> {
+        let end = self.file.extension().unwrap_or_default().to_ascii_lowercase();
+        match end.to_str() {
+            Some("mel") => return self.preset(),
+            Some("xml" | "mc" | "mcx") => return self.points(),
+            _ => {}
+        }
         let out = match &self.out {
             Some(out) => out.clone(),
             None => beside(&self.file)?,
@@ -57,6 +73,73 @@ impl Import {
         let read = files::open_scene(&out, None)?.report()?;
         Ok(if read.is_some() { Outcome::Success } else { Outcome::Problem })
     }
+}
+
+impl Import {
+    /// Makes a preset of a Maya preset.
+    fn preset(self) -> Result<Outcome> {
+        let (preset, omissions) = read_maya_preset(&self.file)?;
+        let out = match self.out {
+            Some(out) => out,
+            None => beside(&self.file)?,
+        };
+        write(&out, &preset_text(&preset), self.force)?;
+        for line in omissions.to_string().lines() {
+            output::report(&format!("left out or changed: {line}\n"));
+        }
+        let settings = figures::count(preset.settings.len(), "attribute");
+        output::report(&format!("{settings} of {} in `{}`\n", preset.node_type.name, out.display()));
+        Ok(Outcome::Success)
+    }
+
+    /// Writes the points of an nCache as OBJ files.
+    fn points(self) -> Result<Outcome> {
+        let cache = NCache::read(&self.file)?;
+        let stem = self.file.file_stem().context("the cache has no name")?.to_owned();
+        let folder = self.out.unwrap_or_else(|| PathBuf::from(stem));
+        let mut files = 0;
+        for object in cache.objects() {
+            let faces = match self.mesh.iter().find(|(name, _)| name == object) {
+                Some((_, file)) => Some(read_obj(file)?),
+                None => None,
+            };
+            // A channel is no path.
+            let name: String =
+                object.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+            for sample in cache.samples.iter().filter(|sample| sample.frame.fract() == 0.0) {
+                let Some(points) = cache.positions(object, sample.frame) else { continue };
+                let text = obj(points, faces.as_ref())
+                    .with_context(|| format!("`{object}` at frame {}", sample.frame))?;
+                write(&folder.join(format!("{name}.{:04}.obj", sample.frame as i64)), &text, self.force)?;
+                files += 1;
+            }
+        }
+        output::report(&format!(
+            "{} of {} in `{}`\n",
+            figures::count(files, "file"),
+            figures::count(cache.objects().len(), "object"),
+            folder.display()
+        ));
+        Ok(if files > 0 { Outcome::Success } else { Outcome::Problem })
+    }
+}
+
+/// Points with the faces of a mesh as an OBJ file.
+fn obj(points: &[[f64; 3]], mesh: Option<&Surface>) -> Result<String> {
+    let mut text = String::new();
+    for [x, y, z] in points {
+        writeln!(text, "v {x} {y} {z}")?;
+    }
+    let Some(mesh) = mesh else { return Ok(text) };
+    if mesh.positions.len() != points.len() {
+        bail!("the cache has {} points, the mesh {}", points.len(), mesh.positions.len());
+    }
+    for face in mesh.faces.iter() {
+        text.push('f');
+        face.iter().try_for_each(|point| write!(text, " {}", point + 1))?;
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// The scene of a Maya scene in the working folder.

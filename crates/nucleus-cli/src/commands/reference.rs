@@ -7,6 +7,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use nucleus_graph::attributes::{Attribute, Effect, Kind, NodeType, Range, Value, node_type, node_types};
 use nucleus_graph::scene::{Preset, presets};
+use nucleus_maya::maya_preset;
 
 use crate::process::Outcome;
 use crate::{figures, output};
@@ -148,6 +149,9 @@ fn range(Range { min, max, soft }: Range) -> Option<String> {
 pub struct Presets {
     /// The material; default: list all.
     name: Option<String>,
+    /// Print it as a preset of Maya: `nucleus presets silk --mel > silk.mel`.
+    #[arg(long, requires = "name")]
+    mel: bool,
 }
 
 impl Presets {
@@ -166,6 +170,10 @@ impl Presets {
                     let names: Vec<String> = all.iter().map(|preset| format!("`{}`", preset.name)).collect();
                     bail!("there is no preset `{name}`; there are {}", names.join(", "));
                 };
+                if self.mel {
+                    output::print(&maya_preset(preset))?;
+                    return Ok(Outcome::Success);
+                }
                 writeln!(text, "{}: {}", preset.name, preset.doc)?;
                 for line in preset.lines() {
                     writeln!(text, "  {line}")?;

@@ -23,10 +23,11 @@ mod subdivide;
 pub use history::Built;
 pub use obj::obj_text;
 pub use poly::{Components, Poly};
+pub(crate) use primitives::own_primitive;
 
 use crate::scene::{MayaScene, NodeId};
 
 /// Whether a creation node makes a primitive of ours, along the same axis unless that does not matter.
 pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {
-    primitives::own_primitive(scene, id).is_some() && (any_axis || primitives::is_upright(scene, id))
+    own_primitive(scene, id).is_some() && (any_axis || primitives::is_upright(scene, id))
 }

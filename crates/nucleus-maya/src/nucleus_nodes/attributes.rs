@@ -401,8 +401,9 @@ fn ramp_numbers(sets: &[Set], width: usize) -> Option<Vec<Vec<f64>>> {
         let Some(point) = points.get_mut(&first) else { continue };
         // `fieldScale_Position`, `clp`; `..._FloatValue`, `clc`; `..._Interp`, `cli`.
         let at = match part {
+            _ if part.ends_with("_Interp") => width - 1,
             _ if part.ends_with("_Position") || part.ends_with('p') => 0,
-            _ if part.ends_with("_Interp") || part.ends_with('i') => width - 1,
+            _ if part.ends_with('i') => width - 1,
             _ => 1,
         };
         numbers.iter().zip(&mut point[at..]).for_each(|(x, slot)| *slot = *x);

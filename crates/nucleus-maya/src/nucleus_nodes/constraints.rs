@@ -98,7 +98,15 @@ impl Importer<'_> {
             let kind = scene.count_or(node, &["ct", "componentType"], 0);
             let elements = scene.count_or(node, &["el", "elements"], LISTED);
             let list = scene.array(node, &["ci", "componentIndices"], 1, &[]).unwrap_or_default();
-            let list: Vec<u32> = list.into_iter().map(|x| x.max(0.0) as u32).collect();
+            let mut list: Vec<u32> = list.into_iter().map(|x| x.max(0.0) as u32).collect();
+            if let (POINT, Some(points), false) = (kind, self.points_of(own), self.is_own) {
+                let all = list.len();
+                list.retain(|point| (*point as usize) < points);
+                if list.len() < all {
+                    let why = format!("{} of its points are not in the mesh", all - list.len());
+                    self.omissions.add(scene.name(node), Cause::Component(why));
+                }
+            }
             let said = [
                 "ct",
                 "componentType",

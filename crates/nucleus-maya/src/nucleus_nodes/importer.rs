@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use nucleus_graph::attributes::{
-    self, Choice, NodeType, Value, dyn_base, dynamic_constraint, n_base, n_rigid, nucleus, transform,
+    self, Attribute, Choice, NodeType, Value, dyn_base, dynamic_constraint, n_base, n_particle, n_rigid,
+    nucleus, transform,
 };
 use nucleus_graph::graph::{Graph, NodeId as OwnId, Setting};
 
@@ -24,6 +25,8 @@ pub(crate) struct Importer<'s> {
     pub(super) graph: Graph,
     pub(super) kept: KeptNodes,
     own: BTreeMap<usize, OwnId>,
+    /// How many points our mesh nodes have, as far as it is known.
+    points: BTreeMap<OwnId, usize>,
     /// First and last frame of the scene.
     pub(super) frames: [i64; 2],
     /// Whether this crate has written the file.
@@ -50,6 +53,7 @@ impl<'s> Importer<'s> {
             graph: Graph::new(),
             kept,
             own: BTreeMap::new(),
+            points: BTreeMap::new(),
             frames,
             is_own,
             omissions,
@@ -87,10 +91,32 @@ impl<'s> Importer<'s> {
             }
         }
         for (index, id) in &present {
-            self.fill_node(&all[*index], *id, plans.remove(index))?;
+            let plan = plans.remove(index);
+            let points = plan.as_ref().and_then(|plan| plan.points(self.scene));
+            points.into_iter().for_each(|points| {
+                self.points.insert(*id, points);
+            });
+            self.fill_node(&all[*index], *id, plan)?;
         }
         self.connect(&all, &present);
         Ok(Carried { graph: self.graph, frames: self.frames, omissions: self.omissions })
+    }
+
+    /// The settings of the only node of a scene, which is part of nothing.
+    pub(crate) fn lone_node(
+        mut self,
+        node_type: &'static NodeType,
+    ) -> (Vec<(&'static Attribute, Setting)>, Omissions) {
+        self.omissions = Omissions::default();
+        let node = self.scene.of_kind(node_type.name).next();
+        if let (Some(from), Ok(to)) = (node, self.graph.add("preset", node_type)) {
+            self.set_values(from, to, node_type);
+            let settings = self.graph.node(to).settings().iter();
+            let rows =
+                settings.filter_map(|(name, setting)| Some((node_type.attribute(name)?, setting.clone())));
+            return (rows.collect(), self.omissions);
+        }
+        (Vec::new(), self.omissions)
     }
 
     fn fill_node(&mut self, kept: &Kept, id: OwnId, plan: Option<Plan>) -> Result<(), String> {
@@ -141,11 +167,48 @@ impl<'s> Importer<'s> {
             present.iter().filter(|(_, id)| is(id)).map(|(index, id)| (all[*index].node, *id)).collect()
         };
         of(self, &n_base::N_BASE).into_iter().for_each(|(from, to)| self.connect_object(from, to));
+        of(self, &n_base::N_BASE).into_iter().for_each(|(_, to)| self.drop_other_lengths(to));
         let constraints = of(self, &dynamic_constraint::DYNAMIC_CONSTRAINT);
         constraints.into_iter().for_each(|(from, to)| self.connect_constraint(from, to));
         of(self, &dyn_base::DYN_BASE).into_iter().for_each(|(from, to)| self.connect_effect(from, to));
         self.connect_the_rest();
         self.report_caches(&of(self, &n_base::N_BASE));
+    }
+
+    /// The number of points of an object, as far as it is known.
+    pub(super) fn points_of(&self, object: OwnId) -> Option<usize> {
+        let node = self.graph.node(object);
+        if node.node_type().is_a(&n_particle::N_PARTICLE) {
+            let lists = [&n_particle::POSITION0, &n_particle::POSITION];
+            return lists.iter().find_map(|key| match node.setting(key) {
+                Some(Setting::Fixed(Value::Vectors(all))) => Some(all.len()),
+                _ => None,
+            });
+        }
+        self.points.get(&self.graph.source(object, &n_base::INPUT_MESH)?).copied()
+    }
+
+    /// Drops maps and initial states that have another number of points than the mesh: they are left from an older one.
+    fn drop_other_lengths(&mut self, object: OwnId) {
+        let Some(points) = self.points_of(object).filter(|_| !self.is_own) else { return };
+        let node = self.graph.node(object);
+        let has_other_length = |(name, setting): (&&'static str, &Setting)| {
+            let length = match setting {
+                Setting::Fixed(Value::Floats(all)) if name.ends_with("PerVertex") => all.len(),
+                Setting::Fixed(Value::Vectors(all)) if name.starts_with("start") => all.len(),
+                _ => return None,
+            };
+            (length != points).then_some((*name, length))
+        };
+        let found: Vec<(&'static str, usize)> = node.settings().iter().filter_map(has_other_length).collect();
+        let (name, node_type) = (node.name().to_owned(), node.node_type());
+        for (row, length) in
+            found.into_iter().filter_map(|(row, length)| Some((node_type.attribute(row)?, length)))
+        {
+            self.graph.unset(object, row);
+            let why = format!("it has {length} values, and the mesh {points} points");
+            self.omissions.add(format!("{name}.{}", row.name), Cause::Value(why));
+        }
     }
 
     /// Our node for a shape or a transform.

@@ -5,7 +5,7 @@ use nucleus_graph::graph::{NodeId as OwnId, Setting};
 
 use crate::mesh::{Built, obj_text};
 use crate::omissions::Cause;
-use crate::scene::NodeId;
+use crate::scene::{MayaScene, NodeId};
 
 use super::importer::Importer;
 
@@ -21,6 +21,20 @@ pub(super) enum Plan {
     Built(Built),
     /// It cannot be built, and why.
     Missing(String),
+}
+
+impl Plan {
+    /// How many points the mesh has, as far as it is known.
+    pub(super) fn points(&self, scene: &MayaScene) -> Option<usize> {
+        match self {
+            Self::Primitive(source, _) => {
+                usize::try_from(crate::mesh::own_primitive(scene, *source)?.size().points).ok()
+            }
+            Self::Built(built) => Some(built.mesh.points.len()),
+            Self::Given(text) => Some(text.lines().filter(|line| line.starts_with("v ")).count()),
+            Self::File(_) | Self::Missing(_) => None,
+        }
+    }
 }
 
 impl Importer<'_> {
