@@ -7,7 +7,7 @@ use anyhow::{Context, Result, anyhow};
 use nucleus_cache::{OpenError, Playback};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::memory::Memory;
-use nucleus_graph::scene::{Diagnostic, Scene, read_scene_within, read_text};
+use nucleus_graph::scene::{Assignment, Diagnostic, Scene, assigned, read_scene_within, read_text};
 
 use crate::diagnostics;
 use crate::options::FrameRange;
@@ -22,7 +22,8 @@ pub fn set_memory_limit(memory: Memory) {
     let _ = MEMORY_LIMIT.set(memory);
 }
 
-fn memory_limit() -> Memory {
+/// The memory limit of scenes.
+pub fn memory_limit() -> Memory {
     *MEMORY_LIMIT.get_or_init(Memory::of_machine)
 }
 
@@ -45,6 +46,25 @@ pub struct SceneFile {
 /// Only if there is no text to read. Errors in the scene are diagnostics.
 pub fn open_scene(path: &Path, frames: Option<FrameRange>) -> Result<SceneFile> {
     scene_from_text(scene_text(path)?, path, frames)
+}
+
+/// As [`open_scene`], with attributes set as by `--set`.
+///
+/// # Errors
+/// Also if an assignment does not fit the scene.
+pub fn open_scene_with(path: &Path, frames: Option<FrameRange>, set: &[Assignment]) -> Result<SceneFile> {
+    let text = scene_text(path)?;
+    match read_scene_within(&text, path, memory_limit()) {
+        Ok((scene, _)) if !set.is_empty() => {
+            let mut set = set.to_vec();
+            for one in &mut set {
+                let said = one.to_string();
+                one.resolve(&scene.graph).with_context(|| format!("`--set {said}`"))?;
+            }
+            scene_from_text(assigned(&text, &set)?, path, frames)
+        }
+        _ => scene_from_text(text, path, frames),
+    }
 }
 
 /// As [`open_scene`], for a text in memory. Relative file names in it are resolved beside `path`.

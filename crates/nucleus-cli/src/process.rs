@@ -2,8 +2,9 @@
 //!
 //! The first Ctrl-C asks a run to close its cache and end. The second ends the process at once.
 
+use std::ffi::OsString;
 use std::io;
-use std::process::ExitCode;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
@@ -30,31 +31,64 @@ pub enum Outcome {
     InvalidInput,
     /// The command was interrupted and has closed its files.
     Interrupted,
+    /// Another process does what the command was asked to do.
+    Busy,
 }
 
-impl From<Outcome> for ExitCode {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Success => Self::SUCCESS,
-            Outcome::Problem => Self::from(1),
-            Outcome::InvalidInput => Self::from(COULD_NOT_START),
-            Outcome::Interrupted => Self::from(INTERRUPTED),
+impl Outcome {
+    /// The exit code of a command that ends so.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Success => 0,
+            Self::Problem => 1,
+            Self::InvalidInput => COULD_NOT_START,
+            Self::Interrupted => INTERRUPTED,
+            Self::Busy => nucleus_wedge::BUSY as u8,
+        }
+    }
+}
+
+/// The words that start this command in another process.
+static COMMAND: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Sets the words that start this command in another process, where they are not the path of this program: the runs of a
+/// wedge are started so. The first call counts.
+pub fn set_command(command: Vec<OsString>) {
+    let _ = COMMAND.set(command);
+}
+
+/// The words that start this command in another process.
+pub fn command() -> Result<Vec<OsString>> {
+    match COMMAND.get() {
+        Some(command) => Ok(command.clone()),
+        None => {
+            let program = std::env::current_exe().context("the path of this program is unknown")?;
+            Ok(vec![program.into_os_string()])
         }
     }
 }
 
 static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static IS_LISTENING: AtomicBool = AtomicBool::new(false);
 static HAS_OPEN_FILES: AtomicBool = AtomicBool::new(false);
 
 /// Starts to listen for signals. SIGTERM, SIGHUP and SIGQUIT count as Ctrl-C, so that a render farm can end a run cleanly.
 pub fn listen_for_signals() -> Result<()> {
     HAS_OPEN_FILES.store(true, Ordering::SeqCst);
+    if IS_LISTENING.swap(true, Ordering::SeqCst) {
+        return Ok(());
+    }
     on_signal(|| {
         if IS_INTERRUPTED.swap(true, Ordering::SeqCst) || !HAS_OPEN_FILES.load(Ordering::SeqCst) {
             std::process::exit(INTERRUPTED.into());
         }
     })
     .context("cannot listen for Ctrl-C")
+}
+
+/// Asks the command to end, as a first Ctrl-C does.
+pub fn interrupt() {
+    IS_INTERRUPTED.store(true, Ordering::SeqCst);
 }
 
 /// All files are closed: from now on a single Ctrl-C ends the process.

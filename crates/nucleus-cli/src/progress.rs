@@ -1,10 +1,12 @@
 //! Progress on standard error: a bar on a terminal, otherwise a line every few seconds.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use nucleus_measure::trade;
+use nucleus_wedge::{Event, PlannedRun};
 
 use crate::figures;
 use crate::output::say;
@@ -155,5 +157,96 @@ impl SweepProgress {
             _ => String::new(),
         };
         format!("{finished} of {all} runs done{stored}{left}")
+    }
+}
+
+/// Progress of the runs of a wedge.
+pub struct WedgeProgress<'a> {
+    runs: &'a [PlannedRun],
+    bar: Option<ProgressBar>,
+    last_line: Instant,
+    /// Runs to do, runs that have ended, and how many of them with a problem.
+    all: usize,
+    ended: usize,
+    problems: usize,
+    /// The running ones, and the frame of each.
+    running: BTreeMap<u32, Option<i64>>,
+}
+
+impl<'a> WedgeProgress<'a> {
+    /// Time between two lines.
+    const LINE_EVERY: Duration = Duration::from_secs(5);
+
+    /// Running runs that are named.
+    const MAX_NAMED: usize = 8;
+
+    /// Progress of `all` of the runs of a plan.
+    pub fn new(runs: &'a [PlannedRun], all: usize) -> Self {
+        let bar = bar(all as u64, "{wide_bar} run {pos} of {len}, {eta} left, {msg}");
+        let running = BTreeMap::new();
+        Self { runs, bar, last_line: Instant::now(), all, ended: 0, problems: 0, running }
+    }
+
+    /// Shows an event. A run with a problem is named at once.
+    pub fn show(&mut self, event: &Event) {
+        match event {
+            Event::Started { run } => drop(self.running.insert(*run, None)),
+            Event::Frame { run, frame } => drop(self.running.insert(*run, Some(*frame))),
+            Event::Ended { run, result } => {
+                self.running.remove(run);
+                self.ended += 1;
+                let problems = match result {
+                    None => vec!["another process is at it".to_owned()],
+                    Some(result) => result.problems(),
+                };
+                if !problems.is_empty() {
+                    self.problems += 1;
+                    self.say(&format!("run {}: {}", self.name(*run), problems.join("; ")));
+                }
+            }
+        }
+        self.show_state();
+    }
+
+    fn show_state(&mut self) {
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(self.state());
+                bar.set_position(self.ended as u64);
+            }
+            None if self.last_line.elapsed() >= Self::LINE_EVERY => {
+                self.last_line = Instant::now();
+                say!("{} of {} runs ended, {}", self.ended, self.all, self.state());
+            }
+            None => {}
+        }
+    }
+
+    /// `2 with problems, running: 0013 frame 34, 0014`.
+    fn state(&self) -> String {
+        let problems =
+            if self.problems > 0 { format!("{} with problems, ", self.problems) } else { String::new() };
+        let named = self.running.iter().take(Self::MAX_NAMED).map(|(run, frame)| match frame {
+            Some(frame) => format!("{} frame {frame}", self.name(*run)),
+            None => self.name(*run).to_owned(),
+        });
+        let more = if self.running.len() > Self::MAX_NAMED { ", ..." } else { "" };
+        format!("{problems}running: {}{more}", named.collect::<Vec<_>>().join(", "))
+    }
+
+    fn name(&self, run: u32) -> &str {
+        self.runs.get(run as usize).map_or("", |run| run.name.as_str())
+    }
+
+    fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => say!("{text}"),
+        }
+    }
+
+    /// Removes the bar.
+    pub fn end(self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 }

@@ -20,6 +20,8 @@ use crate::options::{Channels, Moments};
 pub const PROGRAM: &str = "program";
 /// Key of the setting that `--quality` selected.
 pub const SETTING: &str = "setting";
+/// Key of the seed of `--seed`.
+pub const SEED: &str = "seed";
 
 /// How a cache is written.
 #[derive(Debug, Clone)]

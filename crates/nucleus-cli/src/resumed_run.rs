@@ -13,7 +13,7 @@ use nucleus_measure::trade::Benchmark;
 
 use crate::files;
 use crate::output::say;
-use crate::recording::{PROGRAM, SETTING, fingerprint};
+use crate::recording::{PROGRAM, SEED, SETTING, fingerprint};
 use crate::run_statistics::FrameStatistics;
 
 /// A run that is resumed from its cache.
@@ -200,6 +200,12 @@ impl ResumedRun {
         if let Some(from) = self.cache.run().extra.get("from") {
             bail!(
                 "{} has no intact checkpoint up to frame {latest}, and its initial state is that of `{from}`: run it again",
+                self.name()
+            );
+        }
+        if self.cache.run().extra.contains_key(SEED) {
+            bail!(
+                "{} has no intact checkpoint up to frame {latest}, and its start is displaced by a seed: run it again",
                 self.name()
             );
         }

@@ -9,7 +9,7 @@ use nucleus_cache::{RecordError, Recorder};
 use nucleus_core::{Stage, StateView, StepObserver, SubstepIndex};
 use nucleus_graph::checks::Judge;
 use nucleus_graph::{FrameReport, Simulation};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::process::Outcome;
 use crate::progress::RunProgress;
@@ -33,16 +33,16 @@ pub struct Run {
     pub frames: u32,
     /// Whether findings of the audit are part of the outcome.
     pub audit: bool,
-    /// Whether the report is JSON.
+    /// Whether each frame is reported as JSON.
     pub json: bool,
 }
 
 impl Run {
-    /// Runs to the last frame and prints the summary.
+    /// Runs to the last frame.
     ///
     /// # Errors
     /// If the run ended with an error of which `is_refusal` is true.
-    pub fn finish(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Outcome> {
+    pub fn finish(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Finished> {
         let Self { mut simulation, mut recorder, out, mut judge, statistics, start, frames, audit, json } =
             self;
         let mut progress = RunProgress::new(frames);
@@ -65,11 +65,26 @@ impl Run {
         let audit = simulation.audit().filter(|_| audit);
         let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
         let summary = Summary { statistics, ending, checks, audit, recorded, frames, objects };
+        let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
+        Ok(Finished { outcome, text, report })
+    }
+}
+
+/// A run that has ended, with its summary.
+pub struct Finished {
+    pub outcome: Outcome,
+    pub text: String,
+    pub report: Value,
+}
+
+impl Finished {
+    /// Prints the summary and returns the outcome.
+    pub fn print(self, json: bool) -> Outcome {
         match json {
-            true => output::report_json(&summary.as_json()),
-            false => output::report(&summary.as_text()?),
+            true => output::report_json(&self.report),
+            false => output::report(&self.text),
         }
-        Ok(summary.outcome())
+        self.outcome
     }
 }
 

@@ -118,6 +118,11 @@ impl Budget {
         checked
     }
 
+    /// The memory that is claimed.
+    pub(crate) fn taken(&self) -> Memory {
+        Memory(self.taken)
+    }
+
     /// Checks memory that is freed soon after.
     pub(crate) fn check(&self, bytes: u64) -> Result<(), TooLarge> {
         let all = self.taken.saturating_add(bytes);

@@ -16,6 +16,7 @@ mod scene;
 mod scene_info;
 mod trade;
 mod validate;
+mod wedge;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -26,6 +27,7 @@ use crate::process::Outcome;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Run(run::Run),
+    Wedge(wedge::Wedge),
     Resume(resume::Resume),
     Check(scene::Check),
     Info(info::Info),
@@ -50,6 +52,7 @@ impl Command {
     pub fn run(self) -> Result<Outcome> {
         match self {
             Self::Run(run) => run.run(),
+            Self::Wedge(wedge) => wedge.run(),
             Self::Resume(resume) => resume.run(),
             Self::Check(check) => check.run(),
             Self::Play(play) => play.run(),

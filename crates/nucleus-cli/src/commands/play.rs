@@ -38,7 +38,9 @@ impl Play {
                 let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
                 match run.run()? {
-                    ended @ (Outcome::InvalidInput | Outcome::Interrupted) => return Ok(ended),
+                    ended @ (Outcome::InvalidInput | Outcome::Interrupted | Outcome::Busy) => {
+                        return Ok(ended);
+                    }
                     // A problem is easiest to diagnose in the player.
                     Outcome::Success | Outcome::Problem => cache,
                 }

@@ -11,7 +11,7 @@ use nucleus_graph::checks::{Check, Judge};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::resumed_run::ResumedRun;
-use crate::run_loop;
+use crate::run_loop::{self, Finished};
 use crate::run_statistics::RunStatistics;
 use crate::{options, output, process, recording};
 
@@ -47,18 +47,44 @@ pub struct Resume {
     json: bool,
 }
 
+/// How resuming a run ended.
+pub enum Resumed {
+    /// The scene has errors, which are reported.
+    InvalidScene,
+    /// There was nothing to do.
+    Complete,
+    Finished(Finished),
+}
+
 impl Resume {
-    /// Resumes the run.
+    /// The end of a cache, as part of a wedge.
+    pub fn within(cache: PathBuf, threads: u16) -> Self {
+        let (at, to, scene, out) = (None, None, None, None);
+        Self { cache, at, to, scene, out, force: false, threads: Some(threads), json: true }
+    }
+
+    /// Resumes the run and prints the summary.
     pub fn run(self) -> Result<Outcome> {
+        let json = self.json;
+        Ok(match self.execute()? {
+            Resumed::InvalidScene => Outcome::InvalidInput,
+            Resumed::Complete => Outcome::Success,
+            Resumed::Finished(finished) => finished.print(json),
+        })
+    }
+
+    /// Resumes the run.
+    pub fn execute(self) -> Result<Resumed> {
         let mut old = ResumedRun::open(&self.cache)?;
         let Some((program, scene_path, text)) = old.scene(self.scene.as_deref(), self.to)? else {
-            return Ok(Outcome::InvalidInput);
+            return Ok(Resumed::InvalidScene);
         };
         let (start, end) = recording::frames(&program)?;
         let compared = self.kept(&old, end)?;
         let is_complete = old.file == old.complete && old.lost().is_empty();
         if is_complete && self.at.is_none() && old.last() >= end {
-            return self.report_finished(&old);
+            self.report_finished(&old)?;
+            return Ok(Resumed::Complete);
         }
         if old.file != self.cache {
             say!("resuming {}, the unfinished cache of an ended run", old.name());
@@ -111,7 +137,7 @@ impl Resume {
                 Some(RecordError::ReplayMismatch { .. } | RecordError::ReplayIncomplete { .. })
             )
         };
-        run.finish(is_refusal).map_err(|error| match error.downcast_ref() {
+        run.finish(is_refusal).map(Resumed::Finished).map_err(|error| match error.downcast_ref() {
             Some(RecordError::ReplayMismatch { .. }) => error.context(help),
             _ => error,
         })
@@ -146,11 +172,10 @@ impl Resume {
         )
     }
 
-    fn report_finished(&self, old: &ResumedRun) -> Result<Outcome> {
+    fn report_finished(&self, old: &ResumedRun) -> Result<()> {
         let (name, last) = (old.name(), old.last());
         output::print(&format!(
             "{name} is complete: its last frame is {last}; `--to` continues beyond it, `--at` solves the frames after one again\n"
-        ))?;
-        Ok(Outcome::Success)
+        ))
     }
 }

@@ -1,5 +1,6 @@
 //! `nucleus run`: simulates a scene and records a cache.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
@@ -8,7 +9,7 @@ use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
 use nucleus_graph::compile::{Program, compile};
-use nucleus_graph::scene::{Diagnostic, Scene};
+use nucleus_graph::scene::{Assignment, Diagnostic, Scene};
 use nucleus_measure::trade::Setting;
 
 use super::import;
@@ -17,7 +18,7 @@ use crate::options::{self, Channels, FrameRange, Record};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
-use crate::run_loop;
+use crate::run_loop::{self, Finished};
 use crate::run_statistics::RunStatistics;
 use crate::{files, process, quality};
 
@@ -65,6 +66,13 @@ pub struct Run {
     /// The result of the run does not change; the run takes longer.
     #[arg(long)]
     audit: bool,
+    /// Set an attribute, as if the scene said so; may be given several times. The cache holds the scene as it was run.
+    #[arg(long, value_name = "NODE.ATTRIBUTE=VALUE")]
+    pub set: Vec<Assignment>,
+    /// Displace the start positions of cloth and particles at random by up to a thousandth of an edge or radius, to see
+    /// how much of a result is chance.
+    #[arg(long, value_name = "NUMBER")]
+    seed: Option<u32>,
     /// Use the cheapest setting with at most this error (`1%`) according to `nucleus trade` for this scene.
     #[arg(long, value_name = "ERROR", value_parser = quality::error)]
     quality: Option<f64>,
@@ -88,6 +96,8 @@ impl Run {
             force,
             out: None,
             audit: false,
+            set: Vec::new(),
+            seed: None,
             quality: None,
             json: false,
         }
@@ -104,18 +114,28 @@ impl Run {
         }
     }
 
-    /// Simulates the scene.
-    pub fn run(mut self) -> Result<Outcome> {
+    /// Simulates the scene and prints the summary.
+    pub fn run(self) -> Result<Outcome> {
+        let json = self.json;
+        Ok(self.execute()?.map_or(Outcome::InvalidInput, |finished| finished.print(json)))
+    }
+
+    /// Simulates the scene. Returns `None` if it has errors, which are reported.
+    pub fn execute(mut self) -> Result<Option<Finished>> {
         let out = self.out()?;
         self.scene = import::own_scene(self.scene, &out, self.force)?;
-        let Some((scene, program, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
-            return Ok(Outcome::InvalidInput);
-        };
-        let (read, is_from) = (program.clone(), self.from.is_some());
+        let opened = files::open_scene_with(&self.scene, self.frames, &self.set)?;
+        let Some((scene, program, text)) = opened.report()? else { return Ok(None) };
+        let read = program.clone();
         let (scene, program) = match &self.from {
             None => (scene, program),
             Some(from) => from.applied(scene, &program)?,
         };
+        let (scene, program) = match self.seed {
+            None => (scene, program),
+            Some(seed) => displaced(scene, &program, seed)?,
+        };
+        let is_changed = self.from.is_some() || self.seed.is_some();
         let (program, setting) = match self.quality {
             None => (program, None),
             Some(wanted) => {
@@ -139,13 +159,29 @@ impl Run {
             force: self.force,
             compact: self.compact,
             checkpoint: self.checkpoint,
-            facts: recording::facts(self.from.as_ref(), setting, if is_from { &read } else { &program })?,
+            facts: self.facts(setting, if is_changed { &read } else { &program })?,
         };
         let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;
         let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
         let (audit, json) = (self.audit, self.json);
         let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };
-        run.finish(|_| false)
+        run.finish(|_| false).map(Some)
+    }
+
+    /// Facts about the run. `read` is the program before any change of its initial state.
+    fn facts(&self, setting: Option<Setting>, read: &Program) -> Result<BTreeMap<String, String>> {
+        let mut facts = recording::facts(self.from.as_ref(), setting, read)?;
+        facts.extend(self.seed.map(|seed| (recording::SEED.to_owned(), seed.to_string())));
+        if !self.set.is_empty() {
+            let set: Vec<String> = self.set.iter().map(Assignment::to_string).collect();
+            facts.insert("set".to_owned(), set.join(" "));
+        }
+        Ok(facts)
+    }
+
+    /// The run as part of a wedge: into this cache, with this number of threads, replacing what an earlier attempt left.
+    pub fn within(self, out: PathBuf, threads: u16) -> Self {
+        Self { out: Some(out), threads: Some(threads), force: true, json: true, ..self }
     }
 
     /// The program at the setting for an error, and that setting.
@@ -158,4 +194,13 @@ impl Run {
             .map_err(|found| anyhow!("the scene does not compile at this setting: {}", first(found)))?;
         Ok((program, setting))
     }
+}
+
+/// The scene with displaced start positions, and its program.
+fn displaced(scene: Scene, program: &Program, seed: u32) -> Result<(Scene, Program)> {
+    let scene = nucleus_wedge::seed::displaced(scene, program, seed);
+    let first = |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
+    let program = compile(&scene)
+        .map_err(|found| anyhow!("the scene does not compile with displaced points: {}", first(found)))?;
+    Ok((scene, program))
 }

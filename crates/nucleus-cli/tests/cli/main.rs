@@ -13,5 +13,7 @@ mod run;
 mod sample;
 mod scene;
 mod signals;
+mod slurm;
 mod trade;
 mod warnings;
+mod wedge;

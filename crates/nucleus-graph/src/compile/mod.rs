@@ -55,6 +55,7 @@ use std::sync::Arc;
 use crate::attributes::nucleus;
 use crate::diagnostic::{Diagnostic, Findings};
 use crate::graph::NodeId;
+use crate::memory::Memory;
 use crate::scene::document::{Scene, TimeSpan};
 
 use compiler::{CompiledNucleus, Compiler};
@@ -73,7 +74,8 @@ pub(crate) use sources::EmitterState;
 /// All errors of the scene: missing or invalid meshes, points that do not exist, values outside their range.
 pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    let compiled = compile_nuclei(scene, &BTreeSet::new(), &mut findings);
+    let mut geometry = Geometry::new(scene);
+    let compiled = compile_nuclei(scene, &BTreeSet::new(), &mut geometry, &mut findings);
     if compiled.is_empty() {
         let error = findings.error(&(0..0), "there is nothing to solve: the scene has no nucleus");
         error.help("add `\"nucleus1\": nucleus()`");
@@ -81,18 +83,18 @@ pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     if findings.errors() > 0 {
         return Err(findings.in_order());
     }
-    Ok(link(scene, compiled, findings.in_order()))
+    Ok(link(scene, compiled, geometry.budget.taken(), findings.in_order()))
 }
 
 /// The diagnostics of compiling the valid part of a scene. Nothing is reported about `broken` nodes.
 pub(crate) fn survey(scene: &Scene, broken: &BTreeSet<NodeId>) -> Vec<Diagnostic> {
     let mut findings = Findings::new(scene.source.file().to_owned());
-    compile_nuclei(scene, broken, &mut findings);
+    compile_nuclei(scene, broken, &mut Geometry::new(scene), &mut findings);
     findings.in_order()
 }
 
 /// Joins the nuclei to one program.
-fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, warnings: Vec<Diagnostic>) -> Program {
+fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, memory: Memory, warnings: Vec<Diagnostic>) -> Program {
     let (mut nuclei, mut objects, mut mass) = (Vec::new(), Vec::new(), 0.0);
     for nucleus in compiled {
         nuclei.push(nucleus.program);
@@ -111,20 +113,25 @@ fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, warnings: Vec<Diagnostic>
         nuclei,
         objects,
         mass,
+        memory,
         warnings,
     };
     Program { data: Arc::new(data) }
 }
 
 /// Each nucleus separately, in the order of names. Of several, those without objects are left out.
-fn compile_nuclei(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) -> Vec<CompiledNucleus> {
-    let mut geometry = Geometry::new(scene);
+fn compile_nuclei(
+    scene: &Scene,
+    broken: &BTreeSet<NodeId>,
+    geometry: &mut Geometry,
+    findings: &mut Findings,
+) -> Vec<CompiledNucleus> {
     let mut nuclei: Vec<NodeId> = scene.graph.of_type(&nucleus::NUCLEUS).map(|(id, _)| id).collect();
     nuclei.sort_by_key(|id| scene.graph.node(*id).name());
     let mut all: Vec<CompiledNucleus> = Vec::new();
     for nucleus in nuclei {
         let previous = all.last().map(|compiled| &compiled.program);
-        let compiled = Compiler::new(scene, nucleus, broken, &mut geometry, previous, findings).compile();
+        let compiled = Compiler::new(scene, nucleus, broken, geometry, previous, findings).compile();
         all.push(compiled);
     }
     if all.iter().any(|compiled| !compiled.objects.is_empty()) {

@@ -9,6 +9,7 @@ use crate::attributes::{ElementKind, FromValue, Key};
 use crate::checks::Check;
 use crate::diagnostic::Diagnostic;
 use crate::graph::{EvalContext, Graph, NodeId};
+use crate::memory::Memory;
 use crate::scene::document::{Record, TimeSpan};
 
 use super::camera::{self, Camera};
@@ -34,6 +35,7 @@ pub(super) struct ProgramData {
     pub(super) nuclei: Vec<NucleusProgram>,
     pub(super) objects: Vec<Object>,
     pub(super) mass: f64,
+    pub(super) memory: Memory,
     pub(super) warnings: Vec<Diagnostic>,
 }
 
@@ -160,6 +162,11 @@ impl Program {
     /// Total mass of all cloths in kilograms.
     pub fn mass(&self) -> f64 {
         self.data.mass
+    }
+
+    /// The memory that the run takes, as estimated while the scene was compiled.
+    pub fn memory(&self) -> Memory {
+        self.data.memory
     }
 
     /// Findings that do not prevent the run.

@@ -3,15 +3,15 @@
 use std::ops::Range;
 
 use super::syntax::{self, Node, Value};
-use crate::attributes::node_type;
+use crate::attributes::{NodeType, node_type};
 
 /// A change of one attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Edit {
     /// The name of the node.
     pub node: String,
-    /// The long name of the attribute.
-    pub attribute: &'static str,
+    /// The long name of the attribute, or of a component of a vector (`translateX`).
+    pub attribute: String,
     /// The new value.
     pub to: NewValue,
 }
@@ -56,7 +56,7 @@ pub enum EditError {
 /// use nucleus_graph::scene::edit::{Edit, NewValue, edit};
 ///
 /// let text = "Scene(time: (start: 1, end: 9, fps: 24), nodes: {\"n\": nucleus(subSteps: 3 /* Maya's */)})";
-/// let five = Edit { node: "n".into(), attribute: "subSteps", to: NewValue::Text("5".into()) };
+/// let five = Edit { node: "n".into(), attribute: "subSteps".into(), to: NewValue::Text("5".into()) };
 /// assert_eq!(edit(text, &[five]).unwrap(), text.replace("subSteps: 3", "subSteps: 5"));
 /// ```
 ///
@@ -91,11 +91,12 @@ fn node<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
 
 fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>, String)>) {
     let Value::Record { name, fields } = &body.value else { return };
-    let row =
-        name.as_ref().and_then(|name| node_type(&name.text)).and_then(|of| of.attribute(edit.attribute));
+    let node_type = name.as_ref().and_then(|name| node_type(&name.text));
+    let row = node_type.and_then(|of| of.attribute(&edit.attribute));
     let is_named = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
-    match fields.iter().find(|(word, _)| is_named(&word.text)) {
-        Some((_, value)) => match &edit.to {
+    let own = fields.iter().find(|(word, _)| is_named(&word.text)).map(|(_, value)| value);
+    match own.or_else(|| component(node_type?, fields, &edit.attribute)) {
+        Some(value) => match &edit.to {
             NewValue::Text(new) => changes.push((value.span.clone(), new.clone())),
             NewValue::Scaled { factor, least, .. } => {
                 let scaled = numbers(value).into_iter();
@@ -107,8 +108,26 @@ fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>,
                 NewValue::Text(new) => new.clone(),
                 NewValue::Scaled { factor, least, default } => written((default * factor).max(*least)),
             };
-            changes.push(added(text, body, fields.last(), edit.attribute, &new));
+            changes.push(added(text, body, fields.last(), &edit.attribute, &new));
         }
+    }
+}
+
+/// The value of a component of a vector: of its own field, or within the vector.
+fn component<'a>(
+    node_type: &'static NodeType,
+    fields: &'a [(syntax::Word, Node)],
+    name: &str,
+) -> Option<&'a Node> {
+    let (row, part) = node_type.part(name)?;
+    let (long, short) = row.parts()?.get(part).cloned()?;
+    let of = |words: [&str; 2]| fields.iter().find(|(word, _)| words.contains(&word.text.as_str()));
+    if let Some((_, value)) = of([&long, short]) {
+        return Some(value);
+    }
+    match &of([row.name, row.short])?.1.value {
+        Value::Tuple { name: None, items } | Value::List(items) => items.get(part),
+        _ => None,
     }
 }
 
@@ -179,8 +198,8 @@ Scene(
 )
 "#;
 
-    fn of(node: &str, attribute: &'static str, to: NewValue) -> Edit {
-        Edit { node: node.to_owned(), attribute, to }
+    fn of(node: &str, attribute: &str, to: NewValue) -> Edit {
+        Edit { node: node.to_owned(), attribute: attribute.to_owned(), to }
     }
 
     fn text(new: &str) -> NewValue {
@@ -219,6 +238,17 @@ Scene(
         let double = NewValue::Scaled { factor: 2.0, least: 0.0, default: 20.0 };
         let edited = edit(TEXT, &[of("cloth1", "stretchResistance", double)]).unwrap();
         assert!(edited.contains("stch: 40)"), "{edited}");
+    }
+
+    #[test]
+    fn a_component_is_replaced_within_its_vector_or_in_its_own_field() {
+        let of_plane = |set: &str, attribute: &str| {
+            let scene = TEXT.replace("polyPlane()", &format!("polyPlane({set})"));
+            edit(&scene, &[of("plane", attribute, text("7"))]).unwrap()
+        };
+        assert!(of_plane("translate: (1, 2, 3)", "translateY").contains("polyPlane(translate: (1, 7, 3))"));
+        assert!(of_plane("ty: 2", "translateY").contains("polyPlane(ty: 7)"));
+        assert!(of_plane("width: 2", "translateY").contains("polyPlane(width: 2, translateY: 7)"));
     }
 
     #[test]

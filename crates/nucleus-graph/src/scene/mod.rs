@@ -7,12 +7,14 @@
 //! | how a scene becomes text                     | [`write_scene`]               |
 //! | how mistakes are reported                    | [`Diagnostic`]                |
 //! | how an attribute is changed in a text        | [`edit::edit`]                |
+//! | how `cloth1.damp=0.1` changes a scene        | [`Assignment`]                |
 //! | what a material preset is                    | [`Preset`]                    |
 //! | RON itself                                   | [`syntax`]                    |
 //!
 //! **Invariant:** every part of a file has an effect, or gives a warning or an error. One reading reports all
 //! mistakes.
 
+mod assignment;
 mod comments;
 pub(crate) mod document;
 pub mod edit;
@@ -24,6 +26,7 @@ pub mod syntax;
 mod write;
 
 pub use crate::diagnostic::{Diagnostic, Note, Severity};
+pub use assignment::{AssignError, Assignment, assigned};
 pub use document::{Record, Scene, Source, TimeSpan};
 pub use file_text::{TextError, read_text};
 pub use preset::Preset;

@@ -183,7 +183,7 @@ impl Benchmark {
         let Some(id) = nucleus_of(&self.scene.graph) else { return Vec::new() };
         let of = |node: NodeId, attribute: &'static str, to: NewValue| {
             let node = self.scene.graph.node(node).name().to_owned();
-            Edit { node, attribute, to }
+            Edit { node, attribute: attribute.to_owned(), to }
         };
         let text = |to: &dyn ToString| NewValue::Text(to.to_string());
         let own = &self.own;

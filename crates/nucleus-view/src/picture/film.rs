@@ -87,9 +87,16 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If the index is out of range, or the frame is damaged.
     pub fn framing(&mut self, moment: usize) -> Result<Camera, ViewError> {
+        Ok(Camera::framing(&self.bounds(moment)?, self.style.size))
+    }
+
+    /// The box around the cloth and the colliders near it at one recorded time, by its index in the cache.
+    ///
+    /// # Errors
+    /// If the index is out of range, or the frame is damaged.
+    pub fn bounds(&mut self, moment: usize) -> Result<Bounds, ViewError> {
         let positions = positions(self.cache, moment)?;
-        let framed = Bounds::to_frame(&objects(self.cache, moment, &positions)?);
-        Ok(Camera::framing(&framed, self.style.size))
+        Ok(Bounds::to_frame(&objects(self.cache, moment, &positions)?))
     }
 
     /// The frame of a picture.

@@ -1,0 +1,107 @@
+//! One run of a wedge, in this process: resumes what an earlier attempt left, and writes the result when it has ended.
+
+use std::fs;
+use std::time::Instant;
+
+use anyhow::{Result, anyhow};
+use clap::{Parser, Subcommand};
+use nucleus_wedge::{Plan, PlannedRun, RunOutcome, RunResult, WedgeFolder, machine, when_parent_ends};
+use serde_json::Value;
+
+use crate::commands::resume::{Resume, Resumed};
+use crate::commands::run::Run;
+use crate::output::say;
+use crate::process::{self, Outcome};
+use crate::run_loop::Finished;
+
+/// The arguments of a run in a plan.
+#[derive(Debug, Parser)]
+struct Line {
+    #[command(subcommand)]
+    command: LineCommand,
+}
+
+/// The commands that a plan may hold.
+#[derive(Debug, Subcommand)]
+enum LineCommand {
+    Run(Box<Run>),
+}
+
+/// Does one run of a plan.
+pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result<Outcome> {
+    folder.check_plan()?;
+    let (_, planned) = Plan::read_run(&folder.plan(), run)?;
+    let Some(_lock) = folder.lock(&planned.name)? else {
+        say!("another process is at run {}", planned.name);
+        return Ok(Outcome::Busy);
+    };
+    // It may have ended since the plan was looked at.
+    if folder.result(&planned.name)?.is_some_and(|result| result.outcome.is_final()) {
+        return Ok(Outcome::Success);
+    }
+    process::listen_for_signals()?;
+    when_parent_ends(process::interrupt)?;
+    let begin = Instant::now();
+    let (outcome, report, error) = ended(execute(folder, &planned, threads));
+    let result = RunResult {
+        outcome,
+        error,
+        seconds: begin.elapsed().as_secs_f64(),
+        at_once,
+        machine: machine(),
+        report,
+    };
+    folder.write_result(&planned.name, &result)?;
+    Ok(match outcome {
+        RunOutcome::Success => Outcome::Success,
+        RunOutcome::Interrupted => Outcome::Interrupted,
+        _ => Outcome::Problem,
+    })
+}
+
+/// How a run ended, its report, and why it failed.
+fn ended(finished: Result<Option<Finished>>) -> (RunOutcome, Option<Value>, Option<String>) {
+    match finished {
+        Err(error) => (RunOutcome::Failed, None, Some(format!("{error:#}"))),
+        Ok(None) => (RunOutcome::Failed, None, Some("the scene has errors; the log lists them".to_owned())),
+        Ok(Some(Finished { outcome, report, .. })) => {
+            // A run that could not write its cache lacks frames, unlike one that ran to its end with a problem.
+            let lost = report["summary"]["error"].as_str().map(str::to_owned);
+            let outcome = match outcome {
+                _ if lost.is_some() => RunOutcome::Failed,
+                Outcome::Success => RunOutcome::Success,
+                Outcome::Interrupted => RunOutcome::Interrupted,
+                _ => RunOutcome::Problem,
+            };
+            (outcome, Some(report), lost)
+        }
+    }
+}
+
+/// Executes the command of a run.
+fn execute(folder: &WedgeFolder, planned: &PlannedRun, threads: u16) -> Result<Option<Finished>> {
+    let words = std::iter::once("nucleus").chain(planned.arguments.iter().map(String::as_str));
+    let parsed = Line::try_parse_from(words)
+        .map_err(|error| anyhow!("the plan has arguments that `nucleus` does not take: {error}"))?;
+    match parsed.command {
+        LineCommand::Run(run) => simulate(folder, planned, *run, threads),
+    }
+}
+
+/// Resumes the cache that an earlier attempt left, else starts the run.
+fn simulate(folder: &WedgeFolder, planned: &PlannedRun, run: Run, threads: u16) -> Result<Option<Finished>> {
+    let cache = folder.cache(&planned.name);
+    if folder.can_resume(&planned.name)? {
+        match Resume::within(cache.clone(), threads).execute() {
+            Ok(Resumed::Finished(finished)) => return Ok(Some(finished)),
+            // The process was killed between the last frame and the result.
+            Ok(Resumed::Complete | Resumed::InvalidScene) => {}
+            Err(error) => say!("{error:#}; the run starts again"),
+        }
+    }
+    // What is left of an attempt that cannot be resumed would be in the way.
+    for left in [nucleus_cache::part_path(&cache), cache.clone()] {
+        let _ = fs::remove_file(left);
+    }
+    run.within(cache, threads).execute()
+}

@@ -1,0 +1,88 @@
+//! The `nucleus` command as a library, so that the Python package has it too. No crate below it prints or exits.
+//!
+//! | You want to know…                                        | Read                     |
+//! |----------------------------------------------------------|--------------------------|
+//! | what a subcommand does                                   | `commands/`              |
+//! | what an option's value means                             | `options.rs`             |
+//! | what the exit code means, and how signals are handled    | `process.rs`             |
+//! | how a run advances, frame by frame                       | `run_loop.rs`            |
+//! | what its cache states about it                           | `recording.rs`           |
+//! | how a run is resumed                                     | `resumed_run.rs`         |
+//! | what a run reports at its end                            | `summary.rs`             |
+//! | when that report is a failure or a warning               | `warnings.rs`            |
+//! | how a scene or a cache is opened, and refused            | `files.rs`               |
+//! | where results are stored between commands                | `quality.rs`             |
+
+mod commands;
+mod diagnostics;
+mod figures;
+mod files;
+mod initial_state;
+mod options;
+mod output;
+mod process;
+mod progress;
+mod quality;
+mod recording;
+mod resumed_run;
+mod run_loop;
+mod run_statistics;
+mod summary;
+mod warnings;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+use nucleus_core::StepReport;
+use nucleus_graph::memory::Memory;
+
+use commands::Command;
+use output::say;
+use process::Outcome;
+pub use process::set_command;
+
+/// Nucleus: simulates cloth and colliders without Maya.
+#[derive(Debug, Parser)]
+#[command(name = "nucleus", version, after_help = process::EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Memory limit: a scene whose estimate is larger is refused. `8G`; default: three quarters of the machine's memory.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = options::memory_size)]
+    memory: Option<Memory>,
+}
+
+/// Runs the command with the arguments of a process, the program's name first, and returns its exit code.
+///
+/// It prints, listens for signals, and ends the process where arguments are wrong: once per process.
+pub fn run(arguments: Vec<OsString>) -> u8 {
+    process::report_file_size_limit_as_error();
+    let arguments = options::with_present_names(arguments);
+    let Arguments { command, memory } = Arguments::parse_from(arguments);
+    memory.into_iter().for_each(files::set_memory_limit);
+    match command.run() {
+        Ok(outcome) => with_report_error(outcome).exit_code(),
+        // The reader has closed the pipe: `nucleus info x.mcap | head -3`.
+        Err(error) if output::is_broken_pipe(&error) => Outcome::Success.exit_code(),
+        Err(error) if output::is_print_error(&error) => {
+            say!("error: {error:#}");
+            Outcome::Problem.exit_code()
+        }
+        Err(error) => {
+            say!("error: {error:#}");
+            process::COULD_NOT_START
+        }
+    }
+}
+
+/// The figures of a frame, as `nucleus run --json` prints them.
+pub fn frame_figures(frame: i32, report: &StepReport) -> serde_json::Value {
+    serde_json::json!(run_statistics::FrameStatistics::new(frame, report))
+}
+
+/// The outcome of a command. A success becomes a problem if its report could not be printed.
+fn with_report_error(outcome: Outcome) -> Outcome {
+    let Some(error) = output::report_error() else { return outcome };
+    say!("warning: standard output cannot be written to, the report is incomplete: {error}");
+    if outcome == Outcome::Success { Outcome::Problem } else { outcome }
+}
