@@ -11,6 +11,7 @@
 //! | cost of a feature                                | [`mod@features`]             |
 //! | speed of caches                                  | [`mod@caches`]               |
 //! | cost and error, compared with other solvers      | [`mod@bench`]                |
+//! | recipes with their pictures                      | [`mod@cookbook`]             |
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -23,6 +24,7 @@ use clap::ValueEnum;
 use nucleus_measure::{advice, clock, experiments, report, result_cache, trade};
 
 use crate::bench::{self, caches, features};
+use crate::cookbook;
 
 /// Pages to regenerate.
 #[derive(Debug, Clone, clap::Args)]
@@ -51,6 +53,8 @@ enum Page {
     Features,
     /// `docs/contact.md`: cost of contact compared with other solvers, and penetrations
     Contact,
+    /// `docs/cookbook.md`: recipes with their pictures
+    Cookbook,
     /// `docs/benchmarks.md`: error against time, compared with other solvers; takes half an hour
     Benchmarks,
 }
@@ -81,6 +85,9 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
             Page::Caches => caches(root)?,
             Page::Features => features(root)?,
             Page::Contact => bench::run(&bench::Options::of_contact(root))?,
+            Page::Cookbook => {
+                cookbook::write(root, |arguments| Ok(nucleus(root, arguments)?.success()))?;
+            }
             Page::Benchmarks => bench::run(&bench::Options::of_benchmarks(root))?,
         }
         eprintln!("{page:?}: {:.0} s", start.elapsed().as_secs_f64());

@@ -102,9 +102,9 @@ fn own_caches(root: &Path, place: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 fn export(root: &Path, cache: &Path, folder: &Path) -> anyhow::Result<()> {
     let nucleus = files::target(root).join("release/nucleus");
-    for format in ["obj", "ply", "pc2", "mdd", "usda", "glb", "vtu", "mc", "mcx", "foxglove"] {
+    for format in ["obj", "ply", "pc2", "mdd", "usda", "usdc", "glb", "vtu", "mc", "mcx", "foxglove"] {
         let out = match format {
-            "usda" | "glb" => format!("run.{format}"),
+            "usda" | "usdc" | "glb" => format!("run.{format}"),
             "foxglove" => "run.foxglove.mcap".to_owned(),
             folder => folder.to_owned(),
         };

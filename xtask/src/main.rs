@@ -20,6 +20,7 @@ use clap::Parser;
 mod bench;
 mod book;
 mod ci;
+mod cookbook;
 mod evidence;
 mod files;
 mod fuzz;

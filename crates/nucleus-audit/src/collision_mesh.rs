@@ -195,6 +195,11 @@ impl CollisionFilter {
         }
     }
 
+    /// Whether pairs between two bodies, or within one, are tested.
+    pub fn is_tested(&self, a: usize, b: usize) -> bool {
+        !self.ignored.contains(&[a.min(b), a.max(b)])
+    }
+
     /// Marks a point as kinematic: its motion is prescribed. Pairs of elements with kinematic points only are excluded,
     /// since no solver can separate them.
     pub fn set_kinematic(&mut self, point: usize) {
@@ -235,9 +240,8 @@ impl CollisionFilter {
         elements: &[[u32; N]],
     ) -> Vec<u32> {
         let bodies = 0..mesh.bodies().len();
-        let asked = |a: usize, b: usize| !self.ignored.contains(&[a.min(b), a.max(b)]);
         let active_elements: Vec<bool> =
-            bodies.clone().map(|body| bodies.clone().any(|other| asked(body, other))).collect();
+            bodies.clone().map(|body| bodies.clone().any(|other| self.is_tested(body, other))).collect();
         let is_concerned = |(_, points): &(u32, &[u32; N])| active_elements[mesh.body_of(points[0])];
         (0..).zip(elements).filter(is_concerned).map(|(index, _)| index).collect()
     }

@@ -83,6 +83,17 @@ impl CameraView {
         Self { eye, forward, up, focal_length, film: [w, v], interest }
     }
 
+    /// The placement of the camera as a matrix whose rows are its x, y and z axis and its eye; it looks along -z.
+    pub fn matrix(&self) -> [[f64; 4]; 4] {
+        let [forward, up, eye] = [self.forward, self.up, self.eye].map(|v| v.map(f64::from));
+        let back = forward.map(|x| -x);
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let row = |[x, y, z]: [f64; 3], w: f64| [x, y, z, w];
+        [row(cross(up, back), 0.0), row(up, 0.0), row(back, 0.0), row(eye, 1.0)]
+    }
+
     /// Tangents of half the horizontal and vertical angles of view. `aspect` is the width of the picture over its
     /// height.
     pub fn tangents(&self, fit: FilmFit, aspect: f32) -> [f32; 2] {

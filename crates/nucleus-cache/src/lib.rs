@@ -62,6 +62,7 @@ mod error;
 mod messages;
 mod read;
 mod run;
+mod texture_coordinates;
 mod write;
 
 pub use camera::{Camera, CameraView, FilmFit};
@@ -74,6 +75,7 @@ pub use read::playback::{Playback, Sizes};
 pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
 pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source};
+pub use texture_coordinates::TextureCoordinates;
 pub use write::frame_recorder::FrameRecorder;
 pub use write::recorder::{Recorded, Recorder};
 pub use write::resume::ResumeRange;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nucleus_core::{ClothId, ColliderId, Faces};
 
 use crate::camera::Camera;
+use crate::texture_coordinates::TextureCoordinates;
 
 /// Which states of the run are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -78,6 +79,8 @@ pub struct RunInfo {
     pub radii: BTreeMap<String, f64>,
     /// Cameras of the scene; the first is the default for pictures.
     pub cameras: Vec<Camera>,
+    /// Texture coordinates of each object that has any, by object name.
+    pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
     /// Frames between two checkpoints; 0 records none.
     pub checkpoint: u32,
     /// Compression level; a reader accepts both.
@@ -105,6 +108,7 @@ impl Default for RunInfo {
             ground: None,
             radii: BTreeMap::new(),
             cameras: Vec::new(),
+            texture_coordinates: BTreeMap::new(),
             checkpoint: 0,
             packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -9,7 +9,7 @@ use codespan_reporting::term::termcolor::{Buffer, BufferWriter, ColorChoice};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use nucleus_graph::scene::{Diagnostic, Severity};
 
-use crate::figures;
+use crate::{figures, output};
 
 /// Longest line, in bytes, that is shown whole. Longer lines are cut around the marked place.
 const MAX_LINE: usize = 400;
@@ -23,8 +23,12 @@ pub fn print(diagnostics: &[Diagnostic], text: &str) -> anyhow::Result<()> {
     if diagnostics.is_empty() {
         return Ok(());
     }
-    // `Auto` respects NO_COLOR but does not detect a terminal.
-    let choice = if stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    let choice = match output::color() {
+        clap::ColorChoice::Always => ColorChoice::Always,
+        // `Auto` respects NO_COLOR but does not detect a terminal.
+        clap::ColorChoice::Auto if stderr().is_terminal() => ColorChoice::Auto,
+        _ => ColorChoice::Never,
+    };
     let writer = BufferWriter::stderr(choice);
     let mut buffer = writer.buffer();
     for diagnostic in diagnostics.iter().take(MAX_PRINTED) {

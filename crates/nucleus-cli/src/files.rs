@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result, anyhow};
 use nucleus_cache::{OpenError, Playback};
 use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::first_frame_warnings;
 use nucleus_graph::memory::Memory;
 use nucleus_graph::scene::{Assignment, Diagnostic, Scene, assigned, read_scene_within, read_text};
 
@@ -91,6 +92,15 @@ pub fn scene_from_text(text: String, path: &Path, frames: Option<FrameRange>) ->
 }
 
 impl SceneFile {
+    /// Adds the warnings about the first frame.
+    pub fn with_first_frame(mut self) -> Self {
+        if let Some((scene, program)) = &self.compiled {
+            self.diagnostics.extend(first_frame_warnings(scene, program));
+            self.diagnostics.sort_by_key(|found| (found.span.start, found.span.end));
+        }
+        self
+    }
+
     /// Prints the diagnostics. Returns scene, program and text, or `None` if there are errors.
     pub fn report(self) -> Result<Option<(Scene, Program, String)>> {
         diagnostics::print(&self.diagnostics, &self.text)?;

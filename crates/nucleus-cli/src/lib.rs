@@ -32,7 +32,7 @@ mod warnings;
 
 use std::ffi::OsString;
 
-use clap::Parser;
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser};
 use nucleus_core::StepReport;
 use nucleus_graph::memory::Memory;
 
@@ -43,14 +43,23 @@ pub use process::set_command;
 
 /// Nucleus: simulates cloth and colliders without Maya.
 #[derive(Debug, Parser)]
-#[command(name = "nucleus", version, after_help = process::EXIT_CODES)]
+#[command(name = "nucleus", version = VERSION, after_help = process::EXIT_CODES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
     /// Memory limit: a scene whose estimate is larger is refused. `8G`; default: three quarters of the machine's memory.
     #[arg(long, global = true, value_name = "SIZE", value_parser = options::memory_size)]
     memory: Option<Memory>,
+    /// Print errors, warnings and results only: no progress, and no report of a success.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// When to colour messages. `auto` colours on a terminal unless `NO_COLOR` is set.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
 }
+
+/// The version, with the commit and its date where the source was a checkout.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("NUCLEUS_COMMIT"));
 
 /// Runs the command with the arguments of a process, the program's name first, and returns its exit code.
 ///
@@ -58,7 +67,8 @@ struct Arguments {
 pub fn run(arguments: Vec<OsString>) -> u8 {
     process::report_file_size_limit_as_error();
     let arguments = options::with_present_names(arguments);
-    let Arguments { command, memory } = Arguments::parse_from(arguments);
+    let Arguments { command, memory, quiet, color } = parse(&arguments);
+    output::set_style(quiet, color);
     memory.into_iter().for_each(files::set_memory_limit);
     match command.run() {
         Ok(outcome) => with_report_error(outcome).exit_code(),
@@ -73,6 +83,19 @@ pub fn run(arguments: Vec<OsString>) -> u8 {
             process::COULD_NOT_START
         }
     }
+}
+
+/// Parses the arguments; ends the process with a message if they are wrong or ask for help, in the wanted colours.
+fn parse(arguments: &[OsString]) -> Arguments {
+    let command = command().color(options::color(arguments));
+    let parsed =
+        command.try_get_matches_from(arguments).and_then(|found| Arguments::from_arg_matches(&found));
+    parsed.unwrap_or_else(|error| error.exit())
+}
+
+/// The command with all its subcommands and options.
+fn command() -> clap::Command {
+    Arguments::command()
 }
 
 /// The figures of a frame, as `nucleus run --json` prints them.

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::str::FromStr;
 
 use anyhow::{Context, Result};
+use clap::ColorChoice;
 use nucleus_cache::Detail;
 use nucleus_graph::compile::Program;
 use nucleus_graph::memory::Memory;
@@ -205,10 +206,20 @@ pub fn with_present_names(mut arguments: Vec<OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// The place of the subcommand: the first argument that is neither an option nor the value of `--memory`.
+/// The value of `--color`, before the other arguments are parsed: it also applies to their errors.
+pub fn color(arguments: &[OsString]) -> ColorChoice {
+    let value = |at: usize| match arguments[at].to_str()? {
+        "--color" => arguments.get(at + 1)?.to_str(),
+        text => text.strip_prefix("--color="),
+    };
+    let given = (1..arguments.len()).find_map(value);
+    given.and_then(|text| text.parse().ok()).unwrap_or(ColorChoice::Auto)
+}
+
+/// The place of the subcommand: the first argument that is neither a global option nor the value of one.
 fn subcommand(arguments: &[OsString]) -> Option<usize> {
-    let is_name =
-        |at: &usize| !arguments[*at].to_string_lossy().starts_with('-') && arguments[at - 1] != "--memory";
+    let takes_value = |at: usize| ["--memory", "--color"].iter().any(|option| arguments[at] == *option);
+    let is_name = |at: &usize| !arguments[*at].to_string_lossy().starts_with('-') && !takes_value(at - 1);
     (1..arguments.len()).find(is_name)
 }
 
@@ -272,6 +283,10 @@ mod tests {
         assert_eq!(
             replaced("nucleus --memory 8G trade a.ron --mode=both --fresh"),
             "nucleus --memory 8G trade a.ron --resistance-model=both --rerun"
+        );
+        assert_eq!(
+            replaced("nucleus --color never play a --with b"),
+            "nucleus --color never play a --compare b"
         );
         assert_eq!(replaced("nucleus run a.ron --threads 2"), "nucleus run a.ron --threads 2");
         assert_eq!(replaced("nucleus extremes --threads=2"), "nucleus extremes --jobs=2");

@@ -8,6 +8,26 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::OnceLock;
 
 use anyhow::Result;
+use clap::ColorChoice;
+
+/// Whether `--quiet` was given, and the value of `--color`.
+static STYLE: OnceLock<(bool, ColorChoice)> = OnceLock::new();
+
+/// Sets how much is printed, and when in colour. Called before anything is printed.
+pub fn set_style(quiet: bool, color: ColorChoice) {
+    // There is one command per process, so the first value is the only one.
+    let _ = STYLE.set((quiet, color));
+}
+
+/// Whether only errors, warnings and results are printed.
+pub fn is_quiet() -> bool {
+    STYLE.get().is_some_and(|(quiet, _)| *quiet)
+}
+
+/// When messages are coloured.
+pub fn color() -> ColorChoice {
+    STYLE.get().map_or(ColorChoice::Auto, |(_, color)| *color)
+}
 
 /// The first error of a [`report`].
 static REPORT_ERROR: OnceLock<io::Error> = OnceLock::new();
@@ -28,8 +48,15 @@ pub fn print_json(value: &serde_json::Value) -> Result<()> {
     print(&format!("{value}\n"))
 }
 
-/// Prints a text that accompanies the result. After the first failure nothing more is printed.
+/// Prints a text that accompanies the result, unless [`is_quiet`]. After the first failure nothing more is printed.
 pub fn report(text: &str) {
+    if !is_quiet() {
+        report_always(text);
+    }
+}
+
+/// As [`report`], also with `--quiet`: for problems.
+pub fn report_always(text: &str) {
     if REPORT_ERROR.get().is_none() {
         keep_error(write(text));
     }
@@ -37,7 +64,7 @@ pub fn report(text: &str) {
 
 /// As [`report`], for one JSON value on one line.
 pub fn report_json(value: &serde_json::Value) {
-    report(&format!("{value}\n"));
+    report_always(&format!("{value}\n"));
 }
 
 fn keep_error(written: io::Result<()>) {

@@ -9,12 +9,12 @@ use nucleus_measure::trade;
 use nucleus_wedge::{Event, PlannedRun};
 
 use crate::figures;
-use crate::output::say;
+use crate::output::{is_quiet, say};
 use crate::run_statistics::RunStatistics;
 
 /// A bar, if standard error is a terminal.
 fn bar(length: u64, template: &str) -> Option<ProgressBar> {
-    let bar = stderr().is_terminal().then(|| ProgressBar::new(length))?;
+    let bar = (stderr().is_terminal() && !is_quiet()).then(|| ProgressBar::new(length))?;
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
@@ -48,7 +48,7 @@ impl RunProgress {
                 bar.set_message(state(statistics));
                 bar.set_position(statistics.frames.into());
             }
-            None if self.last_line.elapsed() >= Self::LINE_EVERY => {
+            None if self.last_line.elapsed() >= Self::LINE_EVERY && !is_quiet() => {
                 self.last_line = Instant::now();
                 let remaining = self.frames.saturating_sub(statistics.frames);
                 let left = (statistics.time / statistics.frames.max(1) * remaining).as_secs();
@@ -132,7 +132,7 @@ impl SweepProgress {
                 bar.set_position((progress.done * STEPS as f64) as u64);
                 bar.set_message(state);
             }
-            None if self.last_line.elapsed() >= Self::LINE_EVERY => {
+            None if self.last_line.elapsed() >= Self::LINE_EVERY && !is_quiet() => {
                 self.last_line = Instant::now();
                 say!("{:.0} %, {state}", 100.0 * progress.done);
             }

@@ -7,9 +7,11 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use nucleus_cache::{
     Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source,
+    TextureCoordinates,
 };
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
+use nucleus_graph::scene::Scene;
 use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
 
@@ -36,6 +38,17 @@ pub struct RecordOptions {
     pub checkpoint: u32,
     /// Further facts about the run; see [`facts`].
     pub facts: BTreeMap<String, String>,
+    /// Texture coordinates by object.
+    pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
+}
+
+/// The texture coordinates of the objects of a scene.
+pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String, TextureCoordinates> {
+    let of = |(name, (values, corners)): (String, compile::MeshCoordinates)| {
+        let values = values.into_iter().map(|uv| uv.map(|x| x as f32)).collect();
+        (name, TextureCoordinates { values, corners })
+    };
+    compile::texture_coordinates(scene, program).into_iter().map(of).collect()
 }
 
 /// Creates the cache of a run and records the start frame. Returns `None` if nothing is recorded.
@@ -55,6 +68,7 @@ pub fn begin(
         packing: if options.compact { Packing::Small } else { Packing::Fast },
         checkpoint: options.checkpoint,
         extra: options.facts,
+        texture_coordinates: options.texture_coordinates,
         ..of_scene(simulation, scene)?
     };
     let objects = objects(simulation);

@@ -82,7 +82,8 @@ impl Finished {
     pub fn print(self, json: bool) -> Outcome {
         match json {
             true => output::report_json(&self.report),
-            false => output::report(&self.text),
+            false if self.outcome == Outcome::Success => output::report(&self.text),
+            false => output::report_always(&self.text),
         }
         self.outcome
     }

@@ -196,6 +196,9 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
                 name(cloth(id))
             )
         }
+        InvalidInput::InputMesh(id) => {
+            format!("the input mesh of `{}` had no usable positions", name(cloth(id)))
+        }
         InvalidInput::Cloth(id) => format!("an attribute of `{}` had no usable value", name(cloth(id))),
         InvalidInput::Collider(id) => {
             format!("an attribute of `{}` had no usable value", name(collider(id)))

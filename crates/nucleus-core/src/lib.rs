@@ -4,6 +4,41 @@
 //! compliant constraints (XPBD, Macklin et al. 2016) and small time steps (Macklin et al. 2019). A bare § names a
 //! section of the Nucleus paper.
 //!
+//! ```
+//! use nucleus_core::nalgebra::Vector3;
+//! use nucleus_core::{Cloth, ClothLists, Collider, Mass, ModelBuilder, Solver, StateView, Surface};
+//!
+//! let sides = [Vector3::x(), Vector3::z()];
+//! let sheet = Surface::sheet(Vector3::new(-0.5, 0.4, -0.5), sides, [10, 10]);
+//! let mut builder = ModelBuilder::new();
+//! let cloth = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), ClothLists::ALL))?;
+//! builder.collider(Collider { surface: Surface::sphere(Vector3::zeros(), 0.3, 8) })?;
+//!
+//! let mut solver: Solver = Solver::new(builder, 1);
+//! let mut frame = solver.default_frame();
+//! frame.cloths[0].thickness = 0.01;
+//! solver.check_frame(&frame)?;
+//! for _ in 0..12 {
+//!     solver.step(&frame, &mut ());
+//! }
+//! let middle = solver.point(cloth, 60);
+//! assert!(middle.y > 0.3, "the sheet lies on the ball");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The whole of it, with a report per frame, is `examples/sheet_on_sphere.rs`.
+//!
+//! | To… | Use |
+//! |---|---|
+//! | describe objects | [`ModelBuilder`], [`Cloth`], [`Collider`], [`Surface`], [`VertexMaps`], [`Mass`], [`ClothLists`] |
+//! | advance by a frame | [`Solver::step`], with a [`FrameInput`] from [`Solver::default_frame`] |
+//! | set the attributes of a frame | [`ClothFrame`], [`ColliderFrame`], [`Pin`], [`GroundPlane`], [`ForceField`] |
+//! | refuse bad input | [`BuildError`] from the builder, [`InvalidInput`] from [`Solver::check_frame`] |
+//! | read positions, velocities and contacts | [`StateView`], which a [`Solver`] is, or a [`StepObserver`] at each substep |
+//! | judge a frame | [`StepReport`] |
+//! | save and continue | [`Solver::save`], [`Solver::restored`] |
+//! | simulate in `f64` | `Solver<f64>` |
+//!
 //! | You want to know… | Read |
 //! |---|---|
 //! | the stages of a frame, in order | `step.rs` |
@@ -48,6 +83,9 @@ mod schedule;
 mod solver;
 mod state;
 mod step;
+
+/// Vectors of the public interface.
+pub use nalgebra;
 
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};

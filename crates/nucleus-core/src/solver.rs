@@ -8,9 +8,9 @@ use crate::constraints::link::sizes::ModelSizes;
 use crate::constraints::whole;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
-use crate::input::frame::FrameInput;
+use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, ResistanceModel};
 use crate::input::links::Link;
-use crate::input::validation::LastPositions;
+use crate::input::validation::{InvalidInput, LastPositions, sanitize};
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
@@ -91,9 +91,9 @@ impl<R: CompiledReal> Solver<R> {
     }
 
     /// Advances by one frame. A step cannot fail: the report counts what could not be satisfied, and every invalid
-    /// value of the input.
+    /// value of the input, which is replaced. [`check_frame`](Self::check_frame) refuses such a frame beforehand.
     ///
-    /// `frame` has one entry per cloth and per collider.
+    /// `frame` has one entry per cloth and per collider, as [`default_frame`](Self::default_frame) has.
     pub fn step(&mut self, frame: &FrameInput, observer: &mut dyn StepObserver) -> StepReport {
         R::step(self, frame, observer)
     }
@@ -153,6 +153,29 @@ impl<R: Real> Solver<R> {
         ContactPass { model, frame, schedule, span, pool, state, contact, counters }
     }
 
+    /// The input of a usual frame, to start from: 1/24 s of three substeps, gravity and air of the Earth, the
+    /// resistances stiffnesses, and default attributes for each cloth and each collider. The thicknesses are zero.
+    pub fn default_frame(&self) -> FrameInput {
+        let [cloths, colliders] = self.objects();
+        FrameInput {
+            substeps: 3,
+            resistance: ResistanceModel::Physical { evaluations: 96.0 },
+            gravity: Vector3::new(0.0, -9.8, 0.0),
+            air_density: 1.0,
+            cloths: vec![ClothFrame::default(); cloths],
+            colliders: vec![ColliderFrame::default(); colliders],
+            ..FrameInput::default()
+        }
+    }
+
+    /// Checks the input of a frame.
+    ///
+    /// # Errors
+    /// The first value that [`step`](Self::step) would replace.
+    pub fn check_frame(&self, frame: &FrameInput) -> Result<(), InvalidInput> {
+        sanitize(frame, self).1.first.map_or(Ok(()), Err)
+    }
+
     /// The mass of a point in kilograms, when it is not pinned.
     pub fn mass(&self, cloth: ClothId, point: PointId) -> f64 {
         let row = self.model.cloths[cloth.index()].place(point.index());
@@ -174,6 +197,10 @@ impl<R: Real> Solver<R> {
 }
 
 impl<R: Real> LastPositions for Solver<R> {
+    fn objects(&self) -> [usize; 2] {
+        [self.model.cloths.len(), self.model.colliders.len()]
+    }
+
     fn collider(&self, collider: ColliderId) -> &[Vector3<f64>] {
         &self.contact.collider_states[collider.index()].end
     }

@@ -234,8 +234,8 @@ fn pushed(share: f64, radius: f64, substeps: u32) -> Vec<Vec3> {
     let outside = Vec3::new(0.6, 0.11, 0.07);
     let bead = moving(beads(vec![inside, deep, outside]), 0.1, Vec3::zeros());
     let mut solver = solver(vec![bead], vec![cube]);
-    let cube =
-        ColliderFrame { push_out: PushOut { share, radius }, thickness: 0.02, ..ColliderFrame::default() };
+    let push_out = PushOut { share, radius };
+    let cube = ColliderFrame { push_out, collide: false, thickness: 0.02, ..ColliderFrame::default() };
     let input = FrameInput { substeps, colliders: vec![cube], ..weightless(vec![bead_settings()]) };
     solver.step(&input, &mut ());
     (0..3).map(|point| solver.point(FIRST, point)).collect()

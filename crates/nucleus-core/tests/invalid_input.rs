@@ -3,7 +3,8 @@
 mod scenes;
 
 use nucleus_core::{
-    ClothId, ColliderId, FrameInput, InvalidInput, MAX_COORDINATE, PointId, Solver, StateView,
+    ClothFrame, ClothId, ColliderFrame, ColliderId, FrameInput, InputMesh, InvalidInput, MAX_COORDINATE, Pin,
+    PointId, Solver, StateView,
 };
 use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 
@@ -94,4 +95,67 @@ fn an_invalid_pin_holds_its_point_at_its_current_position() {
     assert_eq!(report.sanitized.first, Some(InvalidInput::Pin(ClothId(0), PointId(20))));
     let after = solver.point(ClothId(0), 20);
     assert!(report.finite && after == place, "{after}");
+}
+
+#[test]
+fn a_missing_entry_is_the_default_and_is_reported() {
+    let defaults = |input: &mut FrameInput| {
+        input.cloths[0] = ClothFrame::default();
+        input.colliders[0] = ColliderFrame::default();
+    };
+    let (expected, ..) = run(defaults);
+    let (found, count, first, finite) = run(|input| {
+        input.cloths.clear();
+        input.colliders.clear();
+    });
+    assert_eq!((found, count, first, finite), (expected, 2, Some(InvalidInput::ClothCount), true));
+    let (_, count, first, _) = run(|input| input.colliders.push(ColliderFrame::default()));
+    assert_eq!((count, first), (1, Some(InvalidInput::ColliderCount)));
+}
+
+#[test]
+fn a_pin_or_input_mesh_of_nothing_is_dropped_and_reported() {
+    let pin = |cloth, point| Pin {
+        cloth: ClothId(cloth),
+        point: PointId(point),
+        start: Vec3::zeros(),
+        end: Vec3::zeros(),
+    };
+    let (expected, ..) = run(|_| {});
+    for (cloth, point) in [(0, 81), (1, 0), (u32::MAX, u32::MAX)] {
+        let (found, count, first, _) = run(|input| input.pins.push(pin(cloth, point)));
+        assert_eq!(found, expected);
+        assert_eq!((count, first), (1, Some(InvalidInput::NoSuchPin(ClothId(cloth), PointId(point)))));
+    }
+    let mesh = InputMesh { cloth: ClothId(3), start: Vec::new(), end: Vec::new() };
+    let (found, count, first, _) = run(|input| input.input_meshes.push(mesh.clone()));
+    assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::InputMesh(ClothId(3)))));
+}
+
+#[test]
+fn check_frame_refuses_what_a_step_would_replace() {
+    let (builder, _) = drape(9, 24.0);
+    let solver: Solver = Solver::new(builder, 1);
+    let usual = solver.default_frame();
+    assert_eq!(solver.check_frame(&usual), Ok(()));
+    let without = FrameInput { colliders: Vec::new(), ..usual.clone() };
+    let refused = solver.check_frame(&without).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the frame has not one entry per collider; `Solver::default_frame` makes one"
+    );
+    let still = FrameInput { duration: 0.0, ..usual };
+    assert_eq!(solver.check_frame(&still), Err(InvalidInput::Duration));
+}
+
+#[test]
+fn a_default_frame_collides() {
+    let (builder, _) = drape(9, 24.0);
+    let mut solver: Solver = Solver::new(builder, 1);
+    let frame = solver.default_frame();
+    for _ in 0..24 {
+        assert!(solver.step(&frame, &mut ()).finite);
+    }
+    let middle = solver.point(ClothId(0), 40);
+    assert!(middle.y > 0.3, "the sheet rests on the ball, not below it: {middle}");
 }

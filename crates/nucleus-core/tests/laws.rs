@@ -263,7 +263,7 @@ fn pins_and_colliders_move_along_straight_lines_inside_a_frame() {
     let pin = Pin { start, end: start + Vec3::x(), ..pins(&grid(5, 5, Vec3::x(), Vec3::z()), [0])[0] };
     let ball = scenes::sphere(0.31, Vec3::zeros()).positions;
     let end: Vec<Vec3> = ball.iter().map(|p| p + Vec3::y() * 4.0).collect();
-    let colliders = vec![ColliderFrame { start: ball, end, ..ColliderFrame::default() }];
+    let colliders = vec![ColliderFrame { start: ball, end, collide: false, ..ColliderFrame::default() }];
     let input = FrameInput { substeps: 4, pins: vec![pin], colliders, ..input };
     let mut watch = Watch(Vec::new());
     Solver::<f32>::new(builder, 1).step(&input, &mut watch);

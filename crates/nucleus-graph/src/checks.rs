@@ -340,6 +340,18 @@ impl fmt::Display for Check {
 }
 
 impl Form {
+    /// As a scene writes it, with names for the arguments: `restsBy(frame: ..., speed: ...)`.
+    pub fn usage(&self) -> String {
+        match self.parameters {
+            [] => self.name.to_owned(),
+            [only] => format!("{}({only})", self.name),
+            all => {
+                let named: Vec<String> = all.iter().map(|name| format!("{name}: ...")).collect();
+                format!("{}({})", self.name, named.join(", "))
+            }
+        }
+    }
+
     /// All kinds of checks.
     pub fn all() -> &'static [Form] {
         &FORMS

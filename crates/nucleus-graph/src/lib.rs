@@ -13,6 +13,7 @@
 //! | what happens in a frame                          | [`Simulation::advance`]    |
 //! | which conditions a run has to meet               | [`checks::Judge`]          |
 //! | whether anything passes through anything         | [`audit::Audit`]           |
+//! | what looks wrong before the first step           | [`first_frame_warnings`]   |
 //! | how values change over time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
 //! | values that differ from point to point           | [`paint`]                  |
@@ -30,6 +31,7 @@ pub mod checks;
 pub mod compile;
 mod diagnostic;
 mod files;
+mod first_frame;
 pub mod graph;
 pub mod memory;
 pub mod mesh;
@@ -39,4 +41,5 @@ mod simulation;
 
 pub use checks::FrameReport;
 pub use files::LineSpan;
+pub use first_frame::first_frame_warnings;
 pub use simulation::Simulation;

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_cache::{ObjectInfo, ObjectKind, Playback};
+use nucleus_cache::{Camera, CameraView, ObjectInfo, ObjectKind, Playback, TextureCoordinates};
 
 use crate::error::ExportError;
 
@@ -136,6 +136,31 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     /// The radius of an object's particles in exported units; `None` for other objects.
     pub fn radius(&self, object: usize) -> Option<f64> {
         self.cache.run().radii.get(&self.object(object).name).map(|radius| radius * self.scale)
+    }
+
+    /// The texture coordinates of an object; they fit its first mesh.
+    pub fn texture_coordinates(&self, object: usize) -> Option<&TextureCoordinates> {
+        let info = self.object(object);
+        let found = self.cache.run().texture_coordinates.get(&info.name)?;
+        found.fit(info.rest.len(), info.faces.corners().len()).then_some(found)
+    }
+
+    /// The cameras of the run.
+    pub fn cameras(&self) -> &[Camera] {
+        &self.cache.run().cameras
+    }
+
+    /// A camera at a sample, with lengths in exported units.
+    pub fn camera_view(&self, camera: usize, sample: usize) -> CameraView {
+        let camera = &self.cameras()[camera];
+        let place = self.samples[sample].frame_time - f64::from(self.cache.run().start);
+        let last = camera.views.len() - 1;
+        let before = (place.max(0.0) as usize).min(last);
+        let after = (before + 1).min(last);
+        let share = (place - before as f64).clamp(0.0, 1.0) as f32;
+        let view = CameraView::between(&camera.views[before], &camera.views[after], share);
+        let eye = view.eye.map(|x| (f64::from(x) * self.scale) as f32);
+        CameraView { eye, ..view }
     }
 
     /// The samples in order of time; at least one.

@@ -10,7 +10,7 @@ use crate::error::ExportError;
 use crate::mesh_files::{write_obj, write_ply};
 use crate::output::Output;
 use crate::point_caches::{write_mdd, write_pc2};
-use crate::{foxglove, glb, ncache, usda, vtu};
+use crate::{foxglove, glb, ncache, usd, vtu};
 
 /// A format of another tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub enum Format {
     Mdd,
     /// One scene of Pixar's USD as text, with time samples.
     Usda,
+    /// The same as binary, which Maya, Houdini and Blender open too.
+    Usdc,
     /// One binary glTF file, with a morph target per sample.
     Glb,
     /// A VTK file per object and sample, and a ParaView collection per object.
@@ -39,12 +41,13 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Obj,
         Self::Ply,
         Self::Pc2,
         Self::Mdd,
         Self::Usda,
+        Self::Usdc,
         Self::Glb,
         Self::Vtu,
         Self::Mc,
@@ -60,6 +63,7 @@ impl Format {
             Self::Pc2 => "pc2",
             Self::Mdd => "mdd",
             Self::Usda => "usda",
+            Self::Usdc => "usdc",
             Self::Glb => "glb",
             Self::Vtu => "vtu",
             Self::Mc => "mc",
@@ -70,7 +74,7 @@ impl Format {
 
     /// Whether the export is one file; otherwise it is a folder.
     pub fn is_one_file(self) -> bool {
-        matches!(self, Self::Usda | Self::Glb | Self::Foxglove)
+        matches!(self, Self::Usda | Self::Usdc | Self::Glb | Self::Foxglove)
     }
 
     /// The format of a file extension, if one has it.
@@ -78,7 +82,7 @@ impl Format {
         let end = path.extension()?.to_str()?.to_ascii_lowercase();
         match end.as_str() {
             "mcap" => Some(Self::Foxglove),
-            "usd" => Some(Self::Usda),
+            "usd" => Some(Self::Usdc),
             "xml" => Some(Self::Mcx),
             "pvd" => Some(Self::Vtu),
             end => Self::ALL.into_iter().find(|format| format.name() == end),
@@ -89,7 +93,7 @@ impl Format {
     pub fn default_name(self, stem: &str) -> String {
         match self {
             Self::Foxglove => format!("{stem}.foxglove.mcap"),
-            Self::Usda | Self::Glb => format!("{stem}.{}", self.name()),
+            Self::Usda | Self::Usdc | Self::Glb => format!("{stem}.{}", self.name()),
             _ => format!("{stem}_{}", self.name()),
         }
     }
@@ -153,7 +157,8 @@ pub fn export<R: Read + Seek>(
         Format::Ply => write_ply(&mut clip, out, &mut output, progress)?,
         Format::Pc2 => write_pc2(&mut clip, out, &mut output, progress)?,
         Format::Mdd => write_mdd(&mut clip, out, &mut output, progress)?,
-        Format::Usda => usda::write(&mut clip, out, &mut output, progress)?,
+        Format::Usda => usd::write_text(&mut clip, out, &mut output, progress)?,
+        Format::Usdc => usd::write_binary(&mut clip, out, &mut output, progress)?,
         Format::Glb => glb::write(&mut clip, out, &mut output, progress)?,
         Format::Vtu => vtu::write(&mut clip, out, &mut output, progress)?,
         Format::Mc => ncache::write(&mut clip, out, ncache::Width::Bits32, &mut output, progress)?,

@@ -1,7 +1,8 @@
 //! Binary glTF 2.0: a mesh per object, a morph target per sample, and an animation of the target weights.
 //!
 //! The weight of target k is 1 at sample k, and all weights are 0 at sample 0. Between samples the weights are linear,
-//! so points move along straight lines, as in a point cache.
+//! so points move along straight lines, as in a point cache. Normals are morphed with the positions. Texture coordinates
+//! are exported where each point has one: a seam would need two points. Each camera is a node with its motion.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -11,6 +12,8 @@ use serde_json::{Value, json};
 
 use crate::clip::{Clip, extent};
 use crate::error::ExportError;
+use crate::materials;
+use crate::normals::normals;
 use crate::output::{OutFile, Output};
 
 const FLOAT: u32 = 5126;
@@ -41,6 +44,7 @@ pub(crate) fn write<R: Read + Seek>(
     file.bytes(&(length as u32).to_le_bytes());
     file.bytes(b"BIN\0");
     write_times(clip, &mut file);
+    write_cameras(clip, &mut file);
     for (object, moves) in moving.iter().enumerate() {
         write_object(clip, object, *moves, &mut file)?;
         progress(0.5 + 0.5 * (object + 1) as f64 / moving.len() as f64);
@@ -58,7 +62,12 @@ struct Document {
 impl Document {
     /// Adds an array of values; returns the index of its accessor.
     fn add(&mut self, kind: &str, component: u32, count: usize, target: Option<u32>, bounds: Value) -> usize {
-        let components = if kind == "VEC3" { 3 } else { 1 };
+        let components = match kind {
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 1,
+        };
         let bytes = 4 * (components * count) as u64;
         let mut view = json!({ "buffer": 0, "byteOffset": self.length, "byteLength": bytes });
         if let Some(target) = target {
@@ -73,6 +82,10 @@ impl Document {
         self.accessors.push(accessor);
         self.length += bytes;
         self.accessors.len() - 1
+    }
+
+    fn add_floats(&mut self, kind: &str, count: usize, target: Option<u32>) -> usize {
+        self.add(kind, FLOAT, count, target, Value::Null)
     }
 
     fn add_points(&mut self, points: &[[f32; 3]]) -> usize {
@@ -93,6 +106,14 @@ fn describe<R: Read + Seek>(
     let objects = clip.objects().len();
     let (mut meshes, mut nodes, mut moving) = (Vec::new(), Vec::new(), Vec::new());
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+    for camera in 0..clip.cameras().len() {
+        for (path, kind) in CAMERA_CHANNELS {
+            let output = document.add_floats(kind, times.len(), None);
+            let target = json!({ "node": objects + camera, "path": path });
+            channels.push(json!({ "sampler": samplers.len(), "target": target }));
+            samplers.push(json!({ "input": time, "output": output, "interpolation": "LINEAR" }));
+        }
+    }
     for object in 0..objects {
         clip.require_constant_topology(object, "glTF")?;
         let moves = clip.moves(object)?;
@@ -108,16 +129,23 @@ fn describe<R: Read + Seek>(
         moving.push(moves);
         progress((object + 1) as f64 / objects as f64);
     }
+    for (camera, described) in clip.cameras().iter().enumerate() {
+        nodes.push(json!({ "name": described.name, "camera": camera }));
+    }
     let mut text = json!({
         "asset": { "version": "2.0", "generator": concat!("nucleus ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
-        "scenes": [{ "name": clip.title(), "nodes": (0..objects).collect::<Vec<_>>() }],
+        "scenes": [{ "name": clip.title(), "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
         "nodes": nodes,
         "meshes": meshes,
+        "materials": describe_materials(clip),
         "accessors": document.accessors,
         "bufferViews": document.views,
         "buffers": [{ "byteLength": document.length }],
     });
+    if !clip.cameras().is_empty() {
+        text["cameras"] = (0..clip.cameras().len()).map(|camera| describe_camera(clip, camera)).collect();
+    }
     if !channels.is_empty() {
         text["animations"] = json!([{ "name": "run", "samplers": samplers, "channels": channels }]);
     }
@@ -131,6 +159,7 @@ fn describe_mesh<R: Read + Seek>(
     document: &mut Document,
 ) -> Result<Value, ExportError> {
     let base = clip.positions(object, 0)?;
+    let has_uvs = uvs_of_points(clip, object).is_some();
     let info = clip.object_at(object, 0)?;
     let corners = 3 * info.faces.triangles().count();
     let mut primitive = json!({ "mode": if corners > 0 { TRIANGLES } else { POINTS } });
@@ -139,13 +168,26 @@ fn describe_mesh<R: Read + Seek>(
             document.add("SCALAR", UNSIGNED_INT, corners, Some(ELEMENT_ARRAY_BUFFER), Value::Null).into();
     }
     let name = info.name.clone();
+    primitive["material"] = object.into();
     primitive["attributes"] = json!({ "POSITION": document.add_points(&base) });
+    if corners > 0 {
+        primitive["attributes"]["NORMAL"] =
+            document.add_floats("VEC3", base.len(), Some(ARRAY_BUFFER)).into();
+    }
+    if has_uvs {
+        primitive["attributes"]["TEXCOORD_0"] =
+            document.add_floats("VEC2", base.len(), Some(ARRAY_BUFFER)).into();
+    }
     let mut mesh = json!({ "name": name });
     if moves {
         let (mut targets, mut names) = (Vec::new(), Vec::new());
         for sample in 1..clip.samples().len() {
             let moved = displacements(clip, object, sample, &base)?;
-            targets.push(json!({ "POSITION": document.add_points(&moved) }));
+            let mut target = json!({ "POSITION": document.add_points(&moved) });
+            if corners > 0 {
+                target["NORMAL"] = document.add_floats("VEC3", base.len(), Some(ARRAY_BUFFER)).into();
+            }
+            targets.push(target);
             names.push(format!("frame {}", clip.samples()[sample].frame_time));
         }
         mesh["weights"] = vec![0; targets.len()].into();
@@ -164,14 +206,28 @@ fn write_object<R: Read + Seek>(
     file: &mut OutFile,
 ) -> Result<(), ExportError> {
     let base = clip.positions(object, 0)?;
+    let uvs = uvs_of_points(clip, object).map(<[_]>::to_vec);
+    let faces = clip.object_at(object, 0)?.faces.clone();
     write_triangles(clip.object_at(object, 0)?, file);
     file.floats_le(&base);
+    let rest = normals(&faces, &base);
+    if !faces.is_empty() {
+        file.floats_le(&rest);
+    }
+    // The first row of a picture is its top in glTF.
+    for [u, v] in uvs.unwrap_or_default() {
+        [u, 1.0 - v].iter().for_each(|x| file.bytes(&x.to_le_bytes()));
+    }
     if !moves {
         return Ok(());
     }
     let samples = clip.samples().len();
     for sample in 1..samples {
         file.floats_le(&displacements(clip, object, sample, &base)?);
+        if !faces.is_empty() {
+            let now = normals(&faces, &clip.positions(object, sample)?);
+            file.floats_le(&differences(&now, &rest));
+        }
     }
     for sample in 0..samples {
         for target in 1..samples {
@@ -203,12 +259,77 @@ fn displacements<R: Read + Seek>(
     sample: usize,
     base: &[[f32; 3]],
 ) -> Result<Vec<[f32; 3]>, ExportError> {
-    let positions = clip.positions(object, sample)?;
-    Ok(positions
-        .iter()
-        .zip(base)
-        .map(|(now, then)| std::array::from_fn(|axis| now[axis] - then[axis]))
-        .collect())
+    Ok(differences(&clip.positions(object, sample)?, base))
+}
+
+fn differences(now: &[[f32; 3]], then: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    now.iter().zip(then).map(|(now, then)| std::array::from_fn(|axis| now[axis] - then[axis])).collect()
+}
+
+/// The texture coordinates of an object, where each point has one.
+fn uvs_of_points<'a, R: Read + Seek>(clip: &'a Clip<R>, object: usize) -> Option<&'a [[f32; 2]]> {
+    let uvs = clip.texture_coordinates(object)?;
+    uvs.corners.is_empty().then_some(uvs.values.as_slice())
+}
+
+fn describe_materials<R: Read + Seek>(clip: &Clip<R>) -> Value {
+    let colours = materials::colours(clip.objects().map(|object| object.kind));
+    let material = |(object, [red, green, blue]): (&ObjectInfo, [f32; 3])| {
+        let surface = json!({
+            "baseColorFactor": [red, green, blue, 1.0],
+            "metallicFactor": 0,
+            "roughnessFactor": materials::ROUGHNESS,
+        });
+        json!({ "name": object.name, "doubleSided": true, "pbrMetallicRoughness": surface })
+    };
+    clip.objects().zip(colours).map(material).collect()
+}
+
+/// The channels of the motion of a camera.
+const CAMERA_CHANNELS: [(&str, &str); 2] = [("translation", "VEC3"), ("rotation", "VEC4")];
+
+/// The lens of a camera, at the first sample.
+fn describe_camera<R: Read + Seek>(clip: &Clip<R>, camera: usize) -> Value {
+    let view = clip.camera_view(camera, 0);
+    let aspect = view.film[0] / view.film[1];
+    let [_, upward] = view.tangents(clip.cameras()[camera].fit, aspect);
+    let lens = json!({ "yfov": 2.0 * upward.atan(), "aspectRatio": aspect, "znear": 0.01 });
+    json!({ "name": clip.cameras()[camera].name, "type": "perspective", "perspective": lens })
+}
+
+fn write_cameras<R: Read + Seek>(clip: &Clip<R>, file: &mut OutFile) {
+    for camera in 0..clip.cameras().len() {
+        let samples = 0..clip.samples().len();
+        samples.clone().for_each(|sample| file.floats_le(&[clip.camera_view(camera, sample).eye]));
+        let mut before = [0.0; 4];
+        for sample in samples {
+            let mut turn = quaternion(&clip.camera_view(camera, sample).matrix());
+            // Of a rotation's two quaternions, the one nearer to that of the sample before.
+            if turn.iter().zip(&before).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
+                turn = turn.map(|x| -x);
+            }
+            before = turn;
+            turn.iter().for_each(|x| file.bytes(&(*x as f32).to_le_bytes()));
+        }
+    }
+}
+
+/// The rotation of a matrix whose rows are the axes, as a quaternion x, y, z, w (Shepperd 1978).
+fn quaternion(rows: &[[f64; 4]; 4]) -> [f64; 4] {
+    let [x, y, z] = [rows[0], rows[1], rows[2]];
+    let trace = x[0] + y[1] + z[2];
+    let squares = [x[0] - y[1] - z[2], y[1] - x[0] - z[2], z[2] - x[0] - y[1], trace].map(|s| 1.0 + s);
+    let largest = (0..4).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).unwrap_or(3);
+    let (xy, xz, yz) = (x[1] + y[0], x[2] + z[0], y[2] + z[1]);
+    let (dx, dy, dz) = (y[2] - z[1], z[0] - x[2], x[1] - y[0]);
+    let square = squares[largest];
+    let turn = match largest {
+        0 => [square, xy, xz, dx],
+        1 => [xy, square, yz, dy],
+        2 => [xz, yz, square, dz],
+        _ => [dx, dy, dz, square],
+    };
+    turn.map(|part| part * 0.5 / square.sqrt())
 }
 
 /// Pads to a multiple of four bytes.

@@ -7,7 +7,9 @@
 //! | which objects and frames are selected, in which units  | [`Clip`]                               |
 //! | how names are made valid, and files appear complete    | `output.rs`                            |
 //! | OBJ and PLY; PC2 and MDD                               | `mesh_files.rs`; `point_caches.rs`     |
-//! | the bytes of another format                            | its file: `usda.rs`, `glb.rs`, …       |
+//! | USD as text and as binary                              | `usd/`                                 |
+//! | materials and normals, for the formats that have them  | `materials.rs`, `normals.rs`           |
+//! | the bytes of another format                            | its file: `glb.rs`, `vtu.rs`, …        |
 //!
 //! **Invariant:** in every format the points have the order and count of the cache, and a position differs from the
 //! recorded one by no more than the rounding of one `f32`.
@@ -19,11 +21,13 @@ mod error;
 mod export;
 mod foxglove;
 mod glb;
+mod materials;
 mod mesh_files;
 mod ncache;
+mod normals;
 mod output;
 mod point_caches;
-mod usda;
+mod usd;
 mod vtu;
 
 pub use clip::{Clip, Sample, Selection};

@@ -3,10 +3,11 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::ObjectInfo;
+use nucleus_cache::{ObjectInfo, TextureCoordinates};
 
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
+use crate::materials;
 use crate::output::{OutFile, Output, file_names};
 
 /// Writes `<object>.<frame>.obj` into a folder.
@@ -16,7 +17,33 @@ pub(crate) fn write_obj<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    each_file(clip, folder, "obj", output, progress, write_obj_mesh)
+    write_obj_materials(clip, folder, output)?;
+    each_file(clip, folder, "obj", output, progress, |file, object, positions, uvs| {
+        file.text(format!("mtllib {OBJ_MATERIALS}\n"));
+        write_obj_mesh(file, object, positions, uvs);
+    })
+}
+
+/// The file of the materials beside the meshes.
+const OBJ_MATERIALS: &str = "materials.mtl";
+
+/// Writes a material per object, under its name.
+fn write_obj_materials<R: Read + Seek>(
+    clip: &Clip<R>,
+    folder: &Path,
+    output: &mut Output,
+) -> Result<(), ExportError> {
+    let mut file = output.file(folder.join(OBJ_MATERIALS))?;
+    let colours = materials::colours(clip.objects().map(|object| object.kind));
+    for (object, [red, green, blue]) in clip.objects().zip(colours) {
+        file.text(format!("newmtl {}\nKd {red} {green} {blue}\nillum 1\n", obj_name(&object.name)));
+    }
+    output.finish(file)
+}
+
+/// A line break in a name would begin a statement.
+fn obj_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect()
 }
 
 /// Writes a file per object and sample.
@@ -26,7 +53,7 @@ fn each_file<R: Read + Seek>(
     end: &str,
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
-    mut write: impl FnMut(&mut OutFile, &ObjectInfo, &[[f32; 3]]),
+    mut write: impl FnMut(&mut OutFile, &ObjectInfo, &[[f32; 3]], Option<&TextureCoordinates>),
 ) -> Result<(), ExportError> {
     let names = file_names(clip.objects().map(|object| object.name.as_str()));
     for sample in 0..clip.samples().len() {
@@ -34,7 +61,10 @@ fn each_file<R: Read + Seek>(
         for (object, name) in names.iter().enumerate() {
             let positions = clip.positions(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{frame}.{end}")))?;
-            write(&mut file, clip.object_at(object, sample)?, &positions);
+            let uvs = clip.texture_coordinates(object).cloned();
+            let object = clip.object_at(object, sample)?;
+            let uvs = uvs.filter(|uvs| uvs.fit(object.rest.len(), object.faces.corners().len()));
+            write(&mut file, object, &positions, uvs.as_ref());
             output.finish(file)?;
         }
         progress((sample + 1) as f64 / clip.samples().len() as f64);
@@ -52,16 +82,33 @@ pub(crate) fn numbered(sample: &Sample) -> String {
 
 /// Writes an object as OBJ with these positions, points without faces included. Blender keeps those when it imports PLY,
 /// and drops them when it imports OBJ.
-pub(crate) fn write_obj_mesh(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]]) {
-    // A line break in the name would begin a statement.
-    let name: String = object.name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
+pub(crate) fn write_obj_mesh(
+    file: &mut OutFile,
+    object: &ObjectInfo,
+    positions: &[[f32; 3]],
+    uvs: Option<&TextureCoordinates>,
+) {
+    let name = obj_name(&object.name);
     file.text(format!("o {name}\n"));
     for [x, y, z] in positions {
         file.text(format!("v {x} {y} {z}\n"));
     }
+    for [u, v] in uvs.map_or(&[][..], |uvs| &uvs.values) {
+        file.text(format!("vt {u} {v}\n"));
+    }
+    file.text(format!("usemtl {name}\n"));
+    let mut next = 0;
     for face in object.faces.iter() {
-        let corners: Vec<String> = face.iter().map(|point| (point + 1).to_string()).collect();
+        let corner = |(k, point): (usize, &u32)| match uvs {
+            None => (point + 1).to_string(),
+            Some(uvs) => {
+                let uv = uvs.corners.get(next + k).unwrap_or(point);
+                format!("{}/{}", point + 1, uv + 1)
+            }
+        };
+        let corners: Vec<String> = face.iter().enumerate().map(corner).collect();
         file.text(format!("f {}\n", corners.join(" ")));
+        next += face.len();
     }
     if object.faces.is_empty() {
         (1..=positions.len()).for_each(|point| file.text(format!("p {point}\n")));
@@ -75,7 +122,9 @@ pub(crate) fn write_ply<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    each_file(clip, folder, "ply", output, progress, write_ply_mesh)
+    each_file(clip, folder, "ply", output, progress, |file, object, positions, _| {
+        write_ply_mesh(file, object, positions);
+    })
 }
 
 fn write_ply_mesh(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]]) {

@@ -91,6 +91,11 @@ impl OutFile {
         values.as_flattened().iter().for_each(|x| self.bytes(&x.to_be_bytes()));
     }
 
+    /// Keeps an error that is not one of writing.
+    pub fn fail(&mut self, error: io::Error) {
+        self.failed.get_or_insert(error);
+    }
+
     /// Whether a write has failed, after which all further work on the file is wasted.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()

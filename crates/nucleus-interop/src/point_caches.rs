@@ -47,7 +47,8 @@ fn point_caches<R: Read + Seek>(
         // The mesh has the positions of the first sample, so that it agrees with the start of the point cache.
         let first = clip.positions(object, 0)?;
         let mut mesh = output.file(folder.join(format!("{name}.obj")))?;
-        write_obj_mesh(&mut mesh, clip.object_at(object, 0)?, &first);
+        let uvs = clip.texture_coordinates(object).cloned();
+        write_obj_mesh(&mut mesh, clip.object_at(object, 0)?, &first, uvs.as_ref());
         output.finish(mesh)?;
         let mut file = output.file(folder.join(format!("{name}.{end}")))?;
         head(clip, first.len(), &mut file);

@@ -274,7 +274,7 @@ fn a_selection_exports_the_named_objects_and_refuses_missing_ones() {
         ..Selection::default()
     };
     let (_folder, out, exported) = exported(Format::Obj, some);
-    assert_eq!((exported.samples, exported.objects, exported.files.len()), (3, 2, 6));
+    assert_eq!((exported.samples, exported.objects, exported.files.len()), (3, 2, 7));
     assert!(out.join("wall.0010.obj").exists() && !out.join("wall.0005.obj").exists());
     let (folder, _) = all(Format::Obj);
     let refusal = |selection: Selection| {
@@ -303,4 +303,66 @@ fn a_file_is_replaced_only_on_request_and_no_partial_file_remains() {
     let names: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(names.len(), 2, "the cache and the export: {names:?}");
+}
+
+#[test]
+fn texture_coordinates_reach_the_formats_that_have_them() {
+    let (_folder, out) = all(Format::Obj);
+    let text = fs::read_to_string(out.join("wall.0003.obj")).unwrap();
+    assert_eq!(text.lines().filter(|line| line.starts_with("vt ")).count(), 4);
+    assert!(text.contains("f 1/1 2/2 3/3 4/4") && text.contains("mtllib materials.mtl"), "{text}");
+    let text =
+        fs::read_to_string(out.join("1_cart.0003.obj")).or(fs::read_to_string(out.join("_1_cart.0003.obj")));
+    assert!(text.unwrap().contains("f 1/2 2/1 3/2 4/1 5/2"), "a mesh with seams has a value per corner");
+    let (_folder, out) = all(Format::Usda);
+    let text = fs::read_to_string(out).unwrap();
+    assert!(text.contains("texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1)]"), "{text}");
+    assert!(text.contains("int[] primvars:st:indices = [1, 0, 1, 0, 1]") && text.contains("\"faceVarying\""));
+    let (_folder, out) = all(Format::Glb);
+    let (text, _) = parts(&out);
+    let wall = text["meshes"].as_array().unwrap().iter().find(|mesh| mesh["name"] == "wall").unwrap();
+    assert!(wall["primitives"][0]["attributes"]["TEXCOORD_0"].is_number());
+    assert_eq!(text["materials"][0]["doubleSided"], true);
+}
+
+#[test]
+fn cameras_and_materials_reach_usd_and_gltf() {
+    let (_folder, out) = all(Format::Usda);
+    let text = fs::read_to_string(out).unwrap();
+    for part in [
+        "def Camera \"shot\"",
+        "matrix4d xformOp:transform.timeSamples",
+        "float focalLength.timeSamples",
+        "rel material:binding = </run/materials/wall>",
+        "token info:id = \"UsdPreviewSurface\"",
+        "normal3f[] normals.timeSamples",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let (_folder, out) = all(Format::Glb);
+    let (text, _) = parts(&out);
+    assert_eq!(text["cameras"][0]["type"], "perspective");
+    let paths: Vec<&str> = text["animations"][0]["channels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|channel| channel["target"]["path"].as_str().unwrap())
+        .collect();
+    assert_eq!(paths[..2], ["translation", "rotation"]);
+}
+
+#[test]
+fn binary_usd_has_the_tokens_and_values_of_the_text() {
+    let (_folder, out) = all(Format::Usdc);
+    let bytes = fs::read(out).unwrap();
+    assert_eq!(&bytes[..11], b"PXR-USDC\0\x08\0");
+    let has = |part: &[u8]| bytes.windows(part.len()).any(|window| window == part);
+    for token in ["faceVertexIndices", "points", "MaterialBindingAPI", "primvars:st", "timeSamples", "Camera"]
+    {
+        assert!(has(&[token.as_bytes(), &[0]].concat()), "{token}");
+    }
+    let raw: Vec<u8> = sheet(9).as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    assert!(has(&raw), "positions are as recorded");
+    let contents = u64::from_le_bytes(bytes[16..24].try_into().unwrap()) as usize;
+    assert_eq!(bytes[contents..contents + 8], 6_u64.to_le_bytes(), "six sections");
 }

@@ -8,6 +8,7 @@
 //! | how frames become an animated PNG or a GIF      | [`AnimationWriter`], [`GifWriter`]        |
 //! | how strain becomes a colour                     | [`Colouring::Strain`]                     |
 //! | how the page and the cache reach the browser    | [`serve()`]                               |
+//! | how a run is shown while it is solved           | [`LiveRun`], [`serve_live`]               |
 //! | how the player reads a cache                    | `assets/player/cache.js`                  |
 //!
 //! **Invariant:** this crate does not depend on how a run was solved. It draws any numbers, and the same numbers give the
@@ -19,6 +20,7 @@ mod player;
 
 pub use error::ViewError;
 pub use picture::{
-    AnimationWriter, Bounds, Camera, Colouring, Film, GifWriter, Ground, Image, Kind, Object, Style, draw,
+    AnimationWriter, Background, Bounds, Camera, Colouring, Film, GifWriter, Ground, Image, Kind, Object,
+    Style, draw,
 };
-pub use player::{Player, serve, serve_both};
+pub use player::{LiveRun, Player, serve, serve_both, serve_live};

@@ -5,7 +5,8 @@ use std::io::BufReader;
 
 use nucleus_core::Faces;
 use nucleus_view::{
-    AnimationWriter, Bounds, Camera, Colouring, Ground, Image, Kind, Object, Style, ViewError, draw,
+    AnimationWriter, Background, Bounds, Camera, Colouring, Ground, Image, Kind, Object, Style, ViewError,
+    draw,
 };
 use proptest::prelude::*;
 
@@ -202,4 +203,45 @@ fn an_animation_refuses_frames_of_another_size_and_needs_a_frame() {
     assert!(matches!(film.finish(), Err(ViewError::NoFrame { .. })));
     let nowhere = folder.path().join("missing").join("still.png");
     assert!(matches!(image.write_png(nowhere), Err(ViewError::Create { .. })));
+}
+
+#[test]
+fn a_transparent_background_has_opacities_that_follow_the_objects() {
+    let faces = one_face();
+    let sheet = square(0.0, 1.0);
+    let style = Style { background: Background::Transparent, ground: Ground::Below, samples: 4, ..small() };
+    let picture = draw(&[object(Kind::Cloth, &faces, &sheet)], &FROM_ABOVE, &style);
+    let [width, height] = picture.size();
+    let at = |column: u32, row: u32| picture.alpha()[(row * width + column) as usize];
+    assert_eq!((at(width / 2, height / 2), at(0, 0)), (255, 0), "the sheet is opaque, and there is no floor");
+    let partly = picture.alpha().iter().filter(|alpha| !matches!(alpha, 0 | 255)).count();
+    assert!(partly > 0, "supersampling gives the edge opacities in between");
+    assert!(draw(&[], &FROM_ABOVE, &small()).alpha().is_empty(), "other pictures are opaque");
+}
+
+#[test]
+fn the_back_of_a_cloth_is_lit() {
+    let faces = one_face();
+    let sheet = square(0.0, 1.0);
+    let from_below = Camera { eye: [0.0, -10.0, 0.1], ..FROM_ABOVE };
+    let side = |camera: &Camera| {
+        let picture = draw(&[object(Kind::Cloth, &faces, &sheet)], camera, &small());
+        brightness(picture.pixel(32, 24))
+    };
+    let [front, back] = [side(&FROM_ABOVE), side(&from_below)];
+    assert!(3 * back > front && back < front, "{back} of {front}");
+}
+
+#[test]
+fn a_tint_replaces_the_colour_of_the_object_with_its_name() {
+    let faces = one_face();
+    let sheet = square(0.0, 1.0);
+    let tinted = |name: &str| {
+        let tints = vec![(name.to_owned(), [0.0, 0.0, 1.0])];
+        let style = Style { tints, background: Background::Colour([1.0; 3]), ..small() };
+        draw(&[object(Kind::Cloth, &faces, &sheet)], &FROM_ABOVE, &style).pixel(32, 24)
+    };
+    let [red, _, blue] = tinted("thing");
+    assert!(blue > 2 * red, "{red} {blue}");
+    assert!(tinted("other")[0] > tinted("other")[2], "madder, the first colour of cloths");
 }

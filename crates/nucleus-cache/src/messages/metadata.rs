@@ -1,4 +1,5 @@
-//! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene` and `nucleus.cameras`.
+//! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene`, `nucleus.cameras` and
+//! `nucleus.uvs`.
 
 use std::collections::BTreeMap;
 
@@ -8,6 +9,7 @@ use crate::camera;
 use crate::error::OpenError;
 use crate::messages::attribute::{CONTACTS, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo};
+use crate::texture_coordinates;
 
 /// Format version. A reader refuses a higher one.
 const FORMAT: u32 = 1;
@@ -16,6 +18,7 @@ pub(crate) const PROFILE: &str = "nucleus";
 pub(crate) const LIBRARY: &str = concat!("nucleus ", env!("CARGO_PKG_VERSION"));
 const SCENE: &str = "nucleus.scene";
 const CAMERAS: &str = "nucleus.cameras";
+const UVS: &str = "nucleus.uvs";
 const RUN: &str = "nucleus.run";
 /// Number of cameras; a reader detects a lost camera by it.
 const COUNT_OF_CAMERAS: &str = "cameras";
@@ -73,9 +76,13 @@ impl RunInfo {
         [with_checksum(SCENE, scene.into()), with_checksum(RUN, run)]
     }
 
-    /// The camera record, if there are cameras.
-    pub(crate) fn cameras_to_metadata(&self) -> Option<Metadata> {
-        (!self.cameras.is_empty()).then(|| with_checksum(CAMERAS, camera::to_keys(&self.cameras)))
+    /// The record of the cameras and that of the texture coordinates, if there are any.
+    pub(crate) fn extras_to_metadata(&self) -> impl Iterator<Item = Metadata> {
+        let cameras =
+            (!self.cameras.is_empty()).then(|| with_checksum(CAMERAS, camera::to_keys(&self.cameras)));
+        let uvs = (!self.texture_coordinates.is_empty())
+            .then(|| with_checksum(UVS, texture_coordinates::to_keys(&self.texture_coordinates)));
+        cameras.into_iter().chain(uvs)
     }
 
     /// The run, and whether its scene is undamaged. A damaged scene is left out.
@@ -97,6 +104,9 @@ impl RunInfo {
         let scene = find(SCENE).filter(|record| checksum_holds(record));
         let cameras = find(CAMERAS).filter(|record| checksum_holds(record));
         let cameras = cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default();
+        // Lost coordinates cost a texture in an export, no frame.
+        let uvs = find(UVS).filter(|record| checksum_holds(record));
+        let uvs = uvs.map(|record| texture_coordinates::from_keys(&record.metadata)).unwrap_or_default();
         let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
         let (scene_is_sound, mut scene) =
             (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
@@ -115,6 +125,7 @@ impl RunInfo {
             ground: run.ground()?,
             radii: run.radii()?,
             cameras,
+            texture_coordinates: uvs,
             checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
             packing: run.packing(),
             version,
@@ -265,7 +276,7 @@ mod tests {
         let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
         let run = RunInfo { cameras: vec![camera], ..RunInfo::default() };
         let [scene, record] = run.to_metadata();
-        let mut cameras = run.cameras_to_metadata().unwrap();
+        let mut cameras = run.extras_to_metadata().next().unwrap();
         let read = |cameras: &Metadata| {
             RunInfo::from_metadata(&[scene.clone(), record.clone(), cameras.clone()]).unwrap()
         };

@@ -110,7 +110,7 @@ impl<R: Read + Seek> Playback<R> {
                 checkpoint: 0,
                 ..run.clone()
             };
-            let records = run.to_metadata().into_iter().chain(run.cameras_to_metadata());
+            let records = run.to_metadata().into_iter().chain(run.extras_to_metadata());
             records.for_each(|record| self.file_index.set_metadata(record));
             self.corruption.scene = false;
             self.run = run;

@@ -260,7 +260,7 @@ impl<W: Write + Seek> Recorder<W> {
 
     /// Writes the records before the first frame: metadata, channels, meshes.
     fn begin(&mut self, objects: Vec<(Source, ObjectInfo)>) -> Result<(), RecordError> {
-        for record in self.run.to_metadata().into_iter().chain(self.run.cameras_to_metadata()) {
+        for record in self.run.to_metadata().into_iter().chain(self.run.extras_to_metadata()) {
             self.writer.metadata(&record)?;
         }
         let schemas = self.writer.own_schemas(|one| one.is_recorded(&self.run), self.run.checkpoint > 0)?;

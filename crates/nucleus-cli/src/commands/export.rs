@@ -76,8 +76,13 @@ impl clap::ValueEnum for Wanted {
             Format::Ply => "binary PLY, a file per object and frame",
             Format::Pc2 => "point caches of 3ds Max and Blender, with their meshes",
             Format::Mdd => "point caches of LightWave, Modo and Houdini, with their meshes",
-            Format::Usda => "USD with time samples, one file",
-            Format::Glb => "glTF with morph targets, one file",
+            Format::Usda => {
+                "USD with time samples as text, one file: meshes, UVs, normals, materials, cameras"
+            }
+            Format::Usdc => "the same as binary, for Maya, Houdini and Blender",
+            Format::Glb => {
+                "glTF with morph targets, one file: UVs without seams, normals, materials, cameras"
+            }
             Format::Vtu => "VTK and ParaView, a file per object and frame",
             Format::Mc => "Maya nCache, 32 bit",
             Format::Mcx => "Maya nCache, 64 bit",
@@ -157,6 +162,13 @@ impl Export {
     /// The format and the path of the output.
     fn target(&self) -> Result<(Format, PathBuf)> {
         let named = self.out.as_deref().and_then(Format::of_path);
+        let end = self.out.as_deref().and_then(std::path::Path::extension);
+        if self.format.is_none() && end.is_some_and(|end| end.eq_ignore_ascii_case("abc")) {
+            bail!(
+                "Alembic is not written; `--as usdc` opens in Maya, Houdini and Blender with meshes, motion, UVs and cameras, \
+                 `--as mdd` and `--as pc2` are point caches, `--as mcx` is Maya's nCache"
+            );
+        }
         let Some(format) = self.format.and_then(|wanted| wanted.0).or(named) else {
             let all: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!("the format is unknown; give `--as` one of {}", all.join(", "));

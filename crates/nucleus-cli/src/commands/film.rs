@@ -1,5 +1,6 @@
 //! Output of `nucleus render`: a still, an animation, a film by ffmpeg, or a sequence of pictures.
 
+use std::fmt;
 use std::fs;
 use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -8,6 +9,8 @@ use std::process::{Child, Command, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::atomic_file::AtomicFile;
 use nucleus_view::{AnimationWriter, Film, GifWriter, Image};
+
+use crate::process;
 
 /// Kinds of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +79,18 @@ pub fn write<R: Read + Seek>(
     Ok(out.to_owned())
 }
 
+/// The command was interrupted; its unfinished files are gone.
+#[derive(Debug)]
+pub struct Interrupted;
+
+impl fmt::Display for Interrupted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("interrupted")
+    }
+}
+
+impl std::error::Error for Interrupted {}
+
 /// Writes one picture.
 pub fn picture(image: &Image, out: &Path) -> Result<()> {
     Ok(image.write_png(out)?)
@@ -87,6 +102,9 @@ fn each<R: Read + Seek>(
     mut take: impl FnMut(&Image, i32) -> Result<()>,
 ) -> Result<()> {
     for place in 0..film.len() {
+        if process::is_interrupted() {
+            bail!(Interrupted);
+        }
         take(&film.picture(place)?, film.frame(place))?;
         report((place + 1) as f64 / film.len() as f64);
     }
@@ -126,6 +144,11 @@ fn encode<R: Read + Seek>(
         stderr.read_to_string(&mut said)?;
     }
     let status = ffmpeg.wait()?;
+    if let Err(error) = &sent
+        && error.is::<Interrupted>()
+    {
+        return sent;
+    }
     ensure!(status.success(), "ffmpeg could not write the film: {}", said.trim());
     sent
 }

@@ -14,8 +14,11 @@ mod resume;
 mod run;
 mod scene;
 mod scene_info;
+mod shell;
+mod templates;
 mod trade;
 mod validate;
+mod watch;
 mod wedge;
 
 use anyhow::Result;
@@ -42,9 +45,13 @@ pub enum Command {
     Trade(trade::Trade),
     Validate(validate::Validate),
     Presets(reference::Presets),
+    Checks(reference::Checks),
+    Functions(reference::Functions),
     Graph(scene::Graph),
     Fmt(scene::Fmt),
-    New(scene::New),
+    New(templates::New),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 impl Command {
@@ -67,9 +74,13 @@ impl Command {
             Self::Trade(trade) => trade.run(),
             Self::Validate(validate) => validate.run(),
             Self::Presets(presets) => presets.run(),
+            Self::Checks(checks) => checks.run(),
+            Self::Functions(functions) => functions.run(),
             Self::Graph(graph) => graph.run(),
             Self::Fmt(fmt) => fmt.run(),
             Self::New(new) => new.run(),
+            Self::Completions(completions) => completions.run(),
+            Self::Man(man) => man.run(),
         }
     }
 }

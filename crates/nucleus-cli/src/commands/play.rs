@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
+use nucleus_view::LiveRun;
 
 use super::run::Run;
+use super::watch;
 use crate::process::Outcome;
 use crate::{files, output};
 
@@ -27,11 +29,17 @@ pub struct Play {
     /// Replace the existing cache of a scene.
     #[arg(long)]
     force: bool,
+    /// Run the scene again whenever its file changes, and show frames as they are solved.
+    #[arg(long, conflicts_with = "compare")]
+    watch: bool,
 }
 
 impl Play {
     /// Serves until the process ends.
     pub fn run(self) -> Result<Outcome> {
+        if self.watch {
+            return self.watch();
+        }
         let cache = match files::is_cache(&self.file) {
             true => self.file,
             false => {
@@ -55,12 +63,29 @@ impl Play {
                 nucleus_view::serve_both(&cache, other, self.port)?
             }
         };
-        output::report(&format!("playing `{}` at {} (end with Ctrl-C)\n", cache.display(), player.url()));
+        output::print(&format!("playing `{}` at {} (end with Ctrl-C)\n", cache.display(), player.url()))?;
         if !self.no_open {
             open_browser(&player.url());
         }
         player.wait();
         Ok(Outcome::Success)
+    }
+
+    /// Solves the scene again and again, until the process ends.
+    fn watch(&self) -> Result<Outcome> {
+        let scene = &self.file;
+        ensure!(!files::is_cache(scene), "`--watch` takes a scene, and `{}` is a cache", scene.display());
+        let cache = Run::of(scene.clone(), true).out()?;
+        ensure!(self.force || !cache.exists(), "`{}` exists; `--force` replaces it", cache.display());
+        let run = LiveRun::new(&cache);
+        let player = nucleus_view::serve_live(&run, self.port)?;
+        output::print(&format!("watching `{}` at {} (end with Ctrl-C)\n", scene.display(), player.url()))?;
+        if !self.no_open {
+            open_browser(&player.url());
+        }
+        loop {
+            watch::solve_until_changed(scene, &cache, &run)?;
+        }
     }
 }
 

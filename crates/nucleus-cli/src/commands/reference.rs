@@ -1,4 +1,4 @@
-//! `nucleus attrs` and `presets`: the attributes of node types, and the materials.
+//! `nucleus attrs`, `presets`, `checks` and `functions`: what a scene may contain.
 
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -6,6 +6,8 @@ use std::fmt::Write;
 use anyhow::{Result, bail};
 use clap::Args;
 use nucleus_graph::attributes::{Attribute, Effect, Kind, NodeType, Range, Value, node_type, node_types};
+use nucleus_graph::checks::{Form, RENAMED};
+use nucleus_graph::paint;
 use nucleus_graph::scene::{Preset, presets};
 use nucleus_maya::maya_preset;
 
@@ -180,6 +182,52 @@ impl Presets {
                 }
             }
         }
+        output::print(&text)?;
+        Ok(Outcome::Success)
+    }
+}
+
+/// Lists the checks that a scene may state: `checks: [noPenetration, maxStretch(0.02)]`.
+#[derive(Debug, Args)]
+pub struct Checks {}
+
+impl Checks {
+    /// Prints the list.
+    pub fn run(self) -> Result<Outcome> {
+        let mut text = String::new();
+        for form in Form::all() {
+            writeln!(text, "{:<36} {}", form.usage(), form.doc)?;
+        }
+        let renamed: Vec<String> =
+            RENAMED.iter().map(|(former, present)| format!("`{former}` is now `{present}`")).collect();
+        writeln!(
+            text,
+            "\nA run that fails a check exits with 1. Former names still read: {}.",
+            renamed.join(", ")
+        )?;
+        output::print(&text)?;
+        Ok(Outcome::Success)
+    }
+}
+
+/// Lists the variables, operators and functions of expressions: `thicknessPerVertex: expression("y > 1 ? 2 : 1")`.
+#[derive(Debug, Args)]
+pub struct Functions {}
+
+impl Functions {
+    /// Prints the list.
+    pub fn run(self) -> Result<Outcome> {
+        let mut text = String::new();
+        let mut section = |title: &str, rows: &mut dyn Iterator<Item = (&str, &str)>| -> std::fmt::Result {
+            writeln!(text, "{title}")?;
+            for (usage, doc) in rows {
+                writeln!(text, "  {usage:<24} {doc}")?;
+            }
+            Ok(())
+        };
+        section("Variables of a point", &mut paint::variables())?;
+        section("\nOperators, the weakest first", &mut paint::operators())?;
+        section("\nFunctions", &mut paint::functions())?;
         output::print(&text)?;
         Ok(Outcome::Success)
     }

@@ -2,16 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use nucleus_cache::Playback;
-use nucleus_view::{Camera, Colouring, Film, Image, Style};
+use nucleus_view::{Background, Camera, Colouring, Film, Image, Style};
 
-use super::film::{self, OutputKind};
+use super::film::{self, Interrupted, OutputKind};
 use crate::options::FrameRange;
 use crate::process::Outcome;
 use crate::progress::ShareProgress;
-use crate::{figures, files, output};
+use crate::{figures, files, output, process};
 
 /// Draws a cache: a frame as a PNG, or the run as an animated PNG, a GIF, a film, or a PNG per frame.
 ///
@@ -58,6 +58,15 @@ pub struct Render {
     /// Draw the edges of the faces.
     #[arg(long)]
     wireframe: bool,
+    /// What is behind the objects: `studio`, a colour `#rrggbb`, or `none` for a still with opacities and without a floor.
+    #[arg(long, value_name = "BACKGROUND", default_value = "studio", value_parser = parse_background)]
+    background: Background,
+    /// Colour of an object, `cloth=#aa3322`; may be given several times.
+    #[arg(long, value_name = "NAME=COLOUR", value_parser = parse_tint)]
+    tint: Vec<(String, [f32; 3])>,
+    /// Samples along each side of a pixel, for smooth edges.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=8))]
+    samples: u32,
 }
 
 impl Render {
@@ -70,9 +79,22 @@ impl Render {
                 PathBuf::from(self.file.file_stem().context("the cache has no name")?).with_extension("png")
             }
         };
-        let drawn = match OutputKind::of(&out, self.animate)? {
+        let kind = OutputKind::of(&out, self.animate)?;
+        let is_still = matches!(kind, OutputKind::Still | OutputKind::Sequence);
+        ensure!(
+            is_still || self.background != Background::Transparent,
+            "a film has no opacities; `--background none` is for a .png, or for pictures as `frames/####.png`"
+        );
+        let drawn = match kind {
             OutputKind::Still => self.still(&mut cache, &out)?,
-            kind => self.film(&mut cache, &out, kind)?,
+            kind => {
+                process::listen_for_signals()?;
+                match self.film(&mut cache, &out, kind) {
+                    // Unfinished files are removed on the way here.
+                    Err(error) if error.is::<Interrupted>() => return Ok(Outcome::Interrupted),
+                    drawn => drawn?,
+                }
+            }
         };
         output::report(&format!("{drawn}\n"));
         Ok(Outcome::Success)
@@ -117,7 +139,15 @@ impl Render {
             Some(full_scale) => Colouring::Strain { full_scale },
             None => Colouring::Objects,
         };
-        Style { size: self.size, colouring, wireframe: self.wireframe, ..Style::default() }
+        Style {
+            size: self.size,
+            colouring,
+            wireframe: self.wireframe,
+            background: self.background,
+            tints: self.tint.clone(),
+            samples: self.samples,
+            ..Style::default()
+        }
     }
 
     /// The requested camera of the scene, else its first one.
@@ -172,6 +202,32 @@ fn parse_point(text: &str) -> Result<[f32; 3], String> {
         Some(&[x, y, z]) => Ok([x, y, z]),
         _ => Err("write it as x,y,z".to_owned()),
     }
+}
+
+/// A colour `#rrggbb` as linear red, green and blue.
+fn parse_colour(text: &str) -> Result<[f32; 3], String> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii());
+    let channel = |k: usize| u8::from_str_radix(digits?.get(2 * k..2 * k + 2)?, 16).ok();
+    match [channel(0), channel(1), channel(2)] {
+        // Pictures are encoded with a square root.
+        [Some(red), Some(green), Some(blue)] => {
+            Ok([red, green, blue].map(|x| (f32::from(x) / 255.0).powi(2)))
+        }
+        _ => Err(format!("`{text}` is no colour; write it as #rrggbb")),
+    }
+}
+
+fn parse_background(text: &str) -> Result<Background, String> {
+    match text {
+        "studio" => Ok(Background::Studio),
+        "none" => Ok(Background::Transparent),
+        text => parse_colour(text).map(Background::Colour),
+    }
+}
+
+fn parse_tint(text: &str) -> Result<(String, [f32; 3]), String> {
+    let (name, colour) = text.rsplit_once('=').ok_or("write it as name=#rrggbb")?;
+    Ok((name.to_owned(), parse_colour(colour)?))
 }
 
 fn parse_view(text: &str) -> Result<f32, String> {

@@ -124,8 +124,10 @@ impl Run {
     pub fn execute(mut self) -> Result<Option<Finished>> {
         let out = self.out()?;
         self.scene = import::own_scene(self.scene, &out, self.force)?;
-        let opened = files::open_scene_with(&self.scene, self.frames, &self.set)?;
-        let Some((scene, program, text)) = opened.report()? else { return Ok(None) };
+        let file = files::open_scene_with(&self.scene, self.frames, &self.set)?;
+        // A run from a cache starts elsewhere.
+        let file = if self.from.is_none() { file.with_first_frame() } else { file };
+        let Some((scene, program, text)) = file.report()? else { return Ok(None) };
         let read = program.clone();
         let (scene, program) = match &self.from {
             None => (scene, program),
@@ -159,6 +161,7 @@ impl Run {
             force: self.force,
             compact: self.compact,
             checkpoint: self.checkpoint,
+            texture_coordinates: recording::texture_coordinates(&scene, &program),
             facts: self.facts(setting, if is_changed { &read } else { &program })?,
         };
         let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;

@@ -1,61 +1,14 @@
-//! `nucleus new`, `check`, `fmt` and `graph`: scene files, without a simulation.
+//! `nucleus check`, `fmt` and `graph`: scene files, without a simulation.
 
-use std::fs::{self, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
 use nucleus_graph::scene::{Scene, format_scene, read_scene_text};
 
 use crate::process::Outcome;
 use crate::{diagnostics, files, output};
-
-/// Writes a small scene as a starting point.
-#[derive(Debug, Args)]
-pub struct New {
-    /// The file to write (.ron). An existing file is not replaced.
-    scene: PathBuf,
-    /// The scene to write.
-    #[arg(long, value_enum, default_value_t)]
-    template: Template,
-}
-
-/// Scenes to start from.
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
-enum Template {
-    /// A cloth that falls on a sphere.
-    #[default]
-    Drape,
-    /// A curtain that hangs by its corners in a wind.
-    Hang,
-}
-
-impl Template {
-    fn text(self) -> &'static str {
-        match self {
-            Self::Drape => include_str!("templates/drape.ron"),
-            Self::Hang => include_str!("templates/hang.ron"),
-        }
-    }
-}
-
-impl New {
-    /// Writes the file and prints the command that runs it.
-    pub fn run(self) -> Result<Outcome> {
-        let path = self.scene.display();
-        let mut file = match OpenOptions::new().write(true).create_new(true).open(&self.scene) {
-            Ok(file) => file,
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                bail!("`{path}` exists; give another name")
-            }
-            Err(error) => return Err(error).with_context(|| format!("cannot write `{path}`")),
-        };
-        file.write_all(self.template.text().as_bytes()).with_context(|| format!("cannot write `{path}`"))?;
-        output::report(&format!("wrote `{path}`; run it with `nucleus run {path}`\n"));
-        Ok(Outcome::Success)
-    }
-}
 
 /// Reads and compiles a scene and prints all its errors and warnings.
 #[derive(Debug, Args)]
@@ -67,7 +20,7 @@ pub struct Check {
 impl Check {
     /// Prints errors and warnings. Warnings alone are a success.
     pub fn run(self) -> Result<Outcome> {
-        let file = files::open_scene(&self.scene, None)?;
+        let file = files::open_scene(&self.scene, None)?.with_first_frame();
         let count = diagnostics::count(&file.diagnostics);
         match file.report()? {
             None => Ok(Outcome::InvalidInput),

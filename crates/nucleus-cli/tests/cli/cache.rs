@@ -18,7 +18,7 @@ fn an_export_takes_its_format_from_the_name_it_is_given() {
         nucleus(folder.path(), &["export", "fall.mcap", "--as", "obj", "--frames", "2..4", "--every", "2"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let written = fs::read_dir(folder.path().join("fall_obj")).unwrap().count();
-    assert_eq!(written, 2);
+    assert_eq!(written, 3, "a mesh for each of two frames, and their materials");
 }
 
 #[test]

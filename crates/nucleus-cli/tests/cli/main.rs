@@ -2,11 +2,13 @@
 
 mod attrs;
 mod cache;
+mod documentation;
 mod extremes;
 mod info;
 mod initial_state;
 mod output;
 mod play;
+mod reference;
 mod render;
 mod resume;
 mod run;

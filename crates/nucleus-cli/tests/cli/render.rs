@@ -111,3 +111,25 @@ fn a_film_has_every_frame_at_its_rate_and_the_colours_of_the_picture() {
         assert!(!folder.path().join(format!("{name}.part")).exists());
     }
 }
+
+#[test]
+fn a_still_may_have_opacities_a_colour_behind_it_and_coloured_objects() {
+    let folder = folder();
+    cache(folder.path());
+    let render = |more: &[&str]| {
+        let all = [&["render", "fall.mcap", "--size", "64x48", "-o", "a.png"], more].concat();
+        nucleus(folder.path(), &all)
+    };
+    let colour_type = || fs::read(folder.path().join("a.png")).unwrap()[25];
+    assert_eq!(render(&[]).status.code(), Some(0));
+    assert_eq!(colour_type(), 2, "red, green, blue");
+    assert_eq!(render(&["--background", "none"]).status.code(), Some(0));
+    assert_eq!(colour_type(), 6, "and opacity");
+    assert_eq!(
+        render(&["--background", "#102030", "--tint", "sheet=#ffffff", "--samples", "1"]).status.code(),
+        Some(0)
+    );
+    assert_eq!(render(&["--background", "blue"]).status.code(), Some(2));
+    let film = nucleus(folder.path(), &["render", "fall.mcap", "-o", "a.gif", "--background", "none"]);
+    assert_refused(&film, "a film has no opacities");
+}

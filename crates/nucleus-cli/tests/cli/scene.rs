@@ -7,15 +7,16 @@ use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 #[test]
 fn a_new_scene_can_run_and_replaces_no_file() {
     let folder = folder();
-    for template in ["drape", "hang"] {
+    for template in ["drape", "curtain", "hang", "flag", "banner", "cape", "garment", "particles"] {
         let file = format!("{template}.ron");
         assert!(nucleus(folder.path(), &["new", &file, "--template", template]).status.success());
         let said = stdout(&nucleus(folder.path(), &["check", &file]));
-        assert!(said.contains("can run"), "{said}");
+        assert!(said.contains("can run: no errors, no warnings"), "{said}");
         let run = nucleus(folder.path(), &["run", &file, "--frames", "3", "--record", "none"]);
         assert!(run.status.success(), "{run:?}");
     }
     let again = nucleus(folder.path(), &["new", "drape.ron"]);
+    assert!(folder.path().join("garment_skirt.obj").exists());
     assert_refused(&again, "`drape.ron` exists; give another name");
 }
 

@@ -29,7 +29,7 @@ pub enum ResistanceModel {
     },
 }
 
-/// One frame's input to the solver.
+/// One frame's input to the solver. [`Solver::default_frame`](crate::Solver::default_frame) makes one to start from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameInput {
     /// Simulated time of the frame in seconds (1/24 at 24 frames per second and `timeScale` 1).
@@ -479,13 +479,12 @@ pub struct ColliderFrame {
 }
 
 impl Default for ColliderFrame {
-    /// Maya's defaults of an nRigid, except that it does not move or collide, and that `friction` and `thickness` are
-    /// zero.
+    /// Maya's defaults of an nRigid that does not move, except that `friction` and `thickness` are zero.
     fn default() -> Self {
         Self {
             start: Vec::new(),
             end: Vec::new(),
-            collide: false,
+            collide: true,
             thickness: 0.0,
             friction: 0.0,
             stickiness: 0.0,

@@ -4,7 +4,9 @@
 //! | Invalid value | Replaced by |
 //! |---|---|
 //! | a point of a collider | its position before the frame |
+//! | a missing entry of a cloth or a collider | the default; a surplus one is dropped |
 //! | start or end of a pin's motion | the other of the two; if both are invalid, the point's current position |
+//! | a pin or an input mesh of something that does not exist | nothing: it is dropped |
 //! | gravity, wind, a force | zero |
 //! | any other attribute | its default |
 //! | duration of the frame | nothing: the frame is skipped |
@@ -15,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::input::fields::{Field, FieldKind, Noise};
 use crate::input::frame::{
-    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
+    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pin, Pressure, ResistanceModel,
 };
 use crate::input::links::{ConstraintFrame, Falloff, Link};
 use crate::input::object_fields::{PointField, WindField};
@@ -26,26 +28,43 @@ use crate::input::{ClothId, ColliderId, PointId};
 pub const MAX_COORDINATE: f64 = 1e12;
 
 /// An invalid value in the input of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidInput {
+    /// The number of entries in [`FrameInput::cloths`] differs from the number of cloths.
+    #[error("the frame has not one entry per cloth; `Solver::default_frame` makes one")]
+    ClothCount,
+    /// The number of entries in [`FrameInput::colliders`] differs from the number of colliders.
+    #[error("the frame has not one entry per collider; `Solver::default_frame` makes one")]
+    ColliderCount,
     /// The position of a point of a collider.
+    #[error("the position of point {} of collider {} is not finite, or more than {MAX_COORDINATE:e} m away", .1.0, .0.0)]
     ColliderPoint(ColliderId, PointId),
     /// The positions of a collider: their number differs from the number of its points.
+    #[error("collider {} is given another number of positions than it has points", .0.0)]
     ColliderMotion(ColliderId),
     /// The position of a pin.
+    #[error("the pin of point {} of cloth {} is not at a finite position", .1.0, .0.0)]
     Pin(ClothId, PointId),
+    /// A pin of a cloth or a point that does not exist.
+    #[error("there is no point {} of cloth {} to pin", .1.0, .0.0)]
+    NoSuchPin(ClothId, PointId),
     /// Positions of the input mesh of a cloth: not one per point, or not finite. It attracts nothing in this frame.
+    #[error("the input mesh of cloth {} has not one finite position per point", .0.0)]
     InputMesh(ClothId),
     /// An attribute of a cloth.
+    #[error("an attribute of cloth {} is not a usable number", .0.0)]
     Cloth(ClothId),
     /// An attribute of a collider.
+    #[error("an attribute of collider {} is not a usable number", .0.0)]
     Collider(ColliderId),
     /// Gravity, wind, the ground plane or another setting of the solver.
+    #[error("gravity, wind, the ground plane or another setting is not a usable number")]
     Setting,
     /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
     Constraint(u32),
     /// The duration of the frame, which must be above zero.
+    #[error("the duration of the frame must be above zero")]
     Duration,
 }
 
@@ -72,6 +91,8 @@ pub fn is_in_range(v: &Vector3<f64>) -> bool {
 
 /// Where points are before the frame: it stands in for invalid positions.
 pub trait LastPositions {
+    /// How many cloths and how many colliders there are.
+    fn objects(&self) -> [usize; 2];
     /// The points of a collider in metres, in the mesh's order.
     fn collider(&self, collider: ColliderId) -> &[Vector3<f64>];
     /// A point of a cloth in metres.
@@ -92,6 +113,7 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
     if !is_duration(frame.duration) {
         sanitized.add(InvalidInput::Duration);
     }
+    sanitize_counts(&mut frame, last.objects(), &mut sanitized);
     if sanitize_settings(&mut frame) {
         sanitized.add(InvalidInput::Setting);
     }
@@ -119,6 +141,18 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
     (Cow::Owned(frame), sanitized)
 }
 
+/// Gives every object its entry.
+fn sanitize_counts(frame: &mut FrameInput, [cloths, colliders]: [usize; 2], sanitized: &mut Sanitized) {
+    if frame.cloths.len() != cloths {
+        frame.cloths.resize_with(cloths, ClothFrame::default);
+        sanitized.add(InvalidInput::ClothCount);
+    }
+    if frame.colliders.len() != colliders {
+        frame.colliders.resize_with(colliders, ColliderFrame::default);
+        sanitized.add(InvalidInput::ColliderCount);
+    }
+}
+
 fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
     let is_valid_collider = |(id, collider): (ColliderId, &ColliderFrame)| {
         let points = last.collider(id).len();
@@ -129,16 +163,24 @@ fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
             && !sanitize_collider_settings(&mut collider_settings(collider))
     };
     is_duration(frame.duration)
+        && [frame.cloths.len(), frame.colliders.len()] == last.objects()
         && !sanitize_settings(&mut settings_of(frame))
         && !frame.cloths.iter().any(|cloth| sanitize_cloth(&mut cloth.clone()))
         && (0..).map(ColliderId).zip(&frame.colliders).all(is_valid_collider)
-        && frame.pins.iter().all(|pin| is_in_range(&pin.start) && is_in_range(&pin.end))
+        && frame.pins.iter().all(|pin| exists(pin, last) && is_in_range(&pin.start) && is_in_range(&pin.end))
         && frame.input_meshes.iter().all(|mesh| is_valid_mesh(mesh, last))
         && frame.constraints.iter().all(|constraint| is_valid_constraint(constraint, last))
         && frame.fields.iter().all(is_valid_field)
 }
 
+fn exists(pin: &Pin, last: &impl LastPositions) -> bool {
+    pin.cloth.index() < last.objects()[0] && pin.point.index() < last.cloth_points(pin.cloth)
+}
+
 fn is_valid_mesh(mesh: &InputMesh, last: &impl LastPositions) -> bool {
+    if mesh.cloth.index() >= last.objects()[0] {
+        return false;
+    }
     let points = last.cloth_points(mesh.cloth);
     let is_valid = |column: &[Vector3<f64>]| column.len() == points && column.iter().all(is_in_range);
     is_valid(&mesh.start) && is_valid(&mesh.end)
@@ -212,6 +254,9 @@ fn is_valid_field(field: &Field) -> bool {
 }
 
 fn sanitize_pins(frame: &mut FrameInput, last: &impl LastPositions, sanitized: &mut Sanitized) {
+    for pin in frame.pins.extract_if(.., |pin| !exists(pin, last)) {
+        sanitized.add(InvalidInput::NoSuchPin(pin.cloth, pin.point));
+    }
     for pin in &mut frame.pins {
         let (start, end) = (is_in_range(&pin.start), is_in_range(&pin.end));
         if start && end {

@@ -21,6 +21,7 @@
 //! | all other constraints, and selections of elements    | `constraints/`                     |
 //! | thickness, self-collision, push-out                  | `thickness.rs`                     |
 //! | cameras                                              | `camera.rs`                        |
+//! | texture coordinates, for exports                     | `texture_coordinates.rs`           |
 //! | scene units to metres, start frames                  | `units.rs`                         |
 //!
 //! Modules use each other in one direction only: from `units.rs` up to `objects.rs`.
@@ -45,6 +46,7 @@ mod perturbation;
 mod program;
 mod soft_body;
 mod sources;
+mod texture_coordinates;
 mod thickness;
 mod units;
 mod vertex_maps;
@@ -67,6 +69,7 @@ pub use camera::{Camera, FilmFit, View};
 pub(crate) use geometry::max_points;
 pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
 pub(crate) use sources::EmitterState;
+pub use texture_coordinates::{MeshCoordinates, texture_coordinates};
 
 /// Compiles a scene.
 ///

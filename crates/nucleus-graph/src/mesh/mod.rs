@@ -17,7 +17,7 @@ mod obj;
 mod primitive;
 
 pub use degenerate::drop_degenerate_faces;
-pub use obj::{ObjError, ObjFault, read_obj, read_obj_groups, read_obj_uvs};
+pub use obj::{CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_uvs};
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,
 };

@@ -15,7 +15,7 @@ use crate::files;
 pub use error::{ObjError, ObjFault};
 pub use groups::read_obj_groups;
 use statement::{Fault, Statements, Word, number, words};
-pub use uvs::read_obj_uvs;
+pub use uvs::{CornerUvs, read_obj_corner_uvs, read_obj_uvs};
 
 mod error;
 mod groups;

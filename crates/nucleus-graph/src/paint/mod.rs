@@ -12,6 +12,6 @@ mod expression;
 mod numbers;
 mod texture;
 
-pub use expression::{Expression, ExpressionError, Point, Variable};
+pub use expression::{Expression, ExpressionError, Point, Variable, functions, operators, variables};
 pub use numbers::{NumbersError, read_numbers, read_vectors};
 pub use texture::{Texture, TextureError};

@@ -5,7 +5,10 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use nucleus_cache::{Detail, ObjectInfo, ObjectKind, Recorder, RunInfo, Source};
+use nucleus_cache::{
+    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Recorder, RunInfo, Source,
+    TextureCoordinates,
+};
 use nucleus_core::{ClothId, ColliderId, StateView, StepObserver, SubstepIndex};
 
 pub const START: i32 = 3;
@@ -41,6 +44,17 @@ fn record(path: &Path, tears: bool) {
         detail: Detail::Substeps,
         velocities: true,
         radii: [("dust".to_owned(), 0.25)].into(),
+        cameras: vec![camera()],
+        texture_coordinates: [("wall", &[][..]), ("1 cart", &[1, 0, 1, 0, 1])]
+            .map(|(name, corners)| {
+                let values = if corners.is_empty() {
+                    vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+                } else {
+                    vec![[0.25, 0.5], [0.75, 0.5]]
+                };
+                (name.to_owned(), TextureCoordinates { values, corners: corners.to_vec() })
+            })
+            .into(),
         ..RunInfo::default()
     };
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();
@@ -59,6 +73,19 @@ fn record(path: &Path, tears: bool) {
         recorder.end_frame(&()).unwrap();
     }
     recorder.finish().unwrap();
+}
+
+/// A camera that rises, looking along -z.
+fn camera() -> Camera {
+    let view = |frame: i32| CameraView {
+        eye: [50.0, 100.0 + 10.0 * (frame - START) as f32, 900.0],
+        forward: [0.0, 0.0, -1.0],
+        up: [0.0, 1.0, 0.0],
+        focal_length: 35.0,
+        film: [1.41732, 0.94488],
+        interest: 500.0,
+    };
+    Camera { name: "shot".to_owned(), fit: FilmFit::Fill, views: (START..=END).map(view).collect() }
 }
 
 /// Positions of an object `time` frames after the start, in scene units.

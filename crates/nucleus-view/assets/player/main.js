@@ -1,6 +1,8 @@
-// Starts the player: keys, buttons, dropped files, options in the address, and the cache of the server.
+// Starts the player: keys, buttons, dropped files, and the cache of the server.
 
-import { byId, showState } from "./panel.js";
+import { applyAddress, linkTo } from "./link.js";
+import { follow } from "./live.js";
+import { byId, showNotice, showState } from "./panel.js";
 import { Player, showError } from "./player.js";
 import { FileSource, UrlSource } from "./source.js";
 
@@ -13,8 +15,13 @@ const KEYS = {
   ".": ({ timeline }) => timeline.stepSubstep(1),
   Home: ({ timeline }) => timeline.step(-Infinity),
   End: ({ timeline }) => timeline.step(Infinity),
+  j: ({ timeline }) => timeline.shuttle(-1),
+  k: ({ timeline }) => timeline.pause(),
+  l: ({ timeline }) => timeline.shuttle(1),
+  i: (player) => player.mark(0),
+  o: (player) => player.mark(1),
+  r: (player) => player.toggleLoop(),
   t: (player) => player.nextCamera(),
-  l: (player) => player.toggleLoop(),
   f: (player) => player.frameAll(),
   w: (player) => player.toggleWireframe(),
   s: (player) => player.colourBy("strain"),
@@ -22,12 +29,16 @@ const KEYS = {
   x: (player) => player.colourBy("contacts"),
   d: (player) => player.colourBy("difference"),
   b: (player) => player.nextTwin(),
-  c: () => byId("curve").toggleAttribute("hidden"),
+  c: (player) => {
+    byId("series").toggleAttribute("hidden");
+    player.series.draw();
+  },
+  y: copyLink,
   "[": (player) => player.scaleColours(0.5),
   "]": (player) => player.scaleColours(2),
   "?": () => byId("help").toggleAttribute("open"),
 };
-const BUTTONS = { play: " ", loop: "l", wireframe: "w", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
+const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wireframe: "w", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
 
 function listen(player) {
   document.addEventListener("keydown", (event) => {
@@ -45,9 +56,11 @@ function listen(player) {
     });
   }
   listenToTracks(player);
-  listenToCurve(player);
+  listenToSeries(player);
   listenToFiles(player);
   window.addEventListener("resize", player.redraw);
+  const footer = document.querySelector("footer");
+  new ResizeObserver(() => document.body.style.setProperty("--footer", `${footer.offsetHeight}px`)).observe(footer);
   window.addEventListener("hashchange", () => player.timeline && applyAddress(player));
 }
 
@@ -62,27 +75,52 @@ function listenToTracks(player) {
   });
 }
 
-// A click on the curve goes to a frame, a drag scrubs.
-function listenToCurve(player) {
+// A click on the series goes to a frame, a drag scrubs, the wheel zooms, and with shift it moves the view.
+function listenToSeries(player) {
   const curve = byId("curve");
-  const indexAt = (event) => {
+  const shareAt = (event) => {
     const share = (event.clientX - curve.getBoundingClientRect().left) / Math.max(1, curve.clientWidth);
-    return Math.round(Math.min(1, Math.max(0, share)) * player.timeline.last);
+    return Math.min(1, Math.max(0, share));
   };
   const go = (event) => {
     player.timeline.pause();
-    player.timeline.go(indexAt(event));
+    player.timeline.go(player.series.indexAt(shareAt(event)));
   };
   curve.addEventListener("pointerdown", (event) => {
     curve.setPointerCapture(event.pointerId);
     go(event);
   });
   curve.addEventListener("pointermove", (event) => {
-    curve.title = `${player.curve?.describe(indexAt(event)) ?? ""}: click to go there`;
+    curve.title = player.series.describe(player.series.indexAt(shareAt(event)));
     if (event.buttons & 1) {
       go(event);
     }
   });
+  curve.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const steps = (event.deltaY || event.deltaX) * (event.deltaMode === 0 ? 1 : 16);
+    event.shiftKey ? player.series.pan(steps * 0.001) : player.series.zoom(Math.exp(steps * 0.002), shareAt(event));
+  }, { passive: false });
+  curve.addEventListener("dblclick", () => player.series.zoom(Infinity, 0));
+  byId("zoom-in").addEventListener("click", () => player.series.zoom(0.5, 0.5));
+  byId("zoom-out").addEventListener("click", () => player.series.zoom(2, 0.5));
+  byId("figure").addEventListener("change", ({ target }) => {
+    player.series.choose(target.value);
+    target.blur();
+  });
+  byId("pace").addEventListener("change", ({ target }) => {
+    player.setSpeed(Number(target.value));
+    target.blur();
+  });
+}
+
+// Puts the address of the present view into the page's address and, where the browser allows it, the clipboard.
+async function copyLink(player) {
+  const link = linkTo(player);
+  history.replaceState(null, "", link);
+  const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
+  showNotice(isCopied ? "Link to this view copied" : "The address of the page is a link to this view");
+  setTimeout(() => showNotice(""), 2500);
 }
 
 function listenToFiles(player) {
@@ -95,40 +133,18 @@ function listenToFiles(player) {
   });
 }
 
-// Applies the options in the address, such as `#frame=12&strain=0.1&wireframe&play`.
-async function applyAddress(player) {
-  const options = new URLSearchParams(location.hash.slice(1));
-  const { timeline, scene } = player;
-  if (options.has("frame")) {
-    await timeline.go(timeline.cache.indexOf(Number(options.get("frame"))));
-  }
-  for (const colour of ["strain", "speed", "contacts", "difference"].filter((name) => options.has(name))) {
-    player.setFullScale(colour, Number(options.get(colour)));
-    if (scene.look.colour !== colour) {
-      player.colourBy(colour);
-    }
-  }
-  if (options.has("wireframe") && !scene.look.wireframe) {
-    player.toggleWireframe();
-  }
-  if (options.has("camera")) {
-    player.lookThrough(options.get("camera"));
-  }
-  if (["over", "beside", "off"].includes(options.get("twin"))) {
-    player.placeTwin(options.get("twin"));
-  }
-  if (options.has("play")) {
-    timeline.play();
-  }
-}
-
 async function start() {
   const player = new Player(byId("canvas"));
   globalThis.nucleusPlayer = player; // for the console, and for `cargo xtask book --only caches`
   listen(player);
+  byId("panel").open = window.innerWidth > 720; // else it covers the picture
+  byId("series").hidden = window.innerHeight < 480;
+  byId("fit").addEventListener("click", () => player.fitDifference());
+  follow(player).catch(showError);
   const served = await UrlSource.find("/cache.mcap");
   if (!served) {
-    showState("empty", "Drop a cache here", "or choose a file");
+    const { ok } = await fetch("/live.json").catch(() => ({ ok: false }));
+    ok || showState("empty", "Drop a cache here", "or choose a file");
   } else if (await player.open(served, await UrlSource.find("/other.mcap"))) {
     await applyAddress(player);
   }

@@ -1,29 +1,7 @@
 // The panels of the page: objects, figures of the frame, legend, messages.
 
+import { figure, figuresOf, plain } from "./figures.js";
 import { CONTACT_STATES, CONTACT_STATE_COLOURS, STRAIN, css } from "./shading.js";
-
-const percent = (x) => `${(x * 100).toFixed(Math.abs(x) < 0.0995 ? 2 : 1)} %`;
-const plain = (x) => (Number.isInteger(x) ? x.toLocaleString("en") : x.toPrecision(4));
-
-// Figures of a report: label, format, and the test for a problem.
-const FIGURES = {
-  max_strain: ["Largest strain", percent],
-  strain_99: ["Strain, 99 %", percent],
-  min_gap: ["Smallest gap / thickness", (x) => x.toFixed(3), (x) => x < 0],
-  min_cloth_gap: ["Smallest cloth-cloth gap / thickness", (x) => x.toFixed(3), (x) => x < 0],
-  contacts: ["Contacts", plain],
-  candidate_pairs: ["Candidate pairs", plain],
-  touching: ["Points touching", plain],
-  compressed: ["Points compressed", plain, (x) => x > 0],
-  pairs_reverted: ["Pairs reverted", plain, (x) => x > 0],
-  pairs_unresolved: ["Pairs unresolved", plain, (x) => x > 0],
-  depenetrating: ["Points depenetrating", plain, (x) => x > 0],
-  intersections: ["Edges intersecting", plain, (x) => x > 0],
-  rest_limited: ["Rest-limited pairs", plain],
-  kinetic_energy: ["Kinetic energy, J", plain],
-};
-// Shown elsewhere, or of interest to developers of the solver only.
-const HIDDEN_FIGURES = ["frame", "broad_phases", "sanitized"];
 
 export const byId = (id) => document.getElementById(id);
 
@@ -57,24 +35,68 @@ export function countPoints(scene) {
   }
 }
 
-// Shows the report of a frame, and the number of points that are not finite.
-export function showFigures(report, invalidPoints) {
-  const keys = [...new Set([...Object.keys(FIGURES), ...Object.keys(report ?? {})])];
-  const rows = keys
-    .map((key) => [key, report?.[key]])
-    .filter(([key, value]) => typeof value === "number" && !HIDDEN_FIGURES.includes(key))
-    .map(([key, value]) => {
-      const [label, write, isBad] = FIGURES[key] ?? [key.replaceAll("_", " "), plain];
-      return [label, write(value), isBad?.(value)];
-    });
+// Shows the report of a frame, beside that of the other run if there is one, and the number of points that are not finite.
+export function showFigures(report, invalidPoints, other = null) {
+  const all = figuresOf([report, other]);
+  const cell = (held, { key, write, isBad }) => {
+    const value = held?.[key];
+    const isKnown = typeof value === "number";
+    return element("dd", { textContent: isKnown ? write(value) : "–", className: isKnown && isBad(value) ? "bad" : "" });
+  };
+  const row = (one) => [
+    element("dt", { textContent: one.label }), cell(report, one), ...(other ? [cell(other, one)] : []),
+  ];
+  const rows = all.filter(({ isInternal }) => !isInternal).flatMap(row);
   if (invalidPoints > 0) {
-    rows.push(["Points that are not finite", plain(invalidPoints), true]);
+    const count = element("dd", { textContent: plain(invalidPoints), className: "bad" });
+    rows.push(element("dt", { textContent: "Points that are not finite" }), count, ...(other ? [element("dd")] : []));
   }
-  byId("figures").replaceChildren(...rows.flatMap(([label, value, isBad]) => [
-    element("dt", { textContent: label }),
-    element("dd", { textContent: value, className: isBad ? "bad" : "" }),
-  ]));
+  if (other && rows.length > 0) {
+    rows.unshift(element("dt"), element("dd", { textContent: "this", className: "own" }), element("dd", { textContent: "other", className: "other" }));
+  }
+  const internals = all.filter(({ isInternal }) => isInternal).flatMap(row);
+  byId("figures").replaceChildren(...rows);
+  byId("internal-figures").replaceChildren(...internals);
   byId("figures").hidden = rows.length === 0;
+  byId("internals").hidden = internals.length === 0;
+  ["figures", "internal-figures"].forEach((id) => byId(id).classList.toggle("compared", Boolean(other)));
+}
+
+// Names both runs, with the median, the 99th percentile and the largest distance between their points.
+export function showComparison(names, scenes, [median, p99, largest]) {
+  const run = (name, scene, className) => [
+    element("dt", { textContent: className, className }), element("dd", { textContent: name, title: scene }),
+  ];
+  const distance = (label, value) => [element("dt", { textContent: label }), element("dd", { textContent: short(value) })];
+  byId("runs").replaceChildren(...run(names[0], scenes[0], "this"), ...run(names[1] ?? "", scenes[1], "other"));
+  byId("distances").replaceChildren(
+    ...distance("Distance, median", median), ...distance("Distance, 99 %", p99), ...distance("Distance, largest", largest),
+  );
+  byId("comparison").hidden = false;
+}
+
+const short = (x) => `${Number(x.toPrecision(3))}`;
+
+// The figures that the series can show.
+export function showSeriesFigures(figures, chosen) {
+  const option = ({ key, label }) => element("option", { value: key, textContent: label, selected: key === chosen });
+  const known = figures.some(({ key }) => key === chosen) ? figures : [figure(chosen), ...figures];
+  byId("figure").replaceChildren(...known.map(option));
+}
+
+// Shows the values of both runs at the shown frame, as texts; empty where there is none.
+export function showSeriesNow([own, other]) {
+  const value = (text, className) => element("span", { textContent: `${text} `, className });
+  byId("series-now").replaceChildren(value(own, "this"), value(other, "other"));
+}
+
+// Selects a speed, which is added to the list if it is not there.
+export function showSpeed(speed) {
+  const select = byId("pace");
+  if (![...select.options].some(({ value }) => Number(value) === speed)) {
+    select.append(element("option", { value: `${speed}`, textContent: `${speed} ×` }));
+  }
+  select.value = `${speed}`;
 }
 
 // Strain is signed, with zero in the middle of the legend; speed and distance begin at its left end.

@@ -2,9 +2,14 @@
 
 import { Cache } from "./cache.js";
 import { Camera } from "./camera.js";
-import { byId, countPoints, showFigures, showLegend, showContactStates, showTime, showNotice, showObjects, showState } from "./panel.js";
+import { distances, fittedScale, percentile } from "./compare.js";
+import {
+  byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showNotice, showObjects, showSeriesFigures,
+  showSeriesNow, showSpeed, showState, showTime,
+} from "./panel.js";
 import { Scene, unionOf } from "./scene.js";
-import { Curve, Timeline } from "./timeline.js";
+import { Series } from "./series.js";
+import { Timeline } from "./timeline.js";
 
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
 const DEFAULT_STAGE = { low: [-1, -1, -1], high: [1, 1, 1] };
@@ -16,6 +21,9 @@ export class Player {
     this.scene = new Scene(canvas);
     this.camera = new Camera(canvas, this.redraw);
     this.timeline = null; // of the open cache
+    this.series = new Series(byId("curve"), (figures) => showSeriesFigures(figures, this.series.key), showSeriesNow);
+    this.other = null; // the cache of the other run, if one is compared
+    this.names = []; // of the files of the two runs
     this.everyRefresh();
   }
 
@@ -29,6 +37,8 @@ export class Player {
     try {
       const cache = await Cache.open(source, onProgress);
       this.other = other && (await Cache.open(other, onProgress));
+      this.isFitted = false;
+      this.names = [source.name, other?.name];
       await this.present(cache, source.name);
       showState("ready");
       return true;
@@ -48,15 +58,45 @@ export class Player {
     document.title = `${name} – Nucleus`;
     byId("name").textContent = cache.run.scene || name;
     byId("name").title = `${name}, written by Nucleus ${cache.run.version}`;
-    byId("frames").max = last;
     showObjects(scene, this.redraw);
     showIncomplete(cache);
     byId("camera").hidden = cache.run.cameras.length === 0;
     camera.track = cache.run.cameras[0] ?? null;
-    this.timeline = new Timeline(cache, (index, timeIndex) => this.show(cache, index, timeIndex));
+    this.take(cache);
     await this.timeline.go(0);
-    this.curve = new Curve(byId("curve"), cache);
-    this.curve.fill();
+  }
+
+  // Gives a cache to the timeline and to the series.
+  take(cache) {
+    byId("frames").max = cache.frames.length - 1;
+    this.timeline = new Timeline(cache, (index, timeIndex) => this.show(cache, index, timeIndex));
+    this.series.open(cache, this.other);
+  }
+
+  // Replaces the cache of a run that has grown, or was solved again. What is shown stays: frame, camera, colours. A run
+  // that is watched at its last frame stays at its last frame.
+  async replace(cache, name, isNew) {
+    const before = this.timeline;
+    if (!before || objectNames(before.cache) !== objectNames(cache)) {
+      this.names = [name];
+      await this.present(cache, name);
+      showState("ready");
+      return;
+    }
+    const follows = before.index >= before.last && !isNew;
+    const { index, marks, speed, isLooping, isPlaying, rate } = before;
+    before.pause();
+    if (isNew) {
+      this.scene.setObjects(cache.objects);
+      showObjects(this.scene, this.redraw);
+    }
+    this.take(cache);
+    Object.assign(this.timeline, { index: Math.min(index, cache.frames.length - 1), marks, speed, isLooping });
+    if (isPlaying) {
+      this.timeline.play(rate);
+    } else {
+      await this.timeline.go(follows || index >= cache.frames.length ? Infinity : index);
+    }
   }
 
   // Finds the bounding box of the run from a few frames, and frames it.
@@ -92,10 +132,11 @@ export class Player {
       this.timeline.times = state.times;
       this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
       scene.update(state, twin);
-      this.curve?.mark(index);
+      this.series.mark(state.index, this.timeline.marks);
       showTime(cache, state);
       countPoints(scene);
-      showFigures(state.report, scene.invalidPoints);
+      showFigures(state.report, scene.invalidPoints, twin?.report);
+      this.compare(state, twin);
       showContactStates(scene, state.contacts);
       this.redraw();
       cache.prefetch(index);
@@ -113,7 +154,46 @@ export class Player {
     const { times } = await this.other.state(index);
     // The same fraction of the frame, because the runs may have recorded different numbers of substeps.
     const timeIndex = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * times) - 1);
-    return this.other.state(index, timeIndex);
+    const names = this.other.objects.map(({ name }) => name);
+    return { ...(await this.other.state(index, timeIndex)), names };
+  }
+
+  // Shows how far the two runs are apart.
+  compare(state, twin) {
+    if (twin) {
+      const sorted = distances(this.scene.objects, state, twin);
+      this.p99 = percentile(sorted, 0.99);
+      const scenes = [this.timeline.cache, this.other].map(({ run }) => run.scene);
+      showComparison(this.names, scenes, [0.5, 0.99, 1].map((share) => percentile(sorted, share)));
+    }
+  }
+
+  // Sets the scale of the difference to the 99th percentile of the distances of the shown frame; of the run, where the
+  // frame has none.
+  async fitDifference() {
+    this.isFitted = true;
+    this.setFullScale("difference", this.p99 || (await fittedScale(this)));
+  }
+
+  setSpeed(speed) {
+    this.timeline.setSpeed(speed);
+    showSpeed(speed);
+  }
+
+  // Sets the in point (0) or the out point (1) to the shown frame, or removes it.
+  mark(which) {
+    this.timeline.mark(which);
+    this.showMarks();
+    this.series.mark(this.timeline.index, this.timeline.marks);
+  }
+
+  showMarks() {
+    ["mark", "end"].forEach((id, k) => byId(id).setAttribute("aria-pressed", this.timeline.marks[k] !== null));
+  }
+
+  chooseFigure(key) {
+    this.series.choose(key);
+    byId("figure").value = key;
   }
 
   // The positions of the frame before, for the speed.
@@ -134,11 +214,15 @@ export class Player {
     this.redraw();
   }
 
-  // Colours the objects by a quantity; a second call returns to a colour per object.
-  colourBy(quantity) {
+  // Colours the objects by a quantity; a second call returns to a colour per object. Without a scale, that of the
+  // difference is fitted once.
+  colourBy(quantity, hasScale = false) {
     const { look } = this.scene;
     if (byId(quantity).hidden) {
       return; // the cache does not hold it
+    }
+    if (quantity === "difference" && !hasScale && !this.isFitted) {
+      this.fitDifference();
     }
     look.colour = look.colour === quantity ? "object" : quantity;
     COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));
@@ -207,7 +291,9 @@ export class Player {
     // Requested first, so that an error while drawing does not end the loop.
     requestAnimationFrame(() => this.everyRefresh());
     this.timeline?.tick();
-    byId("play").setAttribute("aria-pressed", this.timeline?.isPlaying ?? false);
+    const { isPlaying = false, rate = 1, speed = 1 } = this.timeline ?? {};
+    byId("play").setAttribute("aria-pressed", isPlaying);
+    byId("rate").textContent = isPlaying && rate !== speed ? `${rate} ×` : "";
     if (this.isStale && this.timeline) {
       this.isStale = false;
       byId("camera").textContent = this.camera.track?.name ?? "free";
@@ -215,6 +301,8 @@ export class Player {
     }
   }
 }
+
+const objectNames = (cache) => cache.objects.map(({ name }) => name).join("\n");
 
 function showIncomplete(cache) {
   const [first, last] = [0, cache.frames.length - 1].map((index) => cache.frameNumber(index));

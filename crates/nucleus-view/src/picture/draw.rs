@@ -3,9 +3,9 @@
 use super::camera::{Camera, View};
 use super::floor::Floor;
 use super::image::Image;
-use super::light::{Light, diffuse, smoothstep};
+use super::light::{Light, diffuse, fill, smoothstep};
 use super::mesh::Mesh;
-use super::scene::{Bounds, Colouring, Ground, Object, Style, Vec3, is_drawable, unit};
+use super::scene::{Background, Bounds, Colouring, Ground, Object, Style, Vec3, is_drawable, unit};
 use super::strain;
 use super::visibility::{self, Fragment};
 
@@ -15,14 +15,15 @@ use super::visibility::{self, Fragment};
 /// makes it fail.
 pub fn draw(objects: &[Object], camera: &Camera, style: &Style) -> Image {
     let size = style.size.map(|side| side.clamp(1, Image::LARGEST_SIDE));
-    let samples = style.samples.clamp(1, 4);
+    let samples = style.samples.clamp(1, 8);
     let view = View::new(camera, size.map(|side| side * samples));
     let mut mesh = Mesh::gather(objects, style, &view);
     let light = Light::of(&mesh, &view);
     light.find_sky_visibility(&mut mesh);
     let fragments = visibility::draw(&mesh, &view);
-    let floor = floor_height(objects, style.ground);
-    let options = Options { floor, wireframe: style.wireframe, samples };
+    let is_transparent = style.background == Background::Transparent;
+    let floor = if is_transparent { None } else { floor_height(objects, style.ground) };
+    let options = Options { floor, wireframe: style.wireframe, samples, background: style.background };
     let mut image = shade(&mesh, &fragments, &view, &light, options);
     if let Colouring::Strain { full_scale } = style.colouring {
         strain::draw_legend(&mut image, full_scale);
@@ -58,6 +59,7 @@ struct Options {
     wireframe: bool,
     /// Samples along each side of a pixel.
     samples: u32,
+    background: Background,
 }
 
 /// Shades every sample and averages the samples of each pixel.
@@ -69,19 +71,24 @@ fn shade(mesh: &Mesh, fragments: &[Fragment], view: &View, light: &Light, option
         light,
         key: Light::key_direction(view),
         floor: options.floor.map(|height| Floor::new(height, view, light)),
+        background: options.background,
         // A line has the same width in pixels for any number of samples.
         line_width: if options.wireframe { 0.55 * samples as f32 } else { 0.0 },
     };
     let [width, height] = view.size.map(|side| side / samples);
     let mut image = Image::new(width, height);
-    image.fill_rows(|column, row| {
-        let mut sum = Vec3::zeros();
+    image.fill_rows(options.background == Background::Transparent, |column, row| {
+        let (mut sum, mut covered) = (Vec3::zeros(), 0.0);
         for sample in 0..samples * samples {
             let x = column * samples + sample % samples;
             let y = row * samples + sample / samples;
-            sum += shader.colour(&fragments[(y * view.size[0] + x) as usize], [x, y]);
+            let (colour, opacity) = shader.colour(&fragments[(y * view.size[0] + x) as usize], [x, y]);
+            sum += colour * opacity;
+            covered += opacity;
         }
-        sum / (samples * samples) as f32
+        // Colours are not multiplied by opacity, as PNG demands.
+        let colour = if covered > 0.0 { sum / covered } else { sum };
+        (colour, covered / (samples * samples) as f32)
     });
     image
 }
@@ -93,6 +100,7 @@ struct Shader<'a> {
     /// Direction to the key light.
     key: Vec3,
     floor: Option<Floor>,
+    background: Background,
     /// Width of a wireframe line on each side of an edge, in samples.
     line_width: f32,
 }
@@ -107,7 +115,8 @@ struct SurfacePoint {
 }
 
 impl Shader<'_> {
-    fn colour(&self, fragment: &Fragment, [x, y]: [u32; 2]) -> Vec3 {
+    /// The linear colour of a sample, and its opacity.
+    fn colour(&self, fragment: &Fragment, [x, y]: [u32; 2]) -> (Vec3, f32) {
         let ray = self.view.ray([x as f32 + 0.5, y as f32 + 0.5]);
         let surface = if fragment.inverse_depth > 0.0 {
             self.view.eye + ray / fragment.inverse_depth
@@ -115,11 +124,11 @@ impl Shader<'_> {
             self.view.eye
         };
         if fragment.inverse_depth > 0.0 && !self.is_under_floor(&surface) {
-            return self.shade_surface(&self.surface_point(fragment, &surface, &ray), &ray);
+            return (self.shade_surface(&self.surface_point(fragment, &surface, &ray), &ray), 1.0);
         }
-        let background = self.background(y);
+        let Some(background) = self.background(y) else { return (Vec3::zeros(), 0.0) };
         let floor = self.floor.as_ref().and_then(|floor| floor.shade(self.view, &ray, self.light));
-        floor.map_or(background, |(colour, opacity)| background.lerp(&colour, opacity))
+        (floor.map_or(background, |(colour, opacity)| background.lerp(&colour, opacity)), 1.0)
     }
 
     /// Whether the floor hides a point from the eye.
@@ -128,16 +137,25 @@ impl Shader<'_> {
         self.floor.as_ref().is_some_and(|floor| floor.hides(self.view, point, slack))
     }
 
-    fn background(&self, row: u32) -> Vec3 {
+    fn background(&self, row: u32) -> Option<Vec3> {
         let down = row as f32 / self.view.size[1] as f32;
-        Vec3::from(BACKGROUND_TOP).lerp(&Vec3::from(BACKGROUND_BOTTOM), smoothstep(0.0, 1.0, down))
+        match self.background {
+            Background::Studio => {
+                let [top, bottom] = [BACKGROUND_TOP, BACKGROUND_BOTTOM].map(Vec3::from);
+                Some(top.lerp(&bottom, smoothstep(0.0, 1.0, down)))
+            }
+            Background::Colour(colour) => Some(Vec3::from(colour)),
+            Background::Transparent => None,
+        }
     }
 
     fn shade_surface(&self, point: &SurfacePoint, ray: &Vec3) -> Vec3 {
         let key = self.light.key_visibility(&point.position, &point.normal);
-        let colour = diffuse(&point.colour, &point.normal, key, point.sky, &self.key);
+        let cosine = unit(ray).dot(&point.normal).abs().min(1.0);
+        let colour = diffuse(&point.colour, &point.normal, key, point.sky, &self.key)
+            + fill(&point.colour, cosine, point.sky);
         // Fibres scatter light at grazing angles: the sheen of woven cloth.
-        let grazing = 1.0 - unit(ray).dot(&point.normal).abs().min(1.0);
+        let grazing = 1.0 - cosine;
         let sheen = grazing * grazing * grazing * (0.25 + 0.75 * key) * point.sky;
         colour + (point.colour * 0.5 + Vec3::repeat(0.05)) * sheen * 0.5
     }

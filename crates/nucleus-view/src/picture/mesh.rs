@@ -49,17 +49,19 @@ impl Mesh {
         let default_radius = view.half_extent() * DEFAULT_RADIUS;
         let (mut cloths, mut colliders) = (0, 0);
         for object in objects {
+            let tint = style.tints.iter().find(|(name, _)| name == object.name);
+            let or_tint = |own: Vec3| tint.map_or(own, |(_, tint)| Vec3::from(*tint));
             match object.kind {
                 Kind::Cloth => {
-                    mesh.add_cloth(object, cloth_colour(cloths), style.colouring);
+                    mesh.add_cloth(object, or_tint(cloth_colour(cloths)), style.colouring);
                     cloths += 1;
                 }
                 Kind::Collider => {
-                    mesh.add_collider(object, collider_colour(colliders));
+                    mesh.add_collider(object, or_tint(collider_colour(colliders)));
                     colliders += 1;
                 }
                 Kind::Particles => {
-                    mesh.add_particles(object, cloth_colour(cloths), default_radius);
+                    mesh.add_particles(object, or_tint(cloth_colour(cloths)), default_radius);
                     cloths += 1;
                 }
             }

@@ -12,6 +12,7 @@ mod raster;
 mod scene;
 mod shadow_map;
 mod strain;
+mod text;
 mod visibility;
 
 pub use animation::{AnimationWriter, GifWriter};
@@ -19,4 +20,4 @@ pub use camera::Camera;
 pub use draw::draw;
 pub use film::Film;
 pub use image::Image;
-pub use scene::{Bounds, Colouring, Ground, Kind, Object, Style};
+pub use scene::{Background, Bounds, Colouring, Ground, Kind, Object, Style};

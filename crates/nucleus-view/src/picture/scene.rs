@@ -38,8 +38,12 @@ pub enum Kind {
 pub struct Style {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples along each side of a pixel, 1 to 4.
+    /// Samples along each side of a pixel, 1 to 8: supersampling.
     pub samples: u32,
+    /// What is behind the objects and the floor.
+    pub background: Background,
+    /// Linear colours of objects by their names, instead of those by their order.
+    pub tints: Vec<(String, [f32; 3])>,
     /// The quantity that the colour of a cloth shows.
     pub colouring: Colouring,
     /// Whether the edges of the faces are drawn.
@@ -52,12 +56,25 @@ impl Default for Style {
     fn default() -> Self {
         Self {
             size: [960, 540],
-            samples: 2,
+            samples: 3,
+            background: Background::Studio,
+            tints: Vec::new(),
             colouring: Colouring::Objects,
             wireframe: false,
             ground: Ground::Below,
         }
     }
+}
+
+/// What is behind the objects and the floor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// A grey that darkens downwards.
+    Studio,
+    /// One linear colour.
+    Colour([f32; 3]),
+    /// Nothing: the picture has opacities, and no floor.
+    Transparent,
 }
 
 /// The floor of a picture, a horizontal plane. It casts no shadow.

@@ -1,7 +1,8 @@
-//! Strain in pictures: its value at each point, its colour, and the legend with its few glyphs.
+//! Strain in pictures: its value at each point, its colour, and the legend.
 
 use super::image::Image;
 use super::scene::{Object, Vec3, is_drawable};
+use super::text::{draw_text, text_width};
 
 /// Per point, the strain of largest magnitude among its edges, with its sign; 0 for a point without edges.
 /// `None` if the object has no rest shape of as many points.
@@ -53,24 +54,24 @@ const INK: [f32; 3] = [0.05, 0.05, 0.055];
 /// Draws the legend, a bar with its figures in the lower left corner, for strains from `-full_scale` to `full_scale`.
 pub(super) fn draw_legend(image: &mut Image, full_scale: f32) {
     let [width, height] = image.size();
-    let dot = (height / 360).max(1);
-    let bar = [width / 4, 6 * dot];
-    let [left, top] = [14 * dot, height.saturating_sub((14 + 6 + 3 + GLYPH_HEIGHT) * dot)];
+    let unit = (height / 60).max(6);
+    let line = unit * 2;
+    let bar = [(width / 4).max(6 * line), unit * 3 / 4];
+    let [left, top] = [unit * 2, height.saturating_sub(unit + line + bar[1])];
     let ink = Vec3::from(INK);
     for column in 0..bar[0] {
         let share = column as f32 / (bar[0] - 1).max(1) as f32 * 2.0 - 1.0;
         // As bright as a surface that faces the sky, so that the bar matches the cloth.
         fill(image, [left + column, top], [1, bar[1]], &(colour(share) * 0.9));
     }
-    let below = top + bar[1] + 3 * dot;
+    let below = top + bar[1] + unit / 4;
     let percent = percent(full_scale);
-    let texts = [(format!("-{percent}%"), 0.0), ("0".into(), 0.5), (format!("+{percent}%"), 1.0)];
+    let texts = [(format!("-{percent} %"), 0.0), ("0".into(), 0.5), (format!("+{percent} %"), 1.0)];
     for (text, place) in texts {
-        let room = bar[0].saturating_sub(text_width(&text) * dot);
-        write_text(image, &text, [left + (room as f32 * place) as u32, below], dot, &ink);
+        let room = bar[0].saturating_sub(text_width(&text, line));
+        draw_text(image, &text, [left + (room as f32 * place) as u32, below], line, &ink);
     }
-    let above = top.saturating_sub((3 + GLYPH_HEIGHT) * dot);
-    write_text(image, "strain", [left, above], dot, &ink);
+    draw_text(image, "strain", [left, top.saturating_sub(line + unit / 4)], line, &ink);
 }
 
 /// A strain in percent, with a decimal only where it is needed.
@@ -83,62 +84,13 @@ fn percent(strain: f32) -> String {
     }
 }
 
-/// Distance from one glyph to the next, in dots.
-const ADVANCE: u32 = 6;
-/// Height of a glyph, in dots.
-const GLYPH_HEIGHT: u32 = 7;
-
-/// Width of a text, in dots.
-fn text_width(text: &str) -> u32 {
-    (text.chars().count() as u32 * ADVANCE).saturating_sub(1)
-}
-
-/// Draws a text with its upper left corner at a pixel; a dot is `dot` pixels wide.
-fn write_text(image: &mut Image, text: &str, [left, top]: [u32; 2], dot: u32, colour: &Vec3) {
-    for (place, letter) in text.chars().enumerate() {
-        for (row, bits) in glyph(letter).into_iter().enumerate() {
-            for column in (0..5).filter(|column| bits >> (4 - column) & 1 == 1) {
-                let x = left + (place as u32 * ADVANCE + column) * dot;
-                fill(image, [x, top + row as u32 * dot], [dot, dot], colour);
-            }
-        }
-    }
-}
-
 /// Fills the part of a rectangle that lies inside the picture.
 fn fill(image: &mut Image, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: &Vec3) {
     let [right, bottom] = image.size();
     for row in top..(top + height).min(bottom) {
         for column in left..(left + width).min(right) {
-            image.set(column, row, colour);
+            image.blend(column, row, colour, 1.0);
         }
-    }
-}
-
-/// The five by seven dots of a character, row by row, leftmost in bit 4; empty for characters that the legend lacks.
-fn glyph(letter: char) -> [u8; 7] {
-    match letter {
-        '0' => [0b01110, 0b10001, 0b10011, 0b10101, 0b11001, 0b10001, 0b01110],
-        '1' => [0b00100, 0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110],
-        '2' => [0b01110, 0b10001, 0b00001, 0b00110, 0b01000, 0b10000, 0b11111],
-        '3' => [0b01110, 0b10001, 0b00001, 0b00110, 0b00001, 0b10001, 0b01110],
-        '4' => [0b00010, 0b00110, 0b01010, 0b10010, 0b11111, 0b00010, 0b00010],
-        '5' => [0b11111, 0b10000, 0b11110, 0b00001, 0b00001, 0b10001, 0b01110],
-        '6' => [0b00110, 0b01000, 0b10000, 0b11110, 0b10001, 0b10001, 0b01110],
-        '7' => [0b11111, 0b00001, 0b00010, 0b00100, 0b01000, 0b01000, 0b01000],
-        '8' => [0b01110, 0b10001, 0b10001, 0b01110, 0b10001, 0b10001, 0b01110],
-        '9' => [0b01110, 0b10001, 0b10001, 0b01111, 0b00001, 0b00010, 0b01100],
-        '+' => [0b00000, 0b00100, 0b00100, 0b11111, 0b00100, 0b00100, 0b00000],
-        '-' => [0b00000, 0b00000, 0b00000, 0b11111, 0b00000, 0b00000, 0b00000],
-        '.' => [0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b00100, 0b00100],
-        '%' => [0b11001, 0b11001, 0b00010, 0b00100, 0b01000, 0b10011, 0b10011],
-        's' => [0b00000, 0b00000, 0b01111, 0b10000, 0b01110, 0b00001, 0b11110],
-        't' => [0b00100, 0b00100, 0b01110, 0b00100, 0b00100, 0b00101, 0b00010],
-        'r' => [0b00000, 0b00000, 0b10110, 0b11001, 0b10000, 0b10000, 0b10000],
-        'a' => [0b00000, 0b00000, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111],
-        'i' => [0b00100, 0b00000, 0b01100, 0b00100, 0b00100, 0b00100, 0b01110],
-        'n' => [0b00000, 0b00000, 0b10110, 0b11001, 0b10001, 0b10001, 0b10001],
-        _ => [0; 7],
     }
 }
 

@@ -4,20 +4,42 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::live::LiveRun;
 use super::request::{ByteRange, Request};
 
 /// The caches that the page can request.
 #[derive(Debug)]
 pub(super) struct Caches {
-    pub shown: PathBuf,
+    pub shown: Shown,
     /// A second cache, for comparison.
     pub other: Option<PathBuf>,
+}
+
+/// The cache that the page shows.
+#[derive(Debug)]
+pub(super) enum Shown {
+    /// One file.
+    File(PathBuf),
+    /// The cache of a scene that is solved again whenever it changes.
+    Live(LiveRun),
+}
+
+impl Shown {
+    fn path(&self) -> PathBuf {
+        match self {
+            Self::File(path) => path.clone(),
+            Self::Live(run) => run.path(),
+        }
+    }
 }
 
 /// The path of the cache, whatever the name of its file.
 const CACHE: &str = "/cache.mcap";
 /// The path of the second cache.
 const OTHER: &str = "/other.mcap";
+
+/// The path of the state of a live run.
+const LIVE: &str = "/live.json";
 
 /// Responds to a request. Only the files of the page and the caches have a path.
 pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -> io::Result<()> {
@@ -30,7 +52,8 @@ pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -
         return refuse(to, "403 Forbidden", "");
     }
     match (request.path.as_str(), &caches.other) {
-        (CACHE, _) => return send_cache(request, &caches.shown, with_body, to),
+        (CACHE, _) => return send_cache(request, &caches.shown.path(), with_body, to),
+        (LIVE, _) => return send_live(&caches.shown, with_body, to),
         (OTHER, Some(other)) => return send_cache(request, other, with_body, to),
         _ => {}
     }
@@ -48,6 +71,13 @@ pub(super) fn refuse_malformed(to: &mut impl Write) -> io::Result<()> {
 fn send_asset(asset: &Asset, with_body: bool, to: &mut impl Write) -> io::Result<()> {
     head(to, "200 OK", asset.text.len() as u64, &format!("Content-Type: {}\r\n", asset.media_type))?;
     if with_body { to.write_all(asset.text.as_bytes()) } else { Ok(()) }
+}
+
+fn send_live(shown: &Shown, with_body: bool, to: &mut impl Write) -> io::Result<()> {
+    let Shown::Live(run) = shown else { return refuse(to, "404 Not Found", "") };
+    let text = run.to_json();
+    head(to, "200 OK", text.len() as u64, "Content-Type: application/json\r\n")?;
+    if with_body { to.write_all(text.as_bytes()) } else { Ok(()) }
 }
 
 /// The length is read at each request, because the cache of a running simulation grows.
@@ -123,7 +153,11 @@ const ASSETS: &[Asset] = assets![
     "/player/style.css" as "text/css; charset=utf-8",
     "/player/cache.js" as SCRIPT,
     "/player/camera.js" as SCRIPT,
+    "/player/compare.js" as SCRIPT,
+    "/player/figures.js" as SCRIPT,
     "/player/gl.js" as SCRIPT,
+    "/player/link.js" as SCRIPT,
+    "/player/live.js" as SCRIPT,
     "/player/main.js" as SCRIPT,
     "/player/mcap.js" as SCRIPT,
     "/player/mesh.js" as SCRIPT,
@@ -133,6 +167,7 @@ const ASSETS: &[Asset] = assets![
     "/player/records.js" as SCRIPT,
     "/player/scene.js" as SCRIPT,
     "/player/shading.js" as SCRIPT,
+    "/player/series.js" as SCRIPT,
     "/player/source.js" as SCRIPT,
     "/player/timeline.js" as SCRIPT,
     "/vendor/fzstd.mjs" as SCRIPT,

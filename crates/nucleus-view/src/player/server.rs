@@ -10,7 +10,8 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::connection::{DeadlineWriter, Incoming, read_requests};
-use super::response::{self, Caches};
+use super::live::LiveRun;
+use super::response::{self, Caches, Shown};
 use crate::error::ViewError;
 
 /// Time in which a client must have read a response. At 10 MB/s that is 600 MB, and the page requests single frames.
@@ -33,7 +34,15 @@ pub struct Player {
 /// # Errors
 /// If the cache cannot be read or the port is taken. The content of the file is checked by the page.
 pub fn serve(path: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
-    serve_caches(Caches { shown: path.as_ref().to_path_buf(), other: None }, port)
+    serve_files(path.as_ref(), None, port)
+}
+
+/// Serves the player with a scene that is solved again whenever it changes. The page shows frames as they are solved.
+///
+/// # Errors
+/// If the port is taken.
+pub fn serve_live(run: &LiveRun, port: u16) -> Result<Player, ViewError> {
+    serve_caches(Caches { shown: Shown::Live(run.clone()), other: None }, port)
 }
 
 /// Serves the player with two caches for comparison, otherwise like [`serve`].
@@ -41,14 +50,18 @@ pub fn serve(path: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
 /// # Errors
 /// As [`serve`].
 pub fn serve_both(path: impl AsRef<Path>, other: impl AsRef<Path>, port: u16) -> Result<Player, ViewError> {
-    let (shown, other) = (path.as_ref().to_path_buf(), Some(other.as_ref().to_path_buf()));
-    serve_caches(Caches { shown, other }, port)
+    serve_files(path.as_ref(), Some(other.as_ref()), port)
+}
+
+fn serve_files(path: &Path, other: Option<&Path>, port: u16) -> Result<Player, ViewError> {
+    for path in [Some(path), other].into_iter().flatten() {
+        check_is_file(path).map_err(|source| ViewError::Open { path: path.to_path_buf(), source })?;
+    }
+    let shown = Shown::File(path.to_path_buf());
+    serve_caches(Caches { shown, other: other.map(Path::to_path_buf) }, port)
 }
 
 fn serve_caches(caches: Caches, port: u16) -> Result<Player, ViewError> {
-    for path in [Some(&caches.shown), caches.other.as_ref()].into_iter().flatten() {
-        check_is_file(path).map_err(|source| ViewError::Open { path: path.clone(), source })?;
-    }
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
     let listener = listener.map_err(|source| ViewError::Listen { port, source })?;
     let address = listener.local_addr().map_err(|source| ViewError::Listen { port, source })?;

@@ -20,6 +20,22 @@ pub fn read_obj_uvs(path: impl AsRef<Path>) -> Result<Vec<Option<[f64; 2]>>, Obj
     uvs.map_err(|fault| fault.in_file(path))
 }
 
+/// Texture coordinates, and the index of those of each corner of a face.
+pub type CornerUvs = (Vec<[f64; 2]>, Vec<u32>);
+
+/// The texture coordinates of an OBJ file as its faces use them: the `vt` lines, and for each corner of a face the index
+/// of its coordinates, in the order of the file. `None` where a corner has none.
+///
+/// # Errors
+/// As [`read_obj_uvs`].
+pub fn read_obj_corner_uvs(path: impl AsRef<Path>) -> Result<Option<CornerUvs>, ObjError> {
+    let path = path.as_ref();
+    let uvs = files::open(path)
+        .map_err(Fault::from)
+        .and_then(|(file, _)| read_all(BufReader::with_capacity(1 << 18, file)));
+    uvs.map(Uvs::of_corners).map_err(|fault| fault.in_file(path))
+}
+
 /// Counts and coordinates read so far.
 #[derive(Default)]
 struct Uvs {
@@ -27,9 +43,15 @@ struct Uvs {
     uvs: Vec<[f64; 2]>,
     /// For each vertex, the index of its coordinates and the line of the face.
     of_vertex: Vec<Option<(usize, u64)>>,
+    /// For each corner, the index of its coordinates.
+    of_corner: Vec<Option<usize>>,
 }
 
 fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Fault> {
+    read_all(input)?.finish()
+}
+
+fn read_all(input: impl BufRead) -> Result<Uvs, Fault> {
     let mut found = Uvs::default();
     let mut statements = Statements::new(input);
     while let Some((line, statement)) = statements.next()? {
@@ -45,7 +67,7 @@ fn read(input: impl BufRead) -> Result<Vec<Option<[f64; 2]>>, Fault> {
         };
         result.map_err(|fault| Fault::Line(line, fault))?;
     }
-    found.finish()
+    Ok(found)
 }
 
 impl Uvs {
@@ -68,6 +90,7 @@ impl Uvs {
             let mut parts = word.bytes.split(|&byte| byte == b'/');
             let (vertex, uv) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
             if uv.is_empty() {
+                self.of_corner.push(None);
                 continue;
             }
             let both = counted(vertex, self.vertices).zip(counted(uv, self.uvs.len()));
@@ -76,8 +99,15 @@ impl Uvs {
                 self.of_vertex.resize(vertex + 1, None);
             }
             self.of_vertex[vertex].get_or_insert((uv, line));
+            self.of_corner.push(Some(uv));
         }
         Ok(())
+    }
+
+    fn of_corners(self) -> Option<CornerUvs> {
+        let index = |uv: Option<usize>| uv.filter(|uv| *uv < self.uvs.len()).map(|uv| uv as u32);
+        let corners: Option<Vec<u32>> = self.of_corner.iter().map(|uv| index(*uv)).collect();
+        corners.filter(|corners| !corners.is_empty()).map(|corners| (self.uvs, corners))
     }
 
     fn finish(mut self) -> Result<Vec<Option<[f64; 2]>>, Fault> {

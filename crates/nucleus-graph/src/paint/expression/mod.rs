@@ -27,6 +27,31 @@ pub struct Expression {
     ops: Vec<Op>,
 }
 
+/// Variables and constants of expressions, each with its meaning.
+pub fn variables() -> impl Iterator<Item = (&'static str, &'static str)> {
+    ops::NAMES.iter().map(|(name, _, doc)| (*name, *doc))
+}
+
+/// Functions of expressions, each as it is written, with its meaning.
+pub fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
+    ops::FUNCTIONS.iter().map(|(_, _, usage, doc)| (*usage, *doc))
+}
+
+/// Operators of expressions by precedence, weakest first, each with its meaning.
+pub fn operators() -> impl Iterator<Item = (&'static str, &'static str)> {
+    [
+        ("a ? b : c", "b where a is not zero, else c"),
+        ("a || b", "1 where one of them is not zero, else 0"),
+        ("a && b", "1 where both are not zero, else 0"),
+        ("< <= > >= == !=", "1 if true, else 0"),
+        ("a + b, a - b", "sum and difference"),
+        ("a * b, a / b, a % b", "product, quotient and remainder, which has the sign of a"),
+        ("-a, !a", "negative; 1 where a is zero, else 0"),
+        ("a ^ b", "power, from right to left"),
+    ]
+    .into_iter()
+}
+
 impl Expression {
     /// Parses an expression.
     ///

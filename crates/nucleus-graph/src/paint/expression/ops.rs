@@ -74,43 +74,51 @@ impl Call {
     }
 }
 
-/// All functions. Angles are in radians. `step(edge, x)` is 1 for `x >= edge`, else 0. `smoothstep(from, to, x)` rises
-/// smoothly from 0 to 1. `mix(a, b, t)` interpolates linearly from a to b.
-pub(super) const FUNCTIONS: [(&str, Call); 22] = [
-    ("abs", Call::One(f64::abs)),
-    ("sqrt", Call::One(f64::sqrt)),
-    ("exp", Call::One(f64::exp)),
-    ("log", Call::One(f64::ln)),
-    ("sin", Call::One(f64::sin)),
-    ("cos", Call::One(f64::cos)),
-    ("tan", Call::One(f64::tan)),
-    ("asin", Call::One(f64::asin)),
-    ("acos", Call::One(f64::acos)),
-    ("atan", Call::One(f64::atan)),
-    ("floor", Call::One(f64::floor)),
-    ("ceil", Call::One(f64::ceil)),
-    ("round", Call::One(f64::round)),
-    ("sign", Call::One(sign)),
-    ("min", Call::Two(f64::min)),
-    ("max", Call::Two(f64::max)),
-    ("pow", Call::Two(f64::powf)),
-    ("atan2", Call::Two(f64::atan2)),
-    ("step", Call::Two(step)),
-    ("clamp", Call::Three(clamp)),
-    ("smoothstep", Call::Three(smoothstep)),
-    ("mix", Call::Three(mix)),
+/// All functions: name, code, signature and meaning.
+pub(super) const FUNCTIONS: [(&str, Call, &str, &str); 22] = [
+    ("abs", Call::One(f64::abs), "abs(a)", "a without its sign"),
+    ("sqrt", Call::One(f64::sqrt), "sqrt(a)", "square root"),
+    ("exp", Call::One(f64::exp), "exp(a)", "e to the power of a"),
+    ("log", Call::One(f64::ln), "log(a)", "natural logarithm"),
+    ("sin", Call::One(f64::sin), "sin(a)", "sine of an angle in radians"),
+    ("cos", Call::One(f64::cos), "cos(a)", "cosine of an angle in radians"),
+    ("tan", Call::One(f64::tan), "tan(a)", "tangent of an angle in radians"),
+    ("asin", Call::One(f64::asin), "asin(a)", "angle in radians whose sine is a"),
+    ("acos", Call::One(f64::acos), "acos(a)", "angle in radians whose cosine is a"),
+    ("atan", Call::One(f64::atan), "atan(a)", "angle in radians whose tangent is a"),
+    ("floor", Call::One(f64::floor), "floor(a)", "largest whole number that is not above a"),
+    ("ceil", Call::One(f64::ceil), "ceil(a)", "smallest whole number that is not below a"),
+    ("round", Call::One(f64::round), "round(a)", "nearest whole number; halves go away from zero"),
+    ("sign", Call::One(sign), "sign(a)", "-1, 0 or 1"),
+    ("min", Call::Two(f64::min), "min(a, b)", "the smaller of two"),
+    ("max", Call::Two(f64::max), "max(a, b)", "the larger of two"),
+    ("pow", Call::Two(f64::powf), "pow(a, b)", "a to the power of b, like `a ^ b`"),
+    ("atan2", Call::Two(f64::atan2), "atan2(a, b)", "angle in radians of the direction (b, a)"),
+    ("step", Call::Two(step), "step(edge, a)", "1 for a at or above the edge, else 0"),
+    ("clamp", Call::Three(clamp), "clamp(a, low, high)", "a, but not below low or above high"),
+    (
+        "smoothstep",
+        Call::Three(smoothstep),
+        "smoothstep(from, to, a)",
+        "rises smoothly from 0 to 1 as a goes from `from` to `to`",
+    ),
+    ("mix", Call::Three(mix), "mix(a, b, t)", "a for t = 0, b for t = 1, linear between"),
 ];
 
-/// Variables and constants by name.
-pub(super) const NAMES: [(&str, Op); 8] = [
-    ("x", Op::Variable(Variable::Position(0))),
-    ("y", Op::Variable(Variable::Position(1))),
-    ("z", Op::Variable(Variable::Position(2))),
-    ("u", Op::Variable(Variable::Uv(0))),
-    ("v", Op::Variable(Variable::Uv(1))),
-    ("i", Op::Variable(Variable::Index)),
-    ("n", Op::Variable(Variable::Count)),
-    ("pi", Op::Number(std::f64::consts::PI)),
+/// Variables and constants: name, value and meaning.
+pub(super) const NAMES: [(&str, Op, &str); 8] = [
+    (
+        "x",
+        Op::Variable(Variable::Position(0)),
+        "position in the space of the mesh at the start, in scene units",
+    ),
+    ("y", Op::Variable(Variable::Position(1)), "the same along y"),
+    ("z", Op::Variable(Variable::Position(2)), "the same along z"),
+    ("u", Op::Variable(Variable::Uv(0)), "texture coordinate"),
+    ("v", Op::Variable(Variable::Uv(1)), "the other texture coordinate"),
+    ("i", Op::Variable(Variable::Index), "number of the point, from 0"),
+    ("n", Op::Variable(Variable::Count), "number of points"),
+    ("pi", Op::Number(std::f64::consts::PI), "3.14159..."),
 ];
 
 fn sign(x: f64) -> f64 {

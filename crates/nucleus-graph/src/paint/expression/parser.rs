@@ -160,13 +160,13 @@ impl<'a> Parser<'a> {
     }
 
     fn name(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
-        if let Some((_, op)) = NAMES.iter().find(|(known, _)| *known == name) {
+        if let Some((_, op, _)) = NAMES.iter().find(|(known, ..)| *known == name) {
             self.ops.push(*op);
             return Ok(());
         }
         let mut error = ExpressionError::new(format!("there is no `{name}` in an expression"), span);
-        let is_function = FUNCTIONS.iter().any(|(known, _)| *known == name);
-        let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
+        let is_function = FUNCTIONS.iter().any(|(known, ..)| *known == name);
+        let names: Vec<&str> = NAMES.iter().map(|(name, ..)| *name).collect();
         error.help = Some(match is_function {
             true => format!("`{name}` is a function: write `{name}(...)`"),
             false => format!("a point has {}", names.join(", ")),
@@ -176,9 +176,9 @@ impl<'a> Parser<'a> {
 
     /// A function call, after its opening bracket.
     fn call(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
-        let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+        let Some((_, function, ..)) = FUNCTIONS.iter().find(|(known, ..)| *known == name) else {
             let mut error = ExpressionError::new(format!("there is no function `{name}`"), span);
-            let all: Vec<&str> = FUNCTIONS.iter().map(|(name, _)| *name).collect();
+            let all: Vec<&str> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
             error.help = Some(match nearest(name, all.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("there are {}", all.join(", ")),

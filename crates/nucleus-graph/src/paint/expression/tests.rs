@@ -92,3 +92,16 @@ proptest! {
         prop_assert_eq!(value(&format!("{a} < {b} ? {c} : {a}")), if a < b { c } else { a });
     }
 }
+
+#[test]
+fn every_documented_function_and_variable_is_understood() {
+    for (usage, doc) in functions() {
+        let (name, arguments) = usage.split_once('(').expect(usage);
+        let call = format!("{name}({})", vec!["0.5"; arguments.split(',').count()].join(", "));
+        assert!(Expression::parse(&call).is_ok() && !doc.is_empty(), "{call}");
+    }
+    for (name, _) in variables() {
+        assert!(Expression::parse(name).is_ok(), "{name}");
+    }
+    assert_eq!((functions().count(), variables().count()), (22, 8));
+}

@@ -1,0 +1,46 @@
+//! Texture coordinates of the meshes of a program, for caches and exports; the solver does not know them.
+
+use std::collections::BTreeMap;
+
+use crate::attributes::{mesh, n_base, poly_plane};
+use crate::graph::Node;
+use crate::mesh::{CornerUvs, poly_plane_uvs, read_obj_corner_uvs};
+use crate::scene::Scene;
+
+use super::animated_mesh::NumberedFile;
+use super::program::{Object, Program};
+
+/// Distinct texture coordinates, and their index at each corner of a face; the indices are empty where every point has one
+/// value, in the order of the points.
+pub type MeshCoordinates = CornerUvs;
+
+/// The texture coordinates of each object whose mesh has any, by the name of the object. Files are read again.
+pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String, MeshCoordinates> {
+    let of = |object: &Object| {
+        let (node, _) = program.node_of(object.kind);
+        let mesh = scene.graph.source(node, &n_base::INPUT_MESH)?;
+        let (values, corners) = of_mesh(scene, scene.graph.node(mesh))?;
+        let fits = match corners.is_empty() {
+            true => values.len() == object.points,
+            // Degenerate faces were left out of the mesh.
+            false => corners.len() == object.faces.corners().len(),
+        };
+        fits.then(|| (object.name.clone(), (values, corners)))
+    };
+    program.objects().iter().filter_map(of).collect()
+}
+
+fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
+    if node.node_type() == &poly_plane::POLY_PLANE {
+        use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
+        let [across, along] =
+            [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| u32::try_from(node.get(key)).unwrap_or(1));
+        return Some((poly_plane_uvs((across, along)), Vec::new()));
+    }
+    if node.node_type() != &mesh::MESH {
+        return None;
+    }
+    let file = node.get(&mesh::FILE);
+    let file = NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start));
+    read_obj_corner_uvs(scene.source.path(&file)).ok().flatten()
+}

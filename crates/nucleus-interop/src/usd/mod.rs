@@ -1,0 +1,272 @@
+//! USD with time samples, as text (`.usda`) or binary (`.usdc`): per object a Mesh or Points with its material, and the
+//! cameras of the run.
+
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use nucleus_cache::{ObjectInfo, ObjectKind};
+
+use crate::clip::{Clip, extent};
+use crate::error::ExportError;
+use crate::materials;
+use crate::normals::normals;
+use crate::output::{Output, node_names};
+
+use binary::BinaryStage;
+use stage::{Attribute, Head, Prim, Stage, Value};
+use text::TextStage;
+
+mod binary;
+mod stage;
+mod text;
+
+/// The scope of the materials.
+const MATERIALS: &str = "/run/materials";
+
+/// Writes one scene as text.
+pub(crate) fn write_text<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    out: &Path,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let mut stage = TextStage::new(output.file(out.to_owned())?);
+    write(clip, &mut stage, progress)?;
+    output.finish(stage.finish())
+}
+
+/// Writes one scene as binary.
+pub(crate) fn write_binary<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    out: &Path,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let mut stage = BinaryStage::new(output.file(out.to_owned())?);
+    write(clip, &mut stage, progress)?;
+    output.finish(stage.finish())
+}
+
+fn write<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    stage: &mut impl Stage,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let names = node_names(
+        clip.objects()
+            .map(|object| object.name.as_str())
+            .chain(clip.cameras().iter().map(|camera| camera.name.as_str())),
+    );
+    let (objects, cameras) = names.split_at(clip.objects().len());
+    let samples = clip.samples();
+    stage.head(&Head {
+        title: clip.title(),
+        metres_per_unit: 1.0 / clip.units_per_metre(),
+        times: [samples[0].frame_time, samples[samples.len() - 1].frame_time],
+        fps: clip.fps(),
+    });
+    stage.begin(&Prim { kind: Some("component"), ..Prim::of("Xform", "run") });
+    for (object, name) in objects.iter().enumerate() {
+        let done = object as f64 / objects.len() as f64;
+        let mut progress = |share: f64| progress(done + share / objects.len() as f64);
+        write_object(clip, object, name, stage, &mut progress)?;
+        if stage.has_failed() {
+            break; // `finish` reports the error
+        }
+    }
+    for (camera, name) in cameras.iter().enumerate() {
+        write_camera(clip, camera, name, stage);
+    }
+    write_materials(clip, objects, stage);
+    stage.end();
+    Ok(())
+}
+
+fn write_object<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    name: &str,
+    stage: &mut impl Stage,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let changes = !clip.mesh_changes(object).is_empty();
+    let info = clip.object(object);
+    let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
+    let prim = Prim::of(if is_mesh { "Mesh" } else { "Points" }, name);
+    stage.begin(&Prim { schemas: &["MaterialBindingAPI"], ..prim });
+    let title = Value::Text(&info.name);
+    stage.attribute(&Attribute { is_custom: true, ..Attribute::of("string", "nucleus:name") }, &title);
+    stage.relate("material:binding", &format!("{MATERIALS}/{name}"));
+    // Particles that come and go have no constant list of ids.
+    if clip.count_change(object)?.is_none() {
+        write_topology(clip, object, is_mesh, stage)?;
+    }
+    if is_mesh {
+        write_texture_coordinates(clip, object, changes, stage);
+    } else if let Some(radius) = clip.radius(object) {
+        // USD states the diameter of a particle: twice its radius.
+        let widths = Value::Floats(&[(2.0 * radius) as f32]);
+        stage.attribute(&Attribute::of("float[]", "widths").interpolated("constant"), &widths);
+    }
+    let samples = clip.samples().to_vec();
+    let steps = samples.len() as f64;
+    let mut extents = Vec::with_capacity(samples.len());
+    stage.begin_samples(&Attribute::of("point3f[]", "points"));
+    for (index, sample) in samples.iter().enumerate() {
+        let positions = clip.positions(object, index)?;
+        stage.sample(sample.frame_time, &Value::Vec3s(&positions));
+        extents.push(extent(&positions));
+        progress(0.5 * (index + 1) as f64 / steps);
+    }
+    stage.end_samples();
+    stage.begin_samples(&Attribute::of("float3[]", "extent"));
+    for (sample, extent) in samples.iter().zip(&extents) {
+        stage.sample(sample.frame_time, &Value::Vec3s(extent));
+    }
+    stage.end_samples();
+    if is_mesh {
+        stage.begin_samples(&Attribute::of("normal3f[]", "normals").interpolated("vertex"));
+        for (index, sample) in samples.iter().enumerate() {
+            let positions = clip.positions(object, index)?;
+            let normals = normals(&clip.object_at(object, index)?.faces, &positions);
+            stage.sample(sample.frame_time, &Value::Vec3s(&normals));
+            progress(0.5 + 0.5 * (index + 1) as f64 / steps);
+        }
+        stage.end_samples();
+    }
+    write_velocities(clip, object, stage)?;
+    stage.end();
+    Ok(())
+}
+
+/// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
+fn write_topology<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    is_mesh: bool,
+    stage: &mut impl Stage,
+) -> Result<(), ExportError> {
+    if is_mesh {
+        stage.attribute(&Attribute::uniform("token", "subdivisionScheme"), &Value::Token("none"));
+        stage.attribute(&Attribute::uniform("token", "orientation"), &Value::Token("rightHanded"));
+        stage.attribute(&Attribute::uniform("bool", "doubleSided"), &Value::Bool(true));
+    }
+    let mut samples = vec![0];
+    samples.extend(clip.mesh_changes(object));
+    let count = topology(clip.object_at(object, 0)?, is_mesh).len();
+    for part in 0..count {
+        let mut held: Vec<(f64, Vec<u32>)> = Vec::new();
+        let mut attribute = None;
+        for &sample in &samples {
+            let time = clip.samples()[sample].frame_time;
+            let (own, values) = topology(clip.object_at(object, sample)?, is_mesh).swap_remove(part);
+            held.push((time, values));
+            attribute = Some(own);
+        }
+        let Some(attribute) = attribute else { continue };
+        let value = |values| if is_mesh { Value::Ints(values) } else { Value::Int64s(values) };
+        if let [(_, only)] = held.as_slice() {
+            stage.attribute(&attribute, &value(only));
+            continue;
+        }
+        stage.begin_samples(&attribute);
+        held.iter().for_each(|(time, values)| stage.sample(*time, &value(values)));
+        stage.end_samples();
+    }
+    Ok(())
+}
+
+/// The topology attributes. Particles have ids, so that other tools can identify each over time.
+fn topology(object: &ObjectInfo, is_mesh: bool) -> Vec<(Attribute<'static>, Vec<u32>)> {
+    if !is_mesh {
+        return vec![(Attribute::of("int64[]", "ids"), (0..object.rest.len() as u32).collect())];
+    }
+    let counts = object.faces.iter().map(|face| face.len() as u32).collect();
+    vec![
+        (Attribute::of("int[]", "faceVertexCounts"), counts),
+        (Attribute::of("int[]", "faceVertexIndices"), object.faces.corners().to_vec()),
+    ]
+}
+
+/// Texture coordinates belong to the first mesh; a mesh that changes has none.
+fn write_texture_coordinates<R: Read + Seek>(
+    clip: &Clip<R>,
+    object: usize,
+    changes: bool,
+    stage: &mut impl Stage,
+) {
+    let Some(uvs) = clip.texture_coordinates(object).filter(|_| !changes) else { return };
+    let per_point = uvs.corners.is_empty();
+    let st = Attribute::of("texCoord2f[]", "primvars:st");
+    stage.attribute(
+        &st.interpolated(if per_point { "vertex" } else { "faceVarying" }),
+        &Value::Vec2s(&uvs.values),
+    );
+    if !per_point {
+        stage.attribute(&Attribute::of("int[]", "primvars:st:indices"), &Value::Ints(&uvs.corners));
+    }
+}
+
+fn write_velocities<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    stage: &mut impl Stage,
+) -> Result<(), ExportError> {
+    let samples = clip.samples().to_vec();
+    let mut begun = false;
+    for (index, sample) in samples.iter().enumerate() {
+        let Some(velocities) = clip.velocities(object, index)? else { continue };
+        if !begun {
+            stage.begin_samples(&Attribute::of("vector3f[]", "velocities"));
+            begun = true;
+        }
+        stage.sample(sample.frame_time, &Value::Vec3s(&velocities));
+    }
+    if begun {
+        stage.end_samples();
+    }
+    Ok(())
+}
+
+/// A camera with its motion. USD's focal length and apertures have one unit; only their ratios matter.
+fn write_camera<R: Read + Seek>(clip: &Clip<R>, camera: usize, name: &str, stage: &mut impl Stage) {
+    const MILLIMETRES: f32 = 25.4;
+    stage.begin(&Prim::of("Camera", name));
+    let views: Vec<_> = (0..clip.samples().len()).map(|sample| clip.camera_view(camera, sample)).collect();
+    let first = &views[0];
+    stage
+        .attribute(&Attribute::of("float", "horizontalAperture"), &Value::Float(first.film[0] * MILLIMETRES));
+    stage.attribute(&Attribute::of("float", "verticalAperture"), &Value::Float(first.film[1] * MILLIMETRES));
+    let samples = clip.samples();
+    stage.begin_samples(&Attribute::of("float", "focalLength"));
+    for (sample, view) in samples.iter().zip(&views) {
+        stage.sample(sample.frame_time, &Value::Float(view.focal_length));
+    }
+    stage.end_samples();
+    stage.attribute(&Attribute::uniform("token[]", "xformOpOrder"), &Value::Tokens(&["xformOp:transform"]));
+    stage.begin_samples(&Attribute::of("matrix4d", "xformOp:transform"));
+    for (sample, view) in samples.iter().zip(&views) {
+        stage.sample(sample.frame_time, &Value::Matrix(view.matrix()));
+    }
+    stage.end_samples();
+    stage.end();
+}
+
+/// A preview surface for each object, in the colour that the player gives it.
+fn write_materials<R: Read + Seek>(clip: &Clip<R>, objects: &[String], stage: &mut impl Stage) {
+    stage.begin(&Prim::of("Scope", "materials"));
+    let colours = materials::colours(clip.objects().map(|object| object.kind));
+    for (name, colour) in objects.iter().zip(colours) {
+        let shader = format!("{MATERIALS}/{name}/surface");
+        stage.begin(&Prim::of("Material", name));
+        stage.connect(&Attribute::of("token", "outputs:surface"), &format!("{shader}.outputs:surface"));
+        stage.begin(&Prim::of("Shader", "surface"));
+        stage.attribute(&Attribute::uniform("token", "info:id"), &Value::Token("UsdPreviewSurface"));
+        stage.attribute(&Attribute::of("color3f", "inputs:diffuseColor"), &Value::Vec3(colour));
+        stage.attribute(&Attribute::of("float", "inputs:roughness"), &Value::Float(materials::ROUGHNESS));
+        stage.declare(&Attribute::of("token", "outputs:surface"));
+        stage.end();
+        stage.end();
+    }
+    stage.end();
+}
