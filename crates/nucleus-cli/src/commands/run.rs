@@ -1,9 +1,11 @@
 //! `nucleus run`: simulates a scene and records a cache.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
+use nucleus_core::Real;
 use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
@@ -13,7 +15,7 @@ use nucleus_measure::trade::Setting;
 
 use super::import;
 use crate::initial_state::InitialState;
-use crate::options::{self, Channels, FrameRange, Record};
+use crate::options::{self, Channels, FrameRange, Record, Scalar};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
@@ -68,6 +70,9 @@ pub struct Run {
     /// Use the cheapest setting with at most this error (`1%`) according to `nucleus trade` for this scene.
     #[arg(long, value_name = "ERROR", value_parser = quality::error)]
     quality: Option<f64>,
+    /// Precision of the solver. With f64, a scene at the setting of a reference of `nucleus trade` gives its bits.
+    #[arg(long, value_enum, default_value_t)]
+    scalar: Scalar,
     /// Print one JSON object per frame and one for the run.
     #[arg(long)]
     json: bool,
@@ -89,6 +94,7 @@ impl Run {
             out: None,
             audit: false,
             quality: None,
+            scalar: Scalar::F32,
             json: false,
         }
     }
@@ -123,8 +129,27 @@ impl Run {
             }
         };
         process::listen_for_signals()?;
-        let (start, end) = recording::frames(&program)?;
-        let mut simulation = Simulation::new(&program, options::thread_count(self.threads));
+        let facts = recording::facts(
+            self.from.as_ref(),
+            setting,
+            self.scalar,
+            if is_from { &read } else { &program },
+        )?;
+        match self.scalar {
+            Scalar::F32 => self.simulate::<f32>(&program, facts, (out, &text)),
+            Scalar::F64 => self.simulate::<f64>(&program, facts, (out, &text)),
+        }
+    }
+
+    /// Runs a program with scalar `R` and records it in the file `out`; `text` is that of its scene.
+    fn simulate<R: Real>(
+        self,
+        program: &Program,
+        facts: BTreeMap<String, String>,
+        (out, text): (PathBuf, &str),
+    ) -> Result<Outcome> {
+        let (start, end) = recording::frames(program)?;
+        let mut simulation: Simulation<R> = Simulation::new(program, options::thread_count(self.threads));
         if self.audit {
             simulation.begin_audit(Closeness::Steps);
         } else if program.checks().iter().any(Check::needs_audit) {
@@ -134,14 +159,14 @@ impl Run {
         let record = self.record.unwrap_or_default();
         let channels = record.channels();
         let options = RecordOptions {
-            moments: record.moments(&program),
+            moments: record.moments(program),
             channels: Channels { velocities: channels.velocities || self.velocities, ..channels },
             force: self.force,
             compact: self.compact,
             checkpoint: self.checkpoint,
-            facts: recording::facts(self.from.as_ref(), setting, if is_from { &read } else { &program })?,
+            facts,
         };
-        let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;
+        let recorder = recording::begin(&simulation, options, &out, (&self.scene, text))?;
         let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
         let (audit, json) = (self.audit, self.json);
         let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };

@@ -50,8 +50,20 @@ pub struct Run {
     /// Broad-phase queries, over all frames.
     #[serde(rename = "searches")]
     pub queries: u64,
+    /// Difference of the last frame's shape from the reference's. `None` without a reference.
+    #[serde(default)]
+    pub outline: Option<Outline>,
     /// Hash of the last state, in hexadecimal.
     pub hash: String,
+}
+
+/// Difference of a shape from the reference's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Outline {
+    /// Distance of the surfaces, RMS, over the cloth's size.
+    pub distance: f64,
+    /// Area that only one of the two covers over the area that either covers, along the worst axis.
+    pub silhouette: f64,
 }
 
 impl Run {
@@ -109,6 +121,7 @@ pub fn run_setting<R: Real>(
         contact: Contact::default(),
         pairs: 0,
         queries: 0,
+        outline: None,
         hash: String::new(),
     };
     // Only references need all their frames.
@@ -143,6 +156,10 @@ pub fn run_setting<R: Real>(
         if let Some(trajectory) = &mut trajectory {
             trajectory.push(&points);
         }
+    }
+    if let Some(reference) = reference.filter(|reference| run.is_finite() && reference.frames() == asked) {
+        reference.frame(asked - 1, &mut expected);
+        run.outline = benchmark.outline_of(&points, &expected);
     }
     run.hash = format!("{:016x}", simulation.solver().state_hash());
     let mut end = vec![Vec::new(); simulation.objects().len()];
