@@ -6,8 +6,18 @@
 
 use nalgebra::Vector3;
 use nucleus_core::Faces;
+use serde::{Deserialize, Serialize};
 
 use super::root_mean_square;
+
+/// Difference of a shape from another.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Outline {
+    /// Distance of the surfaces, RMS, over the cloth's size.
+    pub distance: f64,
+    /// Area that only one of the two covers over the area that either covers, along the worst axis.
+    pub silhouette: f64,
+}
 
 /// Points of a shape that are measured; the rest are skipped evenly.
 const MAX_QUERIES: usize = 2048;

@@ -10,10 +10,9 @@ use nucleus_graph::graph::{Graph, NodeId, Setting as Held};
 use nucleus_graph::scene::edit::{Edit, NewValue};
 use nucleus_graph::scene::{Record, Scene, write_scene};
 
-use super::run::{Outline, Trajectory};
 use super::setting::{Reading, Setting};
 use crate::metrics::deformation::{Edges, size};
-use crate::metrics::shape::{silhouette_difference, surface_distance, triangles};
+use crate::metrics::shape::{Outline, silhouette_difference, surface_distance, triangles};
 use crate::result_cache::{Fingerprint, ResultCacheError};
 
 /// Minimum number of frames, the start included.
@@ -135,18 +134,6 @@ impl Benchmark {
     /// Energy of a fall of all cloth by its own size, in joules; 0 without gravity.
     pub fn fall_energy(&self) -> f64 {
         self.masses.iter().sum::<f64>() * self.gravity.norm() * self.size
-    }
-
-    /// How the last frames of two runs differ in shape; `None` if either has not all frames, or there are no faces.
-    pub fn outline(&self, a: &Trajectory, b: &Trajectory) -> Option<Outline> {
-        let last = self.frames().checked_sub(1)?;
-        if a.frames() <= last || b.frames() <= last {
-            return None;
-        }
-        let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-        a.frame(last, &mut ours);
-        b.frame(last, &mut theirs);
-        self.outline_of(&ours, &theirs)
     }
 
     /// How two states of all cloth points differ in shape; `None` without faces.

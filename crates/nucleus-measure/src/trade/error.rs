@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::benchmark::Benchmark;
 use super::reference::{Horizon, ReferenceRun};
-use super::run::{Outline, Run};
+use super::run::{Run, Trajectory};
 use crate::metrics::root_mean_square;
+use crate::metrics::shape::Outline;
 
 /// Something that can be wrong in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -94,7 +95,7 @@ impl ErrorMeasure {
     /// The measure of a scene with these references.
     pub fn new(benchmark: &Benchmark, coarse: &ReferenceRun, fine: &ReferenceRun, horizon: &Horizon) -> Self {
         let comparable = if horizon.is_usable() { horizon.frames } else { 0 };
-        let outline = benchmark.outline(&coarse.trajectory, &fine.trajectory);
+        let outline = outline(benchmark, &coarse.trajectory, &fine.trajectory);
         let coarse = Run { outline, ..with_divergence(&coarse.run, &horizon.divergence) };
         let found = |quantity| {
             raw(quantity, comparable, benchmark.fall_energy(), &coarse, &fine.run)
@@ -145,6 +146,18 @@ impl ErrorMeasure {
             "{position}, stretch and energy over frames {first} to {end}, shape and silhouette in frame {end}"
         )
     }
+}
+
+/// How the last frames of two runs differ in shape; `None` if either has not all frames, or there are no faces.
+fn outline(benchmark: &Benchmark, a: &Trajectory, b: &Trajectory) -> Option<Outline> {
+    let last = benchmark.frames().checked_sub(1)?;
+    if a.frames() <= last || b.frames() <= last {
+        return None;
+    }
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    a.frame(last, &mut ours);
+    b.frame(last, &mut theirs);
+    benchmark.outline_of(&ours, &theirs)
 }
 
 /// A run whose frames have a known distance from the other reference.

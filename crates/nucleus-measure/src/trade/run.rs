@@ -11,6 +11,7 @@ use super::setting::Setting;
 use crate::clock::{Clock, Timing};
 use crate::metrics::conservation::potential;
 use crate::metrics::deformation::{Contact, distance};
+use crate::metrics::shape::Outline;
 
 /// Figures at the end of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -55,15 +56,6 @@ pub struct Run {
     pub outline: Option<Outline>,
     /// Hash of the last state, in hexadecimal.
     pub hash: String,
-}
-
-/// Difference of a shape from the reference's.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Outline {
-    /// Distance of the surfaces, RMS, over the cloth's size.
-    pub distance: f64,
-    /// Area that only one of the two covers over the area that either covers, along the worst axis.
-    pub silhouette: f64,
 }
 
 impl Run {
