@@ -28,7 +28,7 @@ const CELLS: usize = 256;
 /// Distance of two surfaces with the same triangles, RMS over points, in the unit of the positions: from each point of
 /// one to the nearest place of the other, and the other way round. Sliding along itself does not count.
 ///
-/// The nearest place is sought among the triangles around the nearest vertex.
+/// The nearest place is taken from the triangles around the nearest vertex.
 pub fn surface_distance(a: &[Vector3<f64>], b: &[Vector3<f64>], triangles: &[[u32; 3]]) -> f64 {
     let around = triangles_around(a.len(), triangles);
     let of = |from: &[Vector3<f64>], to: &[Vector3<f64>]| {
