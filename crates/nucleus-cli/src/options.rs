@@ -12,6 +12,25 @@ use nucleus_graph::scene;
 
 use crate::output::say;
 
+/// The scalar that a run computes with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum Scalar {
+    /// Single precision.
+    #[default]
+    F32,
+    /// Double precision: slower, for references and for very many evaluations.
+    F64,
+}
+
+impl std::fmt::Display for Scalar {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        })
+    }
+}
+
 /// Frames of a run or an export: `48`, or `10..58`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameRange {

@@ -7,8 +7,7 @@ use anyhow::{Context, Result, bail};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
 use nucleus_measure::result_cache::ResultCache;
-use nucleus_measure::trade::{Benchmark, Setting, Trade};
-use nucleus_measure::trade::{Choice, for_error};
+use nucleus_measure::trade::{Benchmark, Choice, Request, Setting, Trade, for_error};
 
 /// An error as a share: `1%`, `0.5 %` or `0.01`.
 pub fn error(text: &str) -> Result<f64, String> {
@@ -66,7 +65,7 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
     let trade = Trade::load(&store(&subject))?.with_context(|| {
         format!("there are no stored results for `{name}` and this solver: run `nucleus trade {name}` first")
     })?;
-    let point = match for_error(&trade, wanted) {
+    let point = match for_error(&trade, &Request::every(wanted)) {
         Choice::Found(point) => point,
         Choice::Nearest(point) | Choice::Unresolved(point) => bail!(
             "no setting of `{name}` reaches {}; the nearest has {}, with {}",

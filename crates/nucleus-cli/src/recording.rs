@@ -9,6 +9,7 @@ use nucleus_cache::{
     Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source,
     TextureCoordinates,
 };
+use nucleus_core::Real;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, Program};
 use nucleus_graph::scene::Scene;
@@ -16,10 +17,12 @@ use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
 
 use crate::initial_state::InitialState;
-use crate::options::{Channels, Moments};
+use crate::options::{Channels, Moments, Scalar};
 
 /// Key of the [`fingerprint`] in the facts of a cache.
 pub const PROGRAM: &str = "program";
+/// Key of the scalar that a run computes with.
+pub const SCALAR: &str = "scalar";
 /// Key of the setting that `--quality` selected.
 pub const SETTING: &str = "setting";
 /// Key of the seed of `--seed`.
@@ -52,8 +55,8 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
 }
 
 /// Creates the cache of a run and records the start frame. Returns `None` if nothing is recorded.
-pub fn begin(
-    simulation: &Simulation,
+pub fn begin<R: Real>(
+    simulation: &Simulation<R>,
     options: RecordOptions,
     out: &Path,
     scene: (&Path, &str),
@@ -85,7 +88,7 @@ pub fn begin(
 }
 
 /// The facts about a run that follow from its scene. `scene` is its path and its text.
-pub fn of_scene(simulation: &Simulation, scene: (&Path, &str)) -> Result<RunInfo> {
+pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Result<RunInfo> {
     let program = simulation.program();
     let (start, end) = frames(program)?;
     let units = program.units_per_metre();
@@ -130,10 +133,11 @@ fn camera(camera: compile::Camera) -> Camera {
 pub fn facts(
     from: Option<&InitialState>,
     setting: Option<Setting>,
+    scalar: Scalar,
     read: &Program,
 ) -> Result<BTreeMap<String, String>> {
     let mut facts =
-        BTreeMap::from([("scalar".to_owned(), "f32".to_owned()), ("machine".to_owned(), machine())]);
+        BTreeMap::from([(SCALAR.to_owned(), scalar.to_string()), ("machine".to_owned(), machine())]);
     facts.extend(from.map(|from| ("from".to_owned(), from.to_string())));
     if let Some(setting) = setting {
         facts.insert(SETTING.to_owned(), serde_json::to_string(&setting)?);
@@ -188,7 +192,7 @@ pub fn frames(program: &Program) -> Result<(i32, i32)> {
 }
 
 /// Recorded objects with the objects of the solver that have their names.
-pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source, ObjectInfo)> {
+pub fn sources<R: Real>(simulation: &Simulation<R>, objects: Vec<ObjectInfo>) -> Vec<(Source, ObjectInfo)> {
     let source = |recorded: &ObjectInfo| {
         let object = simulation.objects().iter().find(|object| object.name == recorded.name)?;
         Some(match object.kind {
@@ -200,7 +204,7 @@ pub fn sources(simulation: &Simulation, objects: Vec<ObjectInfo>) -> Vec<(Source
 }
 
 /// The objects of a simulation at its start frame, with rest positions in scene units.
-pub fn objects(simulation: &Simulation) -> Vec<(Source, ObjectInfo)> {
+pub fn objects<R: Real>(simulation: &Simulation<R>) -> Vec<(Source, ObjectInfo)> {
     let units = simulation.units_per_metre();
     let state = simulation.state();
     let object = |object: &compile::Object| {

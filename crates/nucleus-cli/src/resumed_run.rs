@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError};
-use nucleus_core::RestoreError;
+use nucleus_core::{Real, RestoreError};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::trade::Benchmark;
 
 use crate::files;
+use crate::options::Scalar;
 use crate::output::say;
-use crate::recording::{PROGRAM, SEED, SETTING, fingerprint};
+use crate::recording::{PROGRAM, SCALAR, SEED, SETTING, fingerprint};
 use crate::run_statistics::FrameStatistics;
 
 /// A run that is resumed from its cache.
@@ -180,7 +181,12 @@ impl ResumedRun {
 
     /// The simulation at the last intact checkpoint up to frame `latest`, and the frame of that checkpoint. Without a
     /// checkpoint, the simulation at its start.
-    pub fn restored(&mut self, program: &Program, threads: usize, latest: i32) -> Result<(Simulation, i32)> {
+    pub fn restored<R: Real>(
+        &mut self,
+        program: &Program,
+        threads: usize,
+        latest: i32,
+    ) -> Result<(Simulation<R>, i32)> {
         let frames = self.cache.checkpoints();
         for frame in frames.into_iter().rev().filter(|&frame| frame <= latest) {
             let found = match self.cache.checkpoint(frame) {
@@ -214,6 +220,14 @@ impl ResumedRun {
             self.name()
         );
         Ok((Simulation::new(program, threads), start))
+    }
+
+    /// The scalar that the run computes with.
+    pub fn scalar(&self) -> Scalar {
+        match self.cache.run().extra.get(SCALAR).map(String::as_str) {
+            Some("f64") => Scalar::F64,
+            _ => Scalar::F32,
+        }
     }
 
     /// The recorded figures of the frames up to `last`, in order.

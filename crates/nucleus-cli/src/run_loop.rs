@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use nucleus_cache::{RecordError, Recorder};
-use nucleus_core::{Stage, StateView, StepObserver, SubstepIndex};
+use nucleus_core::{Real, Stage, StateView, StepObserver, SubstepIndex};
 use nucleus_graph::checks::Judge;
 use nucleus_graph::{FrameReport, Simulation};
 use serde_json::{Value, json};
@@ -18,8 +18,8 @@ use crate::summary::Summary;
 use crate::{output, process};
 
 /// A run that is set up.
-pub struct Run {
-    pub simulation: Simulation,
+pub struct Run<R: Real> {
+    pub simulation: Simulation<R>,
     /// `None` if the run is not recorded.
     pub recorder: Option<Recorder>,
     /// The file of the cache.
@@ -37,7 +37,7 @@ pub struct Run {
     pub json: bool,
 }
 
-impl Run {
+impl<R: Real> Run<R> {
     /// Runs to the last frame.
     ///
     /// # Errors
@@ -64,7 +64,8 @@ impl Run {
         let last = simulation.frame();
         let audit = simulation.audit().filter(|_| audit);
         let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
-        let summary = Summary { statistics, ending, checks, audit, recorded, frames, objects };
+        let hash = combined_hash(&simulation);
+        let summary = Summary { hash, statistics, ending, checks, audit, recorded, frames, objects };
         let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
         Ok(Finished { outcome, text, report })
     }
@@ -89,9 +90,16 @@ impl Finished {
     }
 }
 
+/// The state hashes of all nuclei in hexadecimal: the same for the same bits.
+fn combined_hash<R: Real>(simulation: &Simulation<R>) -> String {
+    let hashes: Vec<String> =
+        simulation.solvers().map(|solver| format!("{:016x}", solver.state_hash())).collect();
+    hashes.join("-")
+}
+
 /// Advances to the last frame. `report` receives the figures of each frame and the statistics so far.
-fn simulate(
-    simulation: &mut Simulation,
+fn simulate<R: Real>(
+    simulation: &mut Simulation<R>,
     recorder: &mut Option<Recorder>,
     judge: &mut Judge,
     mut statistics: RunStatistics,
@@ -138,7 +146,7 @@ impl PreviousState {
     /// A frame shorter than this many saves is cheaper to solve again than to save.
     const MIN_FRAME_PER_SAVE: u32 = 50;
 
-    fn save(&mut self, simulation: &Simulation, last_frame_time: Duration) {
+    fn save<R: Real>(&mut self, simulation: &Simulation<R>, last_frame_time: Duration) {
         self.state = None;
         if last_frame_time >= self.cost * Self::MIN_FRAME_PER_SAVE {
             let begin = Instant::now();
@@ -149,8 +157,8 @@ impl PreviousState {
 }
 
 /// Simulates and records one frame. Returns `None` if it was stopped.
-fn advance(
-    simulation: &mut Simulation,
+fn advance<R: Real>(
+    simulation: &mut Simulation<R>,
     frame: i32,
     recorder: &mut Option<Recorder>,
     judge: &mut Judge,
@@ -197,7 +205,11 @@ impl StepObserver for StopOnSignal<'_> {
 }
 
 /// Closes the cache with a checkpoint of its last frame. Returns its size in bytes, or `None` if it stays unfinished.
-fn close(simulation: &Simulation, recorder: Option<Recorder>, ending: &mut Ending) -> Option<u64> {
+fn close<R: Real>(
+    simulation: &Simulation<R>,
+    recorder: Option<Recorder>,
+    ending: &mut Ending,
+) -> Option<u64> {
     let can_finish = |ending: &Ending| match ending {
         Ending::Lost(_) => false,
         Ending::Stopped(stopped) => stopped.is_clean,

@@ -15,6 +15,8 @@ use crate::{figures, warnings};
 
 /// A run that has ended.
 pub struct Summary<'a> {
+    /// State hashes of all nuclei in the last frame, in hexadecimal.
+    pub hash: String,
     pub statistics: RunStatistics,
     pub ending: Ending,
     pub checks: &'a [checks::Outcome],
@@ -143,6 +145,7 @@ impl Summary<'_> {
             "error": error,
             "start": start,
             "last": last,
+            "state_hash": self.hash,
             "frames": statistics.frames,
             "seconds": statistics.time.as_secs_f64(),
             "milliseconds_per_frame": statistics.milliseconds(),

@@ -36,7 +36,7 @@ impl Recover {
             let Some((_, program, text)) = files::open_scene(scene, None)?.report()? else {
                 return Ok(Outcome::InvalidInput);
             };
-            let simulation = Simulation::new(&program, 1);
+            let simulation: Simulation = Simulation::new(&program, 1);
             let run = recording::of_scene(&simulation, (scene, &text))?;
             let objects = recording::objects(&simulation).into_iter().map(|(_, object)| object).collect();
             cache

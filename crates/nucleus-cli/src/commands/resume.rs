@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use anyhow::{Result, ensure};
 use clap::Args;
 use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo};
+use nucleus_core::Real;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
+use nucleus_graph::compile::Program;
 
+use crate::options::Scalar;
 use crate::output::say;
 use crate::process::Outcome;
 use crate::resumed_run::ResumedRun;
@@ -75,11 +78,11 @@ impl Resume {
 
     /// Resumes the run.
     pub fn execute(self) -> Result<Resumed> {
-        let mut old = ResumedRun::open(&self.cache)?;
+        let old = ResumedRun::open(&self.cache)?;
         let Some((program, scene_path, text)) = old.scene(self.scene.as_deref(), self.to)? else {
             return Ok(Resumed::InvalidScene);
         };
-        let (start, end) = recording::frames(&program)?;
+        let (_, end) = recording::frames(&program)?;
         let compared = self.kept(&old, end)?;
         let is_complete = old.file == old.complete && old.lost().is_empty();
         if is_complete && self.at.is_none() && old.last() >= end {
@@ -90,9 +93,24 @@ impl Resume {
             say!("resuming {}, the unfinished cache of an ended run", old.name());
         }
         process::listen_for_signals()?;
+        match old.scalar() {
+            Scalar::F32 => self.simulate::<f32>(old, (program, scene_path, text), compared),
+            Scalar::F64 => self.simulate::<f64>(old, (program, scene_path, text), compared),
+        }
+    }
+
+    /// Continues a run with scalar `R` after frame `compared`.
+    fn simulate<R: Real>(
+        self,
+        mut old: ResumedRun,
+        (program, scene_path, text): (Program, PathBuf, String),
+        compared: i32,
+    ) -> Result<Resumed> {
+        let (start, end) = recording::frames(&program)?;
         // Lost frames are solved again.
         let sound = old.lost().first().map_or(compared, |lost| compared.min(lost - 1));
-        let (mut simulation, copied) = old.restored(&program, options::thread_count(self.threads), sound)?;
+        let (mut simulation, copied) =
+            old.restored::<R>(&program, options::thread_count(self.threads), sound)?;
         if program.checks().iter().any(Check::needs_audit) {
             simulation.begin_audit(Closeness::Frames);
         }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
+use nucleus_cache::TextureCoordinates;
+use nucleus_core::Real;
 use nucleus_graph::Simulation;
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge};
@@ -14,7 +16,7 @@ use nucleus_measure::trade::Setting;
 
 use super::import;
 use crate::initial_state::InitialState;
-use crate::options::{self, Channels, FrameRange, Record};
+use crate::options::{self, Channels, FrameRange, Record, Scalar};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
@@ -76,6 +78,9 @@ pub struct Run {
     /// Use the cheapest setting with at most this error (`1%`) according to `nucleus trade` for this scene.
     #[arg(long, value_name = "ERROR", value_parser = quality::error)]
     quality: Option<f64>,
+    /// Precision of the solver. With f64, a scene at the setting of a reference of `nucleus trade` gives its bits.
+    #[arg(long, value_enum, default_value_t)]
+    scalar: Scalar,
     /// Print one JSON object per frame and one for the run.
     #[arg(long)]
     json: bool,
@@ -99,6 +104,7 @@ impl Run {
             set: Vec::new(),
             seed: None,
             quality: None,
+            scalar: Scalar::F32,
             json: false,
         }
     }
@@ -145,8 +151,23 @@ impl Run {
             }
         };
         process::listen_for_signals()?;
-        let (start, end) = recording::frames(&program)?;
-        let mut simulation = Simulation::new(&program, options::thread_count(self.threads));
+        let facts = self.facts(setting, if is_changed { &read } else { &program })?;
+        let coordinates = recording::texture_coordinates(&scene, &program);
+        match self.scalar {
+            Scalar::F32 => self.simulate::<f32>(&program, (facts, coordinates), (out, &text)),
+            Scalar::F64 => self.simulate::<f64>(&program, (facts, coordinates), (out, &text)),
+        }
+    }
+
+    /// Runs a program with scalar `R` and records it in the file `out`; `text` is that of its scene.
+    fn simulate<R: Real>(
+        self,
+        program: &Program,
+        (facts, coordinates): (BTreeMap<String, String>, BTreeMap<String, TextureCoordinates>),
+        (out, text): (PathBuf, &str),
+    ) -> Result<Option<Finished>> {
+        let (start, end) = recording::frames(program)?;
+        let mut simulation: Simulation<R> = Simulation::new(program, options::thread_count(self.threads));
         if self.audit {
             simulation.begin_audit(Closeness::Steps);
         } else if program.checks().iter().any(Check::needs_audit) {
@@ -156,15 +177,15 @@ impl Run {
         let record = self.record.unwrap_or_default();
         let channels = record.channels();
         let options = RecordOptions {
-            moments: record.moments(&program),
+            moments: record.moments(program),
             channels: Channels { velocities: channels.velocities || self.velocities, ..channels },
             force: self.force,
             compact: self.compact,
             checkpoint: self.checkpoint,
-            texture_coordinates: recording::texture_coordinates(&scene, &program),
-            facts: self.facts(setting, if is_changed { &read } else { &program })?,
+            texture_coordinates: coordinates,
+            facts,
         };
-        let recorder = recording::begin(&simulation, options, &out, (&self.scene, &text))?;
+        let recorder = recording::begin(&simulation, options, &out, (&self.scene, text))?;
         let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
         let (audit, json) = (self.audit, self.json);
         let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };
@@ -173,7 +194,7 @@ impl Run {
 
     /// Facts about the run. `read` is the program before any change of its initial state.
     fn facts(&self, setting: Option<Setting>, read: &Program) -> Result<BTreeMap<String, String>> {
-        let mut facts = recording::facts(self.from.as_ref(), setting, read)?;
+        let mut facts = recording::facts(self.from.as_ref(), setting, self.scalar, read)?;
         facts.extend(self.seed.map(|seed| (recording::SEED.to_owned(), seed.to_string())));
         if !self.set.is_empty() {
             let set: Vec<String> = self.set.iter().map(Assignment::to_string).collect();

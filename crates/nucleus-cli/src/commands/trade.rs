@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use nucleus_graph::scene::edit;
-use nucleus_measure::report;
+use nucleus_measure::report::{self, Wish};
 use nucleus_measure::result_cache::{ResultCache, write_atomic};
 use nucleus_measure::trade::SweepOptions;
 use nucleus_measure::trade::{
-    Benchmark, Point, Reading, Setting, SweepControl, SweepResult, TradeError, run_sweep,
+    Benchmark, Choice, Quantity, Reading, Request, Setting, SweepControl, SweepResult, TradeError, run_sweep,
 };
-use nucleus_measure::trade::{Choice, for_error, for_time};
 
 use crate::options::{self, FrameRange};
 use crate::output::say;
@@ -29,8 +28,8 @@ const DEFAULT_ERROR: f64 = 0.01;
 
 /// Measures the error and the time of many settings of a scene, and recommends one.
 ///
-/// The error is the distance from a reference: the same scene in double precision with more and smaller time steps.
-/// Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
+/// Errors are differences from a reference: the same scene in double precision with more and smaller time steps. Position,
+/// stretch, shape, silhouette and energy are measured each; a setting meets an error only if all of them do. Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
 #[derive(Debug, Args)]
 pub struct Trade {
     /// The scene (.ron).
@@ -38,11 +37,13 @@ pub struct Trade {
     /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 2 seconds.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
-    /// Recommend the cheapest setting with at most this error (`1%`).
+    /// Recommend the cheapest setting with at most this error (`1%`) in every quantity.
     #[arg(long, value_parser = quality::error)]
     error: Option<f64>,
+    #[command(flatten)]
+    bounds: Bounds,
     /// Recommend the most accurate setting that takes at most this time per frame on one core (`30ms`).
-    #[arg(long, value_parser = quality::time, conflicts_with = "error")]
+    #[arg(long, value_parser = quality::time, conflicts_with_all = ["error", "position", "strain", "worst_strain", "shape", "silhouette", "energy"])]
     time: Option<f64>,
     /// Write the recommended setting into the scene, or into another file. Comments are kept.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
@@ -74,6 +75,43 @@ pub struct Trade {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
+}
+
+/// Wanted errors of single quantities.
+#[derive(Debug, Args)]
+struct Bounds {
+    /// Wanted error of positions, RMS over points and comparable frames, over the cloth's size.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    position: Option<f64>,
+    /// Wanted error of the strain that 99 % of the edges stay below (`3%`: three percentage points).
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    strain: Option<f64>,
+    /// Wanted error of the largest strain.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    worst_strain: Option<f64>,
+    /// Wanted distance of the surfaces in the last frame, over the cloth's size.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    shape: Option<f64>,
+    /// Wanted difference of the outlines in the last frame, over their area.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    silhouette: Option<f64>,
+    /// Wanted error of kinetic plus potential energy, over that of a fall by the cloth's own size.
+    #[arg(long, value_name = "ERROR", value_parser = quality::error)]
+    energy: Option<f64>,
+}
+
+impl Bounds {
+    fn list(&self) -> Vec<(Quantity, f64)> {
+        let all = [
+            (Quantity::Position, self.position),
+            (Quantity::Stretch, self.strain),
+            (Quantity::WorstStretch, self.worst_strain),
+            (Quantity::Shape, self.shape),
+            (Quantity::Silhouette, self.silhouette),
+            (Quantity::Energy, self.energy),
+        ];
+        all.into_iter().filter_map(|(quantity, bound)| Some((quantity, bound?))).collect()
+    }
 }
 
 /// Resistance models to try.
@@ -156,13 +194,11 @@ impl Trade {
         text: &str,
     ) -> Result<Outcome> {
         let trade = &found.trade;
-        let choice = match self.time {
-            Some(ms) => for_time(trade, ms),
-            None => for_error(trade, self.error.unwrap_or(DEFAULT_ERROR)),
-        };
+        let wish = self.wish();
+        let choice = wish.choose(trade);
+        let recommendation = report::recommendation(trade, &wish);
         let stem = self.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
-        let wanted = self.error.unwrap_or(DEFAULT_ERROR);
-        let html = page::of(&stem, subject, store, found, choice.point(), wanted)?;
+        let html = page::of(&stem, subject, store, found, choice.point(), &recommendation)?;
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("cannot create the folder `{}`", self.out.display()))?;
         let path = |end: &str| self.out.join(format!("{stem}.trade.{end}"));
@@ -175,13 +211,13 @@ impl Trade {
             output::report_json(&serde_json::to_value(trade)?);
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
-            let said = format!("{}\n{}", report::text(trade), self.recommendation(&choice, trade.floor));
+            let said = format!("{}\n{recommendation}", report::text(trade));
             output::report(&format!("{said}wrote {}\n", names.join(", ")));
         }
         if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
             self.apply(apply.as_ref(), subject, &point.setting, text)?;
         }
-        let is_requested = self.error.is_some() || self.time.is_some();
+        let is_requested = self.error.is_some() || self.time.is_some() || !self.bounds.list().is_empty();
         Ok(match choice {
             Choice::Found(_) => Outcome::Success,
             Choice::Nearest(_) | Choice::Unresolved(_) if !is_requested => Outcome::Success,
@@ -189,26 +225,13 @@ impl Trade {
         })
     }
 
-    /// The recommendation in words.
-    fn recommendation(&self, choice: &Choice, floor: Option<f64>) -> String {
-        let costs = |point: &Point| {
-            let error = report::percent(point.error.unwrap_or_default());
-            format!("{}, {} ms per frame, error {error}", point.setting, report::figure(point.ms))
-        };
-        let wanted = match self.time {
-            Some(ms) => format!("a time of {} ms", report::figure(ms)),
-            None => format!("an error of {}", report::percent(self.error.unwrap_or(DEFAULT_ERROR))),
-        };
-        match choice {
-            Choice::Found(point) => format!("recommended for {wanted}: {}\n", costs(point)),
-            Choice::Nearest(point) => format!("no setting reaches {wanted}; the nearest: {}\n", costs(point)),
-            Choice::Unresolved(point) => format!(
-                "the uncertainty of the reference, {}, is larger than {wanted}; the most accurate setting within that \
-                 uncertainty: {}\n",
-                report::percent(floor.unwrap_or_default()),
-                costs(point)
-            ),
-            Choice::None => "no setting is usable: there is no recommendation\n".to_owned(),
+    /// What the recommendation is asked for.
+    fn wish(&self) -> Wish {
+        let bounds = self.bounds.list();
+        match self.time {
+            Some(ms) => Wish::Time(ms),
+            None if bounds.is_empty() => Wish::Error(Request::every(self.error.unwrap_or(DEFAULT_ERROR))),
+            None => Wish::Error(Request { every: self.error, bounds }),
         }
     }
 

@@ -40,7 +40,17 @@ fn a_sweep_writes_a_page_a_table_and_json_and_recommends_a_setting() {
     let output = nucleus(folder.path(), &SMALL);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let said = stdout(&output);
-    for words in ["an error of 1 %", "12 evaluations in 1 substep", "created energy", "to 0.1 %"] {
+    for words in [
+        "position over frames 2 to 8",
+        "stretch and energy over frames 2 to 8",
+        "The two references differ by: position ",
+        "worst stretch",
+        "silhouette",
+        "an error of 1 %",
+        "12 evaluations in 1 substep",
+        "created energy",
+        "to 0.1 %",
+    ] {
         assert!(said.contains(words), "{words}: {said}");
     }
     let read = |end: &str| fs::read_to_string(folder.path().join(format!("drape.trade.{end}"))).unwrap();
@@ -73,6 +83,33 @@ fn a_sweep_uses_the_stored_results_of_an_earlier_one() {
     );
     let again = nucleus(folder.path(), &SMALL);
     assert_eq!((again.status.code(), kept_lines(folder.path(), "runs.jsonl")), (Some(0), 3));
+}
+
+#[test]
+fn a_run_in_double_precision_at_the_setting_of_the_reference_has_its_bits_and_resumes() {
+    let folder = folder();
+    scene(folder.path(), 8, "");
+    let output = nucleus(folder.path(), &SMALL);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json = fs::read_to_string(folder.path().join("drape.trade.json")).unwrap();
+    let trade: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let (reference, setting) = (&trade["reference"], &trade["reference"]["setting"]);
+    let path = folder.path().join("drape.ron");
+    let quality = format!("subSteps: {}, evaluations: {}", setting["substeps"], setting["evaluations"]);
+    let text = fs::read_to_string(&path).unwrap().replace("subSteps: 2", &quality);
+    fs::write(&path, text).unwrap();
+
+    let hash = |arguments: &[&str]| {
+        let run = nucleus(folder.path(), arguments);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        let last = stdout(&run).lines().last().unwrap().to_owned();
+        let summary: serde_json::Value = serde_json::from_str(&last).unwrap();
+        summary["summary"]["state_hash"].clone()
+    };
+    let run = ["run", "drape.ron", "--scalar", "f64", "--checkpoint", "3", "--json", "-o", "x.mcap"];
+    assert_eq!(hash(&run), reference["hash"]);
+    assert_eq!(hash(&["resume", "x.mcap", "--at", "5", "--json"]), reference["hash"]);
+    assert_ne!(hash(&["run", "drape.ron", "--json", "--record", "none"]), reference["hash"]);
 }
 
 #[cfg(unix)]
@@ -177,7 +214,8 @@ fn an_error_or_time_that_no_setting_reaches_exits_with_1_and_the_nearest() {
     scene(folder.path(), 24, "");
     let wishes = [
         (["--time", "0.00001ms"], "no setting reaches a time of 0.00001 ms; the nearest: "),
-        (["--error", "0.0000001%"], "is larger than an error of 0.0000001 %"),
+        (["--error", "0.0000001%"], "the references do not resolve an error of 0.0000001 %"),
+        (["--strain", "0.0000001%"], "the references do not resolve stretch within 0.0000001 %"),
     ];
     for (wish, words) in wishes {
         let output = nucleus(folder.path(), &[&SMALL[..], &wish].concat());

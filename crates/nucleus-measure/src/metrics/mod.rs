@@ -3,6 +3,7 @@
 //! | Question                                                   | Module             |
 //! |------------------------------------------------------------|--------------------|
 //! | deviation of positions, strain of edges, contact gaps      | [`deformation`]    |
+//! | distance of surfaces, difference of outlines               | [`shape`]          |
 //! | energy, momentum, enclosed volume                          | [`conservation`]   |
 //!
 //! Units are metres, kilograms and seconds; positions come in the order of the mesh. A value that is not finite makes
@@ -10,6 +11,7 @@
 
 pub mod conservation;
 pub mod deformation;
+pub mod shape;
 
 /// Root mean square; 0 for no values.
 pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {

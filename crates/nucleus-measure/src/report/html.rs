@@ -6,8 +6,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::{Axis, Chart, Dot, Line};
 use super::figures::{figure, percent};
-use super::text::time_to;
-use crate::trade::{Point, Reading, Setting, Trade};
+use super::text::{component, errors, method_text, time_to};
+use crate::trade::{Point, Quantity, Reading, Request, Setting, Trade};
 
 /// A picture of the last state of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +26,8 @@ pub struct Page<'a> {
     pub scene: &'a str,
     /// The work-precision curve.
     pub trade: &'a Trade,
-    /// The requested error.
-    pub wanted: f64,
+    /// The recommendation in words, one sentence a line.
+    pub recommendation: &'a str,
     /// The recommended setting, if any is sound.
     pub recommended: Option<&'a Point>,
     /// Pictures, side by side.
@@ -63,24 +63,13 @@ pub fn html(page: &Page) -> String {
     page.into_string()
 }
 
-/// The recommendation, in one sentence.
+/// The recommendation, and the scene's own setting beside it.
 fn lead(page: &Page) -> Markup {
-    let Some(best) = page.recommended else {
-        return html! { p.lead { "No setting is sound; the table below lists the reasons." } };
-    };
-    let error = best.error.unwrap_or_default();
-    let reached = match error <= page.wanted {
-        true => format!("the cheapest with an error of at most {}", percent(page.wanted)),
-        false => format!("the nearest to an error of {}, which no setting reaches", percent(page.wanted)),
-    };
-    let own = page.trade.own_point().filter(|own| own.setting != best.setting);
+    let differs = |own: &&Point| page.recommended.is_none_or(|best| best.setting != own.setting);
     html! {
-        p.lead {
-            b { (best.setting) } " is " (reached) ": " (figure(best.ms)) " ms per frame, error " (percent(error)) "."
-            @if let Some((own, error)) = own.and_then(|own| Some((own, own.error?))) {
-                " The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms and has an error of "
-                (percent(error)) "."
-            }
+        @for line in page.recommendation.lines() { p.lead { (line) } }
+        @if let Some(own) = page.trade.own_point().filter(differs) {
+            p { "The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms: " (errors(own)) "." }
         }
     }
 }
@@ -92,7 +81,7 @@ fn cards(trade: &Trade) -> Markup {
     };
     let time_to_error = |error: f64| {
         let title = format!("time to {}", percent(error));
-        match trade.cheapest(error).filter(|_| trade.resolves(error)) {
+        match trade.cheapest(&Request::every(error)).filter(|_| trade.resolves(error)) {
             Some(point) => card(&title, &format!("{} ms", figure(point.ms)), &point.setting.to_string()),
             None => {
                 let why = time_to(trade, error);
@@ -163,13 +152,13 @@ fn trade_chart(page: &Page) -> Markup {
             label: label.map(str::to_owned),
         })
     };
-    let errors = trade.points.iter().filter_map(known).map(|[_, error]| error).chain(trade.floor);
+    let errors = trade.points.iter().filter_map(known).map(|[_, error]| error);
     let chart = Chart {
         x: Axis::log("milliseconds per frame, on one core", trade.points.iter().map(|point| point.ms)),
-        y: Axis::log(trade.measure.name(), errors).in_percent(),
+        y: Axis::log("error: the largest of all quantities", errors).in_percent(),
         dots: trade.points.iter().filter_map(dot).collect(),
         lines: vec![Line { through: trade.frontier().filter_map(known).collect(), class: "frontier" }],
-        floor: trade.floor.map(|floor| (floor, "reference uncertainty".to_owned())),
+        floor: None,
         mark: None,
     };
     let reading = |is_classic: bool| if is_classic { "Classic, " } else { "" };
@@ -212,12 +201,8 @@ fn divergence_chart(page: &Page) -> Markup {
     let values =
         lines.iter().flat_map(|line| line.through.iter().map(|at| at[1].max(1e-6))).collect::<Vec<_>>();
     let named = ["the other reference"].into_iter().chain(page.series.iter().map(|(name, _)| name.as_str()));
-    let mark = match trade.measure {
-        crate::trade::ErrorMeasure::Position { frames } => {
-            Some((start + frames as f64 - 1.0, "end of comparison".to_owned()))
-        }
-        _ => None,
-    };
+    let comparable = trade.measure.comparable;
+    let mark = (comparable > 0).then(|| (start + comparable as f64 - 1.0, "end of comparison".to_owned()));
     let chart = Chart {
         x: Axis::linear("frame", start, trade.frames[1] as f64),
         y: Axis::log("distance from the reference", values).in_percent(),
@@ -243,50 +228,45 @@ fn divergence_chart(page: &Page) -> Markup {
     }
 }
 
-/// Heads of the table.
-const HEADS: [&str; 9] = [
-    "ms",
-    "error",
-    "position, RMS",
-    "largest",
-    "strain, 99 %",
-    "largest",
-    "energy created",
-    "gap",
-    "setting",
-];
-
 fn table(trade: &Trade) -> Markup {
+    let measured: Vec<Quantity> = trade.measure.floors.iter().map(|(quantity, _)| *quantity).collect();
+    let figures = ["strain, 99 %", "largest", "energy created", "gap", "setting"];
     html! {
         h2 { "All settings" }
         div.wide {
             table {
-                tr { @for head in HEADS { th { (head) } } }
-                @if let Some(point) = &trade.reference { (row(trade, point, true)) }
-                @for point in &trade.points { (row(trade, point, false)) }
+                tr {
+                    @for head in ["ms", "error", "limited by"] { th { (head) } }
+                    @for quantity in &measured { th { (quantity.name()) } }
+                    @for head in figures { th { (head) } }
+                }
+                @if let Some(point) = &trade.reference { (row(trade, point, &measured, true)) }
+                @for point in &trade.points { (row(trade, point, &measured, false)) }
             }
         }
     }
 }
 
-fn row(trade: &Trade, point: &Point, is_reference: bool) -> Markup {
+fn row(trade: &Trade, point: &Point, measured: &[Quantity], is_reference: bool) -> Markup {
     let maybe = |x: Option<f64>, show: fn(f64) -> String| x.map_or("–".to_owned(), show);
     let classes = [(point.on_frontier, "frontier"), (point.setting == trade.own && !is_reference, "own")];
     let classes: Vec<&str> = classes.iter().filter(|(is, _)| *is).map(|(_, class)| *class).collect();
     let error = if is_reference { "reference".to_owned() } else { maybe(point.error, percent) };
+    let limit = point.limit.filter(|_| !is_reference).map_or("–", Quantity::name).to_owned();
+    let of = |quantity: &Quantity| {
+        let found = point.errors.iter().find(|error| error.quantity == *quantity);
+        found.filter(|_| !is_reference).map_or("–".to_owned(), component)
+    };
     let figures = [
-        figure(point.ms),
-        error,
-        maybe(point.position.map(|[rms, _]| rms), percent),
-        maybe(point.position.map(|[_, max]| max), percent),
         percent(point.strain),
         percent(point.max_strain),
         maybe(point.created, percent),
         maybe(point.least_gap, figure),
     ];
+    let cells = [figure(point.ms), error, limit].into_iter().chain(measured.iter().map(of)).chain(figures);
     html! {
         tr class=(classes.join(" ")) {
-            @for figure in figures { td { (figure) } }
+            @for cell in cells { td { (cell) } }
             td {
                 (point.setting)
                 @if is_reference { ", in double precision" }
@@ -307,12 +287,7 @@ fn method(page: &Page) -> Markup {
     };
     html! {
         h2 { "Method" }
-        p {
-            (trade.measure.sentence())
-            @if let Some(floor) = trade.floor {
-                " The reference uncertainty is " (percent(floor)) " in this measure."
-            }
-        }
+        @for line in method_text(trade).lines() { p { (line) } }
         p {
             "Times are processor time of one core, in the solver alone. Strain is the 99th percentile over all edges, RMS over "
             "all frames; gap is the minimum over the thickness. " (energy)

@@ -1,20 +1,14 @@
 //! Text renderings of a trade: terminal, CSV, and the Markdown index.
 
 use super::figures::{figure, percent};
-use crate::trade::{ErrorMeasure, Reading, Trade};
+use crate::trade::{Choice, Component, Point, Quantity, Reading, Request, Trade};
 
 /// Errors for which the time is reported.
 const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// Text for the terminal.
 pub fn text(trade: &Trade) -> String {
-    let mut lines = vec![trade.measure.sentence()];
-    if let Some(floor) = trade.floor {
-        lines.push(format!(
-            "The reference uncertainty is {}: smaller errors are not resolved.",
-            percent(floor)
-        ));
-    }
+    let mut lines = vec![method_text(trade)];
     lines.push(String::new());
     lines.extend(table(trade));
     lines.push(String::new());
@@ -26,51 +20,190 @@ pub fn text(trade: &Trade) -> String {
     lines.join("\n") + "\n"
 }
 
+/// How the errors are measured: the frames of each quantity, and the noise of the references.
+pub(super) fn method_text(trade: &Trade) -> String {
+    let measure = &trade.measure;
+    let mut text = format!("Measured: {}.", measure.windows(trade.frames));
+    if trade.reference.is_some() {
+        let floor = |(quantity, floor): &(Quantity, f64)| format!("{} {}", quantity.name(), percent(*floor));
+        let floors: Vec<String> = measure.floors.iter().map(floor).collect();
+        text += &format!(
+            "\nThe two references differ by: {}. An error below twice that cannot be told from none.",
+            floors.join(", ")
+        );
+    } else {
+        text += "\nRead as Classic, cloth is a different material at every setting, so there is no reference; the error is \
+                 the strain that 99 % of the edges stay below, RMS over the frames.";
+    }
+    text
+}
+
+/// An error: `0.85 %`, or `<0.4 %` within the noise of the references.
+pub(super) fn component(component: &Component) -> String {
+    match component.is_resolved() {
+        true => percent(component.error),
+        false => format!("<{}", percent(2.0 * component.floor)),
+    }
+}
+
+/// `position 0.4 %, stretch 6.1 %`: the error of a setting in each quantity.
+pub(super) fn errors(point: &Point) -> String {
+    let each = point.errors.iter().map(|error| format!("{} {}", error.quantity.name(), component(error)));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// What a recommendation was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wish {
+    /// Errors not above these.
+    Error(Request),
+    /// Milliseconds per frame on one core, at most.
+    Time(f64),
+}
+
+impl Wish {
+    /// The setting of a trade for this wish.
+    pub fn choose<'a>(&self, trade: &'a Trade) -> Choice<'a> {
+        match self {
+            Self::Error(request) => crate::trade::for_error(trade, request),
+            Self::Time(ms) => crate::trade::for_time(trade, *ms),
+        }
+    }
+
+    /// `an error of 1 %`, `stretch of 3 %`, `a time of 40 ms`.
+    fn name(&self) -> String {
+        match self {
+            Self::Time(ms) => format!("a time of {} ms", figure(*ms)),
+            Self::Error(request) => request_name(request),
+        }
+    }
+}
+
+/// `an error of 1 % and stretch within 3 %`.
+pub fn request_name(request: &Request) -> String {
+    let every = request.every.map(|error| format!("an error of {}", percent(error)));
+    let bound =
+        |(quantity, error): &(Quantity, f64)| format!("{} within {}", quantity.name(), percent(*error));
+    let all: Vec<String> = every.into_iter().chain(request.bounds.iter().map(bound)).collect();
+    all.join(" and ")
+}
+
+/// The recommendation in words, one sentence a line.
+pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
+    let wanted = wish.name();
+    let costs = |point: &Point| {
+        format!("{}, {} ms per frame; errors: {}", point.setting, figure(point.ms), errors(point))
+    };
+    let mut lines = match wish.choose(trade) {
+        Choice::Found(point) => {
+            let mut lines = vec![format!("recommended for {wanted}: {}", costs(point))];
+            lines.extend(reason(trade, wish, point));
+            lines
+        }
+        Choice::Nearest(point) => {
+            let mut lines = vec![format!("no setting reaches {wanted}; the nearest: {}", costs(point))];
+            if let Wish::Error(request) = wish {
+                lines.push(format!("it misses {}", misses(request, point)));
+            }
+            lines
+        }
+        Choice::Unresolved(point) => vec![format!(
+            "the references do not resolve {wanted}; the most accurate setting within their noise: {}",
+            costs(point)
+        )],
+        Choice::None => return "no setting is usable: there is no recommendation\n".to_owned(),
+    };
+    if let Wish::Error(request) = wish {
+        lines.extend(unresolved(trade, request));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// Why nothing cheaper was chosen, or what a limit of time costs in accuracy.
+fn reason(trade: &Trade, wish: &Wish, chosen: &Point) -> Option<String> {
+    match wish {
+        Wish::Error(request) => {
+            let cheaper = trade.points.iter().filter(|point| point.ms < chosen.ms && point.is_sound());
+            let next = cheaper.max_by(|a, b| a.ms.total_cmp(&b.ms))?;
+            let (ms, missed) = (figure(next.ms), misses(request, next));
+            Some(format!("the next cheaper, {} in {ms} ms, misses {missed}", next.setting))
+        }
+        Wish::Time(_) => {
+            let best = trade.frontier().last().filter(|best| best.setting != chosen.setting)?;
+            let (ms, errors) = (figure(best.ms), errors(best));
+            Some(format!("lost against {} in {ms} ms: {errors}", best.setting))
+        }
+    }
+}
+
+/// `stretch (6 %), energy (2 %)`: the quantities in which a setting misses a request.
+fn misses(request: &Request, point: &Point) -> String {
+    let missed = request.missed(&point.errors);
+    let all: Vec<String> = missed.map(|c| format!("{} ({})", c.quantity.name(), percent(c.error))).collect();
+    if all.is_empty() { "nothing".to_owned() } else { all.join(", ") }
+}
+
+/// The quantities in which the references cannot show the wanted error.
+fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
+    let name =
+        |(quantity, floor): (Quantity, f64)| format!("{} below {}", quantity.name(), percent(2.0 * floor));
+    let all: Vec<String> = request.unresolved(&trade.measure).map(name).collect();
+    (!all.is_empty()).then(|| format!("the references do not resolve {}", all.join(", ")))
+}
+
 /// `to 1 %: 12.5 ms per frame with 96 evaluations in 3 substeps`.
 pub fn time_to(trade: &Trade, error: f64) -> String {
     let wanted = percent(error);
-    if !trade.resolves(error) {
-        let floor = percent(trade.floor.unwrap_or_default());
-        return format!("to {wanted}: not resolved, the reference uncertainty is {floor}");
+    let request = Request::every(error);
+    if request.is_unresolved(&trade.measure) {
+        let floor = percent(trade.measure.essential_floor());
+        return format!("to {wanted}: not resolved, the references differ by {floor}");
     }
-    match (trade.cheapest(error), trade.frontier().last()) {
+    match (trade.cheapest(&request), trade.frontier().last()) {
         (Some(point), _) => format!("to {wanted}: {} ms per frame with {}", figure(point.ms), point.setting),
-        (None, Some(best)) => {
-            let error = percent(best.error.unwrap_or_default());
-            format!(
-                "to {wanted}: no setting; the nearest is {error} in {} ms with {}",
-                figure(best.ms),
-                best.setting
-            )
-        }
+        (None, Some(best)) => format!(
+            "to {wanted}: no setting; the nearest misses {} in {} ms with {}",
+            misses(&request, best),
+            figure(best.ms),
+            best.setting
+        ),
         (None, None) => format!("to {wanted}: no setting is sound"),
     }
 }
 
 /// The settings by increasing cost; `*` marks the Pareto frontier.
 fn table(trade: &Trade) -> Vec<String> {
-    let mut lines =
-        vec![format!("  {:>8} {:>9} {:>9} {:>9}  setting", "ms/frame", "error", "strain", "largest")];
+    let measured: Vec<_> = trade.measure.floors.iter().map(|(quantity, _)| *quantity).collect();
+    let heads: String = measured.iter().map(|quantity| format!(" {:>13}", quantity.name())).collect();
+    let mut lines = vec![format!("  {:>8}{heads} {:>9} {:>9}  setting", "ms/frame", "strain", "largest")];
     for point in &trade.points {
-        let error = point.error.map_or("lost".to_owned(), percent);
+        let of = |quantity: &Quantity| {
+            let found = point.errors.iter().find(|error| error.quantity == *quantity);
+            let mark = if point.limit == Some(*quantity) { "!" } else { "" };
+            format!(" {:>13}", found.map_or("lost".to_owned(), |found| mark.to_owned() + &component(found)))
+        };
+        let errors: String = measured.iter().map(of).collect();
         let mark = if point.on_frontier { '*' } else { ' ' };
         let own = if point.setting == trade.own { " (the scene's own)" } else { "" };
         let trouble = point.trouble().map(|trouble| format!("; {trouble}")).unwrap_or_default();
         lines.push(format!(
-            "{mark} {:>8} {error:>9} {:>9} {:>9}  {}{own}{trouble}",
+            "{mark} {:>8}{errors} {:>9} {:>9}  {}{own}{trouble}",
             figure(point.ms),
             percent(point.strain),
             percent(point.max_strain),
             point.setting,
         ));
     }
+    lines.push(
+        "* cheapest for its error; ! the quantity that limits; < within the noise of the references"
+            .to_owned(),
+    );
     lines
 }
 
 /// Counts of settings that are not sound.
 fn troubles(trade: &Trade) -> Vec<String> {
-    let count =
-        |is: &dyn Fn(&crate::trade::Point) -> bool| trade.points.iter().filter(|point| is(point)).count();
+    let count = |is: &dyn Fn(&Point) -> bool| trade.points.iter().filter(|point| is(point)).count();
     let all = trade.points.len();
     let unresolved = count(&|point| point.pairs_unresolved > 0);
     let first_nonfinite = count(&|point| point.first_nonfinite.is_some());
@@ -88,7 +221,8 @@ fn troubles(trade: &Trade) -> Vec<String> {
 
 /// CSV: one setting per line, by increasing cost; times in milliseconds, errors and strains as ratios.
 pub fn csv(trade: &Trade) -> String {
-    let head = "reading,substeps,collision_iterations,evaluations,resistance_factor,ms_per_frame,error,\
+    let head = "reading,substeps,collision_iterations,evaluations,resistance_factor,ms_per_frame,error,limited_by,\
+                error_position,error_stretch,error_worst_stretch,error_shape,error_silhouette,error_energy,\
                 position_rms,position_max,strain_99,strain_max,energy_created,least_gap,pairs_unresolved,pairs_per_frame,\
                 broad_phases_per_frame,first_frame_not_finite,sound,frontier,hash\n";
     let mut text = head.to_owned();
@@ -96,6 +230,11 @@ pub fn csv(trade: &Trade) -> String {
         let setting = &point.setting;
         let reading = if setting.reading == Reading::Classic { "classic" } else { "physical" };
         let maybe = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
+        let of = |quantity| {
+            let found = point.errors.iter().find(|component| component.quantity == quantity);
+            maybe(found.map(|component| component.error))
+        };
+        let [position, stretch, worst, shape, silhouette, energy] = Quantity::AGAINST_REFERENCE.map(of);
         let cells = [
             reading.to_owned(),
             setting.substeps.to_string(),
@@ -104,6 +243,13 @@ pub fn csv(trade: &Trade) -> String {
             setting.resistance.to_string(),
             point.ms.to_string(),
             maybe(point.error),
+            point.limit.map(Quantity::name).unwrap_or_default().to_owned(),
+            position,
+            stretch,
+            worst,
+            shape,
+            silhouette,
+            energy,
             maybe(point.position.map(|[rms, _]| rms)),
             maybe(point.position.map(|[_, max]| max)),
             point.strain.to_string(),
@@ -131,7 +277,7 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
          core.\n\n{machine}\n\n| Scene | Frames | Settings | Error | To 10 % | To 1 % | To 0.1 % | Slope | Its own setting |\n|---|---|---|---|---|---|---|---|---|\n"
     );
     for (name, trade) in trades {
-        let time = |error: f64| match trade.cheapest(error) {
+        let time = |error: f64| match trade.cheapest(&Request::every(error)) {
             _ if !trade.resolves(error) => "not resolved".to_owned(),
             Some(point) => format!("{} ms: {}", figure(point.ms), point.setting),
             None => "no setting".to_owned(),
@@ -165,13 +311,11 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
     text
 }
 
-/// Short definition of the error.
+/// The quantities and their frames, and what the references resolve.
 fn measure(trade: &Trade) -> String {
-    let floor =
-        trade.floor.map(|floor| format!(", resolved from {}", percent(2.0 * floor))).unwrap_or_default();
-    match trade.measure {
-        ErrorMeasure::Position { frames } => format!("position, RMS over {frames} frames{floor}"),
-        ErrorMeasure::StrainAgainstReference => format!("strain against the reference's{floor}"),
-        ErrorMeasure::Strain => "strain".to_owned(),
-    }
+    let floor = match trade.reference {
+        Some(_) => format!("; resolved from {}", percent(2.0 * trade.measure.essential_floor())),
+        None => String::new(),
+    };
+    trade.measure.windows(trade.frames) + &floor
 }

@@ -12,6 +12,7 @@ use nucleus_graph::scene::{Record, Scene, write_scene};
 
 use super::setting::{Reading, Setting};
 use crate::metrics::deformation::{Edges, size};
+use crate::metrics::shape::{Outline, silhouette_difference, surface_distance, triangles};
 use crate::result_cache::{Fingerprint, ResultCacheError};
 
 /// Minimum number of frames, the start included.
@@ -51,14 +52,14 @@ pub enum TradeError {
     },
     /// The two references differ too much.
     #[error(
-        "the reference does not converge: with {} and with {} evaluations its strain differs by {:.1} %, \
+        "the reference does not converge: with {} and with {} evaluations it differs by {:.1} %, \
          which does not resolve an error of {:.0} %; more `--evaluations` make finer references",
         evaluations[0], evaluations[1], 100.0 * uncertainty, 100.0 * MAX_REFERENCE_UNCERTAINTY
     )]
     ReferenceDoesNotConverge {
         /// Evaluations of both.
         evaluations: [f64; 2],
-        /// Difference in the 99th percentile of strain, RMS over frames.
+        /// Largest difference in position and stretch, as a share.
         uncertainty: f64,
     },
     /// No cloth moves.
@@ -91,6 +92,8 @@ pub struct Benchmark {
     pub gravity: Vector3<f64>,
     /// Whether no wind and no animation adds energy.
     pub is_closed: bool,
+    /// Triangles of all cloth, with the points of all cloth numbered through.
+    triangles: Vec<[u32; 3]>,
 }
 
 /// Facts of a cloth at the start.
@@ -124,7 +127,21 @@ impl Benchmark {
         let input = program.first_input();
         let own = own_setting(scene, input.resistance);
         let (gravity, is_closed) = (input.gravity, is_closed(scene));
-        Ok(Self { scene: scene.clone(), own, program, cloths, size, masses, gravity, is_closed })
+        let triangles = all_triangles(&program);
+        Ok(Self { scene: scene.clone(), own, program, cloths, size, masses, gravity, is_closed, triangles })
+    }
+
+    /// Energy of a fall of all cloth by its own size, in joules; 0 without gravity.
+    pub fn fall_energy(&self) -> f64 {
+        self.masses.iter().sum::<f64>() * self.gravity.norm() * self.size
+    }
+
+    /// How two states of all cloth points differ in shape; `None` without faces.
+    pub(super) fn outline_of(&self, a: &[Vector3<f64>], b: &[Vector3<f64>]) -> Option<Outline> {
+        (!self.triangles.is_empty()).then(|| Outline {
+            distance: surface_distance(a, b, &self.triangles) / self.size,
+            silhouette: silhouette_difference(a, b, &self.triangles),
+        })
     }
 
     /// The scene's own setting.
@@ -310,6 +327,17 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
         })
     };
     cloths.filter_map(facts).collect()
+}
+
+/// Triangles of all cloth, with the points of all cloth numbered through.
+fn all_triangles(program: &Program) -> Vec<[u32; 3]> {
+    let mut first = 0;
+    let mut all = Vec::new();
+    for cloth in program.model().cloths() {
+        all.extend(triangles(&cloth.surface.faces, first));
+        first += cloth.surface.positions.len() as u32;
+    }
+    all
 }
 
 /// The solved nucleus.

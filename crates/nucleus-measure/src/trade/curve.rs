@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::benchmark::Benchmark;
-use super::reference::{ErrorMeasure, References};
+use super::error::{Component, ErrorMeasure, Quantity, Request};
+use super::reference::References;
 use super::run::Run;
 use super::setting::Setting;
 use crate::metrics::conservation::created;
@@ -20,8 +21,13 @@ pub struct Point {
     pub setting: Setting,
     /// Milliseconds of processor time per frame, on one core.
     pub ms: f64,
-    /// The error by the scene's measure; `None` if the run was not finite.
+    /// The error in each quantity; empty if the run was not finite.
+    pub errors: Vec<Component>,
+    /// The largest error that the references resolve; if they resolve none, what they would resolve. `None` if the run
+    /// was not finite.
     pub error: Option<f64>,
+    /// The quantity of that error; `None` if all errors are within the noise of the references.
+    pub limit: Option<Quantity>,
     /// Distance from the reference up to the horizon: RMS and maximum.
     pub position: Option<[f64; 2]>,
     /// 99th percentile of strain, RMS over frames.
@@ -56,10 +62,8 @@ pub struct Trade {
     pub name: String,
     /// First and last frame.
     pub frames: [i64; 2],
-    /// Definition of the error.
+    /// The measured quantities, and the difference of the two references in each.
     pub measure: ErrorMeasure,
-    /// Reference uncertainty: the difference of the two references by the same measure.
-    pub floor: Option<f64>,
     /// Distance of the two references in each frame.
     #[serde(rename = "apart")]
     pub divergence: Vec<f64>,
@@ -80,17 +84,20 @@ impl Point {
         measure: &ErrorMeasure,
         references: Option<&References>,
     ) -> Self {
-        let error = measure.error(run, references.map(|both| &both.fine.run));
+        let errors = measure.of(benchmark, run, references.map(|both| &both.fine.run));
+        let (error, limit) = largest_resolved(&errors);
         let span = references.map_or(0, |both| both.horizon.frames.max(1));
         let divergence: Vec<[f64; 2]> =
             run.frames.iter().take(span).filter_map(|frame| frame.divergence).collect();
         let largest = |of: fn(&super::run::Frame) -> f64| run.frames.iter().map(of).fold(0.0, f64::max);
-        let weight = benchmark.masses.iter().sum::<f64>() * benchmark.gravity.norm() * benchmark.size;
+        let weight = benchmark.fall_energy();
         let gain = created(run.start_energy, run.frames.iter().map(|frame| frame.energy));
         Self {
             setting: run.setting,
             ms: run.ms(),
-            error: error.is_finite().then_some(error),
+            errors,
+            error,
+            limit,
             position: (!divergence.is_empty()).then(|| {
                 [
                     root_mean_square(divergence.iter().map(|[rms, _]| *rms)),
@@ -135,31 +142,25 @@ impl Point {
 impl Trade {
     /// Builds the curve from runs.
     pub fn new(benchmark: &Benchmark, runs: &[Run], references: Option<&References>) -> Self {
-        let measure = ErrorMeasure::choose(references.map(|both| &both.horizon));
+        let measure = match references {
+            Some(both) => ErrorMeasure::new(benchmark, &both.coarse, &both.fine, &both.horizon),
+            None => ErrorMeasure::without_reference(),
+        };
         let mut points: Vec<Point> =
             runs.iter().map(|run| Point::new(benchmark, run, &measure, references)).collect();
         points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         mark_frontier(&mut points);
         let span = benchmark.program().time();
-        let floor = references.map(Self::floor);
+        let reference = references.map(|both| Point::new(benchmark, &both.fine.run, &measure, None));
         Self {
             name: benchmark.name(),
             frames: [span.start, span.end],
             measure,
-            floor,
             divergence: references.map(|both| both.horizon.divergence.clone()).unwrap_or_default(),
-            reference: references.map(|both| Point::new(benchmark, &both.fine.run, &measure, None)),
+            reference,
             own: benchmark.own(),
             points,
             is_closed: benchmark.is_closed,
-        }
-    }
-
-    /// Reference uncertainty: the difference of the two references by the measure that they permit.
-    pub fn floor(both: &References) -> f64 {
-        match ErrorMeasure::choose(Some(&both.horizon)) {
-            ErrorMeasure::Position { .. } => both.horizon.floor,
-            measure => measure.error(&both.coarse.run, Some(&both.fine.run)),
         }
     }
 
@@ -168,22 +169,21 @@ impl Trade {
         self.points.iter().filter(|point| point.on_frontier)
     }
 
-    /// The cheapest sound setting with at most this error.
-    pub fn cheapest(&self, error: f64) -> Option<&Point> {
-        self.frontier().find(|point| point.error.is_some_and(|found| found <= error))
+    /// The cheapest sound setting that meets a request.
+    pub fn cheapest(&self, request: &Request) -> Option<&Point> {
+        self.points.iter().find(|point| point.is_sound() && request.missed(&point.errors).next().is_none())
     }
 
-    /// Whether the reference uncertainty is at most half of an error.
+    /// Whether the references are exact enough to show this error in position and stretch.
     pub fn resolves(&self, error: f64) -> bool {
-        self.floor.is_none_or(|floor| is_resolved(floor, error))
+        !Request::every(error).is_unresolved(&self.measure)
     }
 
     /// Exponent of error against time along the frontier: -1 halves the error for twice the time.
     /// `None` with fewer than three settings whose error the references resolve.
     pub fn slope(&self) -> Option<f64> {
-        let all = self.frontier().filter_map(|point| Some((point.ms.ln(), point.error?)));
-        let resolved: Vec<(f64, f64)> =
-            all.filter(|(_, error)| self.resolves(*error) && *error > 0.0).collect();
+        let all = self.frontier().filter(|point| point.limit.is_some());
+        let resolved: Vec<(f64, f64)> = all.filter_map(|point| Some((point.ms.ln(), point.error?))).collect();
         if resolved.len() < 3 {
             return None;
         }
@@ -204,6 +204,15 @@ impl Trade {
 /// Whether references with an uncertainty of `floor` resolve an error.
 pub(super) fn is_resolved(floor: f64, error: f64) -> bool {
     2.0 * floor <= error
+}
+
+/// The largest error that can be told from the noise of the references, with its quantity.
+fn largest_resolved(errors: &[Component]) -> (Option<f64>, Option<Quantity>) {
+    let resolved = errors.iter().filter(|component| component.is_resolved());
+    match resolved.max_by(|a, b| a.error.total_cmp(&b.error)) {
+        Some(largest) => (Some(largest.error), Some(largest.quantity)),
+        None => (errors.iter().map(|component| 2.0 * component.floor).reduce(f64::min), None),
+    }
 }
 
 /// Marks the Pareto-optimal sound points; `points` come by increasing cost.
@@ -265,11 +274,12 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// The cheapest setting with at most this error, or else the most exact. An unresolved error is never [`Choice::Found`].
-pub fn for_error(trade: &Trade, error: f64) -> Choice<'_> {
-    match (trade.resolves(error), trade.frontier().last()) {
-        (false, Some(best)) => Choice::Unresolved(best),
-        (_, best) => Choice::of(trade.cheapest(error), best),
+/// The cheapest setting that meets a request, or else the most exact. A request that the references do not resolve is
+/// never [`Choice::Found`].
+pub fn for_error<'a>(trade: &'a Trade, request: &Request) -> Choice<'a> {
+    match (request.is_unresolved(&trade.measure), trade.frontier().last()) {
+        (true, Some(best)) => Choice::Unresolved(best),
+        (_, best) => Choice::of(trade.cheapest(request), best),
     }
 }
 
@@ -280,6 +290,7 @@ pub fn for_time(trade: &Trade, ms: f64) -> Choice<'_> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::error::tests::component;
     use super::*;
     use crate::trade::Reading;
 
@@ -295,7 +306,9 @@ pub(super) mod tests {
         Point {
             setting,
             ms,
+            errors: vec![component(Quantity::Position, error)],
             error: Some(error),
+            limit: Some(Quantity::Position),
             position: None,
             strain: 0.0,
             max_strain: 0.0,
@@ -316,8 +329,7 @@ pub(super) mod tests {
         Trade {
             name: "synthetic".to_owned(),
             frames: [1, 48],
-            measure: ErrorMeasure::Position { frames: 47 },
-            floor: Some(1e-4),
+            measure: ErrorMeasure { comparable: 47, floors: vec![(Quantity::Position, 1e-4)] },
             divergence: vec![1e-4; 47],
             reference: None,
             own: points[0].setting,
@@ -333,8 +345,8 @@ pub(super) mod tests {
         let trade = trade(vec![point(1.0, 0.1), through, made, point(4.0, 0.2), point(5.0, 0.05)]);
         let frontier: Vec<f64> = trade.frontier().map(|point| point.ms).collect();
         assert_eq!(frontier, [1.0, 5.0]);
-        assert_eq!(trade.cheapest(0.06).map(|point| point.ms), Some(5.0));
-        assert_eq!(trade.cheapest(0.01), None);
+        assert_eq!(trade.cheapest(&Request::every(0.06)).map(|point| point.ms), Some(5.0));
+        assert_eq!(trade.cheapest(&Request::every(0.01)), None);
     }
 
     #[test]
@@ -345,7 +357,8 @@ pub(super) mod tests {
 
     #[test]
     fn errors_below_the_reference_uncertainty_give_no_slope() {
-        let trade = trade([1.0, 2.0, 4.0].map(|ms| point(ms, 1e-4 / ms)).to_vec());
+        let within = |ms| Point { limit: None, ..point(ms, 1e-4 / ms) };
+        let trade = trade([1.0, 2.0, 4.0].map(within).to_vec());
         assert!(!trade.resolves(1e-4) && trade.resolves(1e-3));
         assert_eq!(trade.slope(), None);
     }
@@ -358,23 +371,47 @@ pub(super) mod tests {
             Choice::Nearest(point) | Choice::Unresolved(point) => Err(point.ms),
             Choice::None => Err(0.0),
         };
-        assert_eq!(ms(for_error(&trade, 0.05)), Ok(2.0));
-        assert_eq!(ms(for_error(&trade, 0.001)), Err(8.0));
+        assert_eq!(ms(for_error(&trade, &Request::every(0.05))), Ok(2.0));
+        assert_eq!(ms(for_error(&trade, &Request::every(0.001))), Err(8.0));
         assert_eq!(ms(for_time(&trade, 5.0)), Ok(4.0));
         assert_eq!(ms(for_time(&trade, 0.5)), Err(1.0));
     }
 
     #[test]
     fn an_error_that_the_references_do_not_resolve_is_not_promised() {
-        let trade = Trade { floor: Some(0.004), ..trade(vec![point(1.0, 0.1), point(2.0, 0.001)]) };
-        assert!(matches!(for_error(&trade, 0.007), Choice::Unresolved(point) if point.ms == 2.0));
-        assert!(matches!(for_error(&trade, 0.009), Choice::Found(point) if point.ms == 2.0));
+        let measure = ErrorMeasure { comparable: 47, floors: vec![(Quantity::Position, 0.004)] };
+        let trade = Trade { measure, ..trade(vec![point(1.0, 0.1), point(2.0, 0.001)]) };
+        let found = |error| for_error(&trade, &Request::every(error));
+        assert!(matches!(found(0.007), Choice::Unresolved(point) if point.ms == 2.0));
+        assert!(matches!(found(0.009), Choice::Found(point) if point.ms == 2.0));
+    }
+
+    #[test]
+    fn cloth_in_its_place_that_is_visibly_stretched_is_not_recommended() {
+        let of = |position, stretch| {
+            vec![component(Quantity::Position, position), component(Quantity::Stretch, stretch)]
+        };
+        let stretched = Point { errors: of(0.004, 0.06), error: Some(0.06), ..point(1.0, 0.0) };
+        let exact = Point { errors: of(0.004, 0.005), error: Some(0.005), ..point(4.0, 0.0) };
+        let trade = trade(vec![stretched, exact]);
+        assert!(matches!(for_error(&trade, &Request::every(0.01)), Choice::Found(point) if point.ms == 4.0));
+        let position = Request { every: None, bounds: vec![(Quantity::Position, 0.01)] };
+        assert!(matches!(for_error(&trade, &position), Choice::Found(point) if point.ms == 1.0));
+    }
+
+    #[test]
+    fn the_error_of_a_setting_is_its_largest_resolved_component() {
+        let noisy = Component { quantity: Quantity::WorstStretch, error: 0.03, floor: 0.02 };
+        let found = largest_resolved(&[component(Quantity::Position, 0.004), noisy]);
+        assert_eq!(found, (Some(0.004), Some(Quantity::Position)));
+        assert_eq!(largest_resolved(&[noisy]), (Some(0.04), None));
+        assert_eq!(largest_resolved(&[]), (None, None));
     }
 
     #[test]
     fn without_a_sound_setting_nothing_is_recommended() {
         let trade = trade(vec![Point { pairs_unresolved: 3, ..point(1.0, 0.1) }]);
-        assert_eq!(for_error(&trade, 1.0), Choice::None);
+        assert_eq!(for_error(&trade, &Request::every(1.0)), Choice::None);
         assert_eq!(for_time(&trade, 9.0).point(), None);
     }
 }

@@ -6,12 +6,14 @@
 //! | the scene, its facts before a run, and the scene at a setting  | `benchmark.rs`   |
 //! | which settings are run                                         | `plan.rs`        |
 //! | one run, frame by frame, and its trajectory                    | [`run`]          |
-//! | reference runs, predictability horizon, error measure          | `reference.rs`   |
+//! | reference runs, predictability horizon                         | `reference.rs`   |
+//! | the error of a run by quantity, its noise floors, wanted errors | `error.rs`       |
 //! | the curve: Pareto frontier, slope, recommended setting         | `curve.rs`       |
 //! | parallel execution, progress and resumption                    | [`sweep`]        |
 
 mod benchmark;
 mod curve;
+mod error;
 mod plan;
 mod reference;
 pub mod run;
@@ -20,7 +22,8 @@ pub mod sweep;
 
 pub use benchmark::{Benchmark, TradeError, object_positions};
 pub use curve::{Choice, Point, Trade, for_error, for_time};
+pub use error::{Component, ErrorMeasure, Quantity, Request};
 pub use plan::SweepOptions;
-pub use reference::{ErrorMeasure, References};
+pub use reference::References;
 pub use setting::{Reading, Setting};
 pub use sweep::{Progress, SweepControl, SweepResult, run_sweep};

@@ -10,7 +10,6 @@ use super::benchmark::Benchmark;
 use super::run::{Run, RunStates, Trajectory, key};
 use super::setting::Setting;
 use crate::metrics::deformation::distance;
-use crate::metrics::root_mean_square;
 use crate::result_cache::{ResultCache, ResultCacheError};
 
 /// List of all references of a scene.
@@ -154,79 +153,6 @@ impl Horizon {
     /// Whether enough frames are comparable for an error of positions.
     pub fn is_usable(&self) -> bool {
         self.frames > 0 && self.frames as f64 >= MIN_SHARE * self.divergence.len() as f64
-    }
-}
-
-/// Definition of the error of a run, the same for all runs of a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "of")]
-pub enum ErrorMeasure {
-    /// Distance of the points from the reference, RMS over points and frames, over the cloth's size.
-    Position {
-        /// Frames up to the predictability horizon.
-        frames: usize,
-    },
-    /// Difference of the 99th percentile of strain from the reference's, RMS over frames. For scenes whose references
-    /// diverge early: the position of a fold is chaotic, the strain is not.
-    StrainAgainstReference,
-    /// The 99th percentile of strain, RMS over frames. For Classic, which has no reference and is meant not to stretch.
-    Strain,
-}
-
-impl ErrorMeasure {
-    /// The measure for a scene with these references.
-    pub fn choose(horizon: Option<&Horizon>) -> Self {
-        match horizon {
-            None => Self::Strain,
-            Some(horizon) if horizon.is_usable() => Self::Position { frames: horizon.frames },
-            Some(_) => Self::StrainAgainstReference,
-        }
-    }
-
-    /// The error of a run; infinite if a frame was not finite.
-    pub fn error(&self, run: &Run, reference: Option<&Run>) -> f64 {
-        if !run.is_finite() {
-            return f64::INFINITY;
-        }
-        let strain_of =
-            |frame: usize| reference.and_then(|run| run.frames.get(frame)).map_or(0.0, |f| f.strain);
-        let frames = run.frames.iter();
-        match self {
-            Self::Position { frames: count } => root_mean_square(
-                frames.take(*count).map(|frame| frame.divergence.map_or(f64::NAN, |[rms, _]| rms)),
-            ),
-            Self::StrainAgainstReference => {
-                root_mean_square(frames.enumerate().map(|(k, frame)| frame.strain - strain_of(k)))
-            }
-            Self::Strain => root_mean_square(frames.map(|frame| frame.strain)),
-        }
-    }
-
-    /// Label of an axis.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Position { .. } => "error of position",
-            Self::StrainAgainstReference => "error of strain",
-            Self::Strain => "strain",
-        }
-    }
-
-    /// Definition in one sentence.
-    pub fn sentence(&self) -> String {
-        match self {
-            Self::Position { frames } => format!(
-                "The error is the distance of points from the reference's, RMS over all points and the first {frames} \
-                 frames, in percent of the cloth's size."
-            ),
-            Self::StrainAgainstReference => "The two references diverge too early for positions to be compared. The \
-                 error is the difference from the reference in strain (the strain that 99 % of the edges stay below), \
-                 RMS over all frames, in percentage points."
-                .to_owned(),
-            Self::Strain => "Read as Classic, cloth is a different material at every setting, so there is no reference. \
-                 The error is the strain that 99 % of the edges stay below, RMS over all frames: cloth is meant not to \
-                 stretch."
-                .to_owned(),
-        }
     }
 }
 

@@ -11,6 +11,7 @@ use super::setting::Setting;
 use crate::clock::{Clock, Timing};
 use crate::metrics::conservation::potential;
 use crate::metrics::deformation::{Contact, distance};
+use crate::metrics::shape::Outline;
 
 /// Figures at the end of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -50,6 +51,9 @@ pub struct Run {
     /// Broad-phase queries, over all frames.
     #[serde(rename = "searches")]
     pub queries: u64,
+    /// Difference of the last frame's shape from the reference's. `None` without a reference.
+    #[serde(default)]
+    pub outline: Option<Outline>,
     /// Hash of the last state, in hexadecimal.
     pub hash: String,
 }
@@ -109,6 +113,7 @@ pub fn run_setting<R: Real>(
         contact: Contact::default(),
         pairs: 0,
         queries: 0,
+        outline: None,
         hash: String::new(),
     };
     // Only references need all their frames.
@@ -143,6 +148,10 @@ pub fn run_setting<R: Real>(
         if let Some(trajectory) = &mut trajectory {
             trajectory.push(&points);
         }
+    }
+    if let Some(reference) = reference.filter(|reference| run.is_finite() && reference.frames() == asked) {
+        reference.frame(asked - 1, &mut expected);
+        run.outline = benchmark.outline_of(&points, &expected);
     }
     run.hash = format!("{:016x}", simulation.solver().state_hash());
     let mut end = vec![Vec::new(); simulation.objects().len()];

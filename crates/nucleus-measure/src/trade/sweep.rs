@@ -9,6 +9,7 @@ use nucleus_graph::compile::Program;
 
 use super::benchmark::{Benchmark, MAX_REFERENCE_UNCERTAINTY, TradeError};
 use super::curve::{Trade, is_resolved};
+use super::error::ErrorMeasure;
 use super::plan::{self, SweepOptions};
 use super::reference::{self, ReferenceRun, References};
 use super::run::{Run, RunStates, Trajectory, key, run_setting};
@@ -171,7 +172,8 @@ fn validate_references(benchmark: &Benchmark, references: &References) -> Result
     if !moves {
         return Err(TradeError::NothingMoves { start: span.start, end: span.end });
     }
-    let uncertainty = Trade::floor(references);
+    let measure = ErrorMeasure::new(benchmark, &references.coarse, &references.fine, &references.horizon);
+    let uncertainty = measure.essential_floor();
     match is_resolved(uncertainty, MAX_REFERENCE_UNCERTAINTY) {
         true => Ok(()),
         false => {

@@ -25,7 +25,7 @@ pub fn of(
     store: &ResultCache,
     found: &SweepResult,
     recommended: Option<&Point>,
-    wanted: f64,
+    recommendation: &str,
 ) -> Result<String> {
     let trade = &found.trade;
     let mut shown: Vec<(String, String, State)> = Vec::new();
@@ -56,7 +56,7 @@ pub fn of(
     Ok(html(&Page {
         scene,
         trade,
-        wanted,
+        recommendation,
         recommended,
         pictures: &pictures,
         series: &series,

@@ -1,0 +1,284 @@
+//! The error of a run: one figure for each quantity that an artist looks at, each against the reference and with the
+//! noise of the reference itself.
+//!
+//! A single figure misleads: cloth can be where it should be and still be visibly stretched. A setting therefore meets
+//! a wanted error only if every quantity does. The noise floor of a quantity is its difference between two references
+//! of steps h and h/2; an error below twice the floor cannot be told from none.
+
+use serde::{Deserialize, Serialize};
+
+use super::benchmark::Benchmark;
+use super::reference::{Horizon, ReferenceRun};
+use super::run::{Run, Trajectory};
+use crate::metrics::root_mean_square;
+use crate::metrics::shape::Outline;
+
+/// Something that can be wrong in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Distance of the points from the reference, RMS over points and comparable frames, over the cloth's size.
+    Position,
+    /// Difference from the reference in the strain that 99 % of the edges stay below, RMS over all frames.
+    Stretch,
+    /// Difference from the reference in the largest strain, RMS over all frames.
+    WorstStretch,
+    /// Distance of the surfaces in the last frame, RMS, over the cloth's size.
+    Shape,
+    /// Difference of the outlines in the last frame, over their area.
+    Silhouette,
+    /// Difference of kinetic plus potential energy, RMS over all frames, over that of a fall by the cloth's own size.
+    Energy,
+    /// Without a reference: the strain that 99 % of the edges stay below, RMS over all frames.
+    Strain,
+}
+
+impl Quantity {
+    /// All that are measured against a reference.
+    pub const AGAINST_REFERENCE: [Self; 6] =
+        [Self::Position, Self::Stretch, Self::WorstStretch, Self::Shape, Self::Silhouette, Self::Energy];
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Stretch => "stretch",
+            Self::WorstStretch => "worst stretch",
+            Self::Shape => "shape",
+            Self::Silhouette => "silhouette",
+            Self::Energy => "energy",
+            Self::Strain => "strain",
+        }
+    }
+
+    /// Whether a wanted error that the references do not resolve in this quantity makes the whole recommendation
+    /// unresolved. The others are held to what the references resolve.
+    fn is_essential(self) -> bool {
+        matches!(self, Self::Position | Self::Stretch | Self::Strain)
+    }
+}
+
+/// One quantity of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Component {
+    /// Which.
+    pub quantity: Quantity,
+    /// Its error, as a share.
+    pub error: f64,
+    /// Difference of the two references in it.
+    pub floor: f64,
+}
+
+impl Component {
+    /// Whether the error can be told from the noise of the references.
+    pub fn is_resolved(&self) -> bool {
+        self.error > 2.0 * self.floor
+    }
+}
+
+/// How the runs of a scene are measured: the quantities with their noise floors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ErrorMeasure {
+    /// Number of frames over which positions can be compared; 0 if the references diverge too early.
+    pub comparable: usize,
+    /// Each measured quantity with the difference of the two references in it.
+    pub floors: Vec<(Quantity, f64)>,
+}
+
+impl ErrorMeasure {
+    /// The measure of a scene without a reference: Classic is a different material at every setting, and meant not to
+    /// stretch.
+    pub fn without_reference() -> Self {
+        Self { comparable: 0, floors: vec![(Quantity::Strain, 0.0)] }
+    }
+
+    /// The measure of a scene with these references.
+    pub fn new(benchmark: &Benchmark, coarse: &ReferenceRun, fine: &ReferenceRun, horizon: &Horizon) -> Self {
+        let comparable = if horizon.is_usable() { horizon.frames } else { 0 };
+        let outline = outline(benchmark, &coarse.trajectory, &fine.trajectory);
+        let coarse = Run { outline, ..with_divergence(&coarse.run, &horizon.divergence) };
+        let found = |quantity| {
+            raw(quantity, comparable, benchmark.fall_energy(), &coarse, &fine.run)
+                .map(|floor| (quantity, floor))
+        };
+        Self { comparable, floors: Quantity::AGAINST_REFERENCE.into_iter().filter_map(found).collect() }
+    }
+
+    /// The error of a run in each quantity. Empty if the run was not finite.
+    pub fn of(&self, benchmark: &Benchmark, run: &Run, reference: Option<&Run>) -> Vec<Component> {
+        if !run.is_finite() {
+            return Vec::new();
+        }
+        let error = |quantity| match reference {
+            Some(reference) => raw(quantity, self.comparable, benchmark.fall_energy(), run, reference),
+            None => Some(root_mean_square(run.frames.iter().map(|frame| frame.strain))),
+        };
+        let component = |&(quantity, floor): &(Quantity, f64)| {
+            error(quantity).filter(|x| x.is_finite()).map(|error| Component { quantity, error, floor })
+        };
+        self.floors.iter().filter_map(component).collect()
+    }
+
+    /// Difference of the two references in a quantity.
+    pub fn floor(&self, quantity: Quantity) -> Option<f64> {
+        self.floors.iter().find(|(of, _)| *of == quantity).map(|(_, floor)| *floor)
+    }
+
+    /// The largest difference of the two references in position and stretch.
+    pub fn essential_floor(&self) -> f64 {
+        let essential = self.floors.iter().filter(|(quantity, _)| quantity.is_essential());
+        essential.map(|(_, floor)| *floor).fold(0.0, f64::max)
+    }
+
+    /// The quantities and the frames over which each is compared: `position over frames 2 to 13, stretch over 2 to 24`.
+    pub fn windows(&self, [start, end]: [i64; 2]) -> String {
+        if self.floor(Quantity::Strain).is_some() {
+            return format!("strain over frames {} to {end}", start + 1);
+        }
+        let first = start + 1;
+        let last = start + self.comparable as i64;
+        let position = match self.comparable {
+            0 => "position in no frame (the references diverge too early)".to_owned(),
+            _ if last >= end => format!("position over frames {first} to {end}"),
+            _ => format!("position over frames {first} to {last} (the references diverge after)"),
+        };
+        format!(
+            "{position}, stretch and energy over frames {first} to {end}, shape and silhouette in frame {end}"
+        )
+    }
+}
+
+/// How the last frames of two runs differ in shape; `None` if either has not all frames, or there are no faces.
+fn outline(benchmark: &Benchmark, a: &Trajectory, b: &Trajectory) -> Option<Outline> {
+    let last = benchmark.frames().checked_sub(1)?;
+    if a.frames() <= last || b.frames() <= last {
+        return None;
+    }
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    a.frame(last, &mut ours);
+    b.frame(last, &mut theirs);
+    benchmark.outline_of(&ours, &theirs)
+}
+
+/// A run whose frames have a known distance from the other reference.
+fn with_divergence(run: &Run, divergence: &[f64]) -> Run {
+    let mut run = run.clone();
+    for (frame, divergence) in run.frames.iter_mut().zip(divergence) {
+        frame.divergence = Some([*divergence, *divergence]);
+    }
+    run
+}
+
+/// The error of a run in a quantity; `None` where it is not measured.
+fn raw(quantity: Quantity, comparable: usize, fall: f64, run: &Run, reference: &Run) -> Option<f64> {
+    let pairs = || run.frames.iter().zip(&reference.frames);
+    let outline = |of: fn(&Outline) -> f64| run.outline.as_ref().map(of);
+    match quantity {
+        Quantity::Position => {
+            let frames = run.frames.iter().take(comparable);
+            let rms = frames.map(|frame| frame.divergence.map_or(f64::NAN, |[rms, _]| rms));
+            (comparable > 0).then(|| root_mean_square(rms))
+        }
+        Quantity::Stretch => Some(root_mean_square(pairs().map(|(a, b)| a.strain - b.strain))),
+        Quantity::WorstStretch => Some(root_mean_square(pairs().map(|(a, b)| a.max_strain - b.max_strain))),
+        Quantity::Shape => outline(|outline| outline.distance),
+        Quantity::Silhouette => outline(|outline| outline.silhouette),
+        Quantity::Energy => {
+            (fall > 0.0).then(|| root_mean_square(pairs().map(|(a, b)| (a.energy - b.energy) / fall)))
+        }
+        Quantity::Strain => None,
+    }
+}
+
+/// A wanted error: one for all quantities, and bounds of single ones.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Request {
+    /// The wanted error of every quantity without a bound of its own; `None`: any error.
+    pub every: Option<f64>,
+    /// Wanted errors of single quantities.
+    pub bounds: Vec<(Quantity, f64)>,
+}
+
+impl Request {
+    /// The same error in every quantity.
+    pub fn every(error: f64) -> Self {
+        Self { every: Some(error), bounds: Vec::new() }
+    }
+
+    /// The wanted error of a quantity.
+    pub fn of(&self, quantity: Quantity) -> Option<f64> {
+        self.bounds.iter().find(|(of, _)| *of == quantity).map(|(_, error)| *error).or(self.every)
+    }
+
+    /// The components of a run that miss the request. An error that cannot be told from the noise of the references
+    /// misses nothing.
+    pub fn missed<'a>(&'a self, errors: &'a [Component]) -> impl Iterator<Item = &'a Component> {
+        errors.iter().filter(|component| {
+            component.is_resolved()
+                && self.of(component.quantity).is_some_and(|wanted| component.error > wanted)
+        })
+    }
+
+    /// The quantities in which the references differ too much to show the wanted error, essential ones first.
+    pub fn unresolved<'a>(&'a self, measure: &'a ErrorMeasure) -> impl Iterator<Item = (Quantity, f64)> {
+        let floors = measure.floors.iter();
+        floors
+            .copied()
+            .filter(|(quantity, floor)| self.of(*quantity).is_some_and(|wanted| 2.0 * floor > wanted))
+    }
+
+    /// Whether the references cannot show the wanted error in position or stretch, or in a quantity that was bounded.
+    pub fn is_unresolved(&self, measure: &ErrorMeasure) -> bool {
+        let is_bounded = |quantity| self.bounds.iter().any(|(of, _)| *of == quantity);
+        self.unresolved(measure).any(|(quantity, _)| quantity.is_essential() || is_bounded(quantity))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A component with a small floor.
+    pub fn component(quantity: Quantity, error: f64) -> Component {
+        Component { quantity, error, floor: 1e-4 }
+    }
+
+    #[test]
+    fn a_request_is_missed_by_any_quantity_above_it() {
+        let errors = [component(Quantity::Position, 0.004), component(Quantity::Stretch, 0.06)];
+        let missed = |request: &Request| request.missed(&errors).map(|c| c.quantity).collect::<Vec<_>>();
+        assert_eq!(missed(&Request::every(0.01)), [Quantity::Stretch]);
+        assert_eq!(missed(&Request::every(0.1)), []);
+        let bounded = Request { every: Some(0.01), bounds: vec![(Quantity::Stretch, 0.07)] };
+        assert_eq!(missed(&bounded), []);
+        let only = Request { every: None, bounds: vec![(Quantity::Stretch, 0.03)] };
+        assert_eq!(missed(&only), [Quantity::Stretch]);
+    }
+
+    #[test]
+    fn an_error_within_the_noise_of_the_references_is_not_missed_but_named() {
+        let floors = vec![(Quantity::Position, 1e-3), (Quantity::WorstStretch, 0.02)];
+        let measure = ErrorMeasure { comparable: 9, floors };
+        let noisy = Component { quantity: Quantity::WorstStretch, error: 0.03, floor: 0.02 };
+        let request = Request::every(0.01);
+        assert_eq!(request.missed(&[noisy]).count(), 0);
+        assert_eq!(request.unresolved(&measure).collect::<Vec<_>>(), [(Quantity::WorstStretch, 0.02)]);
+        assert!(!request.is_unresolved(&measure), "the worst edge alone does not decide");
+        let bounded = Request { every: None, bounds: vec![(Quantity::WorstStretch, 0.01)] };
+        assert!(bounded.is_unresolved(&measure), "a bound that was asked for does");
+        assert!(Request::every(1e-3).is_unresolved(&measure));
+    }
+
+    #[test]
+    fn the_windows_name_the_frames_of_each_quantity() {
+        let measure = |comparable| ErrorMeasure { comparable, floors: vec![(Quantity::Position, 0.0)] };
+        assert!(
+            measure(12)
+                .windows([1, 24])
+                .starts_with("position over frames 2 to 13 (the references diverge after), stretch")
+        );
+        assert!(measure(23).windows([1, 24]).starts_with("position over frames 2 to 24, stretch"));
+        assert!(measure(0).windows([1, 24]).starts_with("position in no frame"));
+        assert_eq!(ErrorMeasure::without_reference().windows([1, 24]), "strain over frames 2 to 24");
+    }
+}
