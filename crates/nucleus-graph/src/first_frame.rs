@@ -12,7 +12,8 @@ use nucleus_core::{ClothFrame, ClothId, Faces, FrameInput, Surface};
 use crate::attributes::nucleus;
 use crate::audit::collision_rules;
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
-use crate::scene::{Diagnostic, Findings, Scene};
+use crate::diagnostic::Findings;
+use crate::scene::{Diagnostic, Scene};
 
 /// Acceleration of gravity, in m/s², above which it is taken for centimetres.
 const MAX_GRAVITY: f64 = 100.0;

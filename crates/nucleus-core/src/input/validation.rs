@@ -62,6 +62,7 @@ pub enum InvalidInput {
     #[error("gravity, wind, the ground plane or another setting is not a usable number")]
     Setting,
     /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
+    #[error("constraint {0} has a number that is not usable, or a link to points that do not exist")]
     Constraint(u32),
     /// The duration of the frame, which must be above zero.
     #[error("the duration of the frame must be above zero")]

@@ -48,7 +48,7 @@ fn add_births<R: Real>(
     [h, end]: [f64; 2],
     counters: &mut ContactCounters,
 ) {
-    let Solver { model, state, contact, pool } = solver;
+    let Solver { model, state, contact, pool, .. } = solver;
     let births = state.populations[index].due(&frame.births, end);
     let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
     let object = &mut model.cloths[cloth];
@@ -123,7 +123,7 @@ fn begin_contact_of<R: Real>(
 
 /// Closes up the rows of an object; `kept` are the places of the particles that remain, which ascend.
 fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
-    let Solver { model, state, contact, pool } = solver;
+    let Solver { model, state, contact, pool, .. } = solver;
     let points = model.cloths[cloth].points();
     let rows = points.start as usize..points.end as usize;
     close_up(&mut state.anchor[rows.clone()], kept);

@@ -40,6 +40,17 @@ checkpoint_struct!([] Population {
 });
 
 impl Population {
+    /// Bytes of its columns.
+    pub fn bytes(&self) -> usize {
+        let [id, born, lifespan, mass] = [
+            size_of_val(&self.id[..]),
+            size_of_val(&self.born[..]),
+            size_of_val(&self.lifespan[..]),
+            size_of_val(&self.mass[..]),
+        ];
+        id + born + lifespan + mass
+    }
+
     /// The particles of a cloth at the start; `None` where none are born or die.
     pub fn of(index: usize, cloth: &Cloth) -> Option<Self> {
         let particles = cloth.particles.as_ref()?;

@@ -3,6 +3,7 @@
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::model::rows::RowList;
+use crate::particles::population::Population;
 use crate::solver::Solver;
 use crate::state::State;
 
@@ -26,10 +27,12 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         normal,
         area,
         added_wind,
+        field,
         wind_travel: _,
         chambers,
         rotations,
         inverse_mass,
+        populations,
     } = state;
     let rows = [
         displacement,
@@ -42,10 +45,12 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         normal,
         area,
         added_wind,
+        field,
     ];
     let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
     let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]);
-    rows + size_of_val(&anchor[..]) + chambers + size_of_val(&inverse_mass[..])
+    let populations: usize = populations.iter().map(Population::bytes).sum();
+    rows + size_of_val(&anchor[..]) + chambers + size_of_val(&inverse_mass[..]) + populations
 }
 
 fn of_cloth<R: Real>(cloth: &ClothModel<R>) -> usize {

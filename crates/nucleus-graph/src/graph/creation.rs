@@ -75,7 +75,7 @@ impl Graph {
     pub fn creation(&self, node: NodeId) -> Option<Creation> {
         let node_type = self.node(node).node_type();
         if node_type.is_a(&n_base::N_BASE) {
-            let fed = |wire: &&super::node::Connection| wire.to.attribute.name == n_base::INPUT_MESH.row.name;
+            let fed = |wire: &&Connection| wire.to.attribute.name == n_base::INPUT_MESH.row.name;
             let mesh = self.arriving(node).find(fed).map(|wire| wire.from.node);
             let nucleus = self.targets(node, &n_base::CURRENT_STATE).next()?.node;
             if node_type.is_a(&n_particle::N_PARTICLE) {

@@ -130,6 +130,9 @@ impl Tearing {
             input_attract,
             rigidity,
             deform,
+            angle_dropoff,
+            yield_angle,
+            field_magnitude,
         } = &mut maps;
         if shares_mass && mass.is_empty() {
             *mass = vec![1.0; self.points];
@@ -151,6 +154,9 @@ impl Tearing {
             input_attract,
             rigidity,
             deform,
+            angle_dropoff,
+            yield_angle,
+            field_magnitude,
         ];
         columns.into_iter().for_each(|column| self.extend(column));
         if shares_mass {
