@@ -234,8 +234,9 @@ mod tests {
     #[test]
     fn a_component_is_read_as_it_is_written() {
         for text in ["cloth", "cloth.vtx[*]", "cloth.vtx[3]", "a:b.vtx[0:8]"] {
-            assert_eq!(component(text).unwrap().to_string(), text);
+            assert_eq!(read_component(text).unwrap().to_string(), text);
         }
-        assert_eq!(component("cloth.vtx[x]"), None);
+        assert!(read_component("cloth.vtx[x]").is_err());
+        assert_eq!(texts("a.vtx[where(y > 1)] b"), ["a.vtx[where(y > 1)]", "b"]);
     }
 }

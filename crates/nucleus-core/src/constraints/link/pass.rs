@@ -47,7 +47,7 @@ pub fn begin_links<R: Real>(
             changed = true;
         }
         own.glue_strength = settings.glue_strength;
-        let prescribed = Prescribed { colliders: colliders, frame: settings };
+        let prescribed = Prescribed { colliders, frame: settings };
         own.begin_frame(&LinkFrame { prescribed, state, cloths: &model.cloths });
     }
     changed
@@ -65,7 +65,7 @@ pub fn max_weld_gap<R: Real>(
     for (own, settings) in
         links.constraints.iter().zip(&frame.constraints).filter(|(own, _)| own.layout.is_weld)
     {
-        let prescribed = Prescribed { colliders: colliders, frame: settings };
+        let prescribed = Prescribed { colliders, frame: settings };
         let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && !link.on_surface);
         for (link, _) in whole {
             let ends = Ends::new(link, &model.cloths);
@@ -96,7 +96,7 @@ pub fn relax_links<R: Real>(
     own.sweep(&mut state.displacement, &pass, blocks.len(), pool);
     if !own.surface.is_empty() {
         let settings = &frame.constraints[sweep.constraint];
-        let prescribed = Prescribed { colliders: colliders, frame: settings };
+        let prescribed = Prescribed { colliders, frame: settings };
         own.relax_surface(sweep, settings, prescribed, (&model.cloths, &model.colliders), state, [time, h]);
     }
 }

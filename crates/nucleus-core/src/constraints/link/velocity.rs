@@ -43,7 +43,7 @@ pub fn apply_link_forces<R: Real>(
 ) {
     for (own, settings) in links.constraints.iter().zip(&frame.constraints) {
         let Some(force) = settings.force else { continue };
-        let prescribed = Prescribed { colliders: colliders, frame: settings };
+        let prescribed = Prescribed { colliders, frame: settings };
         for link in own.links.iter().zip(&own.broken).filter(|(_, broken)| !**broken).map(|(link, _)| link) {
             let ends = Ends::new(link, &model.cloths);
             let mobility = ends.mobility(&state.displacement);
@@ -70,7 +70,7 @@ pub fn damp_links<R: Real>(
         if taken.along <= 0.0 && taken.all <= 0.0 {
             continue;
         }
-        let prescribed = Prescribed { colliders: colliders, frame: settings };
+        let prescribed = Prescribed { colliders, frame: settings };
         for link in own.links.iter().zip(&own.broken).filter(|(_, broken)| !**broken).map(|(link, _)| link) {
             let ends = Ends::new(link, &model.cloths);
             let mobility = ends.mobility(&state.displacement);

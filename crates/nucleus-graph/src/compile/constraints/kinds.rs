@@ -87,14 +87,14 @@ const FALLING: &[RampPoint] = &[
 
 /// A constraint node at a time: its values, with the defaults of its kind.
 #[derive(Clone, Copy)]
-pub(in crate::compile) struct Values<'a> {
+pub(crate) struct Values<'a> {
     pub(super) at: &'a EvalContext<'a>,
     pub(super) node: NodeId,
     pub(super) kind: i32,
 }
 
 impl<'a> Values<'a> {
-    pub(in crate::compile) fn new(at: &'a EvalContext<'a>, node: NodeId) -> Self {
+    pub(crate) fn new(at: &'a EvalContext<'a>, node: NodeId) -> Self {
         Self { at, node, kind: at.get(node, &con::CONSTRAINT_TYPE).0 }
     }
 
@@ -138,7 +138,7 @@ impl<'a> Values<'a> {
     }
 
     /// Whether the constraint pins points to its transform.
-    pub(in crate::compile) fn pins(&self) -> bool {
+    pub(crate) fn pins(&self) -> bool {
         let graph = self.at.graph();
         self.kind == TRANSFORM && !SOFT.iter().any(|name| graph.is_given_by_name(self.node, name))
     }

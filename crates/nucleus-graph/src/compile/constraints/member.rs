@@ -10,25 +10,25 @@ use crate::graph::NodeId;
 
 /// Source of the frames of a constraint.
 #[derive(Debug, Clone)]
-pub(in crate::compile) struct ConstraintSource {
-    pub(in crate::compile) node: NodeId,
+pub(crate) struct ConstraintSource {
+    pub(crate) node: NodeId,
     /// Its members, in the order of `componentIds`.
-    pub(in crate::compile) members: Vec<Member>,
+    pub(crate) members: Vec<Member>,
     /// Whether its transform is ever animated.
-    pub(in crate::compile) moves: bool,
+    pub(crate) moves: bool,
     /// What it joins; `None` for exclusions alone.
-    pub(in crate::compile) part: Option<Part>,
+    pub(crate) part: Option<Part>,
     /// Elements that do not collide while it is enabled.
-    pub(in crate::compile) exclusion: Option<Arc<Exclusion>>,
+    pub(crate) exclusion: Option<Arc<Exclusion>>,
     /// Whether its links can ever break.
-    pub(in crate::compile) can_break: bool,
+    pub(crate) can_break: bool,
     /// Welds of a tearable surface: the cloth, two of its points and the ends of an edge that they are half of.
     pub(super) seams: Vec<(ClothId, [u32; 2], [u32; 2])>,
 }
 
 /// What the links of a source are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::compile) enum Part {
+pub(crate) enum Part {
     /// The strength and the glue of the constraint.
     Links,
     /// A force to the origin of its transform.
@@ -37,14 +37,14 @@ pub(in crate::compile) enum Part {
 
 /// An object that can be constrained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::compile) enum MemberObject {
+pub(crate) enum MemberObject {
     Cloth(ClothId),
     Collider(ColliderId),
 }
 
 impl MemberObject {
     /// A number of its own, in the order of cloths, then colliders.
-    pub(in crate::compile) fn key(self) -> (u32, u32) {
+    pub(crate) fn key(self) -> (u32, u32) {
         match self {
             Self::Cloth(cloth) => (0, cloth.0),
             Self::Collider(collider) => (1, collider.0),
@@ -54,22 +54,22 @@ impl MemberObject {
 
 /// A component of a constraint.
 #[derive(Debug, Clone)]
-pub(in crate::compile) struct Member {
-    pub(in crate::compile) object: MemberObject,
-    pub(in crate::compile) kind: ElementKind,
+pub(crate) struct Member {
+    pub(crate) object: MemberObject,
+    pub(crate) kind: ElementKind,
     /// The points of each element.
-    pub(in crate::compile) elements: Faces,
+    pub(crate) elements: Faces,
     /// Factors of the component on strength, tangent strength, glue and weight.
     pub(super) scalars: [f64; 4],
     /// Maps by point on strength, glue and weight; empty where there are none.
     pub(super) maps: [Vec<f64>; 3],
     /// The name of the object.
-    pub(in crate::compile) name: String,
+    pub(crate) name: String,
 }
 
 impl Member {
     /// Each point of its elements once, with the first element that has it.
-    pub(in crate::compile) fn points(&self) -> Vec<(u32, u32)> {
+    pub(crate) fn points(&self) -> Vec<(u32, u32)> {
         let all = (0..).zip(self.elements.iter());
         let mut points: Vec<(u32, u32)> =
             all.flat_map(|(at, corners)| corners.iter().map(move |&point| (point, at))).collect();
@@ -79,7 +79,7 @@ impl Member {
     }
 
     /// Strength, tangent strength, glue and weight of an element.
-    pub(in crate::compile) fn factors(&self, element: u32) -> [f64; 4] {
+    pub(crate) fn factors(&self, element: u32) -> [f64; 4] {
         let corners = self.elements.face(element as usize);
         let mean = |map: &Vec<f64>| match map.is_empty() {
             true => 1.0,
@@ -91,7 +91,7 @@ impl Member {
     }
 
     /// Half of the length of the edges at a border point, in metres.
-    pub(in crate::compile) fn border_length(&self, point: u32, places: &Places) -> f64 {
+    pub(crate) fn border_length(&self, point: u32, places: &Places) -> f64 {
         let length = |edge: &[u32]| {
             let [a, b] = [edge[0], edge[edge.len() - 1]].map(|end| places.point(self.object, end));
             (b - a).norm() / 2.0
@@ -101,13 +101,13 @@ impl Member {
 }
 
 /// Positions of all members at a time, in metres.
-pub(in crate::compile) struct Places {
+pub(crate) struct Places {
     pub(super) cloths: Vec<Vec<Vector3<f64>>>,
     pub(super) colliders: Vec<Vec<Vector3<f64>>>,
 }
 
 impl Places {
-    pub(in crate::compile) fn point(&self, object: MemberObject, point: u32) -> Vector3<f64> {
+    pub(crate) fn point(&self, object: MemberObject, point: u32) -> Vector3<f64> {
         match object {
             MemberObject::Cloth(cloth) => self.cloths[cloth.index()][point as usize],
             MemberObject::Collider(collider) => self.colliders[collider.index()][point as usize],

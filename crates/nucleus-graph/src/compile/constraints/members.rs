@@ -36,7 +36,7 @@ static WEIGHT: MapAttributes = MapAttributes {
 
 impl Compiler<'_> {
     /// All constraints that are links or exclusions, in the order of their names.
-    pub(in crate::compile) fn constraint_sources(&mut self) -> Vec<ConstraintSource> {
+    pub(crate) fn constraint_sources(&mut self) -> Vec<ConstraintSource> {
         let mut sources = Vec::new();
         for node in self.constraints() {
             if Values::new(&self.start, node).pins() {
@@ -61,7 +61,7 @@ impl Compiler<'_> {
     }
 
     /// The constraints of the nucleus, in the order of their names.
-    pub(in crate::compile) fn constraints(&self) -> Vec<NodeId> {
+    pub(crate) fn constraints(&self) -> Vec<NodeId> {
         let graph = &self.scene.graph;
         let elements = graph.elements(self.program.node, &nucleus::INPUT_CURRENT);
         let mut constraints: Vec<NodeId> = elements.into_iter().map(|(_, plug)| plug.node).collect();
@@ -180,7 +180,7 @@ impl Compiler<'_> {
     }
 
     /// The members of a constraint with their elements.
-    pub(in crate::compile) fn members_of(&mut self, constraint: NodeId) -> Vec<Member> {
+    pub(crate) fn members_of(&mut self, constraint: NodeId) -> Vec<Member> {
         let graph = &self.scene.graph;
         let surfaces = Values::new(&self.start, constraint).kind;
         let surfaces = matches!(surfaces, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);

@@ -12,13 +12,13 @@ use crate::graph::NodeId;
 
 /// A cloth mesh that is split where it can tear.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::compile) struct Tearing {
+pub(crate) struct Tearing {
     /// The faces of the mesh as it was given.
     pub(super) faces: Faces,
     /// The number of its points; further points are twins.
     pub(super) points: usize,
     /// The point that each further point was split off.
-    pub(in crate::compile) twins: Vec<u32>,
+    pub(crate) twins: Vec<u32>,
     /// The faces of the split mesh.
     split: Faces,
     pub(super) seams: Vec<Seam>,
@@ -97,7 +97,7 @@ impl Tearing {
     }
 
     /// A column of points, with twins where their originals are.
-    pub(in crate::compile) fn extend<T: Clone>(&self, column: &mut Vec<T>) {
+    pub(crate) fn extend<T: Clone>(&self, column: &mut Vec<T>) {
         if !column.is_empty() {
             let twins: Vec<T> = self.twins.iter().map(|&twin| column[twin as usize].clone()).collect();
             column.extend(twins);
@@ -105,13 +105,13 @@ impl Tearing {
     }
 
     /// The split mesh.
-    pub(in crate::compile) fn split(&self, mut surface: Surface) -> Surface {
+    pub(crate) fn split(&self, mut surface: Surface) -> Surface {
         self.extend(&mut surface.positions);
         Surface { faces: self.split.clone(), ..surface }
     }
 
     /// Vertex maps of the split mesh. `shares_mass`: masses are given by point, and twins share that of their original.
-    pub(in crate::compile) fn maps(&self, mut maps: VertexMaps, shares_mass: bool) -> VertexMaps {
+    pub(crate) fn maps(&self, mut maps: VertexMaps, shares_mass: bool) -> VertexMaps {
         let VertexMaps {
             mass,
             stretch,

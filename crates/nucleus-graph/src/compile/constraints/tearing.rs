@@ -17,12 +17,7 @@ const OBJECT: Choice = Choice(6);
 
 impl Compiler<'_> {
     /// How a cloth mesh is split by the tearable surfaces that have a part of it; `None` where nothing can tear.
-    pub(in crate::compile) fn tearing(
-        &mut self,
-        cloth: NodeId,
-        mesh: NodeId,
-        surface: &Surface,
-    ) -> Option<Tearing> {
+    pub(crate) fn tearing(&mut self, cloth: NodeId, mesh: NodeId, surface: &Surface) -> Option<Tearing> {
         let mut tears: BTreeMap<([u32; 2], u32), NodeId> = BTreeMap::new();
         let elements = Elements::new(&surface.faces, surface.positions.len());
         for constraint in self.constraints() {
