@@ -148,11 +148,7 @@ impl<R: Real> Sweeper<'_, R> {
     #[allow(unsafe_code)]
     fn hinges<const N: usize>(
         &self,
-        (rows, angles, angle_maps): (
-            &RowList<HingeGroup<R, N>>,
-            &RowList<AngleGroup<R>>,
-            &RowList<StrengthGroup<R>>,
-        ),
+        (rows, angles, angle_maps): HingeLists<'_, R, N>,
         maps: &RowList<StrengthGroup<R>>,
         batch: RowBatch,
         (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
@@ -184,6 +180,10 @@ impl<R: Real> Sweeper<'_, R> {
         }
     }
 }
+
+/// Hinges, their signed angles, and the vertex maps of the angles.
+type HingeLists<'a, R, const N: usize> =
+    (&'a RowList<HingeGroup<R, N>>, &'a RowList<AngleGroup<R>>, &'a RowList<StrengthGroup<R>>);
 
 /// A group without a strength map.
 fn unmapped<G>(group: &G) -> (&G, Uniform) {
