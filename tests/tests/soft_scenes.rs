@@ -3,7 +3,7 @@
 use std::fs;
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, StateView};
+use nucleus_core::ClothId;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::{program, root, scene};

@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn the_page_shows_the_recipes_as_they_are_and_each_has_a_picture() {
-        let root = crate::root();
+        let root = crate::files::root();
         assert_eq!(fs::read_to_string(root.join("docs/cookbook.md")).unwrap(), page(&root).unwrap());
         let recipes = recipes(&root).unwrap();
         assert!(recipes.len() >= 12, "twelve recipes");
