@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::attributes::{mesh, n_base, poly_plane};
 use crate::graph::Node;
 use crate::mesh::{CornerUvs, poly_plane_uvs, read_obj_corner_uvs};
-use crate::scene::Scene;
+use crate::scene::document::Scene;
 
 use super::animated_mesh::NumberedFile;
 use super::program::{Object, Program};
