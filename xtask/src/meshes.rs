@@ -16,6 +16,7 @@ mod extremes;
 mod knot;
 mod mesh;
 mod soft;
+mod vessels;
 
 use mesh::{Mesh, ring};
 
@@ -23,7 +24,7 @@ use mesh::{Mesh, ring};
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 10] = [
+const ALL: [Entry; 12] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -34,6 +35,8 @@ const ALL: [Entry; 10] = [
     ("fifty_layers", fifty_layers),
     ("balloon", soft::balloon),
     ("trampoline", soft::trampoline),
+    ("glass", vessels::glass),
+    ("leaf", vessels::leaf),
 ];
 
 /// Writes all of them.

@@ -33,6 +33,9 @@ pub struct FrameStatistics {
     /// Edges of cloth that intersect faces of cloth.
     #[serde(alias = "tangled")]
     pub intersections: u64,
+    /// Mean excess of density of liquids.
+    #[serde(default)]
+    pub density_error: f64,
     /// In joules.
     pub kinetic_energy: f64,
     pub finite: bool,
@@ -58,6 +61,7 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            density_error,
             kinetic_energy,
             finite,
             sanitized,
@@ -77,6 +81,7 @@ impl FrameStatistics {
             pairs_unresolved,
             depenetrating,
             intersections,
+            density_error,
             kinetic_energy,
             finite,
             sanitized: sanitized.count,
@@ -97,6 +102,7 @@ impl FrameStatistics {
             pairs_unresolved: self.pairs_unresolved,
             depenetrating: self.depenetrating,
             intersections: self.intersections,
+            density_error: self.density_error,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()

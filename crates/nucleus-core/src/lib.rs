@@ -49,8 +49,8 @@ pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
 pub use input::frame::{
     BendSolver, Bending, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
-    FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
-    Stiffness,
+    FrameInput, GroundPlane, InputAttract, InputMesh, Liquid, Pin, Pressure, PushOut, ResistanceModel,
+    SelfCollision, Stiffness,
 };
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};

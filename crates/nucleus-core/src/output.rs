@@ -152,6 +152,9 @@ pub struct StepReport {
     pub depenetrating: u64,
     /// Edges of cloth that intersect faces of cloth at the end of the frame, in untangling.
     pub intersections: u64,
+    /// Mean excess of density of the particles of a liquid over that at rest, at the end of the frame; of several liquids
+    /// the largest.
+    pub density_error: f64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -177,6 +180,7 @@ impl Default for StepReport {
             pairs_unresolved: 0,
             depenetrating: 0,
             intersections: 0,
+            density_error: 0.0,
             kinetic_energy: 0.0,
             finite: true,
             sanitized: Sanitized::default(),

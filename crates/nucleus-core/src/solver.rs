@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::bytes::RestoreError;
+use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::whole;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
@@ -27,6 +28,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) state: State<R>,
     /// Colliders in motion, contacts, and their candidates.
     pub(crate) contact: ContactSystem<R>,
+    /// By cloth: what a liquid knows within a frame.
+    pub(crate) liquids: Vec<LiquidSolver>,
     pub(crate) pool: ThreadPool,
 }
 
@@ -115,8 +118,9 @@ impl<R: Real> Solver<R> {
         let colliders: Vec<ColliderModel> = colliders.into_iter().map(ColliderModel::new).collect();
         let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
         drop(cloths);
+        let liquids = models.iter().map(|_| LiquidSolver::default()).collect();
         let model = Model { cloths: models, colliders };
-        let mut solver = Self { model, state, contact, pool };
+        let mut solver = Self { model, state, contact, liquids, pool };
         update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
         solver
     }

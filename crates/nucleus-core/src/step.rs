@@ -15,6 +15,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use crate::constraints::damp::damp;
+use crate::constraints::liquid::{LiquidScene, LiquidSolver};
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
@@ -97,6 +98,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
         collider.begin_frame(&motion.start, &motion.end);
     }
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
+    solver.liquids.iter_mut().for_each(LiquidSolver::begin_frame);
     solver.contact.ground.begin_frame(frame.plane.as_ref(), &solver.state.anchor);
 }
 
@@ -184,6 +186,11 @@ fn solve_time_step<R: CompiledReal>(
                     [span.to, schedule.h],
                     &solver.pool,
                 );
+            }
+            Pass::Liquid(cloth) => {
+                observer.enter(Stage::Constraints);
+                let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
+                solver.liquids[*cloth].relax(*cloth, scene, &mut solver.state, schedule.h, span, &solver.pool);
             }
             Pass::ClothContact => {
                 let pass = &mut solver.contact_pass(frame, schedule, span, counters);

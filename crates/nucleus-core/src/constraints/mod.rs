@@ -24,6 +24,7 @@
 //! | pressure (ideal gas law) | chambers | [`pressure`] |
 //! | `rigidity` and `deformResistance` (shape matching: Müller et al. 2005) | shells | [`shape`] |
 //! | attraction to the live input mesh | points | [`attract`] |
+//! | incompressibility, viscosity and surface tension of liquids | particles | [`liquid`] |
 //! | effects that take a cloth as a whole, in one place | all | [`whole`] |
 //! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
 //! | the order of rows in a sweep, and its parallel loops | all | [`sweep`](mod@sweep) |
@@ -33,6 +34,7 @@ pub mod attract;
 pub mod bend;
 pub mod damp;
 pub mod hinge;
+pub mod liquid;
 pub mod plastic;
 pub mod pressure;
 pub mod shape;

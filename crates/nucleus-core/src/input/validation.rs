@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use nalgebra::Vector3;
 
 use crate::input::frame::{
-    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pressure, ResistanceModel,
+    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Liquid, Pressure, ResistanceModel,
 };
 use crate::input::{ClothId, ColliderId, PointId};
 
@@ -242,9 +242,25 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.motion_drag, 0.0),
     ]);
     let field = cloth.field.as_mut().is_some_and(sanitize_field);
+    let liquid = sanitize_liquid(&mut cloth.liquid);
     let limits = [&mut cloth.yield_strain, &mut cloth.bending.yield_sine].into_iter();
     let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
-    vectors | numbers | yields | field | sanitize_pressure(&mut cloth.pressure)
+    vectors | numbers | yields | field | liquid | sanitize_pressure(&mut cloth.pressure)
+}
+
+/// A liquid without a spacing is none.
+fn sanitize_liquid(liquid: &mut Option<Liquid>) -> bool {
+    let Some(settings) = liquid else { return false };
+    let replaced = sanitize_numbers([
+        (&mut settings.incompressibility, 1.0),
+        (&mut settings.viscosity, 0.0),
+        (&mut settings.surface_tension, 0.0),
+    ]);
+    let is_valid = settings.spacing > 0.0 && settings.spacing <= MAX_COORDINATE;
+    if !is_valid {
+        *liquid = None;
+    }
+    replaced | !is_valid
 }
 
 fn sanitize_pressure(pressure: &mut Pressure) -> bool {

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::Vector3;
 
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
+use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::contact::ClothStep;
@@ -60,6 +61,7 @@ pub fn report<R: Real>(
             .cloth_contacts
             .as_ref()
             .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
+        density_error: solver.liquids.iter().map(LiquidSolver::density_error).fold(0.0, f64::max),
         kinetic_energy,
         finite,
         ..StepReport::default()

@@ -78,6 +78,8 @@ pub enum Pass {
     Constraints(std::ops::Range<usize>),
     /// An effect on a whole cloth, of [`Schedule::wholes`].
     Whole(usize),
+    /// Density, viscosity and surface tension of a liquid, by the index of its cloth.
+    Liquid(usize),
     /// One pass over the contacts of cloth with itself and with other cloth.
     ClothContact,
     /// One pass over the contacts with colliders and the ground plane.
@@ -159,6 +161,9 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps, &mut self.wholes),
         };
         self.push_outwards(frame);
+        let is_liquid = |cloth: &usize| frame.cloths[*cloth].liquid.is_some();
+        let liquids = (0..frame.cloths.len()).filter(is_liquid).map(Pass::Liquid);
+        self.passes.splice(0..0, liquids);
         let self_collides = |cloth: &ClothFrame| cloth.self_collision.on;
         let has_cloth_contact = frame.cloths.len() > 1 || frame.cloths.iter().any(self_collides);
         if !has_cloth_contact {
@@ -428,6 +433,7 @@ mod tests {
                 WholeEffect::Shape(_) => "R",
                 WholeEffect::Attract(_) => "A",
             }),
+            Pass::Liquid(_) => String::from("L"),
             Pass::ClothContact => String::from("M"),
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),

@@ -165,6 +165,7 @@ impl EvaluationInterval<'_> {
             deform_resistance: number(&n_cloth::DEFORM_RESISTANCE) * scales.deform,
             input_attract: self.input_attract(cloth),
             field: self.force_field(node),
+            liquid: None,
         }
     }
 

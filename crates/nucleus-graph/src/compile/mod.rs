@@ -8,6 +8,7 @@
 //! | shape, mass and constraint lists of cloth; colliders | `objects.rs`                       |
 //! | pressure, shape, yielding, the input mesh            | `soft_body.rs`                     |
 //! | particles                                            | `particles.rs`                     |
+//! | particles that fill a box or a mesh                  | `fill.rs`                          |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
@@ -26,6 +27,7 @@ mod animated_mesh;
 mod attachments;
 mod camera;
 mod compiler;
+mod fill;
 mod frame;
 mod geometry;
 mod initial_state;

@@ -145,6 +145,7 @@ pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: b
         pairs_unresolved: a.pairs_unresolved + b.pairs_unresolved,
         depenetrating: if are_consecutive { b.depenetrating } else { a.depenetrating + b.depenetrating },
         intersections: if are_consecutive { b.intersections } else { a.intersections + b.intersections },
+        density_error: if are_consecutive { b.density_error } else { a.density_error.max(b.density_error) },
         kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         finite: a.finite && b.finite,
         sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
