@@ -42,13 +42,13 @@ use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
 /// Rate at which an excess of density from before a time step goes, in 1/s.
-const RECOVERY: f32 = 20.0;
+const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
 const MAX_RECOVERY: f32 = 0.5;
 /// Distance that particles may move in a time step relative to each other, in rest distances.
 const MAX_ADVANCE: f64 = 0.4;
 /// The same by gravity alone from rest.
-const MAX_FALL: f64 = 0.01;
+const MAX_FALL: f64 = 0.004;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 

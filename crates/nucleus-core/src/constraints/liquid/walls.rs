@@ -2,19 +2,24 @@
 //!
 //! Near a wall a particle lacks neighbours. The plane counts as a half-space full of liquid that begins at half a rest
 //! distance. Surfaces of meshes are covered with samples, each of which counts as much as its area (as the boundary
-//! particles of Akinci et al. 2012, "Versatile rigid-fluid coupling"); together they weigh as much as the plane for a
-//! particle that touches the surface. Contact thickness moves both outwards.
+//! particles of Akinci et al. 2012, "Versatile rigid-fluid coupling"). A sample at distance r weighs S(r) / 2 pi r, with the
+//! weight S of a sheet of liquid, so that a flat surface weighs as much as the plane. Contact thickness moves both outwards.
 //!
 //! The samples of cloth move with the corners of their triangle, and take up the pressure on them: momentum is kept.
 
 use std::f32::consts::PI;
 
 use super::grid::CellGrid;
-use super::kernel::{REACH, half_space, slope, weight};
+use super::kernel::{REACH, half_space, weight};
 use super::neighbours::{Neighbours, Pair};
 
+/// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
+/// half-space that begins there.
+const GAP: f32 = 0.03;
 /// Distance of samples in rest distances, at most.
-const SAMPLE_DISTANCE: f32 = 0.8;
+const SAMPLE_DISTANCE: f32 = 0.5;
+/// Distance from a sample below which its weight no longer grows.
+const NEAREST: f32 = 0.2;
 /// Distance of particles from the surface that they rest on.
 const TOUCHING: f32 = 0.5;
 /// Rows of samples along the longest edge of a triangle, at most: beyond, samples weigh more.
@@ -60,7 +65,7 @@ pub struct Corner {
 
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    weight: f32,
+    area: f32,
     offset: f32,
     /// Places in `corners`, and weights; none for colliders.
     corners: Option<[u32; 3]>,
@@ -119,7 +124,7 @@ impl Walls {
         let longest = edge(0, 1).max(edge(1, 2)).max(edge(2, 0));
         let rows = ((longest / SAMPLE_DISTANCE).ceil().min(MAX_ROWS as f32) as u32).max(1);
         let area = length(cross(minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0]))) / 2.0;
-        let each = area / (rows * rows) as f32 * sheet_weight(offset);
+        let each = area / (rows * rows) as f32;
         self.max_offset = self.max_offset.max(offset);
         // The centres of the triangles that the rows cut: upright ones, and turned ones between them.
         for a in 0..rows {
@@ -134,7 +139,7 @@ impl Walls {
                     let place = std::array::from_fn(|k| (0..3).map(|c| triangle[c][k] * shares[c]).sum());
                     if is_near(&place) {
                         self.places.push(place);
-                        self.samples.push(Sample { weight: each, offset, corners, shares });
+                        self.samples.push(Sample { area: each, offset, corners, shares });
                     }
                 }
             }
@@ -155,7 +160,7 @@ impl Walls {
     pub fn near(&self, place: [f32; 3], mut add: impl FnMut(f32, [f32; 3], Option<u32>)) {
         if let Some(Plane { normal, height, offset }) = self.plane {
             let distance =
-                height + normal[0] * place[0] + normal[1] * place[1] + normal[2] * place[2] - offset;
+                height + normal[0] * place[0] + normal[1] * place[1] + normal[2] * place[2] + GAP - offset;
             if distance < REACH {
                 let [density, slope] = half_space(distance.max(0.0));
                 add(density, normal.map(|x| x * slope), None);
@@ -167,11 +172,13 @@ impl Walls {
         for &at in self.grid.runs(place).flat_map(|run| &self.grid.order()[run]) {
             let (from, sample) = (self.places[at as usize], &self.samples[at as usize]);
             let apart = minus(place, from);
-            let distance = length(apart);
-            let q = (distance - sample.offset).max(0.0);
-            if q < REACH && distance > 1e-6 {
-                let slope = slope(q) * sample.weight / distance;
-                add(weight(q) * sample.weight, apart.map(|x| x * slope), sample.corners.map(|_| at));
+            let distance = length(apart).max(NEAREST);
+            let q = (distance + GAP - sample.offset).max(0.0);
+            if q < REACH {
+                let part = sample.area / (2.0 * PI * distance);
+                let sheet = -half_space(q)[1];
+                let slope = -part * (2.0 * PI * q * weight(q) + sheet / distance) / distance;
+                add(part * sheet, apart.map(|x| x * slope), sample.corners.map(|_| at));
             }
         }
     }
@@ -225,17 +232,6 @@ impl Walls {
             *moved = std::array::from_fn(|axis| (0..3).map(|k| corners[k][axis] * sample.shares[k]).sum());
         }
     }
-}
-
-/// Weight per area of a sheet of samples that a particle at its distance feels like a half-space.
-fn sheet_weight(offset: f32) -> f32 {
-    const STEPS: u32 = 64;
-    let width = (REACH - TOUCHING) / STEPS as f32;
-    let ring = |k: u32| {
-        let q = TOUCHING + (k as f32 + 0.5) * width;
-        2.0 * PI * weight(q) * (q + offset) * width
-    };
-    half_space(TOUCHING)[0] / (0..STEPS).map(ring).sum::<f32>()
 }
 
 fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
