@@ -133,7 +133,7 @@ impl<R: Real> Solver<R> {
         span: StepInterval,
         counters: &'a mut ContactCounters,
     ) -> ContactPass<'a, R> {
-        let Self { model, state, contact, pool } = self;
+        let Self { model, state, contact, pool, liquids: _ } = self;
         ContactPass { model, frame, schedule, span, pool, state, contact, counters }
     }
 

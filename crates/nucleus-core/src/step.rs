@@ -190,7 +190,14 @@ fn solve_time_step<R: CompiledReal>(
             Pass::Liquid(cloth) => {
                 observer.enter(Stage::Constraints);
                 let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
-                solver.liquids[*cloth].relax(*cloth, scene, &mut solver.state, schedule.h, span, &solver.pool);
+                solver.liquids[*cloth].relax(
+                    *cloth,
+                    scene,
+                    &mut solver.state,
+                    schedule.h,
+                    span,
+                    &solver.pool,
+                );
             }
             Pass::ClothContact => {
                 let pass = &mut solver.contact_pass(frame, schedule, span, counters);

@@ -190,10 +190,18 @@ const FRONT: [[f64; 2]; 8] = [
     [2.51, 3.00],
     [2.83, 3.44],
 ];
-/// Height over that of the column against t sqrt(g / a) (table 6). Later the computed water lags: at 1.66 it is 13 % higher
-/// than measured, at 2.00 22 % (docs/particles.md).
-const HEIGHT: [[f64; 2]; 6] =
-    [[0.56, 0.94], [0.77, 0.89], [0.93, 0.83], [1.08, 0.78], [1.28, 0.72], [1.46, 0.67]];
+/// Height over that of the column against t sqrt(g / a) (table 6).
+const HEIGHT: [[f64; 2]; 9] = [
+    [0.56, 0.94],
+    [0.77, 0.89],
+    [0.93, 0.83],
+    [1.08, 0.78],
+    [1.28, 0.72],
+    [1.46, 0.67],
+    [1.66, 0.61],
+    [1.84, 0.56],
+    [2.00, 0.50],
+];
 
 #[test]
 fn a_dam_breaks_as_measured() {

@@ -68,7 +68,7 @@ impl Density {
         let (mut momentum, mut largest, mut iterations) = (1.0f32, START_EIGENVALUE, 0);
         loop {
             self.displace(neighbours, loads, pool);
-            walls.displace(neighbours, &self.ahead);
+            walls.displace(neighbours.pushes(&self.ahead));
             let next = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
             let step = Step { length: 1.0 / largest, look: (momentum - 1.0) / next, compliance };
             let sums = self.descend(neighbours, loads, walls, step, pool);
@@ -93,7 +93,7 @@ impl Density {
             if mean <= TOLERANCE || iterations >= MAX_ITERATIONS {
                 self.ahead.copy_from_slice(&self.lambda);
                 self.displace(neighbours, loads, pool);
-                walls.displace(neighbours, &self.ahead);
+                walls.displace(neighbours.pushes(&self.ahead));
                 return (iterations, mean);
             }
         }

@@ -10,6 +10,15 @@ const ENTRIES: usize = 2;
 /// Least number of entries.
 const MIN_ENTRIES: usize = 128;
 
+/// A neighbour of a particle.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair {
+    /// Derivative of the density of either by the position of the first, per rest distance.
+    pub gradient: [f32; 3],
+    /// The neighbour, in the sorted order.
+    pub other: u32,
+}
+
 /// Particles by cell.
 #[derive(Debug, Default)]
 pub struct CellGrid {

@@ -169,13 +169,7 @@ impl LiquidSolver {
     }
 
     /// Takes up the positions of the particles `back` seconds ago.
-    fn gather<R: Real>(
-        &mut self,
-        scene: LiquidScene<'_, R>,
-        state: &State<R>,
-        step: &LiquidStep,
-        back: f64,
-    ) {
+    fn gather<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep, back: f64) {
         let (per_metre, back) = (1.0 / step.settings.spacing, R::from_f64(back));
         self.positions.clear();
         self.positions.extend(scene.model.cloths[step.cloth].points().map(|row| {
@@ -224,8 +218,7 @@ impl LiquidSolver {
                 walls.cover(triangle, None, material, bounds);
             }
         }
-        for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth)
-        {
+        for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth) {
             let factors = [factors[step.cloth], factors[other]];
             let pair = [own, &frame.cloths[other]];
             let Some(material) = ContactMaterial::<R>::for_cloths(pair, factors, frame.layer_range) else {

@@ -5,21 +5,12 @@ use std::ops::Range;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
-use super::grid::CellGrid;
+use super::grid::{CellGrid, Pair};
 use super::kernel::{REACH, slope, weight};
 use super::walls::Walls;
 
 /// Particles of a task.
 pub const CHUNK: u32 = 256;
-
-/// A neighbour of a particle.
-#[derive(Debug, Clone, Copy)]
-pub struct Pair {
-    /// Derivative of the density of either by the position of the first, per rest distance.
-    pub gradient: [f32; 3],
-    /// The neighbour, in the sorted order.
-    pub other: u32,
-}
 
 /// The pairs of some particles that follow each other.
 #[derive(Debug, Default)]
@@ -89,6 +80,12 @@ impl Neighbours {
         let chunk = &self.chunks[chunk];
         let first = if k == 0 { 0 } else { chunk.wall_ends[k - 1] };
         &chunk.wall_pairs[first as usize..chunk.wall_ends[k] as usize]
+    }
+
+    /// A value of each particle, with its pairs with walls that can move.
+    pub fn pushes<'p>(&'p self, values: &'p [f32]) -> impl Iterator<Item = (f32, &'p [Pair])> {
+        let chunk = CHUNK as usize;
+        values.iter().enumerate().map(move |(at, &value)| (value, self.walls_of(at / chunk, at % chunk)))
     }
 
     /// The number of particles.

@@ -9,9 +9,8 @@
 
 use std::f32::consts::PI;
 
-use super::grid::CellGrid;
+use super::grid::{CellGrid, Pair};
 use super::kernel::{REACH, half_space, weight};
-use super::neighbours::{Neighbours, Pair};
 
 /// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
 /// half-space that begins there.
@@ -208,16 +207,14 @@ impl Walls {
         pairs.iter().map(of).sum()
     }
 
-    /// Displacements of cloth by the multipliers of the particles.
-    pub fn displace(&mut self, neighbours: &Neighbours, lambda: &[f32]) {
+    /// Displacements of cloth by the multipliers of particles, each with its pairs.
+    pub fn displace<'p>(&mut self, pushes: impl Iterator<Item = (f32, &'p [Pair])>) {
         if self.corners.is_empty() {
             return;
         }
         self.corners.iter_mut().for_each(|corner| corner.moved = [0.0; 3]);
-        for (at, &lambda) in lambda.iter().enumerate() {
-            for pair in neighbours
-                .walls_of(at / super::neighbours::CHUNK as usize, at % super::neighbours::CHUNK as usize)
-            {
+        for (lambda, pairs) in pushes {
+            for pair in pairs {
                 let sample = self.samples[pair.other as usize];
                 for (corner, share) in sample.corners.into_iter().flatten().zip(sample.shares) {
                     let corner = &mut self.corners[corner as usize];
