@@ -67,10 +67,12 @@ impl Moved for Surface {
 
 fn built(cloths: impl IntoIterator<Item = Cloth>, colliders: Vec<Surface>) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
-    cloths.into_iter().for_each(|cloth| drop(builder.cloth(cloth).expect("good points")));
-    colliders
-        .into_iter()
-        .for_each(|surface| drop(builder.collider(Collider { surface }).expect("a good mesh")));
+    for cloth in cloths {
+        builder.cloth(cloth).expect("good points");
+    }
+    for surface in colliders {
+        builder.collider(Collider { surface }).expect("a good mesh");
+    }
     builder
 }
 
@@ -139,7 +141,9 @@ fn two_blocks_of_water_that_meet_keep_their_momentum() {
         let mut solver = Solver::<f32>::new(built([cloth], Vec::new()), 1);
         let input = FrameInput { gravity: Vec3::zeros(), cloths: vec![settings], ..frame(1, physical(16.0)) };
         let before = momentum(&solver, WATER, &masses);
-        (0..12).for_each(|_| drop(solver.step(&input, &mut ())));
+        for _ in 0..12 {
+            solver.step(&input, &mut ());
+        }
         let scale = 216.0 * masses[0] * 3.0;
         let off = (momentum(&solver, WATER, &masses) - before).norm() / scale;
         assert!(off < 1e-4, "{off:e}");
@@ -282,7 +286,9 @@ fn sliding(viscosity: f64) -> f64 {
     let settings = Liquid { spacing, incompressibility: 1.0, viscosity, surface_tension: 0.0 };
     let cloth = ClothFrame { liquid: Some(settings), ..liquid(spacing) };
     let input = FrameInput { gravity: Vec3::zeros(), cloths: vec![cloth], ..frame(1, physical(8.0)) };
-    (0..3).for_each(|_| drop(solver.step(&input, &mut ())));
+    for _ in 0..3 {
+        solver.step(&input, &mut ());
+    }
     let mut velocities = Vec::new();
     solver.velocities(WATER, 1.0, &mut velocities);
     velocities.iter().flatten().map(|v| f64::from(v * v)).sum::<f64>() / (216.0 * 0.01)
@@ -306,7 +312,9 @@ fn surface_tension_rounds_a_cube_of_water() {
     let corner =
         |solver: &Solver<f32>| places(solver, 216).iter().map(|place| place.norm()).fold(0.0, f64::max);
     let before = corner(&solver);
-    (0..10).for_each(|_| drop(solver.step(&input, &mut ())));
+    for _ in 0..10 {
+        solver.step(&input, &mut ());
+    }
     // A ball of the same volume has 0.716 of the radius of the cube's corner particles, less half a spacing.
     let after = corner(&solver);
     assert!(after < 0.9 * before, "{after} of {before}");
