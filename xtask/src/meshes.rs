@@ -16,6 +16,7 @@ mod extremes;
 mod knot;
 mod mesh;
 mod soft;
+mod vessels;
 
 use mesh::{Mesh, ring};
 
@@ -23,7 +24,7 @@ use mesh::{Mesh, ring};
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 14] = [
+const ALL: [Entry; 16] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -38,6 +39,8 @@ const ALL: [Entry; 14] = [
     ("aeroplane", soft::aeroplane),
     ("bridge", soft::bridge),
     ("disc", soft::disc),
+    ("glass", vessels::glass),
+    ("leaf", vessels::leaf),
 ];
 
 /// Writes all of them.

@@ -45,6 +45,9 @@ pub struct FrameStatistics {
     /// Particles that were not born because there was no room.
     #[serde(default)]
     pub births_refused: u64,
+    /// Mean excess of density of liquids.
+    #[serde(default)]
+    pub density_error: f64,
     /// In joules.
     pub kinetic_energy: f64,
     pub finite: bool,
@@ -79,6 +82,7 @@ impl FrameStatistics {
             max_weld_gap,
             particles,
             births_refused,
+            density_error,
             kinetic_energy,
             finite,
             sanitized,
@@ -102,6 +106,7 @@ impl FrameStatistics {
             max_weld_gap,
             particles,
             births_refused,
+            density_error,
             kinetic_energy,
             finite,
             sanitized: sanitized.count,
@@ -126,6 +131,7 @@ impl FrameStatistics {
             max_weld_gap: self.max_weld_gap,
             particles: self.particles,
             births_refused: self.births_refused,
+            density_error: self.density_error,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
             ..StepReport::default()

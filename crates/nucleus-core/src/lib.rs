@@ -94,8 +94,8 @@ pub use contact::pair_filter::MAX_EXCLUSIONS;
 pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 pub use input::frame::{
     BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
-    FrameInput, GroundPlane, InputAttract, InputMesh, Pin, Pressure, PushOut, ResistanceModel, SelfCollision,
-    Stiffness,
+    FrameInput, GroundPlane, InputAttract, InputMesh, Liquid, Pin, Pressure, PushOut, ResistanceModel,
+    SelfCollision, Stiffness,
 };
 pub use input::links::{
     ConstraintFrame, ExcludedSide, Exclusion, Falloff, Link, LinkForce, LinkMethod, LinkSide,

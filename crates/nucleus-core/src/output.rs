@@ -181,6 +181,9 @@ pub struct StepReport {
     pub deaths: u64,
     /// Particles that were not born because their object was full, or because their position was invalid.
     pub births_refused: u64,
+    /// Mean excess of density of the particles of a liquid over that at rest, at the end of the frame; of several liquids
+    /// the largest.
+    pub density_error: f64,
     /// Kinetic energy at the end of the frame in joules.
     pub kinetic_energy: f64,
     /// Whether every position and velocity is a finite number.
@@ -212,6 +215,7 @@ impl Default for StepReport {
             births: 0,
             deaths: 0,
             births_refused: 0,
+            density_error: 0.0,
             kinetic_energy: 0.0,
             finite: true,
             sanitized: Sanitized::default(),

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::bytes::RestoreError;
 use crate::constraints::link::lists::Links;
 use crate::constraints::link::sizes::ModelSizes;
+use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::whole;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
@@ -34,6 +35,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) contact: ContactSystem<R>,
     /// The links of dynamic constraints.
     pub(crate) links: Links<R>,
+    /// By cloth: what a liquid knows within a frame.
+    pub(crate) liquids: Vec<LiquidSolver>,
     pub(crate) pool: ThreadPool,
 }
 
@@ -131,12 +134,13 @@ impl<R: Real> Solver<R> {
         let colliders: Vec<_> = colliders.map(|(collider, map)| ColliderModel::new(collider, map)).collect();
         let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
         drop(cloths);
+        let liquids = models.iter().map(|_| LiquidSolver::default()).collect();
         for population in &state.populations {
             models[population.cloth()].resize(population.len());
         }
         let model = Model { cloths: models, colliders };
         let links = Links::new(&model.cloths);
-        let mut solver = Self { model, state, contact, links, pool };
+        let mut solver = Self { model, state, contact, links, liquids, pool };
         update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
         solver
     }

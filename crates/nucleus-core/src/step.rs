@@ -19,6 +19,7 @@ use crate::constraints::link::glue::break_links;
 use crate::constraints::link::pass::{begin_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links};
+use crate::constraints::liquid::{LiquidScene, LiquidSolver};
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
@@ -115,6 +116,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     let links_changed = begin_links(links, model, state, &contact.collider_states, frame);
     update_pair_filter(contact, model, links, frame, links_changed);
     contact.ground.begin_frame(frame.plane.as_ref(), &state.anchor, &contact.pair_filter);
+    solver.liquids.iter_mut().for_each(LiquidSolver::begin_frame);
 }
 
 /// All substeps of a frame, unless the observer ends it before.
@@ -137,7 +139,7 @@ fn solve_substeps<R: CompiledReal>(
             f64::from(substep - 1) / f64::from(schedule.substeps),
             frame.duration / f64::from(schedule.substeps),
         );
-        let Solver { model, state, contact, links, pool } = solver;
+        let Solver { model, state, contact, links, pool, .. } = solver;
         let objects =
             Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
         update_local_wind(&objects, state, frame, pool);
@@ -221,10 +223,22 @@ fn solve_time_step<R: CompiledReal>(
             }
             Pass::Links(at) => {
                 observer.enter(Stage::Constraints);
-                let Solver { model, state, contact, links, pool } = solver;
+                let Solver { model, state, contact, links, pool, .. } = solver;
                 let sweep = &schedule.links[*at];
                 let read = (&*model, &contact.collider_states[..], frame);
                 relax_links(links, sweep, read, state, [span.to, schedule.h], pool);
+            }
+            Pass::Liquid(cloth) => {
+                observer.enter(Stage::Constraints);
+                let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
+                solver.liquids[*cloth].relax(
+                    *cloth,
+                    scene,
+                    &mut solver.state,
+                    schedule.h,
+                    span,
+                    &solver.pool,
+                );
             }
             Pass::ClothContact => {
                 let pass = &mut solver.contact_pass(frame, schedule, span, counters);

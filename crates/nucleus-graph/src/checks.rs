@@ -102,7 +102,7 @@ pub const MAX_STRETCH: &str = "maxStretch";
 pub const RENAMED: &[(&str, &str)] =
     &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
-static FORMS: [Form; 17] = [
+static FORMS: [Form; 18] = [
     Form {
         name: "noPenetration",
         doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
@@ -241,6 +241,17 @@ static FORMS: [Form; 17] = [
         bound: Bound::AtMost,
         limit: |arguments| arguments[0],
         figure: |sample, _| Some(sample.report.particles as f64),
+    },
+    Form {
+        name: "volumeError",
+        doc: "From this frame on liquids are denser than at rest by not more than this share, on average over their particles.",
+        parameters: &["frame", "share"],
+        values: Values::Numbers,
+        bound: Bound::AtMost,
+        limit: |arguments| arguments[1],
+        figure: |sample, arguments| {
+            (sample.frame as f64 >= arguments[0]).then_some(sample.report.density_error)
+        },
     },
     Form {
         name: "separatedBy",

@@ -26,6 +26,7 @@
 //! | `rigidity` and `deformResistance` (shape matching: Müller et al. 2005) | shells | [`shape`] |
 //! | attraction to the live input mesh | points | [`attract`] |
 //! | links of dynamic constraints: welds, springs, glue, sliding | links | [`link`] |
+//! | incompressibility, viscosity and surface tension of liquids | particles | [`liquid`] |
 //! | effects that take a cloth as a whole, in one place | all | [`whole`] |
 //! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
 //! | the order of rows in a sweep | all | [`sweep`](mod@sweep) |
@@ -37,6 +38,7 @@ pub mod bend;
 pub mod damp;
 pub mod hinge;
 pub mod link;
+pub mod liquid;
 pub mod parallel;
 pub mod plastic;
 pub mod pressure;

@@ -237,6 +237,21 @@ pub struct ClothFrame {
     pub point_field: Option<PointField>,
     /// Its wind shadow, and the air that it pushes.
     pub wind_field: WindField,
+    /// What makes its points a liquid; `None` where they are balls.
+    pub liquid: Option<Liquid>,
+}
+
+/// A liquid of particles (Maya's Liquid Simulation).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Liquid {
+    /// Distance of particles at rest in metres: each stands for a cube of this edge.
+    pub spacing: f64,
+    /// `incompressibility`: from 1 on the liquid keeps its volume, below it is soft, at 0 nothing resists.
+    pub incompressibility: f64,
+    /// Kinematic viscosity in m²/s.
+    pub viscosity: f64,
+    /// Surface tension over density in m³/s².
+    pub surface_tension: f64,
 }
 
 /// A force field round a surface (`forceField`).
@@ -443,6 +458,7 @@ impl Default for ClothFrame {
             field: None,
             point_field: None,
             wind_field: WindField::OFF,
+            liquid: None,
         }
     }
 }

@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::input::fields::{Field, FieldKind, Noise};
 use crate::input::frame::{
-    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Pin, Pressure, ResistanceModel,
+    ClothFrame, ColliderFrame, ForceField, FrameInput, InputMesh, Liquid, Pin, Pressure, ResistanceModel,
 };
 use crate::input::links::{ConstraintFrame, Falloff, Link};
 use crate::input::object_fields::{PointField, WindField};
@@ -354,7 +354,8 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
     ]);
     let fields = cloth.field.as_mut().is_some_and(sanitize_field)
         | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
-        | sanitize_wind_field(&mut cloth.wind_field);
+        | sanitize_wind_field(&mut cloth.wind_field)
+        | sanitize_liquid(&mut cloth.liquid);
     let bending = &mut cloth.bending;
     let limits =
         [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle].into_iter();
@@ -407,6 +408,21 @@ fn sanitize_constraint(constraint: &mut ConstraintFrame, last: &impl LastPositio
         replaced |= links.len() < before;
     }
     replaced
+}
+
+/// A liquid without a spacing is none.
+fn sanitize_liquid(liquid: &mut Option<Liquid>) -> bool {
+    let Some(settings) = liquid else { return false };
+    let replaced = sanitize_numbers([
+        (&mut settings.incompressibility, 1.0),
+        (&mut settings.viscosity, 0.0),
+        (&mut settings.surface_tension, 0.0),
+    ]);
+    let is_valid = settings.spacing > 0.0 && settings.spacing <= MAX_COORDINATE;
+    if !is_valid {
+        *liquid = None;
+    }
+    replaced | !is_valid
 }
 
 fn sanitize_pressure(pressure: &mut Pressure) -> bool {

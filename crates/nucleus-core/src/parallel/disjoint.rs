@@ -27,12 +27,7 @@ impl<T> Clone for DisjointSlice<'_, T> {
 }
 impl<T> Copy for DisjointSlice<'_, T> {}
 
-impl<'a, T: Copy> DisjointSlice<'a, T> {
-    /// Borrows a column.
-    pub fn new(column: &'a mut [T]) -> Self {
-        Self { first: column.as_mut_ptr(), len: column.len(), column: PhantomData }
-    }
-
+impl<T: Copy> DisjointSlice<'_, T> {
     /// Reads a row.
     ///
     /// # Safety
@@ -51,6 +46,13 @@ impl<'a, T: Copy> DisjointSlice<'a, T> {
     pub unsafe fn set(&self, row: u32, value: T) {
         debug_assert!((row as usize) < self.len);
         unsafe { *self.first.add(row as usize) = value };
+    }
+}
+
+impl<'a, T> DisjointSlice<'a, T> {
+    /// Borrows a column.
+    pub fn new(column: &'a mut [T]) -> Self {
+        Self { first: column.as_mut_ptr(), len: column.len(), column: PhantomData }
     }
 
     /// A run of rows, to be read and written.

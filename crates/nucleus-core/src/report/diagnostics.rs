@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::link::pass::max_weld_gap;
+use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
 use crate::contact::cloth::contact::ClothStep;
@@ -73,6 +74,7 @@ pub fn report<R: Real>(
         births: counters.births,
         deaths: counters.deaths,
         births_refused: counters.births_refused,
+        density_error: solver.liquids.iter().map(LiquidSolver::density_error).fold(0.0, f64::max),
         kinetic_energy,
         finite,
         ..StepReport::default()

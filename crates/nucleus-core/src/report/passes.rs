@@ -33,6 +33,9 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     for name in ["stretch", "compress", "shear", "bend"] {
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
+    let liquid = (0..frame.cloths.len()).filter(|&cloth| frame.cloths[cloth].liquid.is_some());
+    let liquid = liquid.map(|cloth| solver.model.cloths[cloth].points().len()).sum();
+    passes.push(PassCost { name: "liquid", rows: liquid, sweeps: f64::from(steps) });
     passes.extend(whole_passes(solver, frame, &schedule));
     let pass = |sweep: &LinkSweep<R>| {
         let own = |pass: &&Pass| matches!(pass, Pass::Links(at) if schedule.links[*at].constraint == sweep.constraint);

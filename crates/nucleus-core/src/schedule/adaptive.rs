@@ -1,10 +1,12 @@
 //! Adaptive substepping: splits time steps while a moving collider is near a cloth.
 //!
 //! A collider that moves farther in a time step than the cloth's faces are wide would jump over them. A collider
-//! that takes cloth along faster than its links can follow would stretch it without limit.
+//! that takes cloth along faster than its links can follow would stretch it without limit. A liquid whose particles pass
+//! each other in a time step would not see them.
 
 use nalgebra::Vector3;
 
+use crate::constraints::liquid;
 use crate::contact::collider::ColliderState;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::FrameInput;
@@ -53,7 +55,7 @@ pub fn splits<R: Real>(
             }
         }
     }
-    splits.ceil().min(MAX_SPLITS) as u32
+    splits.max(liquid::splits(model, state, frame, schedule.h)).ceil().min(MAX_SPLITS) as u32
 }
 
 /// The largest strain of any link of a cloth.

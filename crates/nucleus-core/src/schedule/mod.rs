@@ -82,6 +82,8 @@ pub enum Pass {
     Whole(usize),
     /// One pass over the links of a constraint, of [`Schedule::links`].
     Links(usize),
+    /// Density, viscosity and surface tension of a liquid, by the index of its cloth.
+    Liquid(usize),
     /// One pass over the contacts of cloth with itself and with other cloth.
     ClothContact,
     /// One pass over the contacts with colliders and the ground plane.
@@ -166,6 +168,9 @@ impl<R: Real> Schedule<R> {
         };
         self.push_outwards(frame);
         self.join(frame);
+        let is_liquid = |cloth: &usize| frame.cloths[*cloth].liquid.is_some();
+        let liquids = (0..frame.cloths.len()).filter(is_liquid).map(Pass::Liquid);
+        self.passes.splice(0..0, liquids);
         let self_collides = |cloth: &ClothFrame| cloth.self_collision.on;
         let has_cloth_contact = frame.cloths.len() > 1 || frame.cloths.iter().any(self_collides);
         if !has_cloth_contact {
@@ -492,6 +497,7 @@ mod tests {
                 WholeEffect::Attract(_) => "A",
             }),
             Pass::Links(_) => String::from("L"),
+            Pass::Liquid(_) => String::from("Q"),
             Pass::ClothContact => String::from("M"),
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),

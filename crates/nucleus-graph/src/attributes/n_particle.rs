@@ -3,7 +3,9 @@
 
 use std::borrow::Cow;
 
-use super::key::{Plugged, choice, color_ramp, float, floats, int, plug, ramp, toggle, vectors};
+use super::key::{
+    Plugged, choice, color_ramp, float, floats, int, plug, ramp, text, toggle, vector, vectors,
+};
 use super::kind::Data;
 use super::n_base::N_BASE;
 use super::node_type::node_table;
@@ -77,6 +79,14 @@ node_table! {
         POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").unit("scene units").solved("nucleus_graph::compile");
         /// Initial velocities in world space.
         VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").unit("scene units/s").solved("nucleus_graph::compile");
+        /// Lower corner of a box that is filled with particles in a grid; the particle tool's Minimum Corner.
+        MINIMUM_CORNER: [f64; 3] = vector("minimumCorner", "minimumCorner", [0.0, 0.0, 0.0], ["minimumCornerX", "minimumCornerY", "minimumCornerZ"]).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
+        /// Upper corner of that box; the particle tool's Maximum Corner.
+        MAXIMUM_CORNER: [f64; 3] = vector("maximumCorner", "maximumCorner", [0.0, 0.0, 0.0], ["maximumCornerX", "maximumCornerY", "maximumCornerZ"]).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
+        /// Name of a closed mesh whose volume is filled with particles in a grid, as Maya's Fill Object does.
+        FILL_MESH: String = text("fillMesh", "fillMesh").solved("nucleus_graph::compile").extension();
+        /// Distance of the particles in a grid; 0 is that of a liquid at rest, or the diameter of a ball.
+        PARTICLE_SPACING: f64 = float("particleSpacing", "particleSpacing", 0.0).min(0.0).max(1e9).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
     }
     "Dynamic Properties" {
         /// Kilograms of every particle, however resistances are read.
@@ -160,29 +170,29 @@ node_table! {
     }
     "Liquid Simulation" {
         /// Makes the particles a liquid; Maya shows it as Enable Liquid Simulation.
-        ENABLE_SPH: bool = toggle("enableSPH", "esph", false);
-        /// How strongly the liquid keeps its volume.
-        INCOMPRESSIBILITY: f64 = float("incompressibility", "incp", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much particles move like their neighbours.
-        VISCOSITY: f64 = float("viscosity", "visc", 0.1).min(0.0).soft(0.0, 1.0);
+        ENABLE_SPH: bool = toggle("enableSPH", "esph", false).solved("nucleus_core::constraints::liquid");
+        /// How strongly the liquid keeps its volume: entirely from 1 on, as a soft body below.
+        INCOMPRESSIBILITY: f64 = float("incompressibility", "incp", 1.0).min(0.0).soft(0.0, 50.0).solved("nucleus_core::constraints::liquid::density");
+        /// How much particles move like their neighbours: 1 is honey (0.01 m²/s), and it grows with the square.
+        VISCOSITY: f64 = float("viscosity", "visc", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::liquid::viscosity");
         /// Factor on viscosity, by particle.
         VISCOSITY_SCALE: Cow<'static, [RampPoint]> = ramp("viscosityScale", "vssc", FULL);
         /// What the viscosity ramp is read by.
         VISCOSITY_SCALE_INPUT: Choice = choice("viscosityScaleInput", "vsli", 0, INPUTS);
         /// The value that stands at the right end of the viscosity ramp.
         VISCOSITY_SCALE_INPUT_MAX: f64 = float("viscosityScaleInputMax", "vsix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How strongly the surface draws together.
-        SURFACE_TENSION: f64 = float("surfaceTension", "suft", 0.0).min(0.0).soft(0.0, 1.0);
+        /// How strongly the surface draws together: at 1 drops of 1 cm hold together, water has 0.073.
+        SURFACE_TENSION: f64 = float("surfaceTension", "suft", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::liquid::surface_tension");
         /// Factor on surface tension, by particle.
         SURFACE_TENSION_SCALE: Cow<'static, [RampPoint]> = ramp("surfaceTensionScale", "stns", FULL);
         /// What the surface tension ramp is read by.
         SURFACE_TENSION_SCALE_INPUT: Choice = choice("surfaceTensionScaleInput", "stli", 0, INPUTS);
         /// The value that stands at the right end of the surface tension ramp.
         SURFACE_TENSION_SCALE_INPUT_MAX: f64 = float("surfaceTensionScaleInputMax", "stix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How many particles overlap at rest.
-        REST_DENSITY: f64 = float("restDensity", "rdns", 2.0).min(1.0).soft(1.0, 2.0);
-        /// Reach of the liquid's forces, as a multiple of the radius.
-        RADIUS_SCALE_SPH: f64 = float("radiusScaleSPH", "rsph", 1.0).min(0.0).soft(0.0, 2.0);
+        /// How many particles overlap a point at rest, as balls of the liquid radius.
+        REST_DENSITY: f64 = float("restDensity", "rdns", 2.0).min(1.0).soft(1.0, 2.0).solved("nucleus_core::constraints::liquid").fixed();
+        /// Radius of the balls that overlap in a liquid, as a multiple of the radius: 0.5 is usual.
+        RADIUS_SCALE_SPH: f64 = float("radiusScaleSPH", "rsph", 1.0).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::liquid").fixed();
     }
     "Shading" {
         /// Density at which the drawn surface stands; it does not act on the motion.

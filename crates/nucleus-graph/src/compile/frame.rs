@@ -188,6 +188,7 @@ impl EvaluationInterval<'_> {
                 self_shadow: to.get(node, &n_cloth::WIND_SELF_SHADOW),
                 ..self.wind_field(node)
             },
+            liquid: None,
         }
     }
 

@@ -105,18 +105,19 @@ impl Compiler<'_> {
                 return None;
             }
         };
-        if vectors.is_empty() && emitter_nodes(&self.scene.graph, node).is_empty() {
+        let filled = self.filled_positions(node, vectors.len())?;
+        if vectors.is_empty() && filled.is_empty() && emitter_nodes(&self.scene.graph, node).is_empty() {
             let message = format!("`{name}` has no particles, and does nothing");
             let warning = self.findings.warning(&self.scene.source.place(name), message);
             warning.help(
-                "say where they are: `position: [(0, 1, 0)]` or `position: file(\"points.obj\")`, or emit some with a \
-                 pointEmitter",
+                "say where they are: `position: [(0, 1, 0)]`, `position: file(\"points.obj\")`, `minimumCorner` and \
+                 `maximumCorner` of a box, or a `fillMesh`; or emit some with a pointEmitter",
             );
             return None;
         }
         let size = Size { points: vectors.len() as u64, corners: 0 };
         self.claim(node, node, size, Cost::CLOTH)?;
-        let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).collect();
+        let positions: Vec<Vector3<f64>> = vectors.into_iter().map(Vector3::from).chain(filled).collect();
         let is_far = |position: &Vector3<f64>| self.program.units.point(*position).amax() > MAX_COORDINATE;
         if let Some(point) = positions.iter().position(is_far) {
             let message =

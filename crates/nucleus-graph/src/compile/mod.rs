@@ -12,6 +12,7 @@
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
 //! | emitters, and the particles born in a frame          | `emission/`                        |
 //! | force fields                                         | `fields.rs`                        |
+//! | particles that fill a box or a mesh                  | `fill.rs`                          |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
@@ -36,6 +37,7 @@ mod constraints;
 mod contradictions;
 mod emission;
 mod fields;
+mod fill;
 mod frame;
 mod geometry;
 mod initial_state;

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Mass, Particles, SelfCollision, Start,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Liquid, Mass, Particles, SelfCollision, Start,
     VertexMaps,
 };
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
-use crate::graph::NodeId;
+use crate::graph::{EvalContext, NodeId};
 use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
@@ -15,6 +15,11 @@ use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
 use super::program::{EvaluationInterval, ObjectKind};
 use super::sources::{ClothSource, Emitter, MapScales};
+
+/// Kinematic viscosity in m²/s at a `viscosity` of 1: about that of honey.
+const HONEY: f64 = 0.01;
+/// Surface tension over density in m³/s² at a `surfaceTension` of 1: its capillary length is 1 cm.
+const CENTIMETRE_DROPS: f64 = 1e-3;
 
 impl Compiler<'_> {
     /// Compiles the particles of a node.
@@ -95,7 +100,32 @@ impl Compiler<'_> {
     }
 }
 
+/// Distance of the particles of a liquid at rest, in units of its radii: `restDensity` balls of the radius times
+/// `radiusScaleSPH` overlap each point.
+pub(super) fn rest_distance(at: &EvalContext<'_>, node: NodeId) -> f64 {
+    let number = |key: &Key<f64>| at.get(node, key);
+    let radius = number(&n_particle::RADIUS) * number(&n_particle::RADIUS_SCALE_SPH);
+    let volume = 4.0 / 3.0 * std::f64::consts::PI / number(&n_particle::REST_DENSITY);
+    // Newton's iteration for the cube root, the same bits on every machine; the volume is at most 4.2.
+    radius * (0..32).fold(1.0, |root: f64, _| root - (root - volume / (root * root)) / 3.0)
+}
+
 impl EvaluationInterval<'_> {
+    /// The liquid of a node in a frame, if it is one.
+    fn liquid(&self, node: NodeId) -> Option<Liquid> {
+        if !self.to.get(node, &n_particle::ENABLE_SPH) {
+            return None;
+        }
+        let number = |key: &Key<f64>| self.to.get(node, key);
+        let viscosity = number(&n_particle::VISCOSITY);
+        Some(Liquid {
+            spacing: self.nucleus.units.length(rest_distance(&self.to, node)),
+            incompressibility: number(&n_particle::INCOMPRESSIBILITY),
+            viscosity: HONEY * viscosity * viscosity,
+            surface_tension: CENTIMETRE_DROPS * number(&n_particle::SURFACE_TENSION),
+        })
+    }
+
     /// The attributes of particles in a frame. Their thickness is the radius.
     pub(super) fn particle_frame(&self, node: NodeId) -> ClothFrame {
         let number = |key: &Key<f64>| self.to.get(node, key);
@@ -129,6 +159,7 @@ impl EvaluationInterval<'_> {
                 edges: false,
             },
             point_field: self.point_field(node, radius),
+            liquid: self.liquid(node),
             ..ClothFrame::default()
         }
     }

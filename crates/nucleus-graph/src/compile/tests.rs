@@ -231,6 +231,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             distance: 39.0,
             falloff: std::array::from_fn(|k| 1.0 - k as f64 / 16.0),
         }),
+        liquid: None,
         wind_field: WindField {
             shadow_distance: 33.0,
             shadow_diffusion: 0.34,

@@ -55,6 +55,63 @@ fn particles_can_be_the_points_of_a_file() {
     }
 }
 
+#[test]
+fn particles_fill_a_box_with_as_many_cubes_as_fit() {
+    let fields = "minimumCorner: (0, 1, 0), maximumCorner: (1, 2, 0.75), particleSpacing: 0.25";
+    let program = program(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
+    let filled = places(&program, 0);
+    assert_eq!((filled.len(), filled[0], filled[47]), (48, [0.125, 1.125, 0.125], [0.875, 1.875, 0.625]));
+}
+
+#[test]
+fn particles_fill_the_volume_of_a_mesh_where_it_stands() {
+    let nodes = r#""n": nucleus(), "c": polyCube(width: 2, height: 1, depth: 1, translate: (10, 0, 0)),
+        "q": nParticle(fillMesh: "c", radius: 0.125)"#;
+    let filled = places(&program(&of_nodes(nodes, "")), 0);
+    assert_eq!(
+        (filled.len(), filled[0], filled[127]),
+        (128, [9.125, -0.375, -0.375], [10.875, 0.375, 0.375])
+    );
+}
+
+// EVIDENCE: N1.2-11  the node of a liquid becomes one for the solver
+#[test]
+fn a_liquid_at_rest_overlaps_as_often_as_its_rest_density_says() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(enableSPH: true, radius: 2, radiusScaleSPH: 0.5,
+        restDensity: 1.5, viscosity: 0.5, surfaceTension: 0.1, maximumCorner: (4, 4, 4))"#;
+    let program = program(&of_nodes(nodes, ""));
+    let liquid = program.first_input().cloths[0].liquid.expect("a liquid");
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.01f64.powi(3);
+    assert!((ball / liquid.spacing.powi(3) - 1.5).abs() < 1e-9, "{liquid:?}");
+    assert!((liquid.viscosity - 0.0025).abs() < 1e-12 && (liquid.surface_tension - 1e-4).abs() < 1e-12);
+    // Its grid has the distance at rest: 4 cm hold two cubes of 1.41 cm.
+    assert_eq!(places(&program, 0).len(), 8);
+    let dry = of_nodes(r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)])"#, "");
+    assert_eq!(self::program(&dry).first_input().cloths[0].liquid, None);
+}
+
+#[test]
+fn a_volume_that_cannot_be_filled_is_an_error_that_names_the_fix() {
+    let errors = |fields: &str| {
+        let nodes = format!(
+            r#""n": nucleus(), "ball": polySphere(), "sheet": polyPlane(), "q": nParticle({fields})"#
+        );
+        let (scene, _) =
+            read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
+        let found = compile(&scene).expect_err("it is refused");
+        found.into_iter().map(|found| found.message).collect::<Vec<_>>()
+    };
+    assert_eq!(errors(r#"fillMesh: "bal""#), ["there is no mesh `bal` to fill"]);
+    assert_eq!(errors(r#"fillMesh: "sheet", radius: 0.1"#), ["no particle of `q` fits into `sheet`"]);
+    assert_eq!(
+        errors(r#"maximumCorner: (1, 1, 1), radius: 0"#),
+        ["particles of `q` without radius cannot fill a volume"]
+    );
+    assert_eq!(errors("maximumCorner: (1, 0, 1)"), ["the box of `q` has no extent along y"]);
+    let too_many = errors("maximumCorner: (1, 1, 1), particleSpacing: 1e-6");
+    assert!(too_many[0].starts_with("`q`, of about 1000000000000000000 particles, takes"), "{too_many:?}");
+}
+
 // EVIDENCE: N2.3-2  a particle is as thick as its radius says
 #[test]
 fn a_particle_is_as_thick_as_its_radius_and_its_scales_say() {
@@ -84,7 +141,7 @@ fn settings_without_effect_on_particles_give_a_warning() {
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
     for name in
-        ["damp: 1", "enableSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickinessRandomize: 1"]
+        ["damp: 1", "parallelSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickinessRandomize: 1"]
     {
         let messages = of(&format!("position: [(0, 0, 0)], {name}"));
         assert!(messages.len() == 1 && messages[0].ends_with("has no effect yet"), "{name}: {messages:?}");

@@ -1,0 +1,249 @@
+//! Incompressibility: no particle is denser than at rest (position-based fluids: Macklin & Müller 2013, §3).
+//!
+//! The density of a particle is the kernel's sum over its neighbours and walls, and C is its excess over 1. Like a contact,
+//! the constraint only pushes: 0 ≤ λ. Displacements are Δx = -w Jᵀ λ with the gradients J of the predicted positions, and
+//! λ solves the linear complementarity problem
+//!
+//! ```text
+//! 0 ≤ λ   perpendicular to   C + J Δx - α λ ≤ 0
+//! ```
+//!
+//! by accelerated projected gradient descent (Mazhar et al. 2015), preconditioned by the diagonal and restarted where it
+//! would climb. It starts from the pressure of the time step before and ends when the mean excess is small, so the volume
+//! depends neither on substeps nor on a number of iterations. Gradients are symmetric, so momentum is kept to rounding.
+
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+use super::neighbours::{CHUNK, Neighbours, chunk_range};
+use super::walls::Walls;
+
+/// Most iterations in a time step.
+const MAX_ITERATIONS: u32 = 100;
+/// Mean excess of density at which the solution is accepted.
+pub const TOLERANCE: f32 = 2e-4;
+/// Largest eigenvalue of the preconditioned system that is taken for granted. It grows where a step shows a larger one.
+const START_EIGENVALUE: f32 = 2.5;
+
+/// The pressure solver of one liquid; lengths in rest distances.
+#[derive(Debug, Default)]
+pub struct Density {
+    /// Multiplier of each particle, in the sorted order.
+    pub lambda: Vec<f32>,
+    /// Displacement of each particle.
+    pub moved: Vec<[f32; 4]>,
+    ahead: Vec<f32>,
+    next: Vec<f32>,
+    diagonal: Vec<f32>,
+    /// Where the last gradient was taken, and the gradient.
+    last: Vec<[f32; 2]>,
+    sums: Vec<Sums>,
+}
+
+/// What the solver is given of one particle.
+#[derive(Debug, Clone, Copy)]
+pub struct Load {
+    /// Excess of density that must go.
+    pub excess: f32,
+    /// Inverse mass in inverse masses of a free particle: 0 or 1.
+    pub inverse_mass: f32,
+    /// Displacement by viscosity and surface tension.
+    pub moved: [f32; 3],
+}
+
+impl Density {
+    /// Solves for the displacements. `compliance` is α in units of the diagonal of a particle at rest. Returns the number
+    /// of iterations and the mean excess that is left.
+    pub fn solve(
+        &mut self,
+        neighbours: &Neighbours,
+        loads: &[Load],
+        walls: &mut Walls,
+        compliance: f32,
+        pool: &ThreadPool,
+    ) -> (u32, f32) {
+        self.resize(loads.len(), loads.len().div_ceil(CHUNK as usize));
+        self.find_diagonal(neighbours, loads, walls, compliance, pool);
+        self.ahead.copy_from_slice(&self.lambda);
+        let (mut momentum, mut largest, mut iterations) = (1.0f32, START_EIGENVALUE, 0);
+        loop {
+            self.displace(neighbours, loads, pool);
+            walls.displace(neighbours.pushes(&self.ahead));
+            let next = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
+            let step = Step { length: 1.0 / largest, look: (momentum - 1.0) / next, compliance };
+            let sums = self.descend(neighbours, loads, walls, step, pool);
+            let mean = sums.excess / loads.len().max(1) as f32;
+            iterations += 1;
+            let eigenvalue = if iterations > 1 { sums.curvature / sums.travel.max(1e-30) } else { 0.0 };
+            if eigenvalue > largest {
+                // The last step was too long: it is taken back.
+                largest = 1.1 * eigenvalue;
+                self.ahead.copy_from_slice(&self.lambda);
+                momentum = 1.0;
+            } else {
+                std::mem::swap(&mut self.lambda, &mut self.next);
+                if sums.climb > 0.0 {
+                    // From here on it goes downhill again.
+                    self.ahead.copy_from_slice(&self.lambda);
+                    momentum = 1.0;
+                } else {
+                    momentum = next;
+                }
+            }
+            if mean <= TOLERANCE || iterations >= MAX_ITERATIONS {
+                self.ahead.copy_from_slice(&self.lambda);
+                self.displace(neighbours, loads, pool);
+                walls.displace(neighbours.pushes(&self.ahead));
+                return (iterations, mean);
+            }
+        }
+    }
+
+    /// Excess of a particle at the end, in the sorted order, as far as it was to go.
+    pub fn left(&self, at: usize) -> f32 {
+        self.last[at][1]
+    }
+
+    fn resize(&mut self, count: usize, chunks: usize) {
+        for column in [&mut self.ahead, &mut self.next, &mut self.diagonal] {
+            column.clear();
+            column.resize(count, 0.0);
+        }
+        self.last.clear();
+        self.last.resize(count, [0.0; 2]);
+        self.moved.clear();
+        self.moved.resize(count, [0.0; 4]);
+        self.sums.clear();
+        self.sums.resize(chunks, Sums::default());
+    }
+
+    /// The diagonal of J w Jᵀ + α.
+    fn find_diagonal(
+        &mut self,
+        neighbours: &Neighbours,
+        loads: &[Load],
+        walls: &Walls,
+        compliance: f32,
+        pool: &ThreadPool,
+    ) {
+        let diagonal = DisjointSlice::new(&mut self.diagonal);
+        pool.parallel_for(loads.len().div_ceil(CHUNK as usize), |chunk| {
+            let range = chunk_range(chunk, loads.len());
+            // SAFETY: chunks do not overlap.
+            #[allow(unsafe_code)]
+            let out = unsafe { diagonal.run(range.clone()) };
+            for (k, out) in out.iter_mut().enumerate() {
+                let at = range.start as usize + k;
+                let own = neighbours.sum(at);
+                let mut sum = loads[at].inverse_mass * (own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+                for pair in neighbours.of(chunk, k) {
+                    let [x, y, z] = pair.gradient;
+                    sum += loads[pair.other as usize].inverse_mass * (x * x + y * y + z * z);
+                }
+                *out = sum + walls.mobility(neighbours.walls_of(chunk, k)) + compliance;
+            }
+        });
+    }
+
+    /// Displacements by the multipliers that are looked ahead to.
+    fn displace(&mut self, neighbours: &Neighbours, loads: &[Load], pool: &ThreadPool) {
+        let (moved, ahead) = (DisjointSlice::new(&mut self.moved), &self.ahead);
+        pool.parallel_for(loads.len().div_ceil(CHUNK as usize), |chunk| {
+            let range = chunk_range(chunk, loads.len());
+            // SAFETY: chunks do not overlap.
+            #[allow(unsafe_code)]
+            let out = unsafe { moved.run(range.clone()) };
+            for (k, out) in out.iter_mut().enumerate() {
+                let at = range.start as usize + k;
+                let (own, sum) = (ahead[at], neighbours.sum(at));
+                let mut push = [own * sum[0], own * sum[1], own * sum[2]];
+                for pair in neighbours.of(chunk, k) {
+                    let other = ahead[pair.other as usize];
+                    (0..3).for_each(|axis| push[axis] += other * pair.gradient[axis]);
+                }
+                let weight = -loads[at].inverse_mass;
+                let [x, y, z] = loads[at].moved;
+                *out = [x + push[0] * weight, y + push[1] * weight, z + push[2] * weight, 0.0];
+            }
+        });
+    }
+
+    /// One step of the descent.
+    fn descend(
+        &mut self,
+        neighbours: &Neighbours,
+        loads: &[Load],
+        walls: &Walls,
+        step: Step,
+        pool: &ThreadPool,
+    ) -> Sums {
+        let Self { lambda, moved, ahead, next, diagonal, sums, last } = self;
+        let [next, ahead] = [next, ahead].map(|column| DisjointSlice::new(column));
+        let (last, sums_of) = (DisjointSlice::new(last), DisjointSlice::new(sums));
+        pool.parallel_for(loads.len().div_ceil(CHUNK as usize), |chunk| {
+            let range = chunk_range(chunk, loads.len());
+            // SAFETY: chunks do not overlap.
+            #[allow(unsafe_code)]
+            let (next, ahead, last, total) = unsafe {
+                let total = sums_of.run(chunk as u32..chunk as u32 + 1);
+                (next.run(range.clone()), ahead.run(range.clone()), last.run(range.clone()), total)
+            };
+            let mut sums = Sums::default();
+            for k in 0..next.len() {
+                let at = range.start as usize + k;
+                let (own, sum) = (moved[at], neighbours.sum(at));
+                let mut change = own[0] * sum[0] + own[1] * sum[1] + own[2] * sum[2];
+                for pair in neighbours.of(chunk, k) {
+                    let ([x, y, z, _], [a, b, c]) = (moved[pair.other as usize], pair.gradient);
+                    change -= x * a + y * b + z * c;
+                }
+                change -= walls.change(neighbours.walls_of(chunk, k));
+                let excess = loads[at].excess + change - step.compliance * ahead[k];
+                let weight = diagonal[at].max(1e-12);
+                let stepped = (ahead[k] + step.length * excess / weight).max(0.0);
+                let travel = ahead[k] - last[k][0];
+                sums.excess += excess.max(0.0);
+                sums.climb -= excess * (stepped - lambda[at]);
+                sums.curvature += travel * (last[k][1] - excess);
+                sums.travel += travel * travel * weight;
+                last[k] = [ahead[k], excess];
+                next[k] = stepped;
+                ahead[k] = stepped + step.look * (stepped - lambda[at]);
+            }
+            total[0] = sums;
+        });
+        self.sums.iter().fold(Sums::default(), Sums::plus)
+    }
+}
+
+/// A step of the descent.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    length: f32,
+    /// Share of the step that the next one looks ahead.
+    look: f32,
+    compliance: f32,
+}
+
+/// Sums over all particles.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Excess of density.
+    excess: f32,
+    /// How far the step climbs.
+    climb: f32,
+    /// Change of the gradient along the last step, and the length of that step in the metric of the diagonal.
+    curvature: f32,
+    travel: f32,
+}
+
+impl Sums {
+    fn plus(self, other: &Self) -> Self {
+        Self {
+            excess: self.excess + other.excess,
+            climb: self.climb + other.climb,
+            curvature: self.curvature + other.curvature,
+            travel: self.travel + other.travel,
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Neighbour search: particles sorted into the cells of a uniform grid by a counting sort.
+//!
+//! A cell is as wide as the reach of a query, so the neighbours of a particle are in 27 cells. Cells that follow each other
+//! along x follow each other in the table, so that these are nine runs. The number of a cell is `x + A y + B z`, modulo the
+//! length of the table. While the liquid is compact, A and B are the sizes of its bounding box, and no two cells share an
+//! entry; a spray that is scattered widely shares entries, and the distance test leaves foreign particles out.
+
+/// Entries of the table per particle, at least.
+const ENTRIES: usize = 2;
+/// Least number of entries.
+const MIN_ENTRIES: usize = 128;
+
+/// A neighbour of a particle.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair {
+    /// Derivative of the density of either by the position of the first, per rest distance.
+    pub gradient: [f32; 3],
+    /// The neighbour, in the sorted order.
+    pub other: u32,
+}
+
+/// Particles by cell.
+#[derive(Debug, Default)]
+pub struct CellGrid {
+    /// First particle of each entry in the sorted order, and the end of the last.
+    starts: Vec<u32>,
+    /// The particles in the order of cells.
+    order: Vec<u32>,
+    cells: Vec<u32>,
+    low: [f32; 3],
+    per_cell: f32,
+    factors: [u32; 2],
+    mask: u32,
+}
+
+impl CellGrid {
+    /// Sorts particles into cells of this width.
+    pub fn sort(&mut self, positions: &[[f32; 3]], width: f32) {
+        let [low, high] = bounds(positions);
+        self.low = low;
+        self.per_cell = 1.0 / width;
+        let entries = (ENTRIES * positions.len()).max(MIN_ENTRIES).next_power_of_two();
+        self.mask = entries as u32 - 1;
+        self.factors = factors(std::array::from_fn(|axis| (high[axis] - low[axis]) / width), self.mask);
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.clear();
+        cells.extend(positions.iter().map(|&place| {
+            let [x, y, z] = self.cell(place);
+            self.entry(x, y, z)
+        }));
+        self.cells = cells;
+        self.starts.clear();
+        self.starts.resize(entries + 1, 0);
+        self.cells.iter().for_each(|&cell| self.starts[cell as usize + 1] += 1);
+        for entry in 1..=entries {
+            self.starts[entry] += self.starts[entry - 1];
+        }
+        self.order.clear();
+        self.order.resize(positions.len(), 0);
+        for (particle, &cell) in self.cells.iter().enumerate() {
+            let next = &mut self.starts[cell as usize];
+            self.order[*next as usize] = particle as u32;
+            *next += 1;
+        }
+        // Each start has moved to the start of the next entry.
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
+    }
+
+    /// The particles in the order of cells.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The runs of the sorted order that hold the neighbours of a place.
+    #[inline]
+    pub fn runs(&self, place: [f32; 3]) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let [x, y, z] = self.cell(place);
+        (0..9u32).flat_map(move |k| {
+            let row = self.entry(
+                x.wrapping_sub(1),
+                y.wrapping_add(k % 3).wrapping_sub(1),
+                z.wrapping_add(k / 3).wrapping_sub(1),
+            );
+            let last = row + 2;
+            // A row of three cells may pass the end of the table.
+            let wraps = last > self.mask;
+            let first = self.run(row, last.min(self.mask));
+            let rest = if wraps { self.run(0, last - self.mask - 1) } else { 0..0 };
+            [first, rest]
+        })
+    }
+
+    fn run(&self, first: u32, last: u32) -> std::ops::Range<usize> {
+        self.starts[first as usize] as usize..self.starts[last as usize + 1] as usize
+    }
+
+    #[inline]
+    fn cell(&self, place: [f32; 3]) -> [u32; 3] {
+        std::array::from_fn(|axis| {
+            let cell = ((place[axis] - self.low[axis]) * self.per_cell).floor();
+            // Beyond 2³¹ cells a spray shares them.
+            (cell as i32) as u32
+        })
+    }
+
+    #[inline]
+    fn entry(&self, x: u32, y: u32, z: u32) -> u32 {
+        let [a, b] = self.factors;
+        x.wrapping_add(a.wrapping_mul(y)).wrapping_add(b.wrapping_mul(z)) & self.mask
+    }
+}
+
+/// The low and the high corner of the bounding box of some places.
+pub fn bounds(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
+    let first = positions.first().copied().unwrap_or_default();
+    positions.iter().fold([first, first], |[low, high], place| {
+        [
+            std::array::from_fn(|axis| low[axis].min(place[axis])),
+            std::array::from_fn(|axis| high[axis].max(place[axis])),
+        ]
+    })
+}
+
+/// Factors such that the nine rows about a cell have no entry in common.
+fn factors(cells: [f32; 3], mask: u32) -> [u32; 2] {
+    let width = |cells: f32| (cells.clamp(0.0, 1e6) as u32).saturating_add(4);
+    let mut a = width(cells[0]) & mask;
+    let mut b = a.wrapping_mul(width(cells[1])) & mask;
+    let apart = |a: u32, b: u32| {
+        let row = |k: u32| a.wrapping_mul(k % 3).wrapping_add(b.wrapping_mul(k / 3)) & mask;
+        (0..9).all(|k| {
+            (0..k).all(|other| {
+                let gap = row(k).wrapping_sub(row(other)) & mask;
+                gap.min((mask + 1) - gap) >= 3
+            })
+        })
+    };
+    while !apart(a, b) {
+        b = b.wrapping_add(3) & mask;
+        if b < 3 {
+            a = a.wrapping_add(1) & mask;
+        }
+    }
+    [a, b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A spread of places without a pattern.
+    fn spread(count: usize, size: f32) -> Vec<[f32; 3]> {
+        let mut seed = 1u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32 * size
+        };
+        (0..count).map(|_| [next(), next(), next()]).collect()
+    }
+
+    #[test]
+    fn every_neighbour_is_found_once_however_far_particles_are_scattered() {
+        for (count, size) in [(1, 0.1), (500, 3.0), (500, 40.0), (300, 1e5)] {
+            let positions = spread(count, size);
+            let mut grid = CellGrid::default();
+            grid.sort(&positions, 1.0);
+            for (at, place) in positions.iter().enumerate() {
+                let near =
+                    |other: &[f32; 3]| (0..3).map(|k| (place[k] - other[k]).powi(2)).sum::<f32>() < 1.0;
+                let mut found: Vec<u32> = grid
+                    .runs(*place)
+                    .flatten()
+                    .map(|k| grid.order()[k])
+                    .filter(|&k| near(&positions[k as usize]))
+                    .collect();
+                found.sort_unstable();
+                let expected: Vec<u32> =
+                    (0..count as u32).filter(|&k| near(&positions[k as usize])).collect();
+                assert_eq!(found, expected, "particle {at} of {count} in {size}");
+            }
+        }
+    }
+}

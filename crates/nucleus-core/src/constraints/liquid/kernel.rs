@@ -1,0 +1,78 @@
+//! The smoothing kernel: a cubic spline over two rest distances (Monaghan 1992, §2), times the volume of a particle.
+//!
+//! Lengths are in rest distances, so all values are plain numbers.
+
+/// The integral of the spline over space. It is above pi: the kernel's sum over particles in disorder, as they come to
+/// rest, exceeds the sum over a grid of as many by 1.2 % (measured in a column of 20 layers), and a liquid at rest has the
+/// volume of its particles.
+const NORM: f32 = 1.012 * std::f32::consts::PI;
+
+/// Reach of the kernel in rest distances.
+pub const REACH: f32 = 2.0;
+
+/// The kernel at a distance.
+#[inline(always)]
+pub fn weight(q: f32) -> f32 {
+    let outer = (2.0 - q).max(0.0);
+    let inner = (1.0 - q).max(0.0);
+    (0.25 * outer * outer * outer - inner * inner * inner) / NORM
+}
+
+/// The derivative of the kernel at a distance, per rest distance; it is not positive.
+#[inline(always)]
+pub fn slope(q: f32) -> f32 {
+    let outer = (2.0 - q).max(0.0);
+    let inner = (1.0 - q).max(0.0);
+    (3.0 * inner * inner - 0.75 * outer * outer) / NORM
+}
+
+/// What a half-space full of liquid adds to the sum of a particle whose distance from it is `q`, and the derivative.
+///
+/// A sheet at distance t, spread evenly, weighs S(t) = 2 pi times the integral of r W(r) from t on; the half-space is the
+/// integral of S from q on.
+#[inline]
+pub fn half_space(q: f32) -> [f32; 2] {
+    let powers = |x: f32| {
+        let square = x * x;
+        [square * square, square * square * x, square * square * square]
+    };
+    let q = q.abs().min(REACH);
+    let [outer, inner] = [(2.0 - q).max(0.0), (1.0 - q).max(0.0)].map(powers);
+    // The integrals of r (a - r)³ from t on are a (a - t)⁴ / 4 - (a - t)⁵ / 5, and so on once more.
+    let sheet = 2.0 * (0.25 * (outer[0] / 2.0 - outer[1] / 5.0) - (inner[0] / 4.0 - inner[1] / 5.0));
+    let all = 2.0 * (0.25 * (outer[1] / 10.0 - outer[2] / 30.0) - (inner[1] / 20.0 - inner[2] / 30.0));
+    [all, -sheet]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sum_over_a_cubic_grid_is_one_but_for_the_disorder_at_rest() {
+        let near = || (-2..=2).map(|k| k as f32);
+        let places = near()
+            .flat_map(|x| near().flat_map(move |y| near().map(move |z| (x * x + y * y + z * z).sqrt())));
+        let sum: f32 = places.map(weight).sum();
+        assert!((sum * 1.012 - 1.0).abs() < 2e-3, "{sum}");
+    }
+
+    #[test]
+    fn a_half_space_at_no_distance_is_half_of_all() {
+        assert!((half_space(0.0)[0] - 0.5).abs() < 1e-6);
+        for q in [0.0f32, 0.3, 0.9, 1.0, 1.5, 2.0] {
+            let [below, above] = [half_space((q - 1e-2).max(0.0))[0], half_space(q + 1e-2)[0]];
+            let width = q + 1e-2 - (q - 1e-2).max(0.0);
+            assert!(((above - below) / width - half_space(q)[1]).abs() < 2e-2, "{q}");
+        }
+    }
+
+    #[test]
+    fn the_slope_is_the_derivative_of_the_weight() {
+        for k in 1..200 {
+            let q = k as f32 * 0.0101;
+            let slope_of = (weight(q + 1e-3) - weight(q - 1e-3)) / 2e-3;
+            assert!((slope_of - slope(q)).abs() < 1e-3, "{q}");
+        }
+    }
+}

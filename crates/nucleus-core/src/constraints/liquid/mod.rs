@@ -1,0 +1,317 @@
+//! Liquids: particles that keep their volume, slow each other down and hold together (position-based fluids: Macklin &
+//! Müller 2013).
+//!
+//! A pass comes first in each time step, on the predicted positions: neighbours, then viscosity and surface tension, then
+//! density as a constraint. Contact follows, and corrections become velocities as those of all constraints do. Inside,
+//! lengths are in rest distances, from the liquid's first particle.
+//!
+//! A liquid begins every frame anew, so that a checkpoint holds nothing of it, and again when particles come or go. Within
+//! a frame it keeps the pressure, and how much each particle was too dense: an excess from before a time step, as between
+//! particles that were born too near, goes at a limited rate, since its correction becomes velocity.
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | the kernel, and that of a half-space | [`kernel`] |
+//! | neighbour search | [`grid`], [`neighbours`] |
+//! | density, and the solver of pressure | [`density`] |
+//! | ground plane, colliders and cloth beside a liquid | [`walls`] |
+//! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
+
+pub mod density;
+pub mod grid;
+pub mod kernel;
+pub mod neighbours;
+pub mod surface_tension;
+pub mod viscosity;
+pub mod walls;
+
+use nalgebra::Vector3;
+
+use crate::contact::material::ContactMaterial;
+use crate::contact::system::ContactSystem;
+use crate::input::frame::{FrameInput, Liquid};
+use crate::math::Real;
+use crate::model::Model;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::StepInterval;
+use crate::state::State;
+
+use density::{Density, Load};
+use neighbours::{CHUNK, Neighbours};
+use viscosity::Viscosity;
+use walls::{Corner, Material, Plane, Walls};
+
+/// Rate at which an excess of density from before a time step goes, in 1/s.
+const RECOVERY: f32 = 10.0;
+/// Largest share of it that goes in a time step.
+const MAX_RECOVERY: f32 = 0.5;
+/// Distance that particles may move in a time step relative to each other, in rest distances.
+const MAX_ADVANCE: f64 = 0.4;
+/// The same by gravity alone from rest.
+const MAX_FALL: f64 = 0.004;
+/// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
+const SOFT_SOUND: f64 = 10.0;
+
+/// What a liquid knows within a frame.
+#[derive(Debug, Default)]
+pub struct LiquidSolver {
+    neighbours: Neighbours,
+    walls: Walls,
+    density: Density,
+    viscosity: Viscosity,
+    /// By particle: the multiplier over the squared time step, and the excess of density.
+    pressure: Vec<f32>,
+    excess: Vec<f32>,
+    positions: Vec<[f32; 3]>,
+    velocities: Vec<[f32; 3]>,
+    loads: Vec<Load>,
+    density_error: f64,
+}
+
+/// One time step of one liquid.
+#[derive(Debug, Clone, Copy)]
+struct LiquidStep {
+    cloth: usize,
+    settings: Liquid,
+    origin: Vector3<f64>,
+    /// Inverse mass of its first particle in 1/kg.
+    inverse_mass: f64,
+    h: f64,
+    span: StepInterval,
+}
+
+impl LiquidSolver {
+    /// Begins a frame.
+    pub fn begin_frame(&mut self) {
+        self.pressure.clear();
+        self.density_error = 0.0;
+    }
+
+    /// Mean excess of density of its particles; 0 where there is no liquid.
+    pub fn density_error(&self) -> f64 {
+        self.density_error
+    }
+}
+
+/// What a liquid sees of the scene.
+#[derive(Clone, Copy)]
+pub struct LiquidScene<'a, R: Real> {
+    /// The objects.
+    pub model: &'a Model<R>,
+    /// Colliders and the ground plane in motion.
+    pub contact: &'a ContactSystem<R>,
+    /// The attributes.
+    pub frame: &'a FrameInput,
+}
+
+/// The number of parts that a time step of `h` seconds is split into, so that no particle passes another unseen.
+pub fn splits<R: Real>(model: &Model<R>, state: &State<R>, frame: &FrameInput, h: f64) -> f64 {
+    let of = |(cloth, settings): (usize, Liquid)| {
+        let rows = model.cloths[cloth].points();
+        let velocities = &state.velocity[rows.start as usize..rows.end as usize];
+        let velocity = |at: usize| Vector3::from(velocities[at].xyz().map(R::to_f64));
+        let mean = (0..velocities.len()).map(velocity).sum::<Vector3<f64>>() / velocities.len().max(1) as f64;
+        let squares = (0..velocities.len()).map(|at| (velocity(at) - mean).norm_squared());
+        let fastest = squares.fold(0.0, f64::max).sqrt();
+        let fall = (frame.gravity.norm() / (MAX_FALL * settings.spacing)).sqrt();
+        (fastest / (MAX_ADVANCE * settings.spacing)).max(fall) * h
+    };
+    let liquids = frame.cloths.iter().enumerate();
+    liquids.filter_map(|(cloth, settings)| Some((cloth, settings.liquid?))).map(of).fold(1.0, f64::max)
+}
+
+impl LiquidSolver {
+    /// One pass over a liquid, which is a cloth by its index, in a time step of `h` seconds.
+    pub fn relax<R: Real>(
+        &mut self,
+        cloth: usize,
+        scene: LiquidScene<'_, R>,
+        state: &mut State<R>,
+        h: f64,
+        span: StepInterval,
+        pool: &ThreadPool,
+    ) {
+        let rows = scene.model.cloths[cloth].points();
+        let Some(settings) = scene.frame.cloths[cloth].liquid.filter(|_| !rows.is_empty()) else { return };
+        let origin = Vector3::from(state.position(rows.start));
+        let inverse_mass = state.inverse_mass[rows.start as usize].to_f64();
+        let step = LiquidStep { cloth, settings, origin, inverse_mass, h, span };
+        if self.pressure.len() != rows.len() {
+            self.begin(scene, state, &step, pool);
+        }
+        self.gather(scene, state, &step, 0.0);
+        self.find_walls(scene, state, &step);
+        self.neighbours.find(&self.positions, &self.walls, pool);
+        self.load(rows.start, state, &step, pool);
+        self.solve(rows.start, state, &step, pool);
+    }
+}
+
+impl LiquidSolver {
+    /// Begins a frame: no pressure, and the excess of density before the time step.
+    fn begin<R: Real>(
+        &mut self,
+        scene: LiquidScene<'_, R>,
+        state: &State<R>,
+        step: &LiquidStep,
+        pool: &ThreadPool,
+    ) {
+        self.gather(scene, state, step, step.h);
+        self.find_walls(scene, state, step);
+        self.neighbours.find(&self.positions, &self.walls, pool);
+        self.pressure.clear();
+        self.pressure.resize(self.positions.len(), 0.0);
+        self.excess.clear();
+        self.excess.resize(self.positions.len(), 0.0);
+        for (&particle, sums) in self.neighbours.grid.order().iter().zip(&self.neighbours.sums) {
+            self.excess[particle as usize] = (sums[0] - 1.0).max(0.0);
+        }
+    }
+
+    /// Takes up the positions of the particles `back` seconds ago.
+    fn gather<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep, back: f64) {
+        let (per_metre, back) = (1.0 / step.settings.spacing, R::from_f64(back));
+        self.positions.clear();
+        self.positions.extend(scene.model.cloths[step.cloth].points().map(|row| {
+            let row = row as usize;
+            let (moved, velocity) = (state.displacement[row].xyz(), state.velocity[row].xyz());
+            std::array::from_fn(|axis| {
+                let at = state.anchor[row][axis] - step.origin[axis];
+                ((at + (moved[axis] - velocity[axis] * back).to_f64()) * per_metre) as f32
+            })
+        }));
+    }
+
+    /// Finds the walls near the liquid, at the end of the time step.
+    fn find_walls<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep) {
+        let LiquidScene { model: Model { cloths, colliders }, contact, frame } = scene;
+        let Self { walls, positions, .. } = self;
+        walls.clear();
+        let own = &frame.cloths[step.cloth];
+        let per_metre = 1.0 / step.settings.spacing;
+        let place = |place: Vector3<f64>| -> [f32; 3] {
+            let place = (place - step.origin) * per_metre;
+            [place.x as f32, place.y as f32, place.z as f32]
+        };
+        let factors = &contact.material_maps.max_thickness_factor;
+        if let Some(ground) = frame.plane.as_ref()
+            && let Some(material) = ContactMaterial::<R>::for_ground(own, ground, factors[step.cloth])
+            && let Some(plane) = contact.ground.in_step(step.span)
+        {
+            let first = cloths[step.cloth].points().start;
+            let height = plane.height_now(first, state.displacement[first as usize].xyz()).to_f64();
+            let normal = plane.normal().map(|x| x.to_f64() as f32);
+            let offset = (material.thickness * per_metre - 0.5).max(0.0) as f32;
+            walls.plane = Some(Plane { normal, height: (height * per_metre) as f32, offset });
+        }
+        let bounds = grid::bounds(positions);
+        for (at, model) in colliders.iter().enumerate() {
+            let Some(material) =
+                ContactMaterial::<R>::for_collider(own, &frame.colliders[at], factors[step.cloth])
+            else {
+                continue;
+            };
+            let material = Material { distance: (material.thickness * per_metre) as f32 };
+            let collider = &contact.collider_states[at];
+            for triangle in &model.boundary.triangles {
+                let triangle = triangle.map(|point| place(collider.point(point, step.span.to)));
+                walls.cover(triangle, None, material, bounds);
+            }
+        }
+        for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth) {
+            let factors = [factors[step.cloth], factors[other]];
+            let pair = [own, &frame.cloths[other]];
+            let Some(material) = ContactMaterial::<R>::for_cloths(pair, factors, frame.layer_range) else {
+                continue;
+            };
+            let mobility = material.mobility[1].to_f64();
+            let material = Material { distance: (material.thickness * per_metre) as f32 };
+            let first = walls.corners().len() as u32;
+            for row in model.points().filter(|_| !model.boundary.triangles.is_empty()) {
+                let inverse_mass =
+                    state.displacement[row as usize].0[3].to_f64() * mobility / step.inverse_mass;
+                walls.corner(Corner { row, inverse_mass: inverse_mass as f32, moved: [0.0; 3] });
+            }
+            for triangle in &model.boundary.triangles {
+                let corners = triangle.map(|row| first + row - model.points().start);
+                let triangle = triangle.map(|row| place(state.position(row).into()));
+                walls.cover(triangle, Some(corners), material, bounds);
+            }
+        }
+        walls.sort();
+    }
+
+    /// Prepares what the pressure has to do, after viscosity and surface tension.
+    fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
+        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, .. } = self;
+        let LiquidStep { settings, h, .. } = *step;
+        let order = neighbours.grid.order();
+        let per_metre = 1.0 / settings.spacing;
+        let squared = per_metre * per_metre;
+        let is_viscous = settings.viscosity > 0.0;
+        if is_viscous {
+            velocities.clear();
+            velocities.extend(order.iter().map(|&particle| {
+                let velocity = state.velocity[(first + particle) as usize].xyz();
+                velocity.map(|x| (x.to_f64() * per_metre) as f32)
+            }));
+            viscosity.solve(neighbours, velocities, (settings.viscosity * h * squared) as f32, pool);
+        }
+        let tension = (settings.surface_tension * squared * per_metre) as f32;
+        let pull = surface_tension::strength(tension) * (h * h) as f32;
+        let recovery = (RECOVERY * h as f32).min(MAX_RECOVERY);
+        density.lambda.clear();
+        loads.clear();
+        for (at, &particle) in order.iter().enumerate() {
+            let is_free = state.displacement[(first + particle) as usize].0[3] > R::ZERO;
+            let mut moved = [0.0f32; 3];
+            if is_viscous {
+                moved = viscosity.change[at].map(|change| change * h as f32);
+            }
+            if tension > 0.0 {
+                let chunk = at / CHUNK as usize;
+                let pulled = surface_tension::acceleration(neighbours, chunk, at % CHUNK as usize);
+                (0..3).for_each(|axis| moved[axis] += pull * pulled[axis]);
+            }
+            let now = neighbours.sums[at][0] - 1.0;
+            let kept = &mut excess[particle as usize];
+            // What is left of an old excess this time step; a soft liquid has its excess by its pressure.
+            *kept = if settings.incompressibility < 1.0 {
+                0.0
+            } else {
+                (*kept * (1.0 - recovery)).min(now).max(0.0)
+            };
+            let inverse_mass = if is_free { 1.0 } else { 0.0 };
+            loads.push(Load { excess: now - *kept, inverse_mass, moved: moved.map(|x| x * inverse_mass) });
+            density.lambda.push(pressure[particle as usize] * (h * h) as f32);
+        }
+    }
+
+    /// Solves for the pressure, and moves the particles and the cloth beside them.
+    fn solve<R: Real>(&mut self, first: u32, state: &mut State<R>, step: &LiquidStep, pool: &ThreadPool) {
+        let Self { neighbours, walls, density, pressure, excess, loads, .. } = self;
+        let LiquidStep { settings, h, .. } = *step;
+        let softness = 1.0 - settings.incompressibility.clamp(0.0, 1.0);
+        // The pressure over density is c² times the excess, with the speed of sound c.
+        let sound = SOFT_SOUND * settings.incompressibility / softness.max(1e-9);
+        let compliance = settings.spacing / (h * sound).max(1e-9);
+        let compliance = if softness > 0.0 { (compliance * compliance).min(1e12) as f32 } else { 0.0 };
+        density.solve(neighbours, loads, walls, compliance, pool);
+        let displacement = &mut state.displacement;
+        let metres = |moved: f32| R::from_f64(f64::from(moved) * settings.spacing);
+        let mut sum = 0.0f64;
+        for (at, &particle) in neighbours.grid.order().iter().enumerate() {
+            let row = &mut displacement[(first + particle) as usize];
+            (0..3).for_each(|axis| row.0[axis] += metres(density.moved[at][axis]));
+            let left = &mut excess[particle as usize];
+            pressure[particle as usize] = density.lambda[at] / (h * h) as f32;
+            *left += density.left(at);
+            sum += f64::from((*left + compliance * density.lambda[at]).max(0.0));
+        }
+        for corner in walls.corners().iter().filter(|corner| corner.moved != [0.0; 3]) {
+            let row = &mut displacement[corner.row as usize];
+            (0..3).for_each(|axis| row.0[axis] += metres(corner.moved[axis]));
+        }
+        self.density_error = sum / loads.len().max(1) as f64;
+    }
+}

@@ -1,0 +1,102 @@
+//! Viscosity: velocities of neighbours approach each other, as fast as the kinematic viscosity says, however high it is.
+//!
+//! Implicit diffusion of velocity (as Takahashi et al. 2015, in the simpler form of a Laplacian): with the velocity u* of
+//! the prediction,
+//!
+//! ```text
+//! u_i - h nu sum_j 2 |W'(r)| / r (u_j - u_i) = u*_i
+//! ```
+//!
+//! The matrix is symmetric and positive, and keeps momentum. Conjugate gradients solve it until the residual is small.
+
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+use super::neighbours::{CHUNK, Neighbours, chunk_range};
+
+/// Residual at which the solution is accepted, as a share of the right-hand side.
+const TOLERANCE: f64 = 1e-3;
+/// Most iterations in a time step.
+const MAX_ITERATIONS: u32 = 60;
+
+/// The solver of one liquid.
+#[derive(Debug, Default)]
+pub struct Viscosity {
+    /// Change of velocity of each particle, in the sorted order.
+    pub change: Vec<[f32; 3]>,
+    residual: Vec<[f32; 3]>,
+    direction: Vec<[f32; 3]>,
+    product: Vec<[f32; 3]>,
+}
+
+impl Viscosity {
+    /// Solves for the change of velocity. `rate` is the viscosity times the time step, in squared rest distances.
+    pub fn solve(&mut self, neighbours: &Neighbours, velocity: &[[f32; 3]], rate: f32, pool: &ThreadPool) {
+        let count = velocity.len();
+        for column in [&mut self.change, &mut self.residual, &mut self.direction, &mut self.product] {
+            column.clear();
+            column.resize(count, [0.0; 3]);
+        }
+        // The change x solves A x = u* - A u*.
+        multiply(neighbours, velocity, rate, &mut self.product, pool);
+        for (residual, (own, product)) in self.residual.iter_mut().zip(velocity.iter().zip(&self.product)) {
+            *residual = std::array::from_fn(|axis| own[axis] - product[axis]);
+        }
+        self.direction.copy_from_slice(&self.residual);
+        let first = dot(&self.residual, &self.residual);
+        let mut square = first;
+        for _ in 0..MAX_ITERATIONS {
+            if square <= first * TOLERANCE * TOLERANCE || square <= 0.0 {
+                break;
+            }
+            multiply(neighbours, &self.direction, rate, &mut self.product, pool);
+            let step = (square / dot(&self.direction, &self.product)) as f32;
+            add(&mut self.change, &self.direction, step);
+            add(&mut self.residual, &self.product, -step);
+            let next = dot(&self.residual, &self.residual);
+            let back = (next / square) as f32;
+            for (direction, residual) in self.direction.iter_mut().zip(&self.residual) {
+                *direction = std::array::from_fn(|axis| residual[axis] + back * direction[axis]);
+            }
+            square = next;
+        }
+    }
+}
+
+/// `out` = (1 + rate L) x, with the Laplacian L of the neighbours.
+fn multiply(neighbours: &Neighbours, x: &[[f32; 3]], rate: f32, out: &mut [[f32; 3]], pool: &ThreadPool) {
+    let count = x.len();
+    let out = DisjointSlice::new(out);
+    pool.parallel_for(count.div_ceil(CHUNK as usize), |chunk| {
+        let range = chunk_range(chunk, count);
+        // SAFETY: chunks do not overlap.
+        #[allow(unsafe_code)]
+        let out = unsafe { out.run(range.clone()) };
+        for (k, out) in out.iter_mut().enumerate() {
+            let at = range.start as usize + k;
+            let (own, mut sum) = (x[at], [0.0f32; 3]);
+            let place = neighbours.positions[at];
+            for pair in neighbours.of(chunk, k) {
+                let (other, [a, b, c]) = (neighbours.positions[pair.other as usize], pair.gradient);
+                let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
+                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+                // The gradient is W' times the direction: divided by the distance, it is along `apart` squared.
+                let weight = -2.0 * (a * apart[0] + b * apart[1] + c * apart[2]) / square.max(1e-4);
+                let velocity = x[pair.other as usize];
+                (0..3).for_each(|axis| sum[axis] += weight * (own[axis] - velocity[axis]));
+            }
+            *out = std::array::from_fn(|axis| own[axis] + rate * sum[axis]);
+        }
+    });
+}
+
+fn add(column: &mut [[f32; 3]], other: &[[f32; 3]], factor: f32) {
+    for (own, other) in column.iter_mut().zip(other) {
+        (0..3).for_each(|axis| own[axis] += factor * other[axis]);
+    }
+}
+
+fn dot(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
+    let of = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    a.iter().zip(b).map(of).sum()
+}
