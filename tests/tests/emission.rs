@@ -30,7 +30,7 @@ fn run(particles: &str, emitter: &str, frames: usize, threads: usize) -> Found {
 
 fn nodes(particles: &str, emitter: &str) -> String {
     format!(
-        r#""n": nucleus(subSteps: 2, evaluations: 48, gravity: 0), "p": nParticle(drag: 0, {particles}),
+        r#""n": nucleus(subSteps: 2, evaluations: 48, gravity: 0), "p": nParticle(drag: 0, selfCollide: false, {particles}),
            "e": pointEmitter(target: "p", {emitter})"#
     )
 }
@@ -110,7 +110,7 @@ fn particles_take_a_share_of_the_emitters_motion() {
 fn a_surface_emits_by_its_area_along_its_normals() {
     let program = program_of(
         r#""n": nucleus(gravity: 0), "plane": polyPlane(width: 4, height: 2, translate: (0, 1, 0)),
-           "p": nParticle(drag: 0),
+           "p": nParticle(drag: 0, selfCollide: false),
            "e": pointEmitter(target: "p", parent: "plane", emitterType: surface, rate: 30, normalSpeed: 2)"#,
     );
     let mut simulation = Simulation::<f32>::new(&program, 1);

@@ -155,6 +155,7 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
         *pairs.entry((edge.min(face), edge.max(face))).or_default() += 1;
     }
     for (&(a, b), &count) in &pairs {
+        let (a, b) = if objects[a].name <= objects[b].name { (a, b) } else { (b, a) };
         report_intersection(scene, &objects[a], &objects[b], count, findings);
     }
     for (a, cloth) in objects.iter().enumerate().filter(|(_, object)| is_cloth(object)) {
@@ -219,11 +220,12 @@ fn is_inside(point: &Vector3<f64>, positions: &[Vector3<f64>], faces: &Faces) ->
 /// Whether the ray along +x from the origin passes through a triangle.
 fn is_crossed([a, b, c]: [Vector3<f64>; 3]) -> bool {
     let turn = |p: &Vector3<f64>, q: &Vector3<f64>| p.y * q.z - p.z * q.y;
-    // A side counts at its lower end only, so that a ray through an edge passes one of its two faces.
+    // Sides are turned upwards, so that a ray through an edge passes exactly one of its two faces.
     let winds = |p: &Vector3<f64>, q: &Vector3<f64>| (p.z > 0.0) != (q.z > 0.0);
     let mut crossings = 0;
     for (p, q) in [(&a, &b), (&b, &c), (&c, &a)] {
-        if winds(p, q) && (turn(p, q) > 0.0) == (q.z > p.z) {
+        let (low, high) = if p.z < q.z { (p, q) } else { (q, p) };
+        if winds(p, q) && turn(low, high) > 0.0 {
             crossings += 1;
         }
     }

@@ -35,8 +35,7 @@ fn scenes_of_rows_can_be_written_out_and_run() {
     let output = nucleus(folder.path(), &["extremes", "--save", "out", "--only", "one-face"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(folder.path().join("out/one-face/triangle.obj").is_file());
-    let run =
-        nucleus(folder.path(), &["run", "out/one-face/one-face.ron", "--frames", "4", "--record", "none"]);
+    let run = nucleus(folder.path(), &["run", "out/one-face/one-face.ron", "--record", "none"]);
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
 }
 

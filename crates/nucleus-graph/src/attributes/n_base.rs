@@ -34,7 +34,7 @@ pub(super) const NO_USE_TO_MESHES: &[&str] = &[
     "executeRuntimeAfterDynamicsExpression", "input", "output", "time", "frame", "internalRuntimeExpression",
     "internalRuntimeBeforeDynamicsExpression", "internalRuntimeAfterDynamicsExpression",
     "internalCreationExpression", "currentParticle", "diedLastTime", "netEmittedLastTime", "startEmittedIndex",
-    "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail",
+    "dynamicsWeight", "forcesInWorld", "conserve", "emissionInWorld", "maxCount", "levelOfDetail",
     "inheritFactor", "seed", "fieldDataPosition", "fieldDataVelocity", "fieldDataMass", "fieldDataDeltaTime",
     "emitterData", "emitterDataPosition", "emitterDataVelocity", "emitterDataDeltaTime", "currentTime",
     "currentTimeSave", "evaluationTime", "currentSceneTime", "lastTimeEvaluated", "lastSceneTime", "cachedTime",

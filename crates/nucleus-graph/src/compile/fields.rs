@@ -51,7 +51,11 @@ impl EvaluationInterval<'_> {
         let node = FieldNode { id: source.node, to: &self.to, placement: placements[1] };
         let travel = placements[1].offset - placements[0].offset;
         let metre = self.nucleus.units.length(1.0);
-        let weight = |node: NodeId| self.to.get(node, &particle::DYNAMICS_WEIGHT);
+        // Maya keeps the weight of what is not particles at 1.
+        let weight = |node: NodeId| match self.graph.node(node).node_type() {
+            of if of.has_no_use_for(&particle::DYNAMICS_WEIGHT.row) => 1.0,
+            _ => self.to.get(node, &particle::DYNAMICS_WEIGHT),
+        };
         Field {
             kind: node.kind(self.graph.node(source.node).node_type(), travel / seconds, metre),
             reach: node.reach(metre),

@@ -140,9 +140,7 @@ fn settings_without_effect_on_particles_give_a_warning() {
     let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
-    for name in
-        ["damp: 1", "parallelSPH: true", "lifespanMode: constant", "opacity: 0.5", "stickinessRandomize: 1"]
-    {
+    for name in ["damp: 1", "parallelSPH: true", "opacity: 0.5", "stickinessRandomize: 1"] {
         let messages = of(&format!("position: [(0, 0, 0)], {name}"));
         assert!(messages.len() == 1 && messages[0].ends_with("has no effect yet"), "{name}: {messages:?}");
     }
