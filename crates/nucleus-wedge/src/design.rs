@@ -265,7 +265,7 @@ mod tests {
         assert!(refused(&[], 0, None).contains("nothing varies"));
         assert!(refused(&["c.damp=0..1"], 0, None).contains("--samples 20"));
         assert!(refused(&["c.damp=0,1"], 5, None).contains("needs an interval"));
-        assert!(refused(&["c.damp=0,1", "c.dmp=2"], 0, None).contains("varied twice"));
+        assert!(refused(&["c.damp=0,1", "c.adng=2"], 0, None).contains("varied twice"));
         assert!(refused(&["c.damp=0..1/2000", "n.windSpeed=0..1/2000"], 0, None).contains("4000000 runs"));
     }
 

@@ -1,6 +1,6 @@
 //! Meshes that liquids run in and over: a glass and a leaf.
 
-use super::{Mesh, ring};
+use super::mesh::{Mesh, ring};
 
 /// Points round a glass.
 const AROUND: usize = 32;
