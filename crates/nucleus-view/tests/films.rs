@@ -166,7 +166,7 @@ fn the_picture_of_the_synthetic_run_is_the_inspected_one() {
     );
 }
 
-const GOLDEN: u64 = 0x29bb_acd0_8135_8e2c;
+const GOLDEN: u64 = 0xda6b_ccb9_5d33_45af;
 
 #[test]
 fn a_mesh_that_changes_is_drawn_with_the_topology_of_each_frame() {
