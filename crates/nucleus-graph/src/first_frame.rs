@@ -160,9 +160,10 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
     }
     for (a, cloth) in objects.iter().enumerate().filter(|(_, object)| is_cloth(object)) {
         for (b, collider) in objects.iter().enumerate().filter(|(_, object)| !is_cloth(object)) {
-            let point = start(program, cloth.kind)[0];
+            // Particles that are yet to be emitted have no first point.
+            let Some(point) = start(program, cloth.kind).first() else { continue };
             let collides = filter.is_tested(a, b) && !pairs.contains_key(&(a, b));
-            if collides && is_inside(&point, start(program, collider.kind), &collider.faces) {
+            if collides && is_inside(point, start(program, collider.kind), &collider.faces) {
                 report_inside(scene, cloth, collider, findings);
             }
         }
@@ -318,6 +319,13 @@ mod tests {
         assert_eq!(ball(0.02, "")[0].0, "`cloth` starts inside `rigid`");
         assert_eq!(ball(0.02, "collide: false"), []);
         assert_eq!(ball(1.2, ""), []);
+    }
+
+    #[test]
+    fn particles_that_are_yet_to_be_emitted_start_in_nothing() {
+        let nodes = r#""nucleus1": nucleus(), "drops": nParticle(), "e": pointEmitter(target: "drops", rate: 10),
+            "ball": polySphere(radius: 1), "rigid": nRigid(inputMesh: "ball")"#;
+        assert_eq!(warnings(nodes), []);
     }
 
     #[test]
