@@ -29,7 +29,7 @@ const CREATED: [&str; 12] = [
 ];
 
 /// Whether a creation command may have connected an input.
-fn may_be_from_creation(to: Plug) -> bool {
+pub fn may_be_from_creation(to: Plug) -> bool {
     CREATED.contains(&to.attribute.name) || to.attribute.name == particle::START_FRAME.row.name
 }
 

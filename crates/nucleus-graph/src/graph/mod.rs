@@ -24,6 +24,7 @@ mod nodes;
 mod setting;
 mod text;
 
+pub use connections::may_be_from_creation;
 pub use creation::Creation;
 pub use error::GraphError;
 pub use eval_context::EvalContext;

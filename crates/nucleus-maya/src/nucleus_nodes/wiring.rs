@@ -1,29 +1,13 @@
 //! Connections: those of Maya's creation commands, made again, and all others between nodes that are carried over.
 
 use nucleus_graph::attributes::{self, n_base, nucleus, transform};
-use nucleus_graph::graph::{Creation, GraphError, NodeId as OwnId, Plug};
+use nucleus_graph::graph::{Creation, GraphError, NodeId as OwnId, Plug, may_be_from_creation};
 
 use crate::omissions::Cause;
 use crate::scene::{NodeId, PlugRef, Wire};
 
 use super::importer::Importer;
 use super::kept::nucleus_of;
-
-/// Inputs that creation commands connect. Gaps in their indices, which deletions leave, close up.
-const CREATED: [&str; 12] = [
-    "currentTime",
-    "inputMesh",
-    "inMesh",
-    "inputActive",
-    "inputActiveStart",
-    "inputPassive",
-    "inputPassiveStart",
-    "nextState",
-    "inputStart",
-    "inputCurrent",
-    "objectId",
-    "componentIds",
-];
 
 impl Importer<'_> {
     /// Connects an object to its mesh and its nucleus.
@@ -73,8 +57,8 @@ impl Importer<'_> {
         for wire in &self.scene.wires {
             let (Some(out), Some(input)) = (self.plug(wire.from), self.plug(wire.to)) else { continue };
             let placed = [&transform::TRANSLATE.row, &transform::ROTATE.row, &transform::SCALE.row];
-            let is_created = CREATED.contains(&input.attribute.name)
-                || input.attribute.name == attributes::particle::START_FRAME.row.name
+            // Gaps in the indices of created inputs, which deletions leave, close up.
+            let is_created = may_be_from_creation(input)
                 || placed.contains(&input.attribute)
                 || out.node == self.graph.clock();
             if !is_created {
