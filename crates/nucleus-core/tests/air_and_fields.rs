@@ -215,7 +215,7 @@ fn points_that_attract_themselves_draw_together_and_keep_their_momentum() {
         .collect();
     let mut cloth =
         Cloth::new(Surface { positions, ..Surface::default() }, Mass::PerPoint(0.1), ClothLists::NONE);
-    cloth.factors.mass = (0..20).map(|k| 1.0 + f64::from(k) / 5.0).collect();
+    cloth.vertex_maps.mass = (0..20).map(|k| 1.0 + f64::from(k) / 5.0).collect();
     let masses = cloth.point_masses();
     let field =
         PointField { magnitude: 0.0, self_attract: 5.0, radius: 0.0, distance: 3.0, falloff: falling() };

@@ -295,7 +295,7 @@ fn the_thickness_of_each_point_counts() {
     let mut lifted = sheet.clone();
     lifted.positions.iter_mut().for_each(|p| p.y += 0.1);
     let factors = VertexMaps { thickness: thickness.clone(), ..VertexMaps::default() };
-    let cloth = Cloth { factors, ..Cloth::new(lifted, Mass::PerArea(0.2), ClothLists::NONE) };
+    let cloth = Cloth { vertex_maps: factors, ..Cloth::new(lifted, Mass::PerArea(0.2), ClothLists::NONE) };
     let floor = cuboid(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(2.0, 0.0, 2.0));
     let settings = ClothFrame { thickness: THICKNESS, self_collision: SelfCollision::OFF, ..still() };
     let on_a_box = {
@@ -332,7 +332,7 @@ fn cloth_on_cloth_rests_at_the_thickness_of_the_points_that_touch() {
     let held = pins(&table, 0..4);
     let beads = beads(vec![Vec3::new(0.5, 0.1, 0.6), Vec3::new(1.5, 0.1, 1.4)]);
     let factors = VertexMaps { thickness: vec![0.5, 3.0], ..VertexMaps::default() };
-    let beads = Cloth { factors, ..Cloth::new(beads, Mass::PerPoint(0.1), ClothLists::NONE) };
+    let beads = Cloth { vertex_maps: factors, ..Cloth::new(beads, Mass::PerPoint(0.1), ClothLists::NONE) };
     let mut solver = solver(vec![Cloth::new(table, Mass::PerPoint(1.0), LINKS), beads], Vec::new());
     let table = ClothFrame { thickness: 0.002, ..still() };
     let input = FrameInput { cloths: vec![table, bead_settings()], pins: held, ..frame(3, physical(96.0)) };
@@ -350,7 +350,7 @@ fn two_at_a_box(factors: VertexMaps, settings: ClothFrame, start: [f64; 2], grav
     let slab = cuboid(Vec3::new(-1.0, -0.2, -1.0), Vec3::new(1.0, 0.0, 1.0));
     let [y, speed] = start;
     let positions = vec![Vec3::new(-0.31, y, 0.11), Vec3::new(0.33, y, 0.17)];
-    let cloth = Cloth { factors, ..moving(beads(positions), 0.1, Vec3::y() * speed) };
+    let cloth = Cloth { vertex_maps: factors, ..moving(beads(positions), 0.1, Vec3::y() * speed) };
     let mut solver = solver(vec![cloth], vec![slab]);
     let slab = ColliderFrame { collide: true, ..ColliderFrame::default() };
     let input = FrameInput {

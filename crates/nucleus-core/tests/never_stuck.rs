@@ -117,7 +117,7 @@ fn two_in_empty_space(surfaces: [Surface; 2], crossover_push: f64, strength: &[f
     for (surface, strength) in surfaces.into_iter().zip([strength, &[]]) {
         let mass = Mass::PerArea(0.2);
         let factors = nucleus_core::VertexMaps { collide_strength: strength.to_vec(), ..Default::default() };
-        let cloth = Cloth { factors, ..Cloth::new(surface, mass, LINKS) };
+        let cloth = Cloth { vertex_maps: factors, ..Cloth::new(surface, mass, LINKS) };
         builder.cloth(cloth).expect("a good mesh");
     }
     let mut solver = Solver::<f32>::new(builder, 1);

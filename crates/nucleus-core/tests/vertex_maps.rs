@@ -43,7 +43,7 @@ fn swung(factors: VertexMaps, settings: &ClothFrame, mass: f64, resistance: Resi
         ..frame(3, resistance)
     };
     let mut builder = ModelBuilder::new();
-    let cloth = Cloth { factors, ..Cloth::new(surface, Mass::PerArea(mass), AIRY) };
+    let cloth = Cloth { vertex_maps: factors, ..Cloth::new(surface, Mass::PerArea(mass), AIRY) };
     builder.cloth(cloth).expect("a good mesh");
     let mut solver = Solver::<f64>::new(builder, 1);
     (0..12).for_each(|_| {
@@ -162,7 +162,9 @@ fn hanging(factors: VertexMaps) -> Vec<f64> {
     let input = FrameInput { cloths: vec![cloth], pins: pins(&strip, [0, 1]), ..frame(24, physical(960.0)) };
     let mut builder = ModelBuilder::new();
     let lists = ClothLists { damp: true, ..LINKS };
-    builder.cloth(Cloth { factors, ..Cloth::new(strip, Mass::PerArea(20.0), lists) }).expect("a good mesh");
+    builder
+        .cloth(Cloth { vertex_maps: factors, ..Cloth::new(strip, Mass::PerArea(20.0), lists) })
+        .expect("a good mesh");
     let mut solver = Solver::<f64>::new(builder, 1);
     (0..240).for_each(|_| {
         solver.step(&input, &mut ());
@@ -212,7 +214,7 @@ fn a_link_with_the_factor_zero_exerts_no_force() {
         let column: Vec<f64> = (0..6).map(|point| if point < 2 { 1.0 } else { 0.0 }).collect();
         let factors = VertexMaps { stretch: column.clone(), compression: column, ..VertexMaps::default() };
         let mut builder = ModelBuilder::new();
-        let cloth = Cloth { factors, ..Cloth::new(surface.clone(), Mass::PerArea(1.0), LINKS) };
+        let cloth = Cloth { vertex_maps: factors, ..Cloth::new(surface.clone(), Mass::PerArea(1.0), LINKS) };
         builder.cloth(cloth).expect("a good mesh");
         let input = FrameInput { pins: pins(&surface, [0, 1]), ..frame(3, resistance) };
         let mut solver = Solver::<f64>::new(builder, 1);
@@ -235,7 +237,7 @@ fn refused(cloth: impl Fn(Cloth) -> Cloth) -> BuildError {
 fn an_invalid_vertex_map_is_refused_with_its_attribute_and_point() {
     let none = VertexMaps::default;
     let message =
-        |factors: VertexMaps| refused(|cloth| Cloth { factors: factors.clone(), ..cloth }).to_string();
+        |factors: VertexMaps| refused(|cloth| Cloth { vertex_maps: factors.clone(), ..cloth }).to_string();
     let few = message(VertexMaps { drag: vec![1.0; 3], ..none() });
     assert_eq!(few, "there are 3 factors on drag, but 4 points");
     let weightless = message(VertexMaps { mass: vec![1.0, 1.0, 0.0, 1.0], ..none() });
@@ -309,7 +311,7 @@ fn slid(floor: Floor, factor: f64) -> f64 {
     let sheet = lying(grid(5, 5, Vec3::x() * 0.2, Vec3::z() * 0.2), 0.0101, 0.1);
     let factors = VertexMaps { friction: vec![factor; 25], ..VertexMaps::default() };
     let mass = Mass::PerArea(0.2);
-    builder.cloth(Cloth { factors, ..Cloth::new(sheet, mass, LINKS) }).expect("a good mesh");
+    builder.cloth(Cloth { vertex_maps: factors, ..Cloth::new(sheet, mass, LINKS) }).expect("a good mesh");
     let cloth = ClothFrame { thickness: 0.005, friction: 0.4, ..still() };
     let slope = Vec3::new(9.81 * 0.5, -9.81 * 0.75f64.sqrt(), 0.0);
     let mut input = FrameInput { gravity: slope, cloths: vec![cloth], ..frame(3, physical(48.0)) };

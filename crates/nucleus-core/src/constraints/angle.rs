@@ -12,6 +12,7 @@
 
 use nalgebra::Vector3;
 
+use crate::input::frame::Bending;
 use crate::math::{Lanes, Real, Row4};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
@@ -88,6 +89,16 @@ pub struct AngleStrength<R> {
     pub scale: R,
     /// `bendAngleDropoff`, 0 to 1.
     pub dropoff: R,
+}
+
+impl<R: Real> AngleStrength<R> {
+    /// The strength that the attributes of a cloth give.
+    pub fn of(bending: &Bending) -> Self {
+        Self {
+            scale: R::from_f64(bending.angle_scale),
+            dropoff: R::from_f64(bending.angle_dropoff.clamp(0.0, 1.0)),
+        }
+    }
 }
 
 /// The ends of a hinge's edge, and weights of its points for the middles of the two far sides.

@@ -281,12 +281,12 @@ impl<R: Real> MaterialMaps<R> {
     /// The maps of all cloths, over `places` rows.
     pub fn new(cloths: &[Cloth], models: &[ClothModel<R>], places: usize) -> Self {
         let column = |of: fn(&VertexMaps) -> &Vec<f64>| {
-            if cloths.iter().all(|cloth| of(&cloth.factors).is_empty()) {
+            if cloths.iter().all(|cloth| of(&cloth.vertex_maps).is_empty()) {
                 return Vec::new();
             }
             let mut column = vec![R::ONE; places];
             for (cloth, model) in cloths.iter().zip(models) {
-                for (point, &factor) in of(&cloth.factors).iter().enumerate() {
+                for (point, &factor) in of(&cloth.vertex_maps).iter().enumerate() {
                     column[model.place(point) as usize] = R::from_f64(factor);
                 }
             }
@@ -299,7 +299,7 @@ impl<R: Real> MaterialMaps<R> {
             stickiness: column(|factors| &factors.stickiness),
             bounce: column(|factors| &factors.bounce),
             strength: column(|factors| &factors.collide_strength),
-            max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.factors.thickness)).collect(),
+            max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.vertex_maps.thickness)).collect(),
         }
     }
 }

@@ -113,7 +113,7 @@ pub struct Cloth {
     /// The lists that it can ever need.
     pub lists: ClothLists,
     /// Vertex maps of its attributes.
-    pub factors: VertexMaps,
+    pub vertex_maps: VertexMaps,
     /// Positions and velocities at the start, where they differ from the mesh at rest.
     pub start: Start,
     /// Room for particles that are born and die; only without faces.
@@ -152,7 +152,7 @@ impl Cloth {
             surface,
             mass,
             lists,
-            factors: VertexMaps::default(),
+            vertex_maps: VertexMaps::default(),
             start: Start::default(),
             particles: None,
         }
@@ -208,7 +208,7 @@ impl ModelBuilder {
         if !(mass > 0.0 && mass.is_finite()) {
             return Err(BuildError::BadMass { mass });
         }
-        cloth.factors.check(cloth.surface.positions.len())?;
+        cloth.vertex_maps.check(cloth.surface.positions.len())?;
         check_start(&cloth.start, cloth.surface.positions.len())?;
         self.cloths.push(cloth);
         self.link_orders.push(LinkOrder::Sequential);
@@ -262,7 +262,7 @@ impl ModelBuilder {
 /// The mass of each point in kilograms, in the mesh's order.
 pub fn point_masses(cloth: &Cloth) -> Vec<f64> {
     let mut masses = even_masses(cloth);
-    masses.iter_mut().zip(&cloth.factors.mass).for_each(|(mass, factor)| *mass *= factor);
+    masses.iter_mut().zip(&cloth.vertex_maps.mass).for_each(|(mass, factor)| *mass *= factor);
     masses
 }
 

@@ -119,7 +119,7 @@ impl<R: Real> ClothModel<R> {
             pressure: PressureModel::default(),
             shape: ShapeModel::default(),
             plastic: cloth.lists.plastic,
-            attract: cloth.factors.input_attract.clone(),
+            attract: cloth.vertex_maps.input_attract.clone(),
             triangles: Vec::new(),
             boundary: BoundaryElements::default(),
             alternates_direction: cloth.lists.cross_links
@@ -136,7 +136,7 @@ impl<R: Real> ClothModel<R> {
         let place = |point: u32| first + places[point as usize];
         let point = |place: u32| model.order.user((place - first) as usize);
         let blocks = model.blocks.clone();
-        let maps = MapReader { maps: &cloth.factors, point: &point, blocks: &blocks };
+        let maps = MapReader { maps: &cloth.vertex_maps, point: &point, blocks: &blocks };
         let distances = link_order::distances(surface, order_of_links);
         let levels = |rows: &[LinkRow<R>]| link_order::levels(rows, &distances, point);
         let mut strength_maps = StrengthMaps::default();
@@ -148,7 +148,7 @@ impl<R: Real> ClothModel<R> {
             model.stretch = RowList::in_levels(&rows, &levels, &blocks);
         }
         if cloth.lists.shear {
-            let rest = &cloth.factors.rest_length;
+            let rest = &cloth.vertex_maps.rest_length;
             let rows = shear_rows(surface, rest, place);
             model.shear = RowList::in_levels(&rows, &levels(&rows), &blocks);
         }
@@ -178,7 +178,7 @@ impl<R: Real> ClothModel<R> {
                 surface,
                 place,
                 &masses,
-                [&cloth.factors.rigidity, &cloth.factors.deform],
+                [&cloth.vertex_maps.rigidity, &cloth.vertex_maps.deform],
                 cloth.lists.shells,
             );
         }
@@ -186,7 +186,7 @@ impl<R: Real> ClothModel<R> {
             model.air = maps.air(model.points());
         }
         let by_row = |factors: &Vec<f64>| model.points().map(|row| factors[point(row)]).collect();
-        let field_map = Some(&cloth.factors.field_magnitude).filter(|map| !map.is_empty()).map(by_row);
+        let field_map = Some(&cloth.vertex_maps.field_magnitude).filter(|map| !map.is_empty()).map(by_row);
         model.field_map = field_map.unwrap_or_default();
         if *order_of_links == LinkOrder::Parallel {
             let groups = model.stretch.groups().iter().chain(model.shear.groups());
@@ -285,7 +285,8 @@ impl ColliderModel {
 
 fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
     let links = stretch_links(surface, cloth.lists.cross_links);
-    let rest = |link: &Link| mean(&cloth.factors.rest_length, link.ends.map(|end| end as usize).into_iter());
+    let rest =
+        |link: &Link| mean(&cloth.vertex_maps.rest_length, link.ends.map(|end| end as usize).into_iter());
     let mut rows: Vec<LinkRow<R>> = links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect();
     rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
     rows

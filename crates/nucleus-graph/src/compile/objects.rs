@@ -72,10 +72,10 @@ impl Compiler<'_> {
         self.warn_of_stiffness(id);
         let maps = self.vertex_maps(id, mesh, given);
         let start = self.start_state(id, mesh, given);
-        let (CompiledMaps { scales, mut factors }, mut start) = (maps?, start?);
+        let (CompiledMaps { scales, mut vertex_maps }, mut start) = (maps?, start?);
         if let Some(tearing) = &tearing {
             let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
-            factors = tearing.maps(factors, is_classic);
+            vertex_maps = tearing.maps(vertex_maps, is_classic);
             tearing.extend(&mut start.positions);
             tearing.extend(&mut start.velocities);
         }
@@ -92,11 +92,11 @@ impl Compiler<'_> {
         let points = surface.positions.len();
         let faces = surface.faces.clone();
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
-        let followed = self.followed_mesh(id, mesh, &factors.input_attract);
+        let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
         let (face_count, area) = (faces.len(), area(&surface));
-        let cloth = Cloth { surface, mass, lists, factors, start, particles: None };
+        let cloth = Cloth { surface, mass, lists, vertex_maps, start, particles: None };
         let kilograms = match mass {
-            _ if !cloth.factors.mass.is_empty() => cloth.point_masses().iter().sum(),
+            _ if !cloth.vertex_maps.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,
             Mass::PerArea(mass) => mass * area,
         };

@@ -41,8 +41,8 @@ impl Compiler<'_> {
         let emitters = self.emitters(id, ClothId(self.program.model.cloths().len() as u32));
         let particles = self.births_and_deaths(id, points, &emitters)?;
         let varies = particles.is_some();
-        let factors = VertexMaps::default();
-        let cloth = Cloth { surface, mass: Mass::PerPoint(mass), lists, factors, start, particles };
+        let vertex_maps = VertexMaps::default();
+        let cloth = Cloth { surface, mass: Mass::PerPoint(mass), lists, vertex_maps, start, particles };
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));

@@ -52,7 +52,7 @@ maps! {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CompiledMaps {
     pub(super) scales: MapScales,
-    pub(super) factors: VertexMaps,
+    pub(super) vertex_maps: VertexMaps,
 }
 
 /// One map: a factor for all points, and factors per point where they differ.
@@ -132,7 +132,7 @@ impl Compiler<'_> {
             restitution_angle: restitution_angle.scale,
             field_magnitude: field_magnitude.scale,
         };
-        let factors = VertexMaps {
+        let vertex_maps = VertexMaps {
             mass: mass.factors,
             stretch: stretch.factors,
             compression: compression.factors,
@@ -154,7 +154,7 @@ impl Compiler<'_> {
             yield_angle: restitution_angle.factors,
             field_magnitude: field_magnitude.factors,
         };
-        Some(CompiledMaps { scales, factors })
+        Some(CompiledMaps { scales, vertex_maps })
     }
 
     /// Reports points whose mass is zero, or too small to divide by.

@@ -167,7 +167,7 @@ fn the_map_type_decides_whether_a_map_is_used() {
 
 #[test]
 fn a_map_without_a_type_implies_its_type() {
-    let of = |fields: &str| program(&hanging(fields)).model().cloths()[0].factors.clone();
+    let of = |fields: &str| program(&hanging(fields)).model().cloths()[0].vertex_maps.clone();
     let maps =
         ["mass", "damp", "stretch", "compression", "bend", "restLengthScale", "drag", "tangentialDrag"];
     let more = ["lift", "thickness", "friction", "stickiness", "bounce", "collideStrength"];
@@ -218,7 +218,7 @@ fn unused_settings_of_a_map_give_a_warning() {
 #[test]
 fn the_stretch_map_holds_for_compression_unless_it_has_its_own() {
     let half = "stretchMapType: perVertex, stretchPerVertex: expression(\"u\")";
-    let factors = |fields: &str| program(&hanging(fields)).model().cloths()[0].factors.clone();
+    let factors = |fields: &str| program(&hanging(fields)).model().cloths()[0].vertex_maps.clone();
     let shared = factors(half);
     assert_eq!(shared.stretch, shared.compression);
     assert!(shared.bend.is_empty());
@@ -236,7 +236,7 @@ fn expressions_have_the_position_and_coordinates_of_a_point() {
             format!("translateMe, massMapType: perVertex, massPerVertex: expression({expression:?})");
         let text = hanging(&fields.replace("translateMe, ", ""))
             .replace("polyPlane(", "polyPlane(translate: (10, 20, 30), ");
-        program(&text).model().cloths()[0].factors.mass.clone()
+        program(&text).model().cloths()[0].vertex_maps.mass.clone()
     };
     // From -1 to 1 along x and from 1 to -1 along z, in the space of the mesh.
     assert_eq!(masses("x + 2")[..6], [1.0, 1.5, 2.0, 2.5, 3.0, 1.0]);
@@ -271,7 +271,7 @@ fn a_texture_is_sampled_at_the_texture_coordinates_of_each_point() {
     );
     let (scene, warnings) = read_scene_text(&text, &file).expect("it reads");
     assert!(warnings.is_empty(), "{warnings:?}");
-    let masses = &compile(&scene).expect("it compiles").model().cloths()[0].factors.mass.clone();
+    let masses = &compile(&scene).expect("it compiles").model().cloths()[0].vertex_maps.mass.clone();
     let expected = [1.0, 1.0, 0.2, 0.2];
     let near = masses.iter().zip(expected).all(|(mass, expected)| (mass - expected).abs() < 1e-6);
     assert!(near && masses.len() == 4, "{masses:?}");
@@ -436,6 +436,6 @@ fn a_map_can_come_along_a_connection() {
         "b": nCloth(inputMesh: "q", massMapType: perVertex)"#;
     let program = program(&of_nodes(nodes, r#"("a.massPerVertex", "b.massPerVertex")"#));
     let cloths = program.model().cloths();
-    assert_eq!(cloths[0].factors.mass, [1.0, 2.0, 1.0, 2.0]);
-    assert_eq!(cloths[1].factors, cloths[0].factors);
+    assert_eq!(cloths[0].vertex_maps.mass, [1.0, 2.0, 1.0, 2.0]);
+    assert_eq!(cloths[1].vertex_maps, cloths[0].vertex_maps);
 }

@@ -96,11 +96,11 @@ pub const EFFECTS: [Effect; 17] = [
         sheet.settings().field = Some(ForceField { side, magnitude: 1e-3, distance, falloff });
     }),
     ("stretch map", |sheet| {
-        sheet.cloth.factors.stretch = sheet.map();
+        sheet.cloth.vertex_maps.stretch = sheet.map();
     }),
     ("drag with a map", |sheet| {
         sheet.breathe(0.0);
-        sheet.cloth.factors.drag = sheet.map();
+        sheet.cloth.vertex_maps.drag = sheet.map();
     }),
 ];
 

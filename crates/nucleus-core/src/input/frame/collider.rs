@@ -1,0 +1,58 @@
+//! The motion and the attributes of one collider in one frame.
+
+use nalgebra::Vector3;
+
+use crate::input::frame::contact::{ForceField, PushOut};
+use crate::input::object_fields::{PointField, WindField};
+
+/// One collider in one frame: its motion and contact attributes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColliderFrame {
+    /// Positions at the start of the frame in metres, in the mesh's order. Empty: those at the end of the frame before.
+    pub start: Vec<Vector3<f64>>,
+    /// Positions at the end of the frame in metres, in the mesh's order. Empty: it does not move.
+    pub end: Vec<Vector3<f64>>,
+    /// Whether cloth collides with it in this frame.
+    pub collide: bool,
+    /// Thickness in metres.
+    pub thickness: f64,
+    /// Friction; the two sides' values are added.
+    pub friction: f64,
+    /// Stickiness, 0 to 2; the two sides' values are added, and at 1 they never separate.
+    pub stickiness: f64,
+    /// Bounce, 0 to 1; the larger of the two sides' values counts.
+    pub bounce: f64,
+    /// Strength of contacts, as of a cloth.
+    pub collide_strength: f64,
+    /// Moves points of other objects to a side of its surface.
+    pub push_out: PushOut,
+    /// Whether points inside it, if it is closed, are depenetrated; otherwise they stay inside (`trappedCheck`).
+    pub trapped_check: bool,
+    /// Its force field on cloth.
+    pub field: Option<ForceField>,
+    /// The force fields of its points.
+    pub point_field: Option<PointField>,
+    /// Its wind shadow, and the air that it pushes.
+    pub wind_field: WindField,
+}
+
+impl Default for ColliderFrame {
+    /// Maya's defaults of an nRigid that does not move, except that `friction` and `thickness` are zero.
+    fn default() -> Self {
+        Self {
+            start: Vec::new(),
+            end: Vec::new(),
+            collide: true,
+            thickness: 0.0,
+            friction: 0.0,
+            stickiness: 0.0,
+            bounce: 0.0,
+            collide_strength: 1.0,
+            push_out: PushOut::OFF,
+            trapped_check: true,
+            field: None,
+            point_field: None,
+            wind_field: WindField::OFF,
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! A time step as data: its passes, the direction of its sweeps, and its interval in the frame.
+
+use crate::constraints::angle::AngleStrength;
+use crate::constraints::bend::BendStrength;
+use crate::constraints::shape::ShapeStrength;
+use crate::constraints::stretch::LinkStrength;
+
+/// One sweep of one effect over one cloth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sweep<R> {
+    /// The cloth, by its index.
+    pub cloth: usize,
+    /// The effect and its strength.
+    pub effect: Effect<R>,
+}
+
+/// An effect, with the strength of its sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Effect<R> {
+    /// Links along edges: stretch, compression or both.
+    Stretch(LinkStrength<R>),
+    /// Cross links of quads.
+    Shear(LinkStrength<R>),
+    /// Hinges between faces, and twists of quads.
+    Bend(BendStrength<R>, AngleStrength<R>),
+}
+
+/// One pass of an effect that takes a cloth as a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WholeSweep {
+    /// The cloth, by its index.
+    pub cloth: usize,
+    /// What is done.
+    pub effect: WholeEffect,
+}
+
+/// Effects that take a cloth as a whole, not row by row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WholeEffect {
+    /// Gas inside pushes the faces.
+    Pressure,
+    /// The mesh is pulled back to its shape.
+    Shape(ShapeStrength),
+    /// Points are drawn to the input mesh, by this share of the way; by a spring where there is none.
+    Attract(Option<f64>),
+}
+
+/// One pass of a time step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pass {
+    /// A run of [`Schedule::sweeps`], swept together.
+    Constraints(std::ops::Range<usize>),
+    /// An effect on a whole cloth, of [`Schedule::wholes`].
+    Whole(usize),
+    /// One pass over the links of a constraint, of [`Schedule::links`].
+    Links(usize),
+    /// Density, viscosity and surface tension of a liquid, by the index of its cloth.
+    Liquid(usize),
+    /// One pass over the contacts of cloth with itself and with other cloth.
+    ClothContact,
+    /// One pass over the contacts with colliders and the ground plane.
+    ColliderContact,
+    /// The penetration safeguard.
+    Safeguard,
+}
+
+/// The interval of a time step, in shares of the frame (0 to 1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepInterval {
+    /// Its start.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// The end of the substep it is part of.
+    pub end_of_substep: f64,
+}
+
+impl StepInterval {
+    /// The `part`th of so many equal parts.
+    pub fn part(self, part: u32, parts: u32) -> Self {
+        let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);
+        let to = if part + 1 == parts { self.to } else { cut(part + 1) };
+        Self { from: cut(part), to, ..self }
+    }
+}
+
+/// The order of the rows in a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From the first to the last.
+    Forward,
+    /// From the last to the first.
+    Backward,
+}
