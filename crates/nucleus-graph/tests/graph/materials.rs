@@ -92,3 +92,44 @@ fn a_preset_can_be_a_file_and_its_mistakes_are_reported() {
         assert_eq!(&text[mistakes[0].span.clone()], format!("{name:?}"));
     }
 }
+
+#[test]
+fn a_preset_that_is_based_on_itself_is_refused_with_its_cycle() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, text).expect("written");
+    };
+    write("self.ron", r#"nCloth(preset: "./self.ron", friction: 0.9)"#);
+    write("a.ron", r#"nCloth(preset: "sub/b.ron")"#);
+    write("sub/b.ron", r#"nCloth(preset: "../a.ron")"#);
+    for (name, cycle) in
+        [("self.ron", "`self.ron` → `./self.ron`"), ("a.ron", "`a.ron` → `sub/b.ron` → `../a.ron`")]
+    {
+        let text = cloth(&format!("preset: {name:?}"));
+        let mistakes = read_scene_text(&text, &file).map(|_| ()).expect_err(name);
+        let message = &mistakes[0].message;
+        assert!(message.ends_with(&format!("it is based on itself: {cycle}")), "{message}");
+        assert_eq!(mistakes[0].help.as_deref(), Some("take out one `preset`"));
+        assert_eq!(&text[mistakes[0].span.clone()], format!("{name:?}"));
+    }
+}
+
+#[test]
+fn a_preset_can_be_based_on_a_file_beside_it_but_not_through_endlessly_many() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    fs::create_dir(folder.path().join("sub")).expect("made");
+    let write = |k: usize, text: &str| fs::write(folder.path().join(format!("sub/{k}.ron")), text);
+    write(0, "nCloth(friction: 0.9)").expect("written");
+    for k in 1..=100 {
+        write(k, &format!("nCloth(preset: \"{}.ron\")", k - 1)).expect("written");
+    }
+    let (scene, _) = read_scene_text(&cloth(r#"preset: "sub/3.ron""#), &file).expect("it reads");
+    assert_eq!(scene.graph.node(scene.graph.find("c").expect("there")).get(&n_base::FRICTION), 0.9);
+    let mistakes =
+        read_scene_text(&cloth(r#"preset: "sub/100.ron""#), &file).map(|_| ()).expect_err("too long");
+    assert!(mistakes[0].message.ends_with("more than 64 presets are based on each other"), "{mistakes:?}");
+}

@@ -9,11 +9,15 @@
 //! | how `nodes` are read                                 | `declaration.rs`, `nodes.rs` |
 //! | how a setting is read: values, keys, maps            | `setting.rs`, `value.rs`, `keys.rs` |
 //! | how material presets are found and read              | `preset.rs`     |
-//! | how names of nodes become connections                | `references.rs` |
+//! | how names of nodes are resolved                      | `references.rs` |
+//! | how nodes are connected as Maya's commands do        | `creation.rs`   |
+//! | which components of a constraint are refused         | `components.rs` |
 //! | how `connections` are read                           | `connections.rs` |
 
 mod checks;
+mod components;
 mod connections;
+mod creation;
 mod declaration;
 mod fields;
 mod keys;
@@ -118,7 +122,7 @@ fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
     let connections = connections::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);
-    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, preset::find, findings);
+    let (graph, broken) = nodes::read_nodes(nodes?, &connections, &mut source, &preset::find, findings);
     let (time, every) = time.unwrap_or((TimeSpan { start: 1, end: 1, fps: 24.0 }, 1.0));
     let record = record.unwrap_or_default();
     Some((Scene { time, every, record, graph, checks: checks.unwrap_or_default(), source }, broken))

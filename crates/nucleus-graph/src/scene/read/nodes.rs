@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::Path;
 
 use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, read_component, time};
 use crate::diagnostic::{Findings, Severity, listed, nearest};
@@ -13,13 +13,15 @@ use crate::scene::preset::Preset;
 use crate::scene::syntax::{Node, Value, Word};
 
 use super::connections::Connections;
+use super::creation;
 use super::declaration::{Declaration, read_declarations};
-use super::references::{self, Reference, References};
+use super::references::{Reference, References};
 use super::setting::{read, read_part};
 use super::value::{expected, single, text};
 
-/// Finds a preset by its name, and by the path of a file. The error is a message and a help.
-type FindPreset = fn(&str, &dyn Fn(&str) -> PathBuf) -> Result<Preset, (String, String)>;
+/// Finds a preset by its name or file; names of files are relative to the folder of the file that is read. The error is
+/// a message and a help.
+type FindPreset<'a> = &'a dyn Fn(&str, &Source) -> Result<Preset, (String, String)>;
 
 /// Reads all nodes and connects them. Also returns the nodes with mistakes.
 pub(super) fn read_nodes(
@@ -74,18 +76,23 @@ pub(super) fn read_nodes(
         }
     }
     references.names.entry(CLOCK.to_owned()).or_insert(Some(graph.clock()));
-    references::connect(&mut graph, &references, connections, source, findings);
+    creation::connect(&mut graph, &references, connections, source, findings);
     let is_broken = |name: &str| references.names.get(name).is_some_and(Option::is_none);
     connections.connect(&mut graph, &is_broken, findings);
     (graph, broken)
 }
 
-/// Reads the node of a preset. References to other nodes are refused.
-pub(super) fn read_lone(declaration: &Declaration, presets: FindPreset, findings: &mut Findings) -> Graph {
+/// Reads the node of a preset in a file. References to other nodes are refused.
+pub(super) fn read_lone(
+    declaration: &Declaration,
+    file: &Path,
+    presets: FindPreset,
+    findings: &mut Findings,
+) -> Graph {
     let mut graph = Graph::new();
     let Ok(id) = graph.add(declaration.name, declaration.node_type) else { return graph };
     let mut references = References { names: Default::default(), all: Vec::new() };
-    let mut source = Source::default();
+    let mut source = Source::new(file);
     let mut reported = Findings::default();
     NodeReader {
         graph: &mut graph,
@@ -116,7 +123,7 @@ struct NodeReader<'a, 'b> {
     id: NodeId,
     declaration: &'a Declaration<'b>,
     source: &'a mut Source,
-    presets: FindPreset,
+    presets: FindPreset<'a>,
     findings: &'a mut Findings,
     references: &'a mut References,
     /// The settings so far: attribute, component of a vector, place.
@@ -218,7 +225,7 @@ impl NodeReader<'_, '_> {
         if name.is_empty() {
             return;
         }
-        let preset = match (self.presets)(name, &|file| self.source.path(file)) {
+        let preset = match (self.presets)(name, self.source) {
             Ok(preset) => preset,
             Err((message, help)) => {
                 self.findings.error(&node.span, message).help(help);

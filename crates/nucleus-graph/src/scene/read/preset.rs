@@ -6,6 +6,7 @@ use crate::attributes::{Attribute, NodeType};
 use crate::diagnostic::{Diagnostic, Findings, nearest};
 use crate::graph::Setting;
 use crate::memory::Memory;
+use crate::scene::document::Source;
 use crate::scene::file_text::{TextError, read_text};
 use crate::scene::preset::Preset;
 use crate::scene::syntax;
@@ -15,6 +16,9 @@ use super::nodes;
 
 /// Limit on the size of a preset file.
 const MAX_SIZE: Memory = Memory(1_000_000);
+
+/// Largest number of preset files of which each is based on the next.
+const MAX_CHAIN: usize = 64;
 
 /// The built-in presets by name.
 static PRESETS: [(&str, &str); 13] = [
@@ -38,12 +42,26 @@ pub fn presets() -> Vec<Preset> {
     PRESETS.iter().filter_map(|(name, text)| read_preset(name, text, Path::new(name)).ok()).collect()
 }
 
-/// The built-in preset of this name, or the preset in this file if the name ends in `.ron`. `file` resolves the name
-/// of a file to a path.
+/// The built-in preset of this name, or the preset in this file if the name ends in `.ron`. A path is relative to the
+/// folder of `source`.
 ///
 /// # Errors
-/// A message and a help: the preset does not exist, or its file cannot be read.
-pub(super) fn find(name: &str, file: &dyn Fn(&str) -> PathBuf) -> Result<Preset, (String, String)> {
+/// A message and a help: the preset does not exist, its file cannot be read, or it is based on itself.
+pub(super) fn find(name: &str, source: &Source) -> Result<Preset, (String, String)> {
+    find_within(&[], name, source)
+}
+
+/// A preset file that is being read.
+#[derive(Clone)]
+struct OpenPreset {
+    /// As the file above it names it.
+    name: String,
+    /// Without links and `..`, to compare.
+    path: PathBuf,
+}
+
+/// As [`find`], for a preset that the innermost of these files names.
+fn find_within(open: &[OpenPreset], name: &str, source: &Source) -> Result<Preset, (String, String)> {
     if let Some((name, text)) = PRESETS.iter().find(|(known, _)| *known == name) {
         return read_preset(name, text, Path::new(name)).map_err(|mistakes| refusal(name, &mistakes));
     }
@@ -53,7 +71,7 @@ pub(super) fn find(name: &str, file: &dyn Fn(&str) -> PathBuf) -> Result<Preset,
             near.map_or("`nucleus presets` lists them".to_owned(), |near| format!("did you mean `{near}`?"));
         return Err((format!("there is no preset `{name}`"), help));
     }
-    let path = file(name);
+    let path = source.path(name);
     let text = read_text(&path, MAX_SIZE).map_err(|error| {
         let message = match error {
             TextError::Unreadable { path, cause } => format!("cannot read the preset `{path}`: {cause}"),
@@ -71,14 +89,34 @@ pub(super) fn find(name: &str, file: &dyn Fn(&str) -> PathBuf) -> Result<Preset,
             format!("the preset `{name}` cannot be read: malformed at line {line}, column {column}");
         return Err((message, "a preset is a file like `nCloth(friction: 0.4)`".to_owned()));
     }
-    read_preset(name, &text, &path).map_err(|mistakes| refusal(name, &mistakes))
+    let own =
+        OpenPreset { name: name.to_owned(), path: path.canonicalize().unwrap_or_else(|_| path.clone()) };
+    let open = [open, &[own]].concat();
+    check_cycle(&open)?;
+    read_within(&open, name, &text, &path).map_err(|mistakes| refusal(name, &mistakes))
+}
+
+/// Refuses a preset that is based on itself, and chains that are too long.
+fn check_cycle(open: &[OpenPreset]) -> Result<(), (String, String)> {
+    let Some((last, before)) = open.split_last() else { return Ok(()) };
+    let help = "take out one `preset`";
+    if let Some(first) = before.iter().position(|preset| preset.path == last.path) {
+        let names: Vec<String> = open[first..].iter().map(|preset| format!("`{}`", preset.name)).collect();
+        return Err((format!("it is based on itself: {}", names.join(" → ")), help.to_owned()));
+    }
+    if open.len() > MAX_CHAIN {
+        return Err((format!("more than {MAX_CHAIN} presets are based on each other"), help.to_owned()));
+    }
+    Ok(())
 }
 
 fn refusal(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
-    let first = mistakes.first().map(|mistake| mistake.message.as_str()).unwrap_or_default();
+    let first = mistakes.first();
+    let message = first.map(|mistake| mistake.message.as_str()).unwrap_or_default();
+    let help = first.and_then(|mistake| mistake.help.clone());
     (
-        format!("the preset `{name}` cannot be read: {first}"),
-        "a preset is a file like `nCloth(friction: 0.4)`".to_owned(),
+        format!("the preset `{name}` cannot be read: {message}"),
+        help.unwrap_or_else(|| "a preset is a file like `nCloth(friction: 0.4)`".to_owned()),
     )
 }
 
@@ -87,8 +125,13 @@ fn refusal(name: &str, mistakes: &[Diagnostic]) -> (String, String) {
 /// # Errors
 /// All mistakes in the text.
 pub fn read_preset(name: &str, text: &str, file: &Path) -> Result<Preset, Vec<Diagnostic>> {
+    read_within(&[], name, text, file)
+}
+
+/// As [`read_preset`], for a preset that is read within these files.
+fn read_within(open: &[OpenPreset], name: &str, text: &str, file: &Path) -> Result<Preset, Vec<Diagnostic>> {
     let mut findings = Findings::new(file.to_owned());
-    let read = read_lone_node(text, &mut findings);
+    let read = read_lone_node(open, text, file, &mut findings);
     let comment = text.lines().next().and_then(|line| line.strip_prefix("//")).unwrap_or_default();
     match read {
         Some((node_type, settings)) if findings.errors() == 0 => {
@@ -100,7 +143,9 @@ pub fn read_preset(name: &str, text: &str, file: &Path) -> Result<Preset, Vec<Di
 
 /// Reads a text of one node without a name: its type and settings.
 fn read_lone_node(
+    open: &[OpenPreset],
     text: &str,
+    file: &Path,
     findings: &mut Findings,
 ) -> Option<(&'static NodeType, Vec<(&'static Attribute, Setting)>)> {
     let root = match syntax::parse(text) {
@@ -114,7 +159,8 @@ fn read_lone_node(
     };
     let declaration = declaration::unnamed(&root, findings)?;
     let node_type = declaration.node_type;
-    let graph = nodes::read_lone(&declaration, find, findings);
+    let graph =
+        nodes::read_lone(&declaration, file, &|name, source| find_within(open, name, source), findings);
     let (_, node) = graph.iter().find(|(_, node)| node.name() == declaration.name)?;
     let row = |name: &&'static str| node_type.attribute(name);
     let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
