@@ -1,6 +1,7 @@
 //! Checks of a run: `checks: [noPenetration, maxStretch(0.02)]`.
 //!
-//! A check is a figure of each frame and a bound on it. A new kind of check is a new row of `FORMS`.
+//! A check is a figure of each frame and a bound on it. A new kind of check is a new row of `FORMS`. A check whose first
+//! parameter is `frame` applies from that frame on; the last other parameter is its limit.
 
 use std::fmt;
 
@@ -25,8 +26,8 @@ pub struct Form {
     /// Their type.
     pub values: Values,
     bound: Bound,
-    limit: fn(&[f64]) -> f64,
-    figure: fn(&Sample, &[f64]) -> Option<f64>,
+    /// The figure of a frame; `None` if the run has none.
+    figure: fn(&Sample) -> Option<f64>,
 }
 
 /// The type of the arguments of a check.
@@ -78,13 +79,15 @@ pub struct Judge {
 
 /// The input of a check at one frame.
 struct Sample<'a> {
-    frame: i64,
     report: &'a StepReport,
     /// Count of penetrations; `None` without an audit.
     passed_through: Option<u64>,
     /// Total mass of all cloths in kilograms.
     mass: f64,
 }
+
+/// The first parameter of a check that applies from a frame on.
+const FRAME: &str = "frame";
 
 /// The check that requires an audit.
 const NO_CROSSING: &str = "noCrossing";
@@ -103,177 +106,135 @@ pub const RENAMED: &[(&str, &str)] =
     &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
 
 static FORMS: [Form; 18] = [
-    Form {
-        name: "noPenetration",
-        doc: "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
-        parameters: &[],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |_| 0.0,
-        figure: |sample, _| Some(sample.report.pairs_unresolved as f64),
-    },
-    Form {
-        name: MAX_UNRESOLVED,
-        doc: "No frame leaves more pairs of elements unresolved than this. Without this check a run fails with the first.",
-        parameters: &["pairs"],
-        values: Values::Counts,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.pairs_unresolved as f64),
-    },
-    Form {
-        name: MAX_DEPENETRATING,
-        doc: "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
-        parameters: &["points"],
-        values: Values::Counts,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.depenetrating as f64),
-    },
-    Form {
-        name: MAX_INTERSECTIONS,
-        doc: "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
-        parameters: &["edges"],
-        values: Values::Counts,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.intersections as f64),
-    },
-    Form {
-        name: NO_CROSSING,
-        doc: "Nothing is inside anything at the end of a frame that was not so at the start: cloth in itself, in other cloth, in a collider. With `--audit` nothing passes through on the way either.",
-        parameters: &[],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |_| 0.0,
-        figure: |sample, _| sample.passed_through.map(|count| count as f64),
-    },
-    Form {
-        name: MAX_STRETCH,
-        doc: "No link is longer than at rest by more than this share.",
-        parameters: &["strain"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.max_strain),
-    },
-    Form {
-        name: "maxStretch99",
-        doc: "99 % of the links are not longer than at rest by more than this share.",
-        parameters: &["strain"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.strain_99),
-    },
-    Form {
-        name: "settledStretch99",
-        doc: "From this frame on 99 % of the links are not longer than at rest by more than this share.",
-        parameters: &["frame", "strain"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[1],
-        figure: |seen, arguments| (seen.frame as f64 >= arguments[0]).then_some(seen.report.strain_99),
-    },
-    Form {
-        name: "minGap",
-        doc: "Nothing comes closer to a collider than this share of the thickness.",
-        parameters: &["gap"],
-        values: Values::Numbers,
-        bound: Bound::AtLeast,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.min_gap),
-    },
-    Form {
-        name: "finite",
-        doc: "Every position and velocity is a finite number.",
-        parameters: &[],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |_| 0.0,
-        figure: |sample, _| Some(if sample.report.finite { 0.0 } else { 1.0 }),
-    },
-    Form {
-        name: "maxWeldGap",
-        doc: "Nothing that is welded is farther apart than at rest by more than this many metres.",
-        parameters: &["distance"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.max_weld_gap),
-    },
-    Form {
-        name: "maxBroken",
-        doc: "No more links of constraints break than this.",
-        parameters: &["links"],
-        values: Values::Counts,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.broken_links as f64),
-    },
-    Form {
-        name: "tornBy",
-        doc: "From this frame on at least so many links of constraints are broken.",
-        parameters: &["frame", "links"],
-        values: Values::Counts,
-        bound: Bound::AtLeast,
-        limit: |arguments| arguments[1],
-        figure: |sample, arguments| {
-            (sample.frame as f64 >= arguments[0]).then_some(sample.report.broken_links as f64)
-        },
-    },
-    Form {
-        name: "minParticles",
-        doc: "From this frame on there are no fewer particles than this, of objects in which they are born and die.",
-        parameters: &["frame", "particles"],
-        values: Values::Counts,
-        bound: Bound::AtLeast,
-        limit: |arguments| arguments[1],
-        figure: |sample, arguments| {
-            (sample.frame as f64 >= arguments[0]).then_some(sample.report.particles as f64)
-        },
-    },
-    Form {
-        name: "maxParticles",
-        doc: "No frame has more particles than this, of objects in which they are born and die.",
-        parameters: &["particles"],
-        values: Values::Counts,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[0],
-        figure: |sample, _| Some(sample.report.particles as f64),
-    },
-    Form {
-        name: "volumeError",
-        doc: "From this frame on liquids are denser than at rest by not more than this share, on average over their particles.",
-        parameters: &["frame", "share"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[1],
-        figure: |sample, arguments| {
-            (sample.frame as f64 >= arguments[0]).then_some(sample.report.density_error)
-        },
-    },
-    Form {
-        name: "separatedBy",
-        doc: "From this frame on no edge of cloth goes through a face of cloth.",
-        parameters: &["frame"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |_| 0.0,
-        figure: |sample, arguments| {
-            (sample.frame as f64 >= arguments[0]).then_some(sample.report.intersections as f64)
-        },
-    },
-    Form {
-        name: "restsBy",
-        doc: "From this frame on the root mean square speed, in m/s, is not above this.",
-        parameters: &["frame", "speed"],
-        values: Values::Numbers,
-        bound: Bound::AtMost,
-        limit: |arguments| arguments[1],
-        figure: |sample, arguments| (sample.frame as f64 >= arguments[0]).then(|| sample.speed()),
-    },
+    at_most(
+        "noPenetration",
+        &[],
+        |sample| Some(sample.report.pairs_unresolved as f64),
+        "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
+    ),
+    at_most(
+        MAX_UNRESOLVED,
+        &["pairs"],
+        |sample| Some(sample.report.pairs_unresolved as f64),
+        "No frame leaves more pairs of elements unresolved than this. Without this check a run fails with the first.",
+    ).counting(),
+    at_most(
+        MAX_DEPENETRATING,
+        &["points"],
+        |sample| Some(sample.report.depenetrating as f64),
+        "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
+    ).counting(),
+    at_most(
+        MAX_INTERSECTIONS,
+        &["edges"],
+        |sample| Some(sample.report.intersections as f64),
+        "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
+    ).counting(),
+    at_most(
+        NO_CROSSING,
+        &[],
+        |sample| sample.passed_through.map(|count| count as f64),
+        "Nothing is inside anything at the end of a frame that was not so at the start: cloth in itself, in other cloth, in a collider. With `--audit` nothing passes through on the way either.",
+    ),
+    at_most(
+        MAX_STRETCH,
+        &["strain"],
+        |sample| Some(sample.report.max_strain),
+        "No link is longer than at rest by more than this share.",
+    ),
+    at_most(
+        "maxStretch99",
+        &["strain"],
+        |sample| Some(sample.report.strain_99),
+        "99 % of the links are not longer than at rest by more than this share.",
+    ),
+    at_most(
+        "settledStretch99",
+        &["frame", "strain"],
+        |sample| Some(sample.report.strain_99),
+        "From this frame on 99 % of the links are not longer than at rest by more than this share.",
+    ),
+    at_least(
+        "minGap",
+        &["gap"],
+        |sample| Some(sample.report.min_gap),
+        "Nothing comes closer to a collider than this share of the thickness.",
+    ),
+    at_most(
+        "finite",
+        &[],
+        |sample| Some(if sample.report.finite { 0.0 } else { 1.0 }),
+        "Every position and velocity is a finite number.",
+    ),
+    at_most(
+        "maxWeldGap",
+        &["distance"],
+        |sample| Some(sample.report.max_weld_gap),
+        "Nothing that is welded is farther apart than at rest by more than this many metres.",
+    ),
+    at_most(
+        "maxBroken",
+        &["links"],
+        |sample| Some(sample.report.broken_links as f64),
+        "No more links of constraints break than this.",
+    ).counting(),
+    at_least(
+        "tornBy",
+        &["frame", "links"],
+        |sample| Some(sample.report.broken_links as f64),
+        "From this frame on at least so many links of constraints are broken.",
+    ).counting(),
+    at_least(
+        "minParticles",
+        &["frame", "particles"],
+        |sample| Some(sample.report.particles as f64),
+        "From this frame on there are no fewer particles than this, of objects in which they are born and die.",
+    ).counting(),
+    at_most(
+        "maxParticles",
+        &["particles"],
+        |sample| Some(sample.report.particles as f64),
+        "No frame has more particles than this, of objects in which they are born and die.",
+    ).counting(),
+    at_most(
+        "volumeError",
+        &["frame", "share"],
+        |sample| Some(sample.report.density_error),
+        "From this frame on liquids are denser than at rest by not more than this share, on average over their particles.",
+    ),
+    at_most(
+        "separatedBy",
+        &["frame"],
+        |sample| Some(sample.report.intersections as f64),
+        "From this frame on no edge of cloth goes through a face of cloth.",
+    ),
+    at_most(
+        "restsBy",
+        &["frame", "speed"],
+        |sample| Some(sample.speed()),
+        "From this frame on the root mean square speed, in m/s, is not above this.",
+    ),
 ];
+
+/// A check that a figure is not above its last argument, or 0 without one.
+const fn at_most(
+    name: &'static str,
+    parameters: &'static [&'static str],
+    figure: fn(&Sample) -> Option<f64>,
+    doc: &'static str,
+) -> Form {
+    Form { name, doc, parameters, values: Values::Numbers, bound: Bound::AtMost, figure }
+}
+
+/// A check that a figure is not below its last argument.
+const fn at_least(
+    name: &'static str,
+    parameters: &'static [&'static str],
+    figure: fn(&Sample) -> Option<f64>,
+    doc: &'static str,
+) -> Form {
+    Form { bound: Bound::AtLeast, ..at_most(name, parameters, figure, doc) }
+}
 
 impl Sample<'_> {
     /// Root mean square speed in m/s.
@@ -313,7 +274,14 @@ impl Check {
 
     /// Its bound and limit.
     pub fn limit(&self) -> (Bound, f64) {
-        (self.form.bound, (self.form.limit)(&self.arguments))
+        let last = self.form.parameters.last().filter(|name| **name != FRAME).and(self.arguments.last());
+        (self.form.bound, last.copied().unwrap_or(0.0))
+    }
+
+    /// Whether it applies to a frame.
+    fn applies_to(&self, frame: i64) -> bool {
+        let from = self.form.parameters.first().filter(|name| **name == FRAME).and(self.arguments.first());
+        from.is_none_or(|from| frame as f64 >= *from)
     }
 
     /// Whether a figure is within the limit. NaN never is.
@@ -363,6 +331,11 @@ impl Form {
         }
     }
 
+    /// The same for arguments that are counts.
+    const fn counting(self) -> Self {
+        Self { values: Values::Counts, ..self }
+    }
+
     /// All kinds of checks.
     pub fn all() -> &'static [Form] {
         &FORMS
@@ -379,10 +352,12 @@ impl Judge {
     /// Evaluates the checks at the next frame.
     pub fn see(&mut self, frame: &FrameReport) {
         let FrameReport { frame, ref report, passed_through } = *frame;
-        let sample = Sample { frame, report, passed_through, mass: self.mass };
+        let sample = Sample { report, passed_through, mass: self.mass };
         for outcome in &mut self.outcomes {
             let check = &outcome.check;
-            let Some(figure) = (check.form.figure)(&sample, &check.arguments) else { continue };
+            let Some(figure) = (check.form.figure)(&sample).filter(|_| check.applies_to(frame)) else {
+                continue;
+            };
             if outcome.worst.is_none_or(|(worst, _)| check.is_worse(figure, worst)) {
                 outcome.worst = Some((figure, frame));
                 outcome.passed = check.accepts(figure);
