@@ -1,50 +1,13 @@
 //! A Maya scene as a scene of ours.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use nucleus_graph::scene::{Record, Scene, Source, TimeSpan, read_scene_text, write_scene};
 
 use crate::ascii::{ImportError, SourceText};
-use crate::nucleus_nodes::{Importer, OWN_FILE};
+use crate::nucleus_nodes::{BorrowedOptions, ImportOptions, Importer, OWN_FILE};
 use crate::omissions::Omissions;
 use crate::scene::MayaScene;
-
-/// Writes a file: its name, and its text. The error is a message.
-pub type WriteFile<'a> = dyn FnMut(&str, String) -> Result<(), String> + 'a;
-
-/// How a scene is imported.
-pub struct ImportOptions<'a> {
-    /// Meshes that the artist gives: the name of a node and an OBJ file.
-    pub meshes: Vec<(String, PathBuf)>,
-    /// The folder of the meshes, relative to our scene file.
-    pub folder: String,
-    /// Reads resistances as stiffnesses in place of Maya's counts of iterations.
-    pub physical: bool,
-    /// Writes a file of a mesh: its name relative to our scene file, and its text. The error is a message.
-    pub write: Box<WriteFile<'a>>,
-}
-
-impl<'a> ImportOptions<'a> {
-    /// Without meshes of the artist, in Maya's model of resistances.
-    pub fn new(folder: &str, write: impl FnMut(&str, String) -> Result<(), String> + 'a) -> Self {
-        Self { meshes: Vec::new(), folder: folder.to_owned(), physical: false, write: Box::new(write) }
-    }
-}
-
-/// The options, as an import uses them.
-pub(crate) struct Wishes<'s> {
-    pub(crate) meshes: &'s [(String, PathBuf)],
-    pub(crate) folder: &'s str,
-    pub(crate) physical: bool,
-    pub(crate) write: &'s mut WriteFile<'s>,
-}
-
-impl<'s> Wishes<'s> {
-    pub(crate) fn of(options: &'s mut ImportOptions<'_>) -> Self {
-        let ImportOptions { meshes, folder, physical, write } = options;
-        Self { meshes, folder, physical: *physical, write: &mut **write }
-    }
-}
 
 /// An imported scene.
 #[derive(Debug)]
@@ -106,7 +69,7 @@ pub fn import_text(
     };
     let mut omissions = std::mem::take(&mut maya.omissions);
     let refused = |message: String| ImportError::Refused { file: path.clone(), message };
-    let carried = Importer::new(&maya, own.is_some(), Wishes::of(options)).run().map_err(refused)?;
+    let carried = Importer::new(&maya, own.is_some(), BorrowedOptions::of(options)).run().map_err(refused)?;
     omissions.extend(carried.omissions);
     let [start, end] = carried.frames;
     let source = Source::new(ron);

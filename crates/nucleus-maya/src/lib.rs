@@ -13,7 +13,8 @@
 //! | what is left out, and why                              | [`omissions`]                 |
 //! | how Maya ASCII is split into statements                | [`ascii`]                     |
 //! | nodes, the DAG, references, attributes                 | [`scene`]                     |
-//! | meshes, primitives, construction history               | [`mesh`]                      |
+//! | meshes, primitives, operators                          | [`mesh`]                      |
+//! | the mesh of a shape: construction history              | `history.rs`                  |
 //! | curves, expressions, transforms                        | [`animation`]                 |
 //! | blend shapes, skin clusters                            | `deform/`                     |
 //! | which attributes and connections are carried over      | `nucleus_nodes/`              |
@@ -24,6 +25,7 @@
 pub mod animation;
 pub mod ascii;
 mod deform;
+mod history;
 mod import;
 pub mod mesh;
 pub mod ncache;
@@ -34,6 +36,7 @@ pub mod scene;
 mod write;
 
 pub use ascii::ImportError;
-pub use import::{ImportOptions, Imported, WriteFile, import_scene, import_text, is_maya_scene};
+pub use import::{Imported, import_scene, import_text, is_maya_scene};
+pub use nucleus_nodes::{ImportOptions, WriteFile};
 pub use preset::{maya_preset, preset_text, read_maya_preset};
 pub use write::maya_ascii;

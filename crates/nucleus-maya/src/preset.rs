@@ -8,8 +8,8 @@ use nucleus_graph::graph::{Channel, Setting};
 use nucleus_graph::scene::Preset;
 
 use crate::ascii::{ImportError, SourceText, Statements, Token, Tokens};
-use crate::import::{ImportOptions, Wishes};
 use crate::nucleus_nodes::Importer;
+use crate::nucleus_nodes::{BorrowedOptions, ImportOptions};
 use crate::omissions::Omissions;
 use crate::scene::MayaScene;
 
@@ -49,7 +49,8 @@ pub fn read_maya_preset(path: &Path) -> Result<(Preset, Omissions), ImportError>
     };
     let scene = MayaScene::of_text(SourceText { path: path.to_owned(), text })?;
     let mut options = ImportOptions::new("", |_, _| Ok(()));
-    let (settings, omissions) = Importer::new(&scene, false, Wishes::of(&mut options)).lone_node(node_type);
+    let (settings, omissions) =
+        Importer::new(&scene, false, BorrowedOptions::of(&mut options)).lone_node(node_type);
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let doc = format!("{name}, from a preset of Maya.");
     Ok((Preset { name, doc, node_type, settings }, omissions))

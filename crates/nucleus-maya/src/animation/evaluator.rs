@@ -7,6 +7,7 @@ use std::rc::Rc;
 use crate::scene::{MayaScene, NodeId, PlugRef, Wire};
 
 use super::curve::MayaCurve;
+use super::names;
 use super::script::Script;
 
 /// Longest chain of nodes that is followed; a longer one is a cycle.
@@ -144,8 +145,8 @@ impl<'s> Evaluator<'s> {
             "expression" => {
                 let script = self.script(node);
                 let index = path.segments().find_map(|segment| segment.range)?.0;
-                let result = script.as_ref().as_ref().ok()?.output(self, node, index, frame);
-                result.ok()
+                let named = |name: &str| self.named(node, name, frame);
+                script.as_ref().as_ref().ok()?.output(index, &named).ok()
             }
             // An attribute that is passed on: of a transform, a locator, a control.
             "transform" | "joint" | "locator" | "nucleus" | "nCloth" | "nRigid" | "nParticle"
@@ -157,10 +158,30 @@ impl<'s> Evaluator<'s> {
         }
     }
 
+    /// The value of a name in an expression: the time, an input of its node, or an attribute of another.
+    pub(super) fn named(&self, node: NodeId, name: &str, frame: f64) -> Option<f64> {
+        match name {
+            "frame" => return Some(frame),
+            "time" => return Some(frame / self.scene.units.fps),
+            _ => {}
+        }
+        let (other, path) = name.rsplit_once('.')?;
+        if !other.is_empty() {
+            return self.number(self.scene.find(other)?, &[path], frame);
+        }
+        let index =
+            path.split_once('[').and_then(|(_, index)| index.trim_end_matches(']').parse::<u32>().ok());
+        match self.scene.source(node, &["in", "input"], index) {
+            Some(wire) => self.output(wire.from, frame),
+            // Inputs that nothing drives hold their last value.
+            None => self.scene.array(node, &["in", "input"], 1, &[])?.get(index? as usize).copied(),
+        }
+    }
+
     /// A component that is stored or connected as part of a whole: `tx` of `t`.
     fn of_whole(&self, plug: PlugRef, frame: f64) -> Option<f64> {
         let last = self.scene.path(plug).last().name;
-        let (vector, default) = super::placement::names::vector_of(last)?;
+        let (vector, default) = names::vector_of(last)?;
         let part = vector.parts.iter().position(|names| names.contains(&last))?;
         Some(self.vector(plug.node, vector, [default; 3], frame)[part])
     }
@@ -205,7 +226,7 @@ impl<'s> Evaluator<'s> {
     pub fn part_of(&self, wire: Wire, part: usize, frame: f64) -> Option<f64> {
         let node = wire.from.node;
         let last = self.scene.path(wire.from).last().name;
-        let (vector, default) = super::placement::names::vector_of_whole(last)?;
+        let (vector, default) = names::vector_of_whole(last)?;
         if !matches!(self.scene.kind(node), "transform" | "joint") || self.depth.get() >= MAX_DEPTH {
             return None;
         }

@@ -7,6 +7,7 @@
 //! | an expression node                                     | [`Script`]          |
 //! | how a driven attribute becomes keys of ours            | `channel.rs`        |
 //! | where a transform is                                   | `placement.rs`      |
+//! | the names of its attributes                            | [`names`]           |
 //!
 //! **Invariant:** a curve that ours can follow exactly keeps its keys. Any other is sampled at every frame, between
 //! which the solver interpolates linearly anyway (N2.4-7).
@@ -14,11 +15,12 @@
 mod channel;
 mod curve;
 mod evaluator;
+pub mod names;
 mod placement;
 mod script;
 mod syntax;
 
 pub use curve::MayaCurve;
 pub use evaluator::Evaluator;
-pub use placement::{Matrix, names};
+pub use placement::Matrix;
 pub use script::Script;

@@ -2,9 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::NodeId;
-
-use super::evaluator::Evaluator;
 use super::syntax::{self, Step, Term};
 
 /// A translated expression.
@@ -14,10 +11,9 @@ pub struct Script {
 }
 
 /// The values that an evaluation needs.
-struct Scope<'a, 's> {
-    evaluator: &'a Evaluator<'s>,
-    node: NodeId,
-    frame: f64,
+struct Scope<'a> {
+    /// The values of names that are not variables.
+    named: &'a dyn Fn(&str) -> Option<f64>,
     variables: BTreeMap<String, f64>,
 }
 
@@ -52,12 +48,12 @@ impl Script {
         self.steps.iter().any(step)
     }
 
-    /// The value of an output at a frame.
+    /// The value of an output; `named` gives the values of attributes, `time` and `frame`.
     ///
     /// # Errors
     /// When the expression does not set it, or reads something that has no value.
-    pub fn output(&self, evaluator: &Evaluator, node: NodeId, index: u32, frame: f64) -> Result<f64, String> {
-        let mut scope = Scope { evaluator, node, frame, variables: BTreeMap::new() };
+    pub fn output(&self, index: u32, named: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String> {
+        let mut scope = Scope { named, variables: BTreeMap::new() };
         scope.run(&self.steps)?;
         let name = format!(".O[{index}]");
         scope.variables.get(&name).copied().ok_or_else(|| format!("it does not set output {index}"))
@@ -89,7 +85,7 @@ fn check(term: &Term) -> Result<(), String> {
     }
 }
 
-impl Scope<'_, '_> {
+impl Scope<'_> {
     fn run(&mut self, steps: &[Step]) -> Result<(), String> {
         for step in steps {
             match step {
@@ -149,28 +145,10 @@ impl Scope<'_, '_> {
             return Ok(*value);
         }
         match name {
-            "frame" => return Ok(self.frame),
-            "time" => return Ok(self.frame / self.evaluator.scene.units.fps),
-            "true" | "on" | "yes" => return Ok(1.0),
-            "false" | "off" | "no" => return Ok(0.0),
-            _ => {}
+            "true" | "on" | "yes" => Ok(1.0),
+            "false" | "off" | "no" => Ok(0.0),
+            _ => (self.named)(name).ok_or_else(|| format!("`{name}` has no value")),
         }
-        let missing = || format!("`{name}` has no value");
-        let (node, path) = name.rsplit_once('.').ok_or_else(missing)?;
-        if node.is_empty() {
-            let index = path.split_once('[').and_then(|(_, index)| index.trim_end_matches(']').parse().ok());
-            return match self.evaluator.scene.source(self.node, &["in", "input"], index) {
-                Some(wire) => self.evaluator.output(wire.from, self.frame).ok_or_else(missing),
-                // Inputs that nothing drives hold their last value.
-                None => {
-                    let all =
-                        self.evaluator.scene.array(self.node, &["in", "input"], 1, &[]).unwrap_or_default();
-                    index.and_then(|index: u32| all.get(index as usize).copied()).ok_or_else(missing)
-                }
-            };
-        }
-        let id = self.evaluator.scene.find(node).ok_or_else(missing)?;
-        self.evaluator.number(id, &[path], self.frame).ok_or_else(missing)
     }
 }
 
@@ -253,6 +231,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::animation::Evaluator;
     use crate::ascii::SourceText;
     use crate::scene::MayaScene;
 
@@ -263,7 +242,7 @@ mod tests {
         let scene = MayaScene::of_text(source).unwrap();
         let evaluator = Evaluator::new(&scene);
         let node = scene.find("e").unwrap();
-        Script::parse(text)?.output(&evaluator, node, 0, frame)
+        Script::parse(text)?.output(0, &|name| evaluator.named(node, name, frame))
     }
 
     #[test]

@@ -5,6 +5,8 @@ use crate::mesh::{Built, Components, Poly};
 use crate::omissions::Cause;
 use crate::scene::NodeId;
 
+use super::InputMesh;
+
 /// The item of a target that is reached at weight 1.
 const FULL: u32 = 6000;
 
@@ -20,11 +22,11 @@ pub(super) fn apply(
     frame: f64,
     envelope: f64,
     mesh: &mut Poly,
-    depth: usize,
+    input: &InputMesh,
     built: &mut Built,
 ) {
     let weights = evaluator.elements(id, &["w", "weight"], frame);
-    let mut targets = connected(evaluator, id, frame, &weights, mesh, depth, built);
+    let mut targets = connected(evaluator, id, &weights, mesh, input, built);
     let known: Vec<u32> = targets.iter().map(|(index, _)| *index).collect();
     targets.extend(stored(evaluator, id, &weights).into_iter().filter(|(index, _)| !known.contains(index)));
     for (_, target) in targets {
@@ -41,10 +43,9 @@ pub(super) fn apply(
 fn connected(
     evaluator: &Evaluator,
     id: NodeId,
-    frame: f64,
     weights: &[f64],
     base: &Poly,
-    depth: usize,
+    input: &InputMesh,
     built: &mut Built,
 ) -> Vec<(u32, Target)> {
     let scene = evaluator.scene;
@@ -69,7 +70,7 @@ fn connected(
             continue;
         }
         let weight = weights.get(group as usize).copied().unwrap_or(0.0);
-        match evaluator.input_mesh(wire.from, frame, depth, built) {
+        match input(wire.from, built) {
             Ok(target) if target.points.len() == base.points.len() => {
                 let offset = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| b[k] - a[k]);
                 let pairs = base.points.iter().zip(&target.points).map(offset);

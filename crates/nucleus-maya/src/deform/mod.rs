@@ -12,7 +12,7 @@ mod skin_cluster;
 use crate::animation::Evaluator;
 use crate::mesh::{Built, Poly};
 use crate::omissions::Cause;
-use crate::scene::NodeId;
+use crate::scene::{NodeId, PlugRef};
 
 /// Whether a type of node deforms its input. Those that are not carried out pass it on.
 pub(crate) fn is_deformer(kind: &str) -> bool {
@@ -41,19 +41,22 @@ pub(crate) fn is_deformer(kind: &str) -> bool {
     ALL.contains(&kind)
 }
 
-/// The result of a deformer.
+/// Builds the mesh that flows from a plug, and notes what its history leaves out.
+pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut Built) -> Result<Poly, String> + 'a;
+
+/// The result of a deformer; `input` builds further meshes that it reads.
 pub(crate) fn deformed(
     evaluator: &Evaluator,
     id: NodeId,
     frame: f64,
     mut mesh: Poly,
-    depth: usize,
+    input: &InputMesh,
     built: &mut Built,
 ) -> Result<Poly, String> {
     let scene = evaluator.scene;
     let envelope = evaluator.number_or(id, &["en", "envelope"], frame, 1.0);
     match scene.kind(id) {
-        "blendShape" => blend_shape::apply(evaluator, id, frame, envelope, &mut mesh, depth, built),
+        "blendShape" => blend_shape::apply(evaluator, id, frame, envelope, &mut mesh, input, built),
         "skinCluster" => skin_cluster::apply(evaluator, id, frame, envelope, &mut mesh),
         "tweak" => tweak(evaluator, id, &mut mesh),
         kind => built.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned()))),

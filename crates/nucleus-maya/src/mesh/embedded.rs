@@ -9,7 +9,7 @@ use super::poly::Poly;
 ///
 /// # Errors
 /// When its parts do not fit together.
-pub(super) fn stored(scene: &MayaScene, id: NodeId) -> Result<Option<Poly>, String> {
+pub(crate) fn stored(scene: &MayaScene, id: NodeId) -> Result<Option<Poly>, String> {
     let broken = || "an index leads far beyond what the file gives".to_owned();
     let numbers = scene.array(id, &["vt", "vrts"], 3, &[&["vx", "vrtx"], &["vy", "vrty"], &["vz", "vrtz"]]);
     let numbers = numbers.ok_or_else(broken)?;
@@ -32,7 +32,7 @@ pub(super) fn stored(scene: &MayaScene, id: NodeId) -> Result<Option<Poly>, Stri
 }
 
 /// Adds the tweaks of a shape to its points, or to those that its history makes.
-pub(super) fn add_tweaks(scene: &MayaScene, id: NodeId, mesh: &mut Poly) {
+pub(crate) fn add_tweaks(scene: &MayaScene, id: NodeId, mesh: &mut Poly) {
     let tweaks = scene.array(id, &["pt", "pnts"], 3, &[&["px", "pntx"], &["py", "pnty"], &["pz", "pntz"]]);
     add(&mut mesh.points, &tweaks.unwrap_or_default(), scene.units.centimetres);
 }

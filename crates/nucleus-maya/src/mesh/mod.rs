@@ -1,4 +1,4 @@
-//! Meshes: embedded in a shape, or built again by their construction history.
+//! Meshes: embedded in a shape, primitives, and the operators of construction history.
 //!
 //! | You want to know...                                 | Read               |
 //! |-----------------------------------------------------|--------------------|
@@ -6,23 +6,21 @@
 //! | `.vt`, `.ed`, `.fc` and `.pt` of a shape            | `embedded.rs`      |
 //! | Maya's primitives                                   | `primitives.rs`    |
 //! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs` |
-//! | the mesh of a shape at a frame                      | [`Evaluator::mesh`](crate::animation::Evaluator::mesh) |
+//! | the mesh of a shape at a frame                      | `history.rs`, one level up |
 //! | a mesh as an OBJ file                               | [`obj_text`]       |
 //!
 //! **Invariant:** points are in the space of the shape, in centimetres, and keep Maya's numbers as far as those are known.
 
-mod embedded;
+pub(crate) mod embedded;
 mod extrude;
-mod history;
 mod obj;
-mod operators;
+pub(crate) mod operators;
 mod poly;
-mod primitives;
+pub(crate) mod primitives;
 mod subdivide;
 
-pub use history::Built;
 pub use obj::obj_text;
-pub use poly::{Components, Poly};
+pub use poly::{Built, Components, Poly};
 pub(crate) use primitives::own_primitive;
 
 use crate::scene::{MayaScene, NodeId};

@@ -52,7 +52,7 @@ const PASSED_OVER: [&str; 34] = [
 ];
 
 /// What an operator does to its input.
-pub(super) enum Operation {
+pub(crate) enum Operation {
     /// Done.
     Done(Poly),
     /// The type of the node is not carried out; its input is passed on.
@@ -60,7 +60,7 @@ pub(super) enum Operation {
 }
 
 /// Applies the operator of a history node to its input.
-pub(super) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation {
+pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation {
     let kind = scene.kind(id);
     let picked = || {
         scene.value(id, &["ics", "inputComponents"]).map(|values| Components::of(&values)).unwrap_or_default()
@@ -271,7 +271,7 @@ fn borders(mesh: &Poly) -> Vec<Vec<u32>> {
 }
 
 /// Meshes joined to one, each in its own placement.
-pub(super) fn united(parts: &[(Poly, Matrix)]) -> Poly {
+pub(crate) fn united(parts: &[(Poly, Matrix)]) -> Poly {
     let mut made = Poly::default();
     for (part, matrix) in parts {
         let first = made.points.len() as u32;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::ascii::Values;
+use crate::omissions::Cause;
 
 /// A polygon mesh. Lengths in centimetres.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,6 +20,17 @@ pub struct Poly {
     pub uvs: Vec<[f64; 2]>,
     /// The texture coordinate of each corner; empty if there are none.
     pub uv_corners: Vec<u32>,
+}
+
+/// A mesh, and what its history left out.
+#[derive(Debug, Clone, Default)]
+pub struct Built {
+    /// The mesh in the space of the shape, in centimetres.
+    pub mesh: Poly,
+    /// Nodes that were passed over, and why.
+    pub omitted: Vec<(String, Cause)>,
+    /// Whether a deformer acts on it, so that it may change from frame to frame.
+    pub is_deformed: bool,
 }
 
 impl Poly {

@@ -60,7 +60,7 @@ pub(crate) fn is_upright(scene: &MayaScene, id: NodeId) -> bool {
 ///
 /// # Errors
 /// When its parameters make no mesh.
-pub(super) fn primitive(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
+pub(crate) fn primitive(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
     let mut made = match own_primitive(scene, id) {
         Some(own) => of_own(&own),
         None => other(scene, id)?,

@@ -10,18 +10,18 @@ use nucleus_graph::attributes::{
 use nucleus_graph::graph::{Graph, NodeId as OwnId, Setting};
 
 use crate::animation::Evaluator;
-use crate::import::Wishes;
 use crate::omissions::{Cause, Omissions};
 use crate::scene::{ANY, MayaScene, NodeId};
 
 use super::kept::{Kept, KeptNodes, MARK_AUTOMATIC};
 use super::meshes::Plan;
+use super::options::BorrowedOptions;
 
 /// Carries the nodes of a Maya scene over into a graph.
 pub(crate) struct Importer<'s> {
     pub(super) scene: &'s MayaScene,
     pub(super) values: Evaluator<'s>,
-    pub(super) options: Wishes<'s>,
+    pub(super) options: BorrowedOptions<'s>,
     pub(super) graph: Graph,
     pub(super) kept: KeptNodes,
     own: BTreeMap<usize, OwnId>,
@@ -42,7 +42,7 @@ pub(crate) struct Carried {
 }
 
 impl<'s> Importer<'s> {
-    pub(crate) fn new(scene: &'s MayaScene, is_own: bool, options: Wishes<'s>) -> Self {
+    pub(crate) fn new(scene: &'s MayaScene, is_own: bool, options: BorrowedOptions<'s>) -> Self {
         let mut omissions = Omissions::default();
         let kept = KeptNodes::of(scene, is_own, &mut omissions);
         let frames = frames(scene, &kept, is_own);

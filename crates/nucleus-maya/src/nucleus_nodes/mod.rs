@@ -17,8 +17,11 @@ mod constraints;
 mod importer;
 mod kept;
 mod meshes;
+mod options;
 mod transforms;
 mod wiring;
 
 pub(crate) use importer::Importer;
 pub(crate) use kept::{MARK_AUTOMATIC, MARK_NAME, MARK_PAINT, OWN_FILE};
+pub(crate) use options::BorrowedOptions;
+pub use options::{ImportOptions, WriteFile};

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nucleus_graph::attributes::{Choice, n_base, n_cloth, n_rigid, nucleus};
 use nucleus_graph::graph::NodeId;
 
-use super::Writer;
+use super::writer::Writer;
 
 /// Thickness over the square root of the area of the bounding box, at most: cloth, collider.
 const SHARES: [f64; 2] = [0.005, 0.003];

@@ -8,7 +8,7 @@ use nucleus_graph::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly
 use nucleus_graph::graph::NodeId;
 use nucleus_graph::mesh::{Primitive, read_obj};
 
-use super::Writer;
+use super::writer::Writer;
 
 impl Writer<'_> {
     /// The surface of a mesh node at the first frame; `None` for a mesh that only displays another.

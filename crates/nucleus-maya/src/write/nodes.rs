@@ -2,41 +2,15 @@
 
 use std::fmt::Write;
 
-use nucleus_graph::attributes::{
-    Attribute, camera, dynamic_constraint, mesh, n_base, n_cloth, nucleus, particle, surface_shape, transform,
-};
+use nucleus_graph::attributes::{Attribute, mesh, n_base, n_cloth, nucleus, surface_shape};
 use nucleus_graph::graph::NodeId;
 
 use crate::nucleus_nodes::{MARK_AUTOMATIC, MARK_NAME};
 use crate::omissions::Cause;
 
-use super::{Writer, quoted};
-
-/// Whether an attribute is one of a transform.
-pub(super) fn is_of_transform(row: &Attribute) -> bool {
-    let rows = [
-        &transform::TRANSLATE.row,
-        &transform::ROTATE.row,
-        &transform::SCALE.row,
-        &transform::ROTATE_ORDER.row,
-        &transform::VISIBILITY.row,
-    ];
-    rows.contains(&row)
-}
+use super::writer::{Writer, is_of_transform, quoted};
 
 impl Writer<'_> {
-    /// Whether a node has a shape under a transform in Maya.
-    pub(super) fn has_shape(&self, id: NodeId) -> bool {
-        let node_type = self.graph().node(id).node_type();
-        let shapes = [
-            &surface_shape::SURFACE_SHAPE,
-            &particle::PARTICLE,
-            &dynamic_constraint::DYNAMIC_CONSTRAINT,
-            &camera::CAMERA,
-        ];
-        shapes.iter().any(|shape| node_type.is_a(shape))
-    }
-
     /// Writes a node with its values.
     pub(super) fn node(&mut self, id: NodeId) -> Result<(), String> {
         let node = self.graph().node(id);

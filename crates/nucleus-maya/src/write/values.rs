@@ -9,7 +9,7 @@ use nucleus_graph::graph::{Channel, NodeId, Setting};
 use crate::nucleus_nodes::MARK_PAINT;
 use crate::omissions::Cause;
 
-use super::{Writer, quoted};
+use super::writer::{Writer, is_of_transform, quoted};
 
 impl Writer<'_> {
     /// Writes the settings of a node whose rows are picked.
@@ -21,7 +21,7 @@ impl Writer<'_> {
             let Some(row) = graph.node(id).node_type().attribute(name).filter(|row| picked(row)) else {
                 continue;
             };
-            let node = if super::nodes::is_of_transform(row) { &outer } else { &shape };
+            let node = if is_of_transform(row) { &outer } else { &shape };
             self.setting(node, row, setting);
         }
     }

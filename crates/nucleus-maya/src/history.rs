@@ -2,25 +2,12 @@
 
 use crate::animation::{Evaluator, Matrix};
 use crate::deform;
+use crate::mesh::{Built, Poly, embedded, operators, primitives};
 use crate::omissions::Cause;
 use crate::scene::{NodeId, PlugRef};
 
-use super::poly::Poly;
-use super::{embedded, operators, primitives};
-
 /// Longest history that is followed.
 const MAX_DEPTH: usize = 500;
-
-/// A mesh, and what its history left out.
-#[derive(Debug, Clone, Default)]
-pub struct Built {
-    /// The mesh in the space of the shape, in centimetres.
-    pub mesh: Poly,
-    /// Nodes that were passed over, and why.
-    pub omitted: Vec<(String, Cause)>,
-    /// Whether a deformer acts on it, so that it may change from frame to frame.
-    pub is_deformed: bool,
-}
 
 /// Inputs of history nodes.
 const INPUTS: [&[&str]; 3] = [&["ip", "inputPolymesh"], &["ig", "inputGeometry"], &["i", "inMesh"]];
@@ -71,7 +58,7 @@ impl Evaluator<'_> {
 
     fn made_by(&self, plug: PlugRef, frame: f64, depth: usize, built: &mut Built) -> Result<Poly, String> {
         if depth > MAX_DEPTH {
-            return Err("its history is endless".to_owned());
+            return Err("its history is a cycle, or too long".to_owned());
         }
         let (id, scene) = (plug.node, self.scene);
         let kind = scene.kind(id);
@@ -100,7 +87,8 @@ impl Evaluator<'_> {
         let mesh = self.made_by(input.from, frame, depth + 1, built)?;
         if deform::is_deformer(kind) {
             built.is_deformed = true;
-            return deform::deformed(self, id, frame, mesh, depth, built);
+            let input = |plug, built: &mut Built| self.made_by(plug, frame, depth + 1, built);
+            return deform::deformed(self, id, frame, mesh, &input, built);
         }
         Ok(match operators::apply(scene, id, mesh) {
             operators::Operation::Done(mesh) => mesh,
@@ -125,16 +113,5 @@ impl Evaluator<'_> {
         } else {
             Ok(operators::united(&parts))
         }
-    }
-
-    /// The mesh of a shape as one more input of a node: a target of a blend shape.
-    pub(crate) fn input_mesh(
-        &self,
-        plug: PlugRef,
-        frame: f64,
-        depth: usize,
-        built: &mut Built,
-    ) -> Result<Poly, String> {
-        self.made_by(plug, frame, depth + 1, built)
     }
 }
