@@ -2,9 +2,8 @@
 //!
 //! | Question                                         | Module        |
 //! |--------------------------------------------------|---------------|
-//! | the workloads                                    | [`workload`]  |
+//! | the workloads, and the ball of some              | [`workload`]  |
 //! | error measures                                   | [`accuracy`]  |
-//! | the ball of a workload                           | [`ball`]      |
 //! | clocks and stages                                | [`nucleus_measure::clock`] |
 //! | one run                                          | [`mod@run`]   |
 //! | time against error at many settings              | [`trade`]     |
@@ -17,27 +16,24 @@
 //! | cost of each feature                             | [`features`]  |
 //! | speed of caches                                  | [`caches`]    |
 //! | collected results                                | [`report`]    |
+//! | the page and the CSV file                        | [`output`]    |
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 mod accuracy;
-mod ball;
 pub mod caches;
 mod comparison;
 mod contact;
-mod csv;
 pub mod features;
 mod gallery;
-mod memory;
 mod mesh;
-mod page;
+mod output;
 mod peers;
 mod report;
 mod run;
 mod scaling;
-mod stages;
 mod table;
 mod timed;
 mod trade;
@@ -106,10 +102,10 @@ enum Part {
 pub fn run(options: &Options) -> anyhow::Result<()> {
     // Fails before the measurements if a file cannot be written.
     if let Some(path) = &options.write {
-        page::check(path)?;
+        output::check_page(path)?;
     }
     if let Some(path) = &options.csv {
-        csv::write(path, &[])?;
+        output::write_csv(path, &[])?;
     }
     let mut report = Report::new(nucleus_measure::clock::describe_machine());
     let asked_for = |part: &&Part| options.only.is_empty() || options.only.contains(part);
@@ -173,10 +169,10 @@ impl Options {
     /// Writes the results so far, so that an interrupted bench keeps them.
     fn keep(&self, report: &Report) -> anyhow::Result<()> {
         if let Some(path) = &self.csv {
-            csv::write(path, &report.runs)?;
+            output::write_csv(path, &report.runs)?;
         }
         if let Some(path) = &self.write {
-            page::write(path, report)?;
+            output::write_page(path, report)?;
         }
         Ok(())
     }

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 use nucleus_core::{COUNT_PERIOD, ClothId, StateView, Surface};
 use nucleus_measure::metrics::deformation::Edges;
 
-use super::ball::Ball;
-use super::workload::GRAVITY;
+use super::workload::{Ball, GRAVITY};
 
 /// The frames of a second.
 const SECOND: usize = 24;

@@ -1,6 +1,8 @@
-//! Markdown tables with aligned columns, readable on a terminal.
+//! Markdown tables with aligned columns, readable on a terminal; and the table of milliseconds by stage.
 
 use std::fmt;
+
+use nucleus_measure::clock::STAGES;
 
 /// A table with a heading and notes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -82,6 +84,26 @@ impl fmt::Display for Table {
     }
 }
 
+/// Stages below this share in all rows have no column.
+const LEAST: f64 = 0.002;
+
+/// A run: its first cells, milliseconds per frame, and the share of each of [`STAGES`].
+pub type StageRow = (Vec<String>, f64, [f64; STAGES.len()]);
+
+/// Table of milliseconds by stage; `first` are the heads of the first cells.
+pub fn by_stage(title: &str, first: &[&str], runs: &[StageRow]) -> Table {
+    let is_used = |k: &usize| runs.iter().any(|(_, _, shares)| shares[*k] > LEAST);
+    let used: Vec<usize> = (0..STAGES.len()).filter(is_used).collect();
+    let names = used.iter().map(|&k| STAGES[k].1);
+    let head: Vec<&str> = first.iter().copied().chain(["ms"]).chain(names).collect();
+    let mut table = Table::new(title, &head);
+    for (cells, ms, shares) in runs {
+        let stages = used.iter().map(|&k| figure(ms * shares[k]));
+        table.row(cells.iter().cloned().chain([figure(*ms)]).chain(stages));
+    }
+    table
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,5 +122,14 @@ mod tests {
     #[test]
     fn values_that_are_not_finite_are_words() {
         assert_eq!([f64::NAN, f64::INFINITY, 0.0].map(figure), ["-", "lost", "0"]);
+    }
+
+    #[test]
+    fn stages_without_time_have_no_column() {
+        let mut shares = [0.0; STAGES.len()];
+        (shares[0], shares[3], shares[8]) = (0.25, 0.749, 0.001);
+        let table = by_stage("by stage", &["points"], &[(vec!["33²".to_owned()], 8.0, shares)]);
+        assert_eq!(table.head, ["points", "ms", STAGES[0].1, STAGES[3].1]);
+        assert_eq!(table.rows, [["33²", "8.00", "2.00", "5.99"]]);
     }
 }

@@ -4,7 +4,6 @@ use nucleus_core::StateView;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 
-use super::memory;
 use nucleus_measure::clock::{STAGES, StageClock, Timing};
 
 /// Results; means per frame unless stated otherwise.
@@ -39,7 +38,7 @@ impl Timed {
         frames: Option<u32>,
         mut seen: impl FnMut(&dyn StateView),
     ) -> Self {
-        memory::reset_peak();
+        reset_peak();
         let mut run = Simulation::<f32>::new(program, threads as usize);
         let mut stages = StageClock::default();
         let mut all = Self::begun(threads);
@@ -59,7 +58,7 @@ impl Timed {
             seen(run.state());
         }
         let hash = state_hash(&run);
-        Self { shares: stages.shares(), memory: memory::peak(), hash, ..all.in_the_mean() }
+        Self { shares: stages.shares(), memory: peak_memory(), hash, ..all.in_the_mean() }
     }
 
     /// Milliseconds: processor time with one thread, wall time with more.
@@ -105,4 +104,33 @@ pub fn state_hash(run: &Simulation<f32>) -> u64 {
     let mut solvers = run.solvers().map(|solver| solver.state_hash());
     let first = solvers.next().unwrap_or_default();
     solvers.fold(first, |all, one| all.rotate_left(1) ^ one)
+}
+
+/// Resets the peak memory of this process; on systems without this feature, figures include earlier runs.
+fn reset_peak() {
+    // Without this file there is no figure either.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// Peak since the last reset, in bytes; `None` on systems that do not report it.
+fn peak_memory() -> Option<u64> {
+    peak_of(&std::fs::read_to_string("/proc/self/status").ok()?)
+}
+
+/// The peak in `/proc/self/status`, in bytes.
+fn peak_of(status: &str) -> Option<u64> {
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse().ok().map(|kilobytes: u64| 1024 * kilobytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_peak_is_converted_to_bytes() {
+        let status = "VmPeak:\t    9000 kB\nVmHWM:\t    1234 kB\nVmRSS:\t     800 kB\n";
+        assert_eq!(peak_of(status), Some(1234 * 1024));
+        assert_eq!(peak_of("VmRSS:\t     800 kB\n"), None);
+    }
 }

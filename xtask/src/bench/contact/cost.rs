@@ -5,8 +5,7 @@ use super::run::RunSpec;
 use super::scene::Setting;
 use super::workload::{TYPICAL, Workload};
 use crate::bench::report::Report;
-use crate::bench::stages;
-use crate::bench::table::{Table, figure};
+use crate::bench::table::{StageRow, Table, by_stage, figure};
 use crate::bench::timed::Timed;
 
 /// Points along the side of W3 sheets, and frames: the fall, and the same time on the ball.
@@ -70,9 +69,9 @@ fn scaling(report: &mut Report) -> anyhow::Result<()> {
         runs.push((points, run));
     }
     report.show(growth_table(&runs));
-    let rows: Vec<stages::Row> =
+    let rows: Vec<StageRow> =
         runs.iter().map(|(points, run)| (vec![points.to_string()], run.ms(), run.shares)).collect();
-    report.show(stages::table("Piles: milliseconds per frame by stage", &["points"], &rows));
+    report.show(by_stage("Piles: milliseconds per frame by stage", &["points"], &rows));
     if let (Some(first), Some(last)) = (runs.first(), runs.last()) {
         let ratio = nanoseconds(last) / nanoseconds(first);
         let target =

@@ -12,9 +12,8 @@ use nucleus_graph::scene::read_scene_text;
 use tempfile::TempDir;
 
 use super::workload::Workload;
-use crate::bench::ball::Ball;
 use crate::bench::mesh::{self, Cells};
-use crate::bench::workload::{DENSITY, GRAVITY};
+use crate::bench::workload::{Ball, DENSITY, GRAVITY};
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,7 @@
 
 use nucleus_graph::audit::Closeness;
 
-use crate::bench::ball::Ball;
-use crate::bench::workload::BALL;
+use crate::bench::workload::{BALL, Ball};
 
 /// Evaluations per 1/24 s at which costs are compared.
 pub const TYPICAL: u32 = 48;
