@@ -134,23 +134,7 @@ fn solve_substeps<R: CompiledReal>(
         frame.pins.is_empty() && !solver.contact.touches && !solver.links.hold_anything();
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
-        update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
-        let (time, length) = (
-            f64::from(substep - 1) / f64::from(schedule.substeps),
-            frame.duration / f64::from(schedule.substeps),
-        );
-        let Solver { model, state, contact, links, pool, .. } = solver;
-        let objects =
-            Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
-        update_local_wind(&objects, state, frame, pool);
-        push_out(model, state, contact, frame, time);
-        apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
-        apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
-        apply_link_forces(links, (model, &contact.collider_states), state, frame, [time, length]);
-        if substep == 1 || frame.fields_per_substep {
-            let interval = if frame.fields_per_substep { length } else { frame.duration };
-            update_fields(model, state, frame, interval, pool);
-        }
+        begin_substep(solver, frame, schedule, substep);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
@@ -162,19 +146,56 @@ fn solve_substeps<R: CompiledReal>(
                 solve_time_step(solver, &now, counters, observer)?;
             }
         }
-        let substep_length = schedule.h * f64::from(schedule.steps);
-        age_particles(solver, frame, schedule, substep, counters);
-        damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
-        let end = f64::from(substep) / f64::from(schedule.substeps);
-        let Solver { model, state, contact, links, .. } = solver;
-        damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
-        let has_broken = break_links(links, frame, substep_length);
-        update_pair_filter(contact, model, links, frame, has_broken);
-        solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
+        end_substep(solver, frame, schedule, substep, counters);
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
     }
     ControlFlow::Continue(())
+}
+
+/// Normals, wind, `pushOut` and force fields, once per substep.
+fn begin_substep<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    substep: u32,
+) {
+    update_normals(&solver.model.cloths, &mut solver.state, &solver.pool);
+    let (time, length) = (
+        f64::from(substep - 1) / f64::from(schedule.substeps),
+        frame.duration / f64::from(schedule.substeps),
+    );
+    let Solver { model, state, contact, links, pool, .. } = solver;
+    let objects =
+        Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
+    update_local_wind(&objects, state, frame, pool);
+    push_out(model, state, contact, frame, time);
+    apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
+    apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
+    apply_link_forces(links, (model, &contact.collider_states), state, frame, [time, length]);
+    if substep == 1 || frame.fields_per_substep {
+        let interval = if frame.fields_per_substep { length } else { frame.duration };
+        update_fields(model, state, frame, interval, pool);
+    }
+}
+
+/// Births, deaths, damping and broken links, once per substep.
+fn end_substep<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    substep: u32,
+    counters: &mut ContactCounters,
+) {
+    let substep_length = schedule.h * f64::from(schedule.steps);
+    age_particles(solver, frame, schedule, substep, counters);
+    damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+    let end = f64::from(substep) / f64::from(schedule.substeps);
+    let Solver { model, state, contact, links, .. } = solver;
+    damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
+    let has_broken = break_links(links, frame, substep_length);
+    update_pair_filter(contact, model, links, frame, has_broken);
+    solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
 }
 
 /// One time step, unless the observer ends the frame.
@@ -197,61 +218,7 @@ fn solve_time_step<R: CompiledReal>(
     slide_links(links, models, state, &contact.collider_states, frame, [span.to, schedule.h]);
     for pass in &schedule.passes {
         observer.should_continue()?;
-        match pass {
-            Pass::Constraints(sweeps) => {
-                observer.enter(Stage::Constraints);
-                let sweeps = &schedule.sweeps[sweeps.clone()];
-                sweep(
-                    &solver.model.cloths,
-                    [&mut solver.state.displacement, &mut solver.state.corrections],
-                    sweeps,
-                    now.direction,
-                    &solver.pool,
-                );
-            }
-            Pass::Whole(at) => {
-                observer.enter(Stage::Constraints);
-                let effect = &schedule.wholes[*at];
-                whole::relax(
-                    effect,
-                    &solver.model.cloths,
-                    &mut solver.state,
-                    frame,
-                    [span.to, schedule.h],
-                    &solver.pool,
-                );
-            }
-            Pass::Links(at) => {
-                observer.enter(Stage::Constraints);
-                let Solver { model, state, contact, links, pool, .. } = solver;
-                let sweep = &schedule.links[*at];
-                let read = (&*model, &contact.collider_states[..], frame);
-                relax_links(links, sweep, read, state, [span.to, schedule.h], pool);
-            }
-            Pass::Liquid(cloth) => {
-                observer.enter(Stage::Constraints);
-                let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
-                solver.liquids[*cloth].relax(
-                    *cloth,
-                    scene,
-                    &mut solver.state,
-                    schedule.h,
-                    span,
-                    &solver.pool,
-                );
-            }
-            Pass::ClothContact => {
-                let pass = &mut solver.contact_pass(frame, schedule, span, counters);
-                apply_cloth_adhesion(pass);
-                resolve_cloth_contacts(pass, 1.0, observer);
-            }
-            Pass::ColliderContact => {
-                let pass = &mut solver.contact_pass(frame, schedule, span, counters);
-                apply_collider_adhesion(pass);
-                resolve_collider_contacts(pass, 1.0, observer);
-            }
-            Pass::Safeguard => safeguard(&mut solver.contact_pass(frame, schedule, span, counters), observer),
-        }
+        apply_pass(pass, solver, now, counters, observer);
     }
     whole::remember_deformation(&mut solver.model.cloths, &solver.state, frame, &solver.pool);
     observer.enter(Stage::Velocity);
@@ -259,4 +226,63 @@ fn solve_time_step<R: CompiledReal>(
     apply_restitution(&mut solver.contact_pass(frame, schedule, span, counters));
     observer.step(span.to, solver);
     ControlFlow::Continue(())
+}
+
+/// One pass of a time step.
+fn apply_pass<R: CompiledReal>(
+    pass: &Pass,
+    solver: &mut Solver<R>,
+    now: &TimeStep<'_, R>,
+    counters: &mut ContactCounters,
+    observer: &mut dyn StepObserver,
+) {
+    let TimeStep { frame, schedule, span, .. } = *now;
+    match pass {
+        Pass::Constraints(sweeps) => {
+            observer.enter(Stage::Constraints);
+            let sweeps = &schedule.sweeps[sweeps.clone()];
+            sweep(
+                &solver.model.cloths,
+                [&mut solver.state.displacement, &mut solver.state.corrections],
+                sweeps,
+                now.direction,
+                &solver.pool,
+            );
+        }
+        Pass::Whole(at) => {
+            observer.enter(Stage::Constraints);
+            let effect = &schedule.wholes[*at];
+            whole::relax(
+                effect,
+                &solver.model.cloths,
+                &mut solver.state,
+                frame,
+                [span.to, schedule.h],
+                &solver.pool,
+            );
+        }
+        Pass::Links(at) => {
+            observer.enter(Stage::Constraints);
+            let Solver { model, state, contact, links, pool, .. } = solver;
+            let sweep = &schedule.links[*at];
+            let read = (&*model, &contact.collider_states[..], frame);
+            relax_links(links, sweep, read, state, [span.to, schedule.h], pool);
+        }
+        Pass::Liquid(cloth) => {
+            observer.enter(Stage::Constraints);
+            let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
+            solver.liquids[*cloth].relax(*cloth, scene, &mut solver.state, schedule.h, span, &solver.pool);
+        }
+        Pass::ClothContact => {
+            let pass = &mut solver.contact_pass(frame, schedule, span, counters);
+            apply_cloth_adhesion(pass);
+            resolve_cloth_contacts(pass, 1.0, observer);
+        }
+        Pass::ColliderContact => {
+            let pass = &mut solver.contact_pass(frame, schedule, span, counters);
+            apply_collider_adhesion(pass);
+            resolve_collider_contacts(pass, 1.0, observer);
+        }
+        Pass::Safeguard => safeguard(&mut solver.contact_pass(frame, schedule, span, counters), observer),
+    }
 }
