@@ -6,83 +6,81 @@
 
 use crate::model::build_error::BuildError;
 
-/// Factors on attributes, one per point in the mesh's order; an empty map is 1 everywhere.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct VertexMaps {
+/// Any factor.
+const ANY: [f64; 2] = [0.0, 1e6];
+/// A share of the attribute.
+const SHARE: [f64; 2] = [0.0, 1.0];
+
+/// Defines [`VertexMaps`]: for each map its field, its name in messages and its range.
+macro_rules! vertex_maps {
+    ($($(#[doc = $doc:literal])+ $field:ident: $name:literal, $range:expr;)+) => {
+        /// Factors on attributes, one per point in the mesh's order; an empty map is 1 everywhere.
+        #[derive(Debug, Clone, Default, PartialEq)]
+        pub struct VertexMaps {
+            $($(#[doc = $doc])+ pub $field: Vec<f64>,)+
+        }
+
+        impl VertexMaps {
+            /// Every map, with its name and range.
+            fn columns(&self) -> impl Iterator<Item = (&'static str, &[f64], [f64; 2])> {
+                [$(($name, self.$field.as_slice(), $range)),+].into_iter()
+            }
+
+            /// Every map, to change its points.
+            pub fn columns_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+                [$(&mut self.$field),+].into_iter()
+            }
+        }
+    };
+}
+
+vertex_maps! {
     /// On the mass; above zero.
-    pub mass: Vec<f64>,
+    mass: "mass", [1e-6, 1e6];
     /// Share of the resistance of links longer than at rest, 0 to 1.
-    pub stretch: Vec<f64>,
+    stretch: "stretch", SHARE;
     /// Share of the resistance of links shorter than at rest, 0 to 1.
-    pub compression: Vec<f64>,
+    compression: "compression", SHARE;
     /// Share of the bend resistance, 0 to 1.
-    pub bend: Vec<f64>,
+    bend: "bend", SHARE;
     /// On the rest length of links.
-    pub rest_length: Vec<f64>,
+    rest_length: "rest length", ANY;
     /// On `damp`.
-    pub damp: Vec<f64>,
+    damp: "damp", ANY;
     /// On `drag`.
-    pub drag: Vec<f64>,
+    drag: "drag", ANY;
     /// On `tangential_drag`.
-    pub tangential_drag: Vec<f64>,
+    tangential_drag: "tangential drag", ANY;
     /// On `lift`.
-    pub lift: Vec<f64>,
+    lift: "lift", ANY;
     /// On `thickness`. This and the following maps are interpolated at the contact point, by its barycentric weights.
-    pub thickness: Vec<f64>,
+    thickness: "thickness", ANY;
     /// On `friction`.
-    pub friction: Vec<f64>,
+    friction: "friction", ANY;
     /// On `stickiness`.
-    pub stickiness: Vec<f64>,
+    stickiness: "stickiness", ANY;
     /// On `bounce`.
-    pub bounce: Vec<f64>,
+    bounce: "bounce", ANY;
     /// On `collide_strength`.
-    pub collide_strength: Vec<f64>,
+    collide_strength: "collide strength", ANY;
     /// On the attraction to the input mesh.
-    pub input_attract: Vec<f64>,
+    input_attract: "input attract", ANY;
     /// Share of `rigidity`.
-    pub rigidity: Vec<f64>,
+    rigidity: "rigidity", SHARE;
     /// Share of `deform_resistance`.
-    pub deform: Vec<f64>,
+    deform: "deform resistance", SHARE;
     /// On `angle_dropoff`.
-    pub angle_dropoff: Vec<f64>,
+    angle_dropoff: "bend angle dropoff", ANY;
     /// On the angle beyond which bends stay.
-    pub yield_angle: Vec<f64>,
+    yield_angle: "restitution angle", ANY;
     /// On the magnitude of the force field.
-    pub field_magnitude: Vec<f64>,
+    field_magnitude: "field magnitude", ANY;
 }
 
 /// Smaller shares count as zero.
 const MIN_SHARE: f64 = 1e-6;
 
 impl VertexMaps {
-    /// Every map, with its name and range.
-    fn columns(&self) -> [(&'static str, &[f64], [f64; 2]); 20] {
-        const ANY: [f64; 2] = [0.0, 1e6];
-        const SHARE: [f64; 2] = [0.0, 1.0];
-        [
-            ("mass", &self.mass, [1e-6, 1e6]),
-            ("stretch", &self.stretch, SHARE),
-            ("compression", &self.compression, SHARE),
-            ("bend", &self.bend, SHARE),
-            ("rest length", &self.rest_length, ANY),
-            ("damp", &self.damp, ANY),
-            ("drag", &self.drag, ANY),
-            ("tangential drag", &self.tangential_drag, ANY),
-            ("lift", &self.lift, ANY),
-            ("thickness", &self.thickness, ANY),
-            ("friction", &self.friction, ANY),
-            ("stickiness", &self.stickiness, ANY),
-            ("bounce", &self.bounce, ANY),
-            ("collide strength", &self.collide_strength, ANY),
-            ("input attract", &self.input_attract, ANY),
-            ("rigidity", &self.rigidity, SHARE),
-            ("deform resistance", &self.deform, SHARE),
-            ("bend angle dropoff", &self.angle_dropoff, ANY),
-            ("restitution angle", &self.yield_angle, ANY),
-            ("field magnitude", &self.field_magnitude, ANY),
-        ]
-    }
-
     /// Refuses maps whose length is not the number of points, and factors out of range.
     pub(crate) fn check(&self, points: usize) -> Result<(), BuildError> {
         for (column, factors, [least, most]) in self.columns() {

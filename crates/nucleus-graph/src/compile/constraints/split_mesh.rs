@@ -112,59 +112,15 @@ impl Tearing {
 
     /// Vertex maps of the split mesh. `shares_mass`: masses are given by point, and twins share that of their original.
     pub(crate) fn maps(&self, mut maps: VertexMaps, shares_mass: bool) -> VertexMaps {
-        let VertexMaps {
-            mass,
-            stretch,
-            compression,
-            bend,
-            rest_length,
-            damp,
-            drag,
-            tangential_drag,
-            lift,
-            thickness,
-            friction,
-            stickiness,
-            bounce,
-            collide_strength,
-            input_attract,
-            rigidity,
-            deform,
-            angle_dropoff,
-            yield_angle,
-            field_magnitude,
-        } = &mut maps;
-        if shares_mass && mass.is_empty() {
-            *mass = vec![1.0; self.points];
-        }
-        let columns = [
-            stretch,
-            compression,
-            bend,
-            rest_length,
-            damp,
-            drag,
-            tangential_drag,
-            lift,
-            thickness,
-            friction,
-            stickiness,
-            bounce,
-            collide_strength,
-            input_attract,
-            rigidity,
-            deform,
-            angle_dropoff,
-            yield_angle,
-            field_magnitude,
-        ];
-        columns.into_iter().for_each(|column| self.extend(column));
         if shares_mass {
+            if maps.mass.is_empty() {
+                maps.mass = vec![1.0; self.points];
+            }
             let mut copies = vec![1.0; self.points];
             self.twins.iter().for_each(|&twin| copies[twin as usize] += 1.0);
-            mass.iter_mut().zip(&copies).for_each(|(mass, copies)| *mass /= copies);
+            maps.mass.iter_mut().zip(&copies).for_each(|(mass, copies)| *mass /= copies);
         }
-        self.extend(mass);
+        maps.columns_mut().for_each(|column| self.extend(column));
         maps
     }
 
