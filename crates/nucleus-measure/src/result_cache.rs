@@ -1,9 +1,10 @@
 //! Results kept between commands, one folder per fingerprint of a scene and a solver.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use nucleus_cache::atomic_file;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::compile;
 use nucleus_graph::scene::read_scene_text;
@@ -114,20 +115,7 @@ impl ResultCache {
 /// # Errors
 /// When it cannot be written.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), ResultCacheError> {
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(format!(".{}.tmp", std::process::id()));
-    let temporary = PathBuf::from(temporary);
-    let put = || -> io::Result<()> {
-        let mut file = File::create(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    };
-    put().map_err(|source| {
-        // The first error is the one to report; a temporary file that remains does no harm.
-        let _ = fs::remove_file(&temporary);
-        ResultCacheError { path: path.to_owned(), source }
-    })
+    atomic_file::write(path, bytes).map_err(|source| ResultCacheError { path: path.to_owned(), source })
 }
 
 /// FNV-1a hash over 64 bits.

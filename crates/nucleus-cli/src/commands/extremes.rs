@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, Color, ColorChoice, ColorSpec, WriteColor};
+use nucleus_cache::atomic_file;
 use nucleus_measure::extremes::{
     Evaluation, Kind, Measurement, StressCase, TimeBudget, evaluate_all, failure_text, named, page, rows,
 };
@@ -69,7 +70,8 @@ impl Extremes {
             output::report(&total(&outcomes));
         }
         if let Some(file) = &self.write {
-            fs::write(file, page(&outcomes)).with_context(|| format!("cannot write `{}`", file.display()))?;
+            atomic_file::write(file, page(&outcomes).as_bytes())
+                .with_context(|| format!("cannot write `{}`", file.display()))?;
         }
         Ok(if outcomes.iter().all(Evaluation::holds) { Outcome::Success } else { Outcome::Problem })
     }

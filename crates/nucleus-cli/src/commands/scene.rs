@@ -1,10 +1,10 @@
 //! `nucleus check`, `fmt` and `graph`: scene files, without a simulation.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
+use nucleus_cache::atomic_file;
 use nucleus_graph::scene::{Scene, format_scene, read_scene_text};
 
 use crate::process::Outcome;
@@ -89,7 +89,10 @@ impl Fmt {
             output::print(&format!("`{}` is not in canonical form\n", path.display()))?;
             return Ok(Outcome::Problem);
         } else {
-            fs::write(path, formatted).with_context(|| format!("cannot write `{}`", path.display()))?;
+            // A link stays a link: the file that it leads to is replaced.
+            let file = path.canonicalize().unwrap_or_else(|_| path.clone());
+            atomic_file::write(&file, formatted.as_bytes())
+                .with_context(|| format!("cannot write `{}`", path.display()))?;
         }
         Ok(Outcome::Success)
     }

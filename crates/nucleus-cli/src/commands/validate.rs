@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use nucleus_cache::atomic_file;
 use nucleus_measure::validation::{Case, Comparison, cases, page};
 use serde_json::json;
 
@@ -51,7 +52,8 @@ impl Validate {
         let results = self.run_all(&cases)?;
         if let Some(path) = &self.write {
             let text = page(&results)?;
-            std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
+            atomic_file::write(path, text.as_bytes())
+                .with_context(|| format!("cannot write `{}`", path.display()))?;
         }
         match self.json {
             true => output::report_json(&as_json(&results)),
