@@ -175,7 +175,7 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// Ends the frame with its report and hands it to the system. The report becomes a JSON object with the field
-    /// `frame`, and with the numbers of points `touching` and `pinched` if contact states are recorded.
+    /// `frame`, and with the numbers of points `touching` and `compressed` if contact states are recorded.
     ///
     /// # Errors
     /// When writing failed, now or during the step.
@@ -350,9 +350,9 @@ fn report_line(
         other => serde_json::Map::from_iter([("report".to_owned(), other)]),
     };
     line.insert("frame".to_owned(), frame.into());
-    if let Some([touching, pinched]) = contact_counts {
+    if let Some([touching, compressed]) = contact_counts {
         line.insert("touching".to_owned(), touching.into());
-        line.insert("pinched".to_owned(), pinched.into());
+        line.insert("compressed".to_owned(), compressed.into());
     }
     Ok(Value::Object(line))
 }

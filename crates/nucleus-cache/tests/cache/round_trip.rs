@@ -102,7 +102,7 @@ fn each_frame_has_its_report() {
 #[test]
 fn a_report_counts_points_by_contact_state_where_contacts_are_recorded() {
     for report in open(&falling::with_all_channels()).reports().unwrap() {
-        assert_eq!((&report["touching"], &report["pinched"]), (&1.into(), &1.into()), "{report}");
+        assert_eq!((&report["touching"], &report["compressed"]), (&1.into(), &1.into()), "{report}");
     }
     assert!(open(&falling::run_info()).reports().unwrap()[0].get("touching").is_none());
 }
