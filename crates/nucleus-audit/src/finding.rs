@@ -31,7 +31,7 @@ pub enum FindingKind {
 pub struct Finding {
     /// The state at the end of the motion.
     pub state: StateIndex,
-    /// What was found.
+    /// The finding.
     pub kind: FindingKind,
 }
 

@@ -31,7 +31,7 @@ pub enum Outcome {
     InvalidInput,
     /// The command was interrupted and has closed its files.
     Interrupted,
-    /// Another process does what the command was asked to do.
+    /// Another process is already executing the command.
     Busy,
 }
 

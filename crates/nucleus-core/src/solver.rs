@@ -35,7 +35,7 @@ pub struct Solver<R: Real = f32> {
     pub(crate) contact: ContactSystem<R>,
     /// The links of dynamic constraints.
     pub(crate) links: Links<R>,
-    /// By cloth: what a liquid knows within a frame.
+    /// By cloth: the state of its liquid within a frame.
     pub(crate) liquids: Vec<LiquidSolver>,
     pub(crate) pool: ThreadPool,
 }

@@ -62,7 +62,7 @@ fn time(work: impl FnOnce()) -> Duration {
     processor_time() - begin
 }
 
-/// Of this thread: what else runs on the machine does not count.
+/// Of this thread: other programs do not count.
 fn processor_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)

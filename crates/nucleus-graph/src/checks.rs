@@ -134,7 +134,7 @@ static FORMS: [Form; 18] = [
         NO_CROSSING,
         &[],
         |sample| sample.passed_through.map(|count| count as f64),
-        "Nothing is inside anything at the end of a frame that was not so at the start: cloth in itself, in other cloth, in a collider. With `--audit` nothing passes through on the way either.",
+        "No frame ends with an intersection that the start state does not have: of cloth with itself, with other cloth, or with a collider. With `--audit`, nothing passes through between frames either.",
     ),
     at_most(
         MAX_STRETCH,
@@ -158,7 +158,7 @@ static FORMS: [Form; 18] = [
         "minGap",
         &["gap"],
         |sample| Some(sample.report.min_gap),
-        "Nothing comes closer to a collider than this share of the thickness.",
+        "The gap between cloth and colliders is at least this share of the thickness.",
     ),
     at_most(
         "finite",
@@ -170,37 +170,37 @@ static FORMS: [Form; 18] = [
         "maxWeldGap",
         &["distance"],
         |sample| Some(sample.report.max_weld_gap),
-        "Nothing that is welded is farther apart than at rest by more than this many metres.",
+        "Welded elements are farther apart than at rest by at most this many metres.",
     ),
     at_most(
         "maxBroken",
         &["links"],
         |sample| Some(sample.report.broken_links as f64),
-        "No more links of constraints break than this.",
+        "At most this many links of constraints break.",
     ).counting(),
     at_least(
         "tornBy",
         &["frame", "links"],
         |sample| Some(sample.report.broken_links as f64),
-        "From this frame on at least so many links of constraints are broken.",
+        "From this frame on at least this many links of constraints are broken.",
     ).counting(),
     at_least(
         "minParticles",
         &["frame", "particles"],
         |sample| Some(sample.report.particles as f64),
-        "From this frame on there are no fewer particles than this, of objects in which they are born and die.",
+        "From this frame on there are at least this many particles in objects with births and deaths.",
     ).counting(),
     at_most(
         "maxParticles",
         &["particles"],
         |sample| Some(sample.report.particles as f64),
-        "No frame has more particles than this, of objects in which they are born and die.",
+        "No frame has more particles than this in objects with births and deaths.",
     ).counting(),
     at_most(
         "volumeError",
         &["frame", "share"],
         |sample| Some(sample.report.density_error),
-        "From this frame on liquids are denser than at rest by not more than this share, on average over their particles.",
+        "From this frame on the mean excess density of liquids is at most this share of their rest density.",
     ),
     at_most(
         "separatedBy",
@@ -212,7 +212,7 @@ static FORMS: [Form; 18] = [
         "restsBy",
         &["frame", "speed"],
         |sample| Some(sample.speed()),
-        "From this frame on the root mean square speed, in m/s, is not above this.",
+        "From this frame on the root mean square speed is at most this, in m/s.",
     ),
 ];
 

@@ -17,7 +17,7 @@ pub enum Severity {
 pub struct Diagnostic {
     /// Error or warning.
     pub severity: Severity,
-    /// What is wrong: lower case, no full stop, names in backticks.
+    /// The mistake: lower case, no full stop, names in backticks.
     pub message: String,
     /// The scene file.
     pub file: PathBuf,

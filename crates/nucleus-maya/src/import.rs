@@ -14,7 +14,7 @@ use crate::scene::MayaScene;
 pub struct Imported {
     /// The scene.
     pub scene: Scene,
-    /// What is left out.
+    /// The omissions.
     pub omissions: Omissions,
 }
 
@@ -62,7 +62,7 @@ pub fn import_text(
     let mut maya = MayaScene::of_text(text)?;
     let own = maya.file_info.iter().find(|(key, _)| key == OWN_FILE).map(|(_, text)| text.clone());
     let refused = |message: String| ImportError::Refused { file: path.clone(), message };
-    // What a scene of ours has besides its nodes.
+    // The fields of a scene other than its nodes.
     let head = match &own {
         Some(text) => Some(read_head(text, ron).map_err(refused)?),
         None => None,

@@ -19,8 +19,8 @@
 //! | blend shapes, skin clusters                            | `deform/`                     |
 //! | which attributes and connections are carried over      | `nucleus_nodes/`              |
 //!
-//! **Invariant:** nothing in a file is executed, and a path in a file never leads to writing. What is not carried over is
-//! listed.
+//! **Invariant:** nothing in a file is executed, and a path in a file never leads to writing. Everything that is not
+//! carried over is listed.
 
 pub mod animation;
 pub mod ascii;

@@ -204,7 +204,7 @@ struct Reader<'a> {
     is_wide: bool,
 }
 
-/// A tag, and what it holds; `None` if the file ends inside.
+/// A tag and its content; `None` if the file ends inside.
 type Block<'a, T> = Option<([u8; 4], T)>;
 
 impl<'a> Reader<'a> {

@@ -1,4 +1,5 @@
-//! What an import leaves out or changes, each with the node, the reason and the effect on the result.
+//! Omissions of an import: parts that it leaves out or changes, each with the node, the reason and the effect on the
+//! result.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -13,7 +13,7 @@ use crate::nucleus_nodes::{BorrowedOptions, ImportOptions};
 use crate::omissions::Omissions;
 use crate::scene::MayaScene;
 
-/// Reads a preset of Maya (`.mel`). Also returns what is left out.
+/// Reads a preset of Maya (`.mel`). Also returns the omissions.
 ///
 /// # Errors
 /// When the file cannot be read, is no preset, or is one of a type of node that we do not have.

@@ -101,7 +101,7 @@ pub enum AxisError {
     NotANumber {
         /// Node and attribute.
         axis: String,
-        /// What the attribute takes.
+        /// Values that the attribute accepts.
         expects: &'static str,
     },
     /// An attribute is varied twice.

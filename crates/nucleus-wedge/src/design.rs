@@ -75,7 +75,7 @@ pub enum DesignError {
     Table {
         /// The line, from 1.
         line: usize,
-        /// What is wrong, and how to fix it.
+        /// The mistake, and how to fix it.
         message: String,
     },
 }

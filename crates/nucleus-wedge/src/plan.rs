@@ -31,7 +31,7 @@ pub struct PlanHeader {
     pub plan: u32,
     /// The version of Nucleus that wrote it.
     pub nucleus: String,
-    /// What is run: the path of the scene, or the name of the command.
+    /// The path of the scene, or the name of the command.
     pub title: String,
     /// The folder in which the runs are started, so that relative paths hold.
     pub directory: PathBuf,

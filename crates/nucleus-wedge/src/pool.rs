@@ -40,7 +40,7 @@ pub struct Pool<'a> {
     pub options: &'a [OsString],
 }
 
-/// What happens to a run.
+/// An event of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// Its process has started.

@@ -23,7 +23,7 @@ const MAX_ARRAY: usize = 1000;
 /// Seconds before the time limit at which a task is asked to end. SLURM counts in minutes.
 const NOTICE: u32 = 60;
 
-/// What a job asks for.
+/// Resources that a job requests.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Request {
     /// `--account`.

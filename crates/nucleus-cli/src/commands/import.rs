@@ -22,7 +22,7 @@ use crate::{figures, files, output};
 /// Their faces come from `--mesh NAME=FILE`, since an nCache has none. Meshes of a scene become OBJ files in a folder
 /// beside it.
 ///
-/// Nothing in the file is executed. What is left out is listed with its reason and its effect on the result, here and as
+/// Nothing in the file is executed. Omissions are listed with their reason and their effect on the result, here and as
 /// comments in the scene. Resistances keep Maya's meaning (`resistanceModel: classic`) unless `--physical` is given.
 #[derive(Debug, Args)]
 pub struct Import {
@@ -158,7 +158,7 @@ pub struct How {
     pub force: bool,
 }
 
-/// Imports a Maya scene to `out`, and reports what is left out.
+/// Imports a Maya scene to `out`, and reports the omissions.
 ///
 /// # Errors
 /// When it cannot be read, or a file exists that is not to be replaced.

@@ -1,4 +1,4 @@
-//! `nucleus attrs`, `presets`, `checks` and `functions`: what a scene may contain.
+//! `nucleus attrs`, `presets`, `checks` and `functions`: reference of the contents of a scene.
 
 use std::collections::HashSet;
 use std::fmt::Write;

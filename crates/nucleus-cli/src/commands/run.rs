@@ -203,7 +203,8 @@ impl Run {
         Ok(facts)
     }
 
-    /// The run as part of a wedge: into this cache, with this number of threads, replacing what an earlier attempt left.
+    /// The run as part of a wedge: into this cache, with this number of threads, replacing the files of an earlier
+    /// attempt.
     pub fn within(self, out: PathBuf, threads: u16) -> Self {
         Self { out: Some(out), threads: Some(threads), force: true, json: true, ..self }
     }

@@ -225,7 +225,7 @@ impl Trade {
         })
     }
 
-    /// What the recommendation is asked for.
+    /// The target of the recommendation.
     fn wish(&self) -> Wish {
         let bounds = self.bounds.list();
         match self.time {

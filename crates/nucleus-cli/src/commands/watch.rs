@@ -16,7 +16,7 @@ use crate::output::say;
 /// Time between two looks at the file and the run.
 const POLL: Duration = Duration::from_millis(150);
 
-/// What tells a changed file: time of the last change, and length in bytes.
+/// The version of a file: time of the last change, and length in bytes.
 type Stamp = (SystemTime, u64);
 
 /// Runs the scene into `cache`, ends the run if the file changes, and returns when it has changed.
@@ -55,7 +55,7 @@ fn stamp(path: &Path) -> Option<Stamp> {
     Some((found.modified().ok()?, found.len()))
 }
 
-/// A run in progress, and what it has printed.
+/// A run in progress, and its output so far.
 struct Solving {
     process: Child,
     printed: Vec<JoinHandle<String>>,
@@ -79,7 +79,7 @@ impl Solving {
         Ok(self.process.try_wait()?.map(|status| status.success()))
     }
 
-    /// Ends the run, and returns what it has printed.
+    /// Ends the run, and returns its output.
     fn end(mut self) -> String {
         // A run that has ended already cannot be killed.
         let _ = self.process.kill();
@@ -92,7 +92,7 @@ impl Solving {
 fn collect(mut from: impl Read + Send + 'static) -> JoinHandle<String> {
     thread::spawn(move || {
         let mut text = Vec::new();
-        // What was printed before an error is still worth showing.
+        // The output before an error is shown too.
         let _ = from.read_to_end(&mut text);
         String::from_utf8_lossy(&text).into_owned()
     })

@@ -1,8 +1,8 @@
-//! Input mesh attract: points are drawn to where they are on the live input mesh, and take up its velocity.
+//! Input mesh attract: attraction of points to their positions on the animated input mesh, and to its velocity.
 //!
-//! Each point hangs on its goal by a spring of a stiffness per mass, implicit in position, with a damper whose share of
-//! critical damping is `inputAttractDamp`, implicit in velocity. `inputMotionDrag` is a damper alone: it works without
-//! attraction. Classic: `inputMeshAttract` is the share of the way that a point goes in 1/24 s.
+//! Each point is attached to its goal by a spring of a stiffness per mass, implicit in position, with a damper whose
+//! share of critical damping is `inputAttractDamp`, implicit in velocity. `inputMotionDrag` is a damper alone: it works
+//! without attraction. Classic: `inputMeshAttract` is the share of the way that a point goes in 1/24 s.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! A triangulated surface at its present position: its nearest point, and what a ray hits first.
+//! A triangulated surface at its present position: nearest point and ray intersection.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! Force fields round the points of objects (Maya's `pointForceField`), and the attraction of an object's points among
+//! Force fields around the points of objects (Maya's `pointForceField`), and the attraction of an object's points among
 //! themselves (`selfAttract`).
 //!
 //! Once per substep, from the positions at its start. A source accelerates a point at a distance d from its surface by

@@ -1,7 +1,7 @@
 //! Push-out: moves points of other objects that are near a surface to the side that it specifies.
 //!
-//! It looks only at present positions, for scenes that start with one object inside another. Points that it moves pass
-//! through surfaces; contact starts anew from there (Maya's `pushOut` and `pushOutRadius`).
+//! It uses present positions only, for scenes that start with one object inside another. Points that it moves pass
+//! through surfaces; contact starts again from the new positions (Maya's `pushOut` and `pushOutRadius`).
 
 use nalgebra::Vector3;
 

@@ -88,7 +88,7 @@ impl<R: Real> ContactSystem<R> {
             contact_mask: Vec::with_capacity(models.len()),
             has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
             pair_filter: PairFilter::default(),
-            // Cloth that starts from a saved state may be in contact; only a frame can tell.
+            // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
             ground: Ground::default(),
         }

@@ -1,11 +1,11 @@
-//! Air field: air that takes points along.
+//! Air field: air that accelerates points towards its velocity.
 
 use nalgebra::Vector3;
 
 use crate::fields::point::PointInField;
 use crate::input::frame::COUNT_PERIOD;
 
-/// The acceleration in m/s² by air of a velocity in m/s. In 1/24 s a point makes up for the share `rate` of the difference;
+/// The acceleration in m/s² by air of a velocity in m/s. In 1/24 s the share `rate` of the difference disappears;
 /// with 1 or more it moves with the air at once.
 pub(super) fn acceleration(
     air: Vector3<f64>,

@@ -1,13 +1,13 @@
 //! Force fields: gravity, uniform, radial, newton, drag, air, turbulence, vortex and volume axis.
 //!
 //! As in Nucleus, fields are evaluated once per frame, with the positions and velocities at its start (§3.1); the option
-//! `per substep` of this solver evaluates them anew in each substep. The result is an acceleration per point, which every
-//! time step adds to the velocity. Resistance is implicit over the interval that it is kept for, so that it never turns a
-//! motion round.
+//! `per substep` of this solver evaluates them in each substep. The result is an acceleration per point, which every
+//! time step adds to the velocity. Resistance is implicit over the interval in which it is constant, so that it never
+//! reverses a motion.
 //!
 //! | You want to know… | Read |
 //! |---|---|
-//! | where a field reaches, and how it falls off | [`reach`] |
+//! | the range and falloff of a field | [`reach`] |
 //! | a field | the file of its name |
 
 mod air;
@@ -94,7 +94,7 @@ pub fn update_fields_of<R: Real>(
 const POINTS_PER_TASK: u32 = 1024;
 
 impl Field {
-    /// The share of the field that a cloth feels; `None` where it does not act on it.
+    /// The factor on the field for a cloth; `None` where it does not act on it.
     fn share_of(&self, cloth: usize) -> Option<f64> {
         self.targets.iter().find(|(target, _)| target.index() == cloth).map(|&(_, share)| share)
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::input::fields::Noise;
 use crate::integrate::gusts::lattice_noise;
 
-/// More octaves than the digits of a position can tell apart.
+/// Upper limit of octaves: further ones are below the precision of a position.
 const MAX_OCTAVES: u32 = 16;
 
 /// The noise at a place in metres from its origin: each component between -1 and 1.

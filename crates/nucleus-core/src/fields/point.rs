@@ -1,4 +1,4 @@
-//! A point as a field sees it.
+//! A point in the space of a field.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! Where a field reaches: distance, falloff and volume.
+//! The range of a field: distance, falloff and volume.
 
 use nalgebra::Vector3;
 

@@ -1,5 +1,5 @@
-//! Force fields of the scene: what they do at a point, where they reach, and on which objects they act. Metres, kilograms,
-//! seconds; world space.
+//! Force fields of the scene: their effect at a point, their range, and the objects that they act on. Metres,
+//! kilograms, seconds; world space.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,15 +8,15 @@ use crate::input::ClothId;
 /// A force field in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// What it does.
+    /// Its effect.
     pub kind: FieldKind,
-    /// Where it reaches, and how it falls off.
+    /// Its range and falloff.
     pub reach: Reach,
-    /// The objects that it acts on, and the share of it that each feels.
+    /// The objects that it acts on, each with a factor on the force.
     pub targets: Vec<(ClothId, f64)>,
 }
 
-/// What a field does at a point. Forces are in newtons and move light points more than heavy ones.
+/// The effect of a field at a point. Forces are in newtons, so light points accelerate more than heavy ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldKind {
     /// The same acceleration everywhere, in m/s².

@@ -1,18 +1,18 @@
-//! What objects do to the air and to each other at a distance: fields round their points, wind shadows, pushed air.
+//! Effects of objects at a distance: fields around their points, wind shadows, pushed air.
 
 /// Samples of the falloff of a force field.
 pub const FALLOFF_SAMPLES: usize = 17;
 
-/// Force fields round the points of an object (`pointForceField`).
+/// Force fields around the points of an object (`pointForceField`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointField {
-    /// Acceleration of other objects' points at the radius, in m/s²; above 0 it pushes away.
+    /// Acceleration of other objects' points at the radius, in m/s²; above 0 it repels.
     pub magnitude: f64,
-    /// The same among the object's own points; above 0 it pulls together (`selfAttract`).
+    /// The same among the object's own points; above 0 it attracts (`selfAttract`).
     pub self_attract: f64,
     /// Radius of each point in metres, from which the distance counts.
     pub radius: f64,
-    /// How far beyond the radius it reaches, in metres.
+    /// Range beyond the radius, in metres.
     pub distance: f64,
     /// Factor from the radius (first) to the distance (last), evenly spaced.
     pub falloff: [f64; FALLOFF_SAMPLES],
@@ -25,18 +25,18 @@ impl PointField {
     }
 }
 
-/// What a surface does to the wind that others feel.
+/// Effect of a surface on the wind at other objects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindField {
-    /// How far behind it the solver's wind is kept from others, in metres (`windShadowDistance`).
+    /// Length of its wind shadow in metres (`windShadowDistance`).
     pub shadow_distance: f64,
-    /// How much wind gets in behind it, 0 to 1 (`windShadowDiffusion`).
+    /// Diffusion of wind into the shadow, 0 to 1 (`windShadowDiffusion`).
     pub shadow_diffusion: f64,
-    /// Whether it shadows itself too (`windSelfShadow`).
+    /// Whether it casts the shadow on itself too (`windSelfShadow`).
     pub self_shadow: bool,
-    /// How far the air that it moves is felt by others, in metres (`airPushDistance`).
+    /// Range of the air that it moves, in metres (`airPushDistance`).
     pub push_distance: f64,
-    /// How much of that air flows back round it, 0 to 1 (`airPushVorticity`).
+    /// Share of that air that flows back around it, 0 to 1 (`airPushVorticity`).
     pub push_vorticity: f64,
 }
 

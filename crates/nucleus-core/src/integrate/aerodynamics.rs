@@ -126,7 +126,7 @@ impl<R: Real> Air<R> {
     }
 }
 
-/// Writes the normals of all points that feel air, weighted by area. Reads positions.
+/// Writes the normals of all points that air acts on, weighted by area. Reads positions.
 pub fn update_normals<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, pool: &ThreadPool) {
     let State { anchor, displacement, normal, .. } = state;
     let position = |row: u32| {

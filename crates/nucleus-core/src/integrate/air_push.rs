@@ -1,19 +1,19 @@
 //! Pushed air: the motion of an object is wind for others (`airPushDistance`).
 //!
-//! At a distance d from its nearest point the air takes up a share (1 - d / D)² of that point's velocity relative to the
-//! air, D being the distance at which nothing is felt any more. At the surface the air thus moves with the surface, and
-//! an object at rest slows the wind. `airPushVorticity` turns that flow into the one round a moving ball: the dipole
-//! (3 n (n·u) - u) / 2 of potential flow (Batchelor 1967, §2.9), which goes along with the motion u before and behind the
-//! object and back at its sides. Maya's own falloffs are not published.
+//! At a distance d from its nearest point the air has a share (1 - d / D)² of that point's velocity relative to the
+//! air, where D is the range. At the surface the air thus moves with the surface, and an object at rest slows the wind.
+//! `airPushVorticity` blends that flow into the one around a moving ball: the dipole (3 n (n·u) - u) / 2 of potential
+//! flow (Batchelor 1967, §2.9), which goes along with the motion u before and behind the object and back at its sides.
+//! Maya's own falloffs are not published.
 
 use nalgebra::Vector3;
 
 use crate::contact::placed_surface::PlacedSurface;
 use crate::input::object_fields::WindField;
 
-/// The air round one object.
+/// The air around one object.
 pub struct AirPush {
-    /// The cloth that it is; it does not push its own air.
+    /// The index of the cloth, on which its own air does not act.
     pub cloth: Option<usize>,
     surface: PlacedSurface,
     /// By corner of the surface, in m/s.
@@ -24,7 +24,7 @@ pub struct AirPush {
 }
 
 impl AirPush {
-    /// The air round a surface whose corners have these velocities.
+    /// The air around a surface whose corners have these velocities.
     pub fn new(
         surface: PlacedSurface,
         settings: &WindField,

@@ -31,7 +31,7 @@ impl GustField {
         Self { travel, strength: frame.wind.norm() * frame.wind_noise }
     }
 
-    /// What they add to the wind at a place, in m/s; `place` in metres.
+    /// Velocity that gusts add to the wind, in m/s, at a `place` in metres.
     pub fn at(&self, place: Vector3<f64>) -> Vector3<f64> {
         noise(place - self.travel) * self.strength
     }

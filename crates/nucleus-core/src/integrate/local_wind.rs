@@ -1,4 +1,4 @@
-//! What is added to the wind at each point: gusts, then the shadows of objects, then the air that objects push.
+//! Local wind: gusts, wind shadows and pushed air at each point, added to the solver's wind in this order.
 //!
 //! Once per substep, from the positions at its start. The column is empty where nothing is added.
 
@@ -27,12 +27,12 @@ pub struct Objects<'a, R> {
     pub time: f64,
 }
 
-/// Whether a cloth feels the solver's wind.
+/// Whether wind acts on a cloth.
 pub fn feels_wind<R>(cloth: &ClothModel<R>, settings: &ClothFrame) -> bool {
     settings.feels_wind && !cloth.triangles.is_empty()
 }
 
-/// Sets what is added to the wind at every point that feels it.
+/// Computes the local wind at every point that wind acts on.
 pub fn update_local_wind<R: Real>(
     objects: &Objects<'_, R>,
     state: &mut State<R>,
@@ -78,8 +78,8 @@ pub fn update_local_wind<R: Real>(
     }
 }
 
-/// Makes something of the surface of every object whose settings want it: of its surface, its settings, the index of
-/// the cloth, and the velocities of its corners in m/s.
+/// Calls `make` for every object whose settings are `wanted`: with its surface, its settings, the index of the cloth,
+/// and the velocities of its corners in m/s.
 fn surfaces<R: Real, T>(
     objects: &Objects<'_, R>,
     state: &State<R>,

@@ -1,9 +1,9 @@
-//! Wind shadows: an object keeps the solver's wind from what is behind it (`windShadowDistance`).
+//! Wind shadows: an object blocks the solver's wind from points behind it (`windShadowDistance`).
 //!
-//! From a point a ray goes against the wind. Where it meets the surface after a distance d, the surface takes away
-//! 1 - (d / D)² of the wind, D being the distance at which the wind has closed in again. With a diffusion the ray is the
-//! mean of seven, of which six leave at an angle whose tangent is the diffusion: the shadow then has soft edges and
-//! fills up behind a small object. Maya's own falloffs are not published.
+//! From each point a ray is cast against the wind. If it hits the surface at a distance d, the surface removes
+//! 1 - (d / D)² of the wind, where D is the length of the shadow. With diffusion the result is the
+//! mean of seven rays, six of them at an angle whose tangent is the diffusion: the shadow then has soft edges and
+//! ends sooner behind a small object. Maya's falloffs are not published.
 
 use nalgebra::Vector3;
 

@@ -38,9 +38,9 @@ pub struct ClothLists {
     pub damp: bool,
     /// Self-collision is ever on.
     pub self_collision: bool,
-    /// Hinges that are bent at rest know which way (`bendSolver` above Simple).
+    /// Hinges that are bent at rest have signed angles (`bendSolver` above Simple).
     pub signed_bend: bool,
-    /// All hinges know which way they bend: an angle scale, a dropoff, flip tracking or bends that stay.
+    /// All hinges have signed angles: for an angle scale, a dropoff, flip tracking or permanent bends.
     pub bend_angles: bool,
     /// Pressure is ever non-zero.
     pub pressure: bool,

@@ -1,8 +1,8 @@
 //! A thread pool: a parallel loop has a fixed number of tasks, and idle threads claim them one by one.
 //!
-//! What a task computes never depends on which thread runs it or when, so any number of threads gives the same bits.
-//! A loop takes a few microseconds, which is too short to wake a sleeping thread. Workers therefore spin for a while
-//! between loops, then yield their core, then sleep.
+//! The result of a task depends on neither the thread that runs it nor the time, so any number of threads gives the
+//! same bits. A loop takes a few microseconds, which is too short to wake a sleeping thread. Workers therefore spin for
+//! a while between loops, then yield their core, then sleep.
 //!
 //! A task that panics does not end the loop: the caller waits for all other tasks, which borrow from it, and then
 //! resumes the panic.

@@ -30,18 +30,18 @@ pub enum Effect<R> {
 pub struct WholeSweep {
     /// The cloth, by its index.
     pub cloth: usize,
-    /// What is done.
+    /// The effect.
     pub effect: WholeEffect,
 }
 
 /// Effects that take a cloth as a whole, not row by row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WholeEffect {
-    /// Gas inside pushes the faces.
+    /// Pressure on the faces.
     Pressure,
-    /// The mesh is pulled back to its shape.
+    /// Attraction to the rest shape.
     Shape(ShapeStrength),
-    /// Points are drawn to the input mesh, by this share of the way; by a spring where there is none.
+    /// Attraction to the input mesh: by this share of the distance, or by a spring if `None`.
     Attract(Option<f64>),
 }
 

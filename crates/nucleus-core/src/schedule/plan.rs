@@ -130,12 +130,12 @@ impl<R: Real> Schedule<R> {
 
     /// The direction of the sweeps of a time step, counted from the start of the frame.
     ///
-    /// A sweep in a fixed order is not quite symmetric: beside the stiffness it has a small antisymmetric part, which
-    /// couples modes and feeds them energy. Where links form odd rings every order has that part, and an undamped cloth
-    /// is stirred, from rounding to 1 % of strain within a second. The backward order has the same part with the
-    /// opposite sign. In runs of 4 to 32 steps the two cancel, and nothing grows; alternated in every step or two they
-    /// excite the cloth at its highest frequencies, and it explodes. A frame of few steps has no room for runs, and
-    /// hardly stirs: all its sweeps are forward.
+    /// A sweep in a fixed order is not symmetric: in addition to the stiffness it has a small antisymmetric part, which
+    /// couples modes and adds energy to them. If links form odd cycles, every order has that part, and vibrations of an
+    /// undamped cloth grow from rounding to 1 % of strain within a second. The backward order has the same part with
+    /// the opposite sign. In runs of 4 to 32 steps the two cancel, and nothing grows. Alternated in every step or two
+    /// they excite the highest frequencies of the cloth, and it diverges. A frame of few steps has no room for runs and
+    /// gains little energy: all its sweeps are forward.
     pub fn direction(&self, step: u32) -> Direction {
         let steps = self.substeps * self.steps;
         // As many runs forward as backward.

@@ -2,7 +2,8 @@
 //!
 //! A position is a displacement, in the solver's scalar, from an `f64` anchor that moves to the point at the start of
 //! each frame. A velocity is stored and corrected, never derived from large positions. With plain `f32` positions a
-//! body 10 units up stops falling at 200 substeps a frame, because a step is smaller than the last bit of its height.
+//! body 10 units above the origin stops falling at 200 substeps a frame, because a step is smaller than the last bit of
+//! its height.
 
 pub mod kinematics;
 pub mod start;
@@ -36,7 +37,7 @@ pub struct State<R> {
     /// Sums of corrections in metres; empty where every cloth corrects its links one after another. Written and read in
     /// a sweep.
     pub corrections: Vec<Row4<R>>,
-    /// Normal of unit length; empty where no cloth feels air. Written once per substep.
+    /// Normal of unit length; empty if air acts on no cloth. Written once per substep.
     pub normal: Vec<Row4<R>>,
     /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
     pub area: Vec<Row4<R>>,

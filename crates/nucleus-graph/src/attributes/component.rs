@@ -5,7 +5,7 @@ use crate::diagnostic::nearest;
 
 use super::value::{Component, ElementKind, Selection, Which};
 
-/// What a selection by meaning looks like.
+/// Examples of a selection by meaning, for messages.
 const MEANINGS: &str = "`border`, `corners`, `where(...)`, `group(...)` or `mask(...)`";
 
 /// Reads a component.
@@ -32,7 +32,7 @@ pub fn read_component(text: &str) -> Result<Component, String> {
     Ok(Component { object: object.to_owned(), selection })
 }
 
-/// Reads what is between the brackets of a component.
+/// Reads the text between the brackets of a component.
 ///
 /// # Errors
 /// The message of a diagnostic.

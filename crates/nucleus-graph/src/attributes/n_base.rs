@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use nucleus_core::ClothFrame;
+
 use super::key::{
     Plugged, choice, float, floats, int, node, plug, ramp, text, texture, toggle, vector, vectors,
 };
@@ -10,7 +12,7 @@ use super::node_type::node_table;
 use super::particle::PARTICLE;
 use super::value::{Choice, RampPoint};
 
-/// What a map is taken from.
+/// Sources of a map.
 pub(super) const MAP_TYPES: &[(i32, &str)] = &[(0, "None"), (1, "Per-vertex"), (2, "Texture")];
 
 /// From 1 down to 0.
@@ -19,7 +21,7 @@ const FALLING: &[RampPoint] = &[
     RampPoint { position: 1.0, value: 0.0, interpolation: Choice(1) },
 ];
 
-/// What objects made of a mesh have no use for: most of what the classic particles had.
+/// Attributes without effect on objects that are made from a mesh: most of those of classic particles.
 #[rustfmt::skip] // a name per line would be a page of its own
 pub(super) const NO_USE_TO_MESHES: &[&str] = &[
     "rampPosition", "lastPosition", "rampVelocity", "lastVelocity", "rampAcceleration", "lastWorldPosition",
@@ -53,186 +55,186 @@ pub(super) const NO_USE_TO_MESHES: &[&str] = &[
 ];
 
 node_table! {
-    /// What every object of a nucleus has: mass, thickness, collisions, fields.
+    /// Attributes shared by all objects of a nucleus: mass, thickness, collisions, fields.
     N_BASE = "nBase", inherits Some(&PARTICLE), hides [];
     "General" {
-        /// The mesh node that it is made from.
+        /// Name of the mesh node that the object is made from.
         INPUT_MESH: Plugged = node("inputMesh", "imsh", Some(Data::Mesh)).solved("nucleus_graph::graph");
     }
     "Collisions" {
-        /// How far the surface reaches out; two objects touch at the sum of theirs. Worked out from the size of the mesh when left out.
+        /// Thickness of each side of the surface. Two objects touch at the sum of theirs. Default: computed from the size of the mesh.
         THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::contact::material");
-        /// How much speed is kept in a contact; the larger of the two sides counts.
+        /// Share of the normal speed that a contact returns. The larger value of the two sides counts.
         BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
-        /// Resistance to sliding; the values of both sides are added.
-        FRICTION: f64 = float("friction", "fron", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");
-        /// Resistance to coming apart after a contact; the values of both sides are added, and at 1 they never part. With a friction of 1 they do not slide either.
+        /// Coefficient of friction. The values of both sides are added.
+        FRICTION: f64 = float("friction", "fron", ClothFrame::DEFAULT.friction).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");
+        /// Resistance to separation after a contact. The values of both sides are added; at 1 they never separate, and with a friction of 1 they do not slide either.
         STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::response");
-        /// How much of a collision is carried out; the values of both sides are multiplied. 1 and above: all, nothing passes. Below 1 things may pass through each other; at 0 there is no collision.
+        /// Strength of contacts. The values of both sides are multiplied. From 1 on nothing passes through; below 1 objects may pass through each other; at 0 there is no contact.
         COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::material");
-        /// Up to which elements it collides: points, edges or faces.
+        /// Elements that collide with other objects: points; points and edges; points, edges and faces.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::thickness");
-        /// Which elements collide when the object meets itself. Left out, it is the full surface, through which nothing passes; in Classic, what Maya sets when it makes the cloth.
+        /// Elements that collide in self-collision. Default: the full surface, which nothing passes through; in Classic, the value that Maya sets at creation.
         SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::thickness");
-        /// Takes part in collisions with other objects.
+        /// Enables collisions with other objects.
         COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::material");
-        /// Takes part in collisions with itself.
+        /// Enables self-collision.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
-        /// Which objects it meets, and which of the two gives way.
+        /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");
-        /// Colour in which Maya draws the thickness.
+        /// Colour of the thickness in Maya's viewport.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]).elsewhere("only Maya's viewport draws it");
     }
     "Dynamic Properties" {
-        /// Evens out the velocities of linked points: vibrations die down, free fall is untouched.
+        /// Averages the velocities of linked points: vibrations decay, free fall is unaffected.
         DAMP: f64 = float("damp", "adng", 0.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::constraints::damp");
-        /// Classic: kilograms of every point. Physical: kilograms per square metre, so that the mesh does not matter.
+        /// Classic: mass of each point, in kg. Physical: mass per area, in kg/m², independent of the mesh.
         POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg, or kg/m²").solved("nucleus_graph::compile").fixed();
         /// Factor on the rest length of every link.
-        REST_LENGTH_SCALE: f64 = float("restLengthScale", "rlsc", 1.0).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::stretch");
-        /// A force on every point of this object alone.
+        REST_LENGTH_SCALE: f64 = float("restLengthScale", "rlsc", ClothFrame::DEFAULT.rest_length_scale).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::stretch");
+        /// Force on each point of this object.
         LOCAL_FORCE: [f64; 3] = vector("localForce", "lfcr", [0.0, 0.0, 0.0], ["lfcx", "lfcy", "lfcz"]).unit("N").solved("nucleus_core::integrate::predict");
-        /// Wind that only this object feels, added to the solver's.
+        /// Wind on this object only, added to the solver's wind.
         LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
     }
     "Wind Field Generation" {
-        /// How much wind gets in behind this object: the tangent of the angle from which it comes.
+        /// Diffusion of the wind into the shadow of this object: the tangent of the angle by which the shadow narrows.
         WIND_SHADOW_DIFFUSION: f64 = float("windShadowDiffusion", "wsdi", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::wind_shadow");
-        /// How far behind its surface this object keeps the solver's wind from others: all of it close by, none at this distance.
+        /// Length of the wind shadow behind the surface. The solver's wind is blocked entirely at the surface and not at all at this distance.
         WIND_SHADOW_DISTANCE: f64 = float("windShadowDistance", "wsds", 0.0).soft(0.0, 50.0).unit("scene units").solved("nucleus_core::integrate::wind_shadow");
-        /// How far from its surface the air that this object moves is felt by others. At rest it slows the wind.
+        /// Distance from the surface up to which the air moved by this object acts on others. An object at rest slows the wind.
         AIR_PUSH_DISTANCE: f64 = float("airPushDistance", "apds", 0.0).soft(0.0, 50.0).unit("scene units").solved("nucleus_core::integrate::air_push");
-        /// How much of the air that it pushes flows back at its sides.
+        /// Share of the pushed air that flows back at the sides.
         AIR_PUSH_VORTICITY: f64 = float("airPushVorticity", "apvy", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::air_push");
     }
     "Force Field Generation" {
         /// A force field on the surface: along its normals, away from it on the side of its normals, or on both sides.
         FORCE_FIELD: Choice = choice("forceField", "ffd", 0, &[(0, "Off"), (1, "AlongNormal"), (2, "Single Sided"), (3, "Double Sided")]).solved("nucleus_core::contact::force_field");
-        /// Strength of the field at the surface, 1 is an acceleration of 10 m/s²: above 0 it pushes others away.
+        /// Strength of the field at the surface; 1 is an acceleration of 10 m/s². Above 0 it repels.
         FIELD_MAGNITUDE: f64 = float("fieldMagnitude", "fma", 1.0).soft(-10.0, 10.0).solved("nucleus_core::contact::force_field");
-        /// How far the surface's field reaches.
+        /// Range of the surface field.
         FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0).solved("nucleus_core::contact::force_field");
-        /// The surface's field from the surface (0) to its reach (1).
+        /// Falloff of the surface field, from the surface (0) to its range (1).
         FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING).solved("nucleus_core::contact::force_field");
-        /// A force field round every point. Its strength and reach are in m/s² and scene units, or both times the thickness.
+        /// A force field around each point. Strength and range are in m/s² and scene units, or both are multiplied by the thickness.
         POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]).solved("nucleus_core::contact::point_field");
-        /// Strength of the points' field on others, 1 is an acceleration of 10 m/s²: above 0 it pushes them away. The fields of several points add up.
+        /// Strength of the point field on other objects; 1 is an acceleration of 10 m/s². Above 0 it repels. The fields of several points add up.
         POINT_FIELD_MAGNITUDE: f64 = float("pointFieldMagnitude", "pfma", 1.0).soft(-10.0, 10.0).solved("nucleus_core::contact::point_field");
-        /// Strength of the points' field within the object: above 0 it pulls together.
+        /// Strength of the point field on points of the same object. Above 0 it attracts.
         SELF_ATTRACT: f64 = float("selfAttract", "sfat", 0.0).soft(-10.0, 10.0).solved("nucleus_core::contact::point_field");
-        /// How far the points' field reaches beyond the thickness.
+        /// Range of the point field beyond the thickness.
         POINT_FIELD_DISTANCE: f64 = float("pointFieldDistance", "pfdi", 2.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::point_field");
-        /// The points' field from the thickness (0) to its reach (1).
+        /// Falloff of the point field, from the thickness (0) to its range (1).
         POINT_FIELD_DROPOFF: Cow<'static, [RampPoint]> = ramp("pointFieldDropoff", "pfdo", FALLING).solved("nucleus_core::contact::point_field");
     }
     "Quality Settings" {
-        /// Passes for collisions with itself in 1/24 s.
+        /// Passes of self-collision in 1/24 s.
         MAX_SELF_COLLISION_ITERATIONS: i64 = int("maxSelfCollisionIterations", "msci", 4).soft(0.0, 100.0).unit("per 1/24 s").solved("nucleus_core::schedule");
-        /// Classic: no resistance is given more iterations in 1/24 s than this.
+        /// Classic: upper limit of the iterations of each resistance in 1/24 s.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0).solved("nucleus_graph::compile::soft_body");
-        /// Share of the way by which points of other objects go, in a substep, to the outer side of the surface; below 0 to the inner. For scenes that start with one object in another.
+        /// Share of the distance by which points of other objects move, in a substep, to the outer side of the surface; below 0, to the inner side. For scenes that start with one object inside another.
         PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::depenetration");
-        /// Points farther from the surface than this are not pushed out. Left out, it is four times the thickness.
+        /// Largest distance from the surface at which points are pushed out. Default: four times the thickness.
         PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::depenetration");
-        /// How much faster cloths are worked apart where they pass through each other: 0 half an edge length in 1/24 s, 1 ten times that. The values of both sides are added.
+        /// Additional speed of untangling where cloths intersect: 0 is half an edge length in 1/24 s, 1 is ten times that. The values of both sides are added.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::untangling");
-        /// Brings points that got to the wrong side back. The solver always does so for cloth, whatever is set here.
+        /// Returns points that are on the wrong side. For cloth the solver does so at any value.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", false).solved("nucleus_core::contact::cloth::untangling");
     }
     "Initial State" {
-        /// Initial positions in world space, in place of those of the input mesh; how the cloth is at rest is still the mesh's to say.
+        /// Initial positions in world space, in place of those of the input mesh. The rest shape remains that of the mesh.
         START_POSITIONS: Vec<[f64; 3]> = vectors("startPositions", "spns").unit("scene units").solved("nucleus_graph::compile");
         /// Initial velocities in world space.
         START_VELOCITIES: Vec<[f64; 3]> = vectors("startVelocities", "sves").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Caching" {
-        /// Positions that come from a cache.
+        /// Positions from a cache.
         POSITIONS: Plugged = plug("positions", "poss", Data::Vectors);
-        /// Velocities that come from a cache.
+        /// Velocities from a cache.
         VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors);
-        /// Solver state that comes from a cache.
+        /// Solver state from a cache.
         INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle);
-        /// Takes the state from a cache instead of solving.
+        /// Reads the state from a cache instead of solving.
         PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false);
-        /// Everything that comes from a cache of particles.
+        /// All data from a particle cache.
         CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle);
     }
     "Collision Properties Maps" {
-        /// Texture that varies thickness.
+        /// Texture of the map of thickness.
         THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1).solved("nucleus_core::model::vertex_maps");
-        /// Factor on thickness at each point.
+        /// Factor on thickness, per point.
         THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv").solved("nucleus_core::model::vertex_maps");
-        /// Texture that varies bounce.
+        /// Texture of the map of bounce.
         BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on bounce at each point.
+        /// Factor on bounce, per point.
         BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv").solved("nucleus_core::model::vertex_maps");
-        /// Texture that varies friction.
+        /// Texture of the map of friction.
         FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on friction at each point.
+        /// Factor on friction, per point.
         FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv").solved("nucleus_core::model::vertex_maps");
-        /// Texture that varies stickiness.
+        /// Texture of the map of stickiness.
         STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on stickiness at each point.
+        /// Factor on stickiness, per point.
         STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv").solved("nucleus_core::model::vertex_maps");
-        /// Texture that varies collide strength.
+        /// Texture of the map of collide strength.
         COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on collide strength at each point.
+        /// Factor on collide strength, per point.
         COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv").solved("nucleus_core::model::vertex_maps");
-        /// Whether thickness is varied by nothing, by point, or by a texture.
+        /// Source of the map of thickness: none, a value per point, or a texture.
         THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Whether bounce is varied by nothing, by point, or by a texture.
+        /// Source of the map of bounce: none, a value per point, or a texture.
         BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Whether friction is varied by nothing, by point, or by a texture.
+        /// Source of the map of friction: none, a value per point, or a texture.
         FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Whether stickiness is varied by nothing, by point, or by a texture.
+        /// Source of the map of stickiness: none, a value per point, or a texture.
         STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Whether collide strength is varied by nothing, by point, or by a texture.
+        /// Source of the map of collide strength: none, a value per point, or a texture.
         COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Dynamic Properties Maps" {
-        /// Texture that varies damp.
+        /// Texture of the map of damp.
         DAMP_MAP: f64 = texture("dampMap", "admp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on damp at each point.
+        /// Factor on damp, per point.
         DAMP_PER_VERTEX: Vec<f64> = floats("dampPerVertex", "dpv").solved("nucleus_core::model::vertex_maps");
-        /// Texture that varies mass.
+        /// Texture of the map of mass.
         MASS_MAP: f64 = texture("massMap", "mamp", 1.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on mass at each point.
+        /// Factor on mass, per point.
         MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv").solved("nucleus_core::model::vertex_maps");
-        /// Whether damp is varied by nothing, by point, or by a texture.
+        /// Source of the map of damp: none, a value per point, or a texture.
         DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Whether mass is varied by nothing, by point, or by a texture.
+        /// Source of the map of mass: none, a value per point, or a texture.
         MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Force Field Maps" {
-        /// Texture that varies field magnitude.
+        /// Texture of the map of field magnitude.
         FIELD_MAGNITUDE_MAP: f64 = texture("fieldMagnitudeMap", "fmmp", 0.0).solved("nucleus_core::model::vertex_maps");
-        /// Factor on field magnitude at each point.
+        /// Factor on field magnitude, per point.
         FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv").solved("nucleus_core::model::vertex_maps");
-        /// Whether field magnitude is varied by nothing, by point, or by a texture.
+        /// Source of the map of field magnitude: none, a value per point, or a texture.
         FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Nucleus (open)" {
-        /// A material to take values from: one of `nucleus presets`, or a file of your own, `"mine.ron"`. What is set here counts more.
+        /// A material preset: one of `nucleus presets`, or a file, `"mine.ron"`. Attributes set on the node take precedence.
         PRESET: String = text("preset", "preset").solved("nucleus_graph::graph").extension();
-        /// The nucleus it belongs to; the only one of the scene when left out.
+        /// Its nucleus. Default: the only one of the scene.
         NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("nucleus_graph::graph").extension();
     }
     "Connections" {
-        /// Its state as its nucleus has solved it.
+        /// Its solved state.
         NEXT_STATE: Plugged = plug("nextState", "nxst", Data::State).sink();
-        /// Its state as its nucleus is to see it.
+        /// Its current state.
         CURRENT_STATE: Plugged = plug("currentState", "cust", Data::State).output();
         /// Its initial state.
         START_STATE: Plugged = plug("startState", "stst", Data::State).output();
-        /// Which object of its nucleus it is.
+        /// Its index in its nucleus.
         NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output();
     }
     "Internal" {
-        /// Solved, as cloth and particles are; off for colliders. Set when the node is created.
+        /// Whether the object is solved (cloth, particles) or animated (colliders). Set when the node is created.
         ACTIVE: bool = toggle("active", "actv", true).hidden();
-        /// Time of the evaluation before.
+        /// Time of the previous evaluation.
         LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden();
-        /// Gives positions in the space of its own transform.
+        /// Outputs positions in the space of its own transform.
         LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden();
     }
 }

@@ -1,4 +1,4 @@
-//! Parts of objects, as constraints see them. Made by the short form of a constraint.
+//! Components of objects, for constraints. The short form of a constraint creates them.
 
 use super::key::{Plugged, choice, float, floats, int, ints, plug, text, texture};
 use super::kind::Data;
@@ -7,34 +7,34 @@ use super::node_type::node_table;
 use super::value::Choice;
 
 node_table! {
-    /// A part of one object that a constraint takes hold of.
+    /// A component of an object that a constraint acts on.
     N_COMPONENT = "nComponent", inherits None, hides [];
     "Nucleus (open)" {
-        /// Elements by meaning, with semicolons between: `border`, `corners`, `where(y > 1.49)`, `group(collar)`, `mask(tear.png)`.
+        /// Elements selected by meaning, separated by semicolons: `border`, `corners`, `where(y > 1.49)`, `group(collar)`, `mask(tear.png)`.
         SELECT: String = text("select", "select").solved("nucleus_graph::compile::constraints::select").extension();
     }
     "Component" {
         /// Kind of elements: points, edges, faces, or the object as a whole.
         COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::constraints");
-        /// Which elements: those listed, those on borders, or all.
+        /// Selected elements: those listed, those on borders, or all.
         ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::constraints");
-        /// Factor on the constraint's strength here.
+        /// Factor on the strength of the constraint.
         STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
-        /// Factor on the constraint's glue strength here.
+        /// Factor on the glue strength of the constraint.
         GLUE_STRENGTH: f64 = float("glueStrength", "gst", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
-        /// Weight of this side against the other.
+        /// Weight of this side of the links relative to the other.
         WEIGHT: f64 = float("weight", "wgh", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
-        /// Factor on the constraint's tangent strength here.
+        /// Factor on the tangent strength of the constraint.
         TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
         /// The elements listed.
         COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::constraints").multi();
     }
     "Connections" {
-        /// The object it is a part of.
+        /// The object of the component.
         OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId);
-        /// The part, for a constraint.
+        /// The component, as the input of a constraint.
         OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output();
-        /// A mesh to take elements from.
+        /// A mesh that elements are taken from.
         SURFACE: Plugged = plug("surface", "srf", Data::Mesh);
     }
     "Internal" {
@@ -42,23 +42,23 @@ node_table! {
         COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden();
     }
     "Component Maps" {
-        /// Texture that varies strength.
+        /// Texture of the map of strength.
         STRENGTH_MAP: f64 = texture("strengthMap", "stnm", 1.0).solved("nucleus_graph::compile::constraints");
-        /// Factor on strength at each point.
+        /// Factor on strength, per point.
         STRENGTH_PER_VERTEX: Vec<f64> = floats("strengthPerVertex", "spv").solved("nucleus_graph::compile::constraints");
-        /// Texture that varies glue strength.
+        /// Texture of the map of glue strength.
         GLUE_STRENGTH_MAP: f64 = texture("glueStrengthMap", "gstm", 1.0).solved("nucleus_graph::compile::constraints");
-        /// Factor on glue strength at each point.
+        /// Factor on glue strength, per point.
         GLUE_STRENGTH_PER_VERTEX: Vec<f64> = floats("glueStrengthPerVertex", "gspv").solved("nucleus_graph::compile::constraints");
-        /// Texture that varies weight.
+        /// Texture of the map of weight.
         WEIGHT_MAP: f64 = texture("weightMap", "wemp", 1.0).solved("nucleus_graph::compile::constraints");
-        /// Factor on weight at each point.
+        /// Factor on weight, per point.
         WEIGHT_PER_VERTEX: Vec<f64> = floats("weightPerVertex", "wpv").solved("nucleus_graph::compile::constraints");
-        /// Whether strength is varied by nothing, by point, or by a texture.
+        /// Source of the map of strength: none, a value per point, or a texture.
         STRENGTH_MAP_TYPE: Choice = choice("strengthMapType", "smt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
-        /// Whether glue strength is varied by nothing, by point, or by a texture.
+        /// Source of the map of glue strength: none, a value per point, or a texture.
         GLUE_STRENGTH_MAP_TYPE: Choice = choice("glueStrengthMapType", "gsmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
-        /// Whether weight is varied by nothing, by point, or by a texture.
+        /// Source of the map of weight: none, a value per point, or a texture.
         WEIGHT_MAP_TYPE: Choice = choice("weightMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
     }
 }

@@ -11,7 +11,7 @@ use super::n_base::N_BASE;
 use super::node_type::node_table;
 use super::value::{Choice, ColorPoint, RampPoint};
 
-/// What a ramp can be read by.
+/// Inputs of a ramp.
 const INPUTS: &[(i32, &str)] = &[
     (0, "Off"),
     (1, "Age"),
@@ -23,7 +23,7 @@ const INPUTS: &[(i32, &str)] = &[
     (7, "Radius"),
 ];
 
-/// What a ramp of colours can be read by.
+/// Inputs of a ramp of colours.
 const COLOUR_INPUTS: &[(i32, &str)] = &[
     (0, "Constant"),
     (1, "Age"),
@@ -38,7 +38,7 @@ const COLOUR_INPUTS: &[(i32, &str)] = &[
 /// 1 everywhere.
 const FULL: &[RampPoint] = &[RampPoint { position: 0.0, value: 1.0, interpolation: Choice(1) }];
 
-/// What points without a mesh have no use for.
+/// Attributes without effect on points without a mesh.
 #[rustfmt::skip] // a name per line would be a page of its own
 const NO_USE_TO_PARTICLES: &[&str] = &[
     "useStartupCache", "startupCachePath", "startupCacheFrame", "inputGeometry", "inputGeometryPoints",
@@ -56,192 +56,192 @@ const NO_USE_TO_PARTICLES: &[&str] = &[
 ];
 
 node_table! {
-    /// Balls without links: they fall, feel the air, and meet cloth, colliders and each other.
+    /// Particles: balls without links, which collide with cloth, colliders and each other, or liquids.
     N_PARTICLE = "nParticle", inherits Some(&N_BASE), hides [NO_USE_TO_PARTICLES];
     "Hidden" {
-        /// Left over from early versions of Maya.
+        /// Obsolete in Maya.
         NUM_SUBDIVISIONS: i64 = int("numSubdivisions", "nsub", 2).unused().hidden();
-        /// Without meaning for particles: they have no links.
+        /// Without effect: particles have no links.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]).unused().hidden();
-        /// Lets Maya use threads for liquids.
+        /// Whether Maya computes liquids in parallel.
         PARALLEL_SPH: bool = toggle("parallelSPH", "psph", false).hidden();
-        /// Looks for neighbours more often.
+        /// Whether Maya searches for neighbours more often.
         RECOMPUTE_PAIRS_SPH: bool = toggle("recomputePairsSPH", "rpsp", false).hidden();
     }
     "Per Particle (Array) Attributes" {
-        /// Where the particles are when the simulation begins, in world space, unless `position0` says it.
+        /// Initial positions in world space, if `position0` is not set.
         POSITION: Vec<[f64; 3]> = vectors("position", "pos").unit("scene units").solved("nucleus_graph::compile");
-        /// How fast they are then, unless `velocity0` says it.
+        /// Initial velocities in world space, if `velocity0` is not set.
         VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Initial State" {
-        /// Initial positions in world space; a file may be an OBJ, of which the points are taken.
+        /// Initial positions in world space. Of an OBJ file, the points are taken.
         POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").unit("scene units").solved("nucleus_graph::compile");
         /// Initial velocities in world space.
         VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").unit("scene units/s").solved("nucleus_graph::compile");
-        /// Lower corner of a box that is filled with particles in a grid; the particle tool's Minimum Corner.
+        /// Lower corner of a box that a grid of particles fills; Minimum Corner of Maya's particle tool.
         MINIMUM_CORNER: [f64; 3] = vector("minimumCorner", "minimumCorner", [0.0, 0.0, 0.0], ["minimumCornerX", "minimumCornerY", "minimumCornerZ"]).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
-        /// Upper corner of that box; the particle tool's Maximum Corner.
+        /// Upper corner of that box; Maximum Corner of Maya's particle tool.
         MAXIMUM_CORNER: [f64; 3] = vector("maximumCorner", "maximumCorner", [0.0, 0.0, 0.0], ["maximumCornerX", "maximumCornerY", "maximumCornerZ"]).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
-        /// Name of a closed mesh whose volume is filled with particles in a grid, as Maya's Fill Object does.
+        /// Name of a closed mesh whose volume a grid of particles fills, as Maya's Fill Object does.
         FILL_MESH: String = text("fillMesh", "fillMesh").solved("nucleus_graph::compile").extension();
-        /// Distance of the particles in a grid; 0 is that of a liquid at rest, or the diameter of a ball.
+        /// Distance between the particles of the grid. 0: the rest distance of a liquid, or the diameter of a ball.
         PARTICLE_SPACING: f64 = float("particleSpacing", "particleSpacing", 0.0).min(0.0).max(1e9).unit("scene units").solved("nucleus_graph::compile").fixed().extension();
     }
     "Dynamic Properties" {
-        /// Kilograms of every particle, however resistances are read.
+        /// Mass of each particle, in Classic and Physical.
         POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg").solved("nucleus_graph::compile").fixed();
-        /// Slows the particles down.
+        /// Damping of velocities.
         DAMP: f64 = float("damp", "adng", 0.0).min(0.0).soft(0.0, 10.0);
-        /// How strongly particles are drawn to an input mesh.
+        /// Strength of the attraction to an input mesh.
         INPUT_ATTRACT: f64 = float("inputAttract", "iatt", 0.0).soft(0.0, 1.0);
-        /// How little they swing about it: 0 freely, 1 not at all.
+        /// Damping of the oscillation about the input mesh: 0 is undamped, 1 does not overshoot.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0);
-        /// Does not feel the solver's gravity.
+        /// Excludes the object from the solver's gravity.
         IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::integrate::predict");
-        /// Does not feel the solver's wind.
+        /// Excludes the object from the solver's wind.
         IGNORE_SOLVER_WIND: bool = toggle("ignoreSolverWind", "igsw", false).solved("nucleus_core::integrate::aerodynamics");
-        /// Force of the air against the motion, the same in all directions; on a light particle it does more.
+        /// Air drag against the motion, equal in all directions. The lighter the particle, the larger the deceleration.
         DRAG: f64 = float("drag", "drg", 0.01).soft(0.0, 2.0).unit("per 1/24 s").solved("nucleus_core::integrate::aerodynamics");
-        /// Factor on mass, by particle.
+        /// Ramp of factors on mass, per particle.
         MASS_SCALE: Cow<'static, [RampPoint]> = ramp("massScale", "mssc", FULL);
-        /// What the mass ramp is read by.
+        /// Input of the mass ramp.
         MASS_SCALE_INPUT: Choice = choice("massScaleInput", "msli", 0, INPUTS);
-        /// The value that stands at the right end of the mass ramp.
+        /// Input at the right end of the mass ramp.
         MASS_SCALE_INPUT_MAX: f64 = float("massScaleInputMax", "msix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much the mass varies at random.
+        /// Random variation of mass, as a share.
         MASS_SCALE_RANDOMIZE: f64 = float("massScaleRandomize", "msr", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Wind Field Generation" {
-        /// Lets particles keep the wind from each other.
+        /// Whether particles shadow each other from the wind.
         WIND_SELF_SHADOW: bool = toggle("windSelfShadow", "wssh", false);
     }
     "Collisions" {
-        /// Up to which elements it collides: particles are points, whatever it says.
+        /// Elements that collide. Particles are points at any value.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 1, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile");
-        /// What Maya draws of the solver's data.
+        /// Solver data that Maya draws.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness")]);
-        /// Size in collisions, as a multiple of the radius.
+        /// Collision radius, as a multiple of `radius`.
         COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::material");
-        /// Size towards each other, as a multiple of the size in collisions.
+        /// Collision radius among the particles themselves, as a multiple of the collision radius.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::thickness");
-        /// Factor on friction, by particle.
+        /// Ramp of factors on friction, per particle.
         FRICTION_SCALE: Cow<'static, [RampPoint]> = ramp("frictionScale", "frsc", FULL);
-        /// What the friction ramp is read by.
+        /// Input of the friction ramp.
         FRICTION_SCALE_INPUT: Choice = choice("frictionScaleInput", "fsli", 0, INPUTS);
-        /// The value that stands at the right end of the friction ramp.
+        /// Input at the right end of the friction ramp.
         FRICTION_SCALE_INPUT_MAX: f64 = float("frictionScaleInputMax", "fsix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much friction varies at random.
+        /// Random variation of friction, as a share.
         FRICTION_RANDOMIZE: f64 = float("frictionRandomize", "fcr", 0.0).min(0.0).soft(0.0, 1.0);
-        /// Factor on stickiness, by particle.
+        /// Ramp of factors on stickiness, per particle.
         STICKINESS_SCALE: Cow<'static, [RampPoint]> = ramp("stickinessScale", "stsc", FULL);
-        /// What the stickiness ramp is read by.
+        /// Input of the stickiness ramp.
         STICKINESS_SCALE_INPUT: Choice = choice("stickinessScaleInput", "ssli", 0, INPUTS);
-        /// The value that stands at the right end of the stickiness ramp.
+        /// Input at the right end of the stickiness ramp.
         STICKINESS_SCALE_INPUT_MAX: f64 = float("stickinessScaleInputMax", "ssix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much stickiness varies at random.
+        /// Random variation of stickiness, as a share.
         STICKINESS_RANDOMIZE: f64 = float("stickinessRandomize", "stra", 0.0).min(0.0).soft(0.0, 1.0);
-        /// Factor on collide strength, by particle.
+        /// Ramp of factors on collide strength, per particle.
         COLLIDE_STRENGTH_SCALE: Cow<'static, [RampPoint]> = ramp("collideStrengthScale", "clsc", FULL);
-        /// What the collide strength ramp is read by.
+        /// Input of the collide strength ramp.
         COLLIDE_STRENGTH_SCALE_INPUT: Choice = choice("collideStrengthScaleInput", "csli", 0, INPUTS);
-        /// The value that stands at the right end of the collide strength ramp.
+        /// Input at the right end of the collide strength ramp.
         COLLIDE_STRENGTH_SCALE_INPUT_MAX: f64 = float("collideStrengthScaleInputMax", "csix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// Factor on bounce, by particle.
+        /// Ramp of factors on bounce, per particle.
         BOUNCE_SCALE: Cow<'static, [RampPoint]> = ramp("bounceScale", "bosc", FULL);
-        /// What the bounce ramp is read by.
+        /// Input of the bounce ramp.
         BOUNCE_SCALE_INPUT: Choice = choice("bounceScaleInput", "bsli", 0, INPUTS);
-        /// The value that stands at the right end of the bounce ramp.
+        /// Input at the right end of the bounce ramp.
         BOUNCE_SCALE_INPUT_MAX: f64 = float("bounceScaleInputMax", "bsix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much bounce varies at random.
+        /// Random variation of bounce, as a share.
         BOUNCE_RANDOMIZE: f64 = float("bounceRandomize", "bora", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Emission Attributes" {
-        /// New particles that overlap others by more than this share are left out.
+        /// Largest share of overlap with other particles at which a new particle is emitted.
         EMISSION_OVERLAP_PRUNING: f64 = float("emissionOverlapPruning", "eopr", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Rotation" {
-        /// Turns particles where they rub against something.
+        /// Computes rotations of particles from friction.
         COMPUTE_ROTATION: bool = toggle("computeRotation", "cprt", false);
-        /// How strongly rubbing turns them.
+        /// Share of friction that rotates particles.
         ROTATION_FRICTION: f64 = float("rotationFriction", "rtfr", 0.9).soft(0.0, 1.0);
-        /// How fast they stop turning.
+        /// Damping of rotations.
         ROTATION_DAMP: f64 = float("rotationDamp", "rtdp", 0.001).soft(0.0, 1.0);
     }
     "Liquid Simulation" {
-        /// Makes the particles a liquid; Maya shows it as Enable Liquid Simulation.
+        /// Simulates the particles as a liquid; Enable Liquid Simulation in Maya's attribute editor.
         ENABLE_SPH: bool = toggle("enableSPH", "esph", false).solved("nucleus_core::constraints::liquid");
-        /// How strongly the liquid keeps its volume: entirely from 1 on, as a soft body below.
+        /// Resistance of the liquid to a change of volume: from 1 on it is incompressible, below it is compressible.
         INCOMPRESSIBILITY: f64 = float("incompressibility", "incp", 1.0).min(0.0).soft(0.0, 50.0).solved("nucleus_core::constraints::liquid::density");
-        /// How much particles move like their neighbours: 1 is honey (0.01 m²/s), and it grows with the square.
+        /// Viscosity: the kinematic viscosity is its square times 0.01 m²/s. 1 is honey.
         VISCOSITY: f64 = float("viscosity", "visc", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::liquid::viscosity");
-        /// Factor on viscosity, by particle.
+        /// Ramp of factors on viscosity, per particle.
         VISCOSITY_SCALE: Cow<'static, [RampPoint]> = ramp("viscosityScale", "vssc", FULL);
-        /// What the viscosity ramp is read by.
+        /// Input of the viscosity ramp.
         VISCOSITY_SCALE_INPUT: Choice = choice("viscosityScaleInput", "vsli", 0, INPUTS);
-        /// The value that stands at the right end of the viscosity ramp.
+        /// Input at the right end of the viscosity ramp.
         VISCOSITY_SCALE_INPUT_MAX: f64 = float("viscosityScaleInputMax", "vsix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How strongly the surface draws together: at 1 drops of 1 cm hold together, water has 0.073.
+        /// Surface tension over density, in 0.001 m³/s². Water has 0.073; at 1, drops of 1 cm keep together.
         SURFACE_TENSION: f64 = float("surfaceTension", "suft", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::liquid::surface_tension");
-        /// Factor on surface tension, by particle.
+        /// Ramp of factors on surface tension, per particle.
         SURFACE_TENSION_SCALE: Cow<'static, [RampPoint]> = ramp("surfaceTensionScale", "stns", FULL);
-        /// What the surface tension ramp is read by.
+        /// Input of the surface tension ramp.
         SURFACE_TENSION_SCALE_INPUT: Choice = choice("surfaceTensionScaleInput", "stli", 0, INPUTS);
-        /// The value that stands at the right end of the surface tension ramp.
+        /// Input at the right end of the surface tension ramp.
         SURFACE_TENSION_SCALE_INPUT_MAX: f64 = float("surfaceTensionScaleInputMax", "stix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How many particles overlap a point at rest, as balls of the liquid radius.
+        /// Number of particles that overlap at a point at rest, as balls of radius `radius` × `radiusScaleSPH`.
         REST_DENSITY: f64 = float("restDensity", "rdns", 2.0).min(1.0).soft(1.0, 2.0).solved("nucleus_core::constraints::liquid").fixed();
-        /// Radius of the balls that overlap in a liquid, as a multiple of the radius: 0.5 is usual.
+        /// Radius of a liquid's overlapping balls, as a multiple of `radius`. Usual: 0.5.
         RADIUS_SCALE_SPH: f64 = float("radiusScaleSPH", "rsph", 1.0).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::liquid").fixed();
     }
     "Shading" {
-        /// Density at which the drawn surface stands; it does not act on the motion.
+        /// Density at the drawn surface, without effect on the motion.
         THRESHOLD: f64 = float("threshold", "thr", 0.1).min(0.0).soft(0.0, 2.0);
-        /// How opaque particles are.
+        /// Opacity of the particles.
         OPACITY: f64 = float("opacity", "op", 1.0).min(0.0).max(1.0);
-        /// Factor on opacity, by particle.
+        /// Ramp of factors on opacity, per particle.
         OPACITY_SCALE: Cow<'static, [RampPoint]> = ramp("opacityScale", "opc", FULL);
-        /// What the opacity ramp is read by.
+        /// Input of the opacity ramp.
         OPACITY_SCALE_INPUT: Choice = choice("opacityScaleInput", "oci", 0, INPUTS);
-        /// The value that stands at the right end of the opacity ramp.
+        /// Input at the right end of the opacity ramp.
         OPACITY_SCALE_INPUT_MAX: f64 = float("opacityScaleInputMax", "osis", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much opacity varies at random.
+        /// Random variation of opacity, as a share.
         OPACITY_SCALE_RANDOMIZE: f64 = float("opacityScaleRandomize", "osr", 0.0).min(0.0).soft(0.0, 1.0);
-        /// Colour, by particle.
+        /// Ramp of colours, per particle.
         COLOR: Cow<'static, [ColorPoint]> = color_ramp("color", "cl");
-        /// What the colour ramp is read by.
+        /// Input of the colour ramp.
         COLOR_INPUT: Choice = choice("colorInput", "coi", 0, COLOUR_INPUTS);
-        /// The value that stands at the right end of the colour ramp.
+        /// Input at the right end of the colour ramp.
         COLOR_INPUT_MAX: f64 = float("colorInputMax", "cimx", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much the place on the colour ramp varies at random.
+        /// Random variation of the position on the colour ramp.
         COLOR_RANDOMIZE: f64 = float("colorRandomize", "colr", 0.0).min(0.0).soft(0.0, 1.0);
-        /// Colour of the light that particles give off.
+        /// Ramp of colours of emitted light, per particle.
         INCANDESCENCE: Cow<'static, [ColorPoint]> = color_ramp("incandescence", "inca");
-        /// What the incandescence ramp is read by.
+        /// Input of the incandescence ramp.
         INCANDESCENCE_INPUT: Choice = choice("incandescenceInput", "ini", 0, COLOUR_INPUTS);
-        /// The value that stands at the right end of the incandescence ramp.
+        /// Input at the right end of the incandescence ramp.
         INCANDESCENCE_INPUT_MAX: f64 = float("incandescenceInputMax", "iimx", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much the place on the incandescence ramp varies at random.
+        /// Random variation of the position on the incandescence ramp.
         INCANDESCENCE_RANDOMIZE: f64 = float("incandescenceRandomize", "icar", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Particle Size" {
-        /// Radius of each particle: two touch at the sum of theirs.
+        /// Radius of each particle. Two particles touch at the sum of their radii.
         RADIUS: f64 = float("radius", "ra", 0.2).min(0.0).soft(0.0, 20.0).unit("scene units").solved("nucleus_core::contact::material").fixed();
-        /// Factor on radius, by particle.
+        /// Ramp of factors on radius, per particle.
         RADIUS_SCALE: Cow<'static, [RampPoint]> = ramp("radiusScale", "rdc", FULL);
-        /// What the radius ramp is read by.
+        /// Input of the radius ramp.
         RADIUS_SCALE_INPUT: Choice = choice("radiusScaleInput", "rci", 0, &[(0, "Off"), (1, "Age"), (2, "Normalized Age"), (3, "Speed"), (4, "Acceleration"), (5, "Particle ID"), (6, "Randomized ID")]);
-        /// The value that stands at the right end of the radius ramp.
+        /// Input at the right end of the radius ramp.
         RADIUS_SCALE_INPUT_MAX: f64 = float("radiusScaleInputMax", "rcix", 1.0).min(0.0).soft(0.0, 50.0);
-        /// How much the radius varies at random.
+        /// Random variation of radius, as a share.
         RADIUS_SCALE_RANDOMIZE: f64 = float("radiusScaleRandomize", "rsr", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Force Field Generation" {
-        /// Factor on the strength of the points' field, by particle.
+        /// Ramp of factors on the strength of the points' field, per particle.
         POINT_FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("pointFieldScale", "pfsc", FULL);
-        /// What the point field ramp is read by.
+        /// Input of the point field ramp.
         POINT_FIELD_SCALE_INPUT: Choice = choice("pointFieldScaleInput", "psli", 0, INPUTS);
-        /// The value that stands at the right end of the point field ramp.
+        /// Input at the right end of the point field ramp.
         POINT_FIELD_SCALE_INPUT_MAX: f64 = float("pointFieldScaleInputMax", "psix", 1.0).min(0.0).soft(0.0, 50.0);
     }
     "Internal" {
@@ -251,65 +251,65 @@ node_table! {
         COLOR_GREEN: f64 = float("colorGreen", "clg", 0.0).output().hidden();
         /// Blue, for shaders.
         COLOR_BLUE: f64 = float("colorBlue", "clb", 0.0).output().hidden();
-        /// What the radius ramp gives for each particle.
+        /// Output of the radius ramp, per particle.
         INTERNAL_RADIUS_RAMP: Vec<f64> = floats("internalRadiusRamp", "inrr").output().hidden();
-        /// What the mass ramp gives for each particle.
+        /// Output of the mass ramp, per particle.
         INTERNAL_MASS_RAMP: Vec<f64> = floats("internalMassRamp", "inmr").output().hidden();
-        /// What the point field ramp gives for each particle.
+        /// Output of the point field ramp, per particle.
         INTERNAL_FIELD_SCALE_RAMP: Vec<f64> = floats("internalFieldScaleRamp", "infs").output().hidden();
-        /// What the friction ramp gives for each particle.
+        /// Output of the friction ramp, per particle.
         INTERNAL_FRICTION_RAMP: Vec<f64> = floats("internalFrictionRamp", "infr").output().hidden();
-        /// What the stickiness ramp gives for each particle.
+        /// Output of the stickiness ramp, per particle.
         INTERNAL_STICKINESS_RAMP: Vec<f64> = floats("internalStickinessRamp", "insr").output().hidden();
-        /// What the collide strength ramp gives for each particle.
+        /// Output of the collide strength ramp, per particle.
         INTERNAL_COLLIDE_STRENGTH_RAMP: Vec<f64> = floats("internalCollideStrengthRamp", "iclr").output().hidden();
-        /// What the bounce ramp gives for each particle.
+        /// Output of the bounce ramp, per particle.
         INTERNAL_BOUNCE_RAMP: Vec<f64> = floats("internalBounceRamp", "inbr").output().hidden();
-        /// What the viscosity ramp gives for each particle.
+        /// Output of the viscosity ramp, per particle.
         INTERNAL_VISCOSITY_RAMP: Vec<f64> = floats("internalViscosityRamp", "invr").output().hidden();
-        /// What the surface tension ramp gives for each particle.
+        /// Output of the surface tension ramp, per particle.
         INTERNAL_SURFACE_TENSION_RAMP: Vec<f64> = floats("internalSurfaceTensionRamp", "istr").output().hidden();
-        /// What the opacity ramp gives for each particle.
+        /// Output of the opacity ramp, per particle.
         INTERNAL_OPACITY_RAMP: Vec<f64> = floats("internalOpacityRamp", "inor").output().hidden();
-        /// What the colour ramp gives for each particle.
+        /// Output of the colour ramp, per particle.
         INTERNAL_COLOR_RAMP: Vec<[f64; 3]> = vectors("internalColorRamp", "incr").output().hidden();
-        /// What the incandescence ramp gives for each particle.
+        /// Output of the incandescence ramp, per particle.
         INTERNAL_INCANDESCENCE_RAMP: Vec<[f64; 3]> = vectors("internalIncandescenceRamp", "inir").output().hidden();
     }
     "Caching" {
-        /// What a cache keeps of this object.
+        /// Attributes that a cache stores.
         CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 3, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamics and Rendering"), (3, "All")]);
-        /// Works ramps out after a cache is read, instead of taking what it holds.
+        /// Evaluates ramps after a cache is read, instead of reading their values from it.
         POST_CACHE_RAMP_EVAL: bool = toggle("postCacheRampEval", "pcre", false);
     }
     "Output Mesh" {
-        /// Factor on the radius where a surface is drawn round particles.
+        /// Factor on the radius for the surface around the particles.
         BLOBBY_RADIUS_SCALE: f64 = float("blobbyRadiusScale", "brs", 1.0).min(0.0).soft(0.0, 10.0);
-        /// How far that surface is drawn out along the motion.
+        /// Stretch of the surface along the motion.
         MOTION_STREAK: f64 = float("motionStreak", "mstr", 0.0).soft(0.0, 10.0);
-        /// Gives the surface colours.
+        /// Stores colours on the surface.
         COLOR_PER_VERTEX: bool = toggle("colorPerVertex", "cpvx", false);
-        /// Gives the surface opacity.
+        /// Stores opacity on the surface.
         OPACITY_PER_VERTEX: bool = toggle("opacityPerVertex", "opvx", false);
-        /// Gives the surface incandescence.
+        /// Stores incandescence on the surface.
         INCANDESCENCE_PER_VERTEX: bool = toggle("incandescencePerVertex", "ipvx", false);
-        /// Gives the surface velocities.
+        /// Stores velocities on the surface.
         VELOCITY_PER_VERTEX: bool = toggle("velocityPerVertex", "vpvx", true);
-        /// Gives the surface texture coordinates.
+        /// Stores texture coordinates on the surface.
         UVW_PER_VERTEX: bool = toggle("uvwPerVertex", "upvx", false);
-        /// Takes the normals of the surface from how the density changes.
+        /// Computes the normals of the surface from the gradient of the density.
         USE_GRADIENT_NORMALS: bool = toggle("useGradientNormals", "ugn", false);
         /// Size of the triangles of the surface.
         MESH_TRIANGLE_SIZE: f64 = float("meshTriangleSize", "mts", 0.5).min(0.0).soft(0.0, 10.0);
-        /// No more cells than this along an axis.
+        /// Largest number of cells along an axis.
         MAX_TRIANGLE_RESOLUTION: i64 = int("maxTriangleResolution", "mtrr", 100);
-        /// How often the surface is smoothed.
+        /// Number of smoothing iterations of the surface.
         MESH_SMOOTHING_ITERATIONS: i64 = int("meshSmoothingIterations", "msit", 0).min(0.0).soft(0.0, 10.0);
-        /// What the surface is made of.
+        /// Elements of the surface.
         MESH_METHOD: Choice = choice("meshMethod", "mmd", 0, &[(0, "Triangle Mesh"), (1, "Tetrahedra"), (2, "Acute Tetrahedra"), (3, "Quad Mesh")]);
     }
     "Connections" {
-        /// The surface round the particles.
+        /// The surface around the particles.
         OUT_MESH: Plugged = plug("outMesh", "oms", Data::Mesh).output();
     }
 }

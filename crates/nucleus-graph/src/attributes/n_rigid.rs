@@ -5,7 +5,7 @@ use super::n_base::{MAP_TYPES, N_BASE, NO_USE_TO_MESHES};
 use super::node_type::node_table;
 use super::value::Choice;
 
-/// What an object that nothing moves has no use for.
+/// Attributes without effect on an object that the solver does not move.
 #[rustfmt::skip] // a name per line would be a page of its own
 const NO_USE_TO_COLLIDERS: &[&str] = &[
     "acceleration", "position0", "velocity0", "mass", "startVelocities", "damp", "dampMap", "dampPerVertex",
@@ -15,50 +15,50 @@ const NO_USE_TO_COLLIDERS: &[&str] = &[
 ];
 
 node_table! {
-    /// A mesh that cloth collides with. It is moved by its transform and by nothing else.
+    /// A collider: a mesh that cloth and particles collide with. Its transform and its input mesh move it; the solver does not.
     N_RIGID = "nRigid", inherits Some(&N_BASE), hides [NO_USE_TO_MESHES, NO_USE_TO_COLLIDERS];
     "Collisions" {
-        /// What Maya draws of the solver's data.
+        /// Solver data that Maya draws.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off")]).elsewhere("only Maya's viewport draws it");
-        /// Takes part in collisions with itself: a collider does not.
+        /// Self-collision; colliders have none.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", false);
     }
     "Quality Settings" {
-        /// Depenetrates points inside a closed collider, to the nearest surface; off, they stay inside.
+        /// Moves points inside a closed collider to the nearest surface. Off: they stay inside.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("nucleus_core::contact::depenetration");
-        /// Cloth that starts inside it is depenetrated point by point, whatever is set here: a collider has no intersection contours.
+        /// Without effect: cloth that starts inside a collider is depenetrated point by point.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0);
     }
     "Collision Properties Maps" {
-        /// Texture that varies thickness.
+        /// Texture of the map of thickness.
         THICKNESS_MAP: f64 = texture("thicknessMap", "thmp", 0.1);
-        /// Factor on thickness at each point.
+        /// Factor on thickness, per point.
         THICKNESS_PER_VERTEX: Vec<f64> = floats("thicknessPerVertex", "thpv");
-        /// Texture that varies bounce.
+        /// Texture of the map of bounce.
         BOUNCE_MAP: f64 = texture("bounceMap", "bomp", 0.0);
-        /// Factor on bounce at each point.
+        /// Factor on bounce, per point.
         BOUNCE_PER_VERTEX: Vec<f64> = floats("bouncePerVertex", "bpv");
-        /// Texture that varies stickiness.
+        /// Texture of the map of stickiness.
         STICKINESS_MAP: f64 = texture("stickinessMap", "skmp", 0.0);
-        /// Factor on stickiness at each point.
+        /// Factor on stickiness, per point.
         STICKINESS_PER_VERTEX: Vec<f64> = floats("stickinessPerVertex", "skpv");
-        /// Texture that varies collide strength.
+        /// Texture of the map of collide strength.
         COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0);
-        /// Factor on collide strength at each point.
+        /// Factor on collide strength, per point.
         COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv");
-        /// Whether thickness is varied by nothing, by point, or by a texture.
+        /// Source of the map of thickness: none, a value per point, or a texture.
         THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES);
-        /// Whether bounce is varied by nothing, by point, or by a texture.
+        /// Source of the map of bounce: none, a value per point, or a texture.
         BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES);
-        /// Whether stickiness is varied by nothing, by point, or by a texture.
+        /// Source of the map of stickiness: none, a value per point, or a texture.
         STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES);
-        /// Whether collide strength is varied by nothing, by point, or by a texture.
+        /// Source of the map of collide strength: none, a value per point, or a texture.
         COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES);
-        /// Texture that varies friction.
+        /// Texture of the map of friction.
         FRICTION_MAP: f64 = texture("frictionMap", "frmp", 0.0);
-        /// Factor on friction at each point.
+        /// Factor on friction, per point.
         FRICTION_PER_VERTEX: Vec<f64> = floats("frictionPerVertex", "fpv");
-        /// Whether friction is varied by nothing, by point, or by a texture.
+        /// Source of the map of friction: none, a value per point, or a texture.
         FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES);
     }
 }

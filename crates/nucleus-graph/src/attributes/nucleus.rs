@@ -7,78 +7,78 @@ use super::scene_nodes::transform::TRANSFORM;
 use super::value::Choice;
 
 node_table! {
-    /// A solver: only what belongs to the same one interacts. Holds gravity, wind, the ground plane and the quality settings.
+    /// A solver. Objects interact only with objects of the same solver. Its attributes are gravity, wind, the ground plane and the solver settings.
     NUCLEUS = "nucleus", inherits Some(&TRANSFORM), hides [];
     "General" {
-        /// Solves at all; when off, everything keeps the state it has.
+        /// Enables the solver. Off: all objects keep their state.
         ENABLE: bool = toggle("enable", "ena", true).solved("nucleus_graph::simulation");
     }
     "Gravity and Wind" {
-        /// Acceleration of free fall; metres are scene units times `spaceScale`.
+        /// Acceleration of gravity. A scene unit is `spaceScale` metres.
         GRAVITY: f64 = float("gravity", "grty", 9.8).soft(0.0, 100.0).unit("m/s²").solved("nucleus_core::integrate::predict");
-        /// Where things fall to; its length does not matter.
+        /// Direction of gravity, of any length.
         GRAVITY_DIRECTION: [f64; 3] = vector("gravityDirection", "grdi", [0.0, -1.0, 0.0], ["grdx", "grdy", "grdz"]).solved("nucleus_core::integrate::predict");
-        /// How much there is of the air that drags and lifts: 0 is a vacuum, 1 ordinary air.
+        /// Air density for drag and lift, relative to ordinary air: 0 is a vacuum.
         AIR_DENSITY: f64 = float("airDensity", "ady", 1.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::integrate::aerodynamics");
-        /// How fast the air moves.
+        /// Speed of the wind.
         WIND_SPEED: f64 = float("windSpeed", "wisp", 0.0).soft(0.0, 50.0).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
-        /// Where the wind blows to; its length does not matter.
+        /// Direction of the wind, of any length.
         WIND_DIRECTION: [f64; 3] = vector("windDirection", "widi", [1.0, 0.0, 0.0], ["widx", "widy", "widz"]).solved("nucleus_core::integrate::aerodynamics");
         /// Gusts as a multiple of the wind speed, smooth in space and time.
         WIND_NOISE: f64 = float("windNoise", "wnoi", 0.0).soft(0.0, 1.0).solved("nucleus_core::integrate::gusts");
     }
     "Ground Plane" {
-        /// Adds an endless ground plane that everything collides with.
+        /// Adds an infinite ground plane that all objects collide with.
         USE_PLANE: bool = toggle("usePlane", "nupl", false).solved("nucleus_core::contact::ground");
-        /// Any point of the ground plane.
+        /// A point of the ground plane.
         PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::contact::ground");
-        /// The side of the ground plane on which things stay; its length does not matter.
+        /// Normal of the ground plane, of any length. Objects stay on the side that it points to.
         PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::contact::ground");
-        /// How much speed is kept when something bounces off the ground plane.
+        /// Share of the normal speed that a contact with the ground plane returns.
         PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
-        /// Friction of the ground plane, added to the other side's.
+        /// Friction of the ground plane, added to that of the object.
         PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");
-        /// Stickiness of the ground plane, added to the other side's.
+        /// Stickiness of the ground plane, added to that of the object.
         PLANE_STICKINESS: f64 = float("planeStickiness", "npst", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::response");
     }
     "Solver Attributes" {
-        /// Reads directions and the ground plane in the space of this node's own transform.
+        /// Directions and the ground plane are in the space of this node's transform.
         USE_TRANSFORM: bool = toggle("useTransform", "ustf", true).solved("nucleus_graph::compile");
-        /// Objects whose collision layers are this far apart, or farther, do not meet.
+        /// Objects whose collision layers differ by this much or more do not collide.
         COLLISION_LAYER_RANGE: f64 = float("collisionLayerRange", "clra", 4.0).soft(1.0, 10.0).solved("nucleus_core::contact::material");
-        /// Parts that a frame is solved in; the shortest time the solver knows.
+        /// Number of substeps per frame.
         SUB_STEPS: i64 = int("subSteps", "sstp", 3).min(1.0).max(100000.0).soft(1.0, 20.0).unit("per frame").solved("nucleus_core::schedule");
         /// Collision passes in 1/24 s, shared among the substeps.
         MAX_COLLISION_ITERATIONS: i64 = int("maxCollisionIterations", "mcit", 4).min(0.0).max(1000000.0).soft(0.0, 100.0).unit("per 1/24 s").solved("nucleus_core::schedule");
-        /// Whether Maya prints how long frames or substeps take.
+        /// Whether Maya prints the time per frame or substep.
         TIMING_OUTPUT: Choice = choice("timingOutput", "to", 0, &[(0, "None"), (1, "Frame"), (2, "Subframe")]).elsewhere("`nucleus run` says how long it takes");
     }
     "Scale Attributes" {
         /// Evaluates force fields in every substep. Maya evaluates them once per frame.
         FIELDS_PER_SUBSTEP: bool = toggle("fieldsPerSubstep", "fieldsPerSubstep", false).solved("nucleus_core::fields").extension();
-        /// How fast simulated time runs against the time of the animation.
+        /// Simulated time relative to the time of the animation.
         TIME_SCALE: f64 = float("timeScale", "tisc", 1.0).min(0.0001).max(10000.0).soft(0.01, 10.0).solved("nucleus_graph::compile");
         /// Metres in one scene unit: 1 for a scene in metres, 0.01 for one in centimetres.
         SPACE_SCALE: f64 = float("spaceScale", "spsc", 1.0).min(1e-06).max(1000000.0).soft(0.01, 10.0).unit("m per scene unit").solved("nucleus_graph::compile").fixed();
     }
     "Time Attributes" {
-        /// The time it solves for; driven by `time1.outTime`.
+        /// Time of the evaluation; driven by `time1.outTime`.
         CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("nucleus_graph::simulation");
-        /// The frame at which everything is in its initial state, and where a run begins. Left out, it is the first frame of the scene.
+        /// The frame of the initial state, at which a run begins. Default: the first frame of the scene.
         START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("nucleus_graph::simulation").fixed();
-        /// How many frames a single evaluation may leap over and still be solved.
+        /// Largest number of frames that one evaluation may span.
         FRAME_JUMP_LIMIT: i64 = int("frameJumpLimit", "fjlt", 1).min(1.0).soft(1.0, 10.0).solved("nucleus_graph::simulation");
     }
     "Nucleus (open)" {
-        /// How resistances are read: Classic counts iterations, as Maya does; Physical means a stiffness that depends on neither mesh nor substeps.
+        /// Meaning of a resistance. Classic: a number of iterations, as in Maya. Physical: a stiffness, independent of mesh and substeps.
         RESISTANCE_MODEL: Choice = choice("resistanceModel", "resistanceModel", 1, &[(0, "Classic"), (1, "Physical")]).solved("nucleus_core::schedule").fixed().extension();
-        /// Lift as in Maya, where it goes with speeds in scene units per second: 1 / `spaceScale` times as strong. For scenes from Maya.
+        /// Lift as in Maya, which uses speeds in scene units per second: 1 / `spaceScale` times as strong. For scenes from Maya.
         LIFT_IN_SCENE_UNITS: bool = toggle("liftInSceneUnits", "liftInSceneUnits", false).solved("nucleus_graph::compile::frame").extension();
-        /// Physical: evaluations of every list in 1/24 s. More only lessens the error.
+        /// Physical: evaluations of each constraint in 1/24 s. More evaluations only reduce the error.
         EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("nucleus_core::schedule").extension();
     }
     "Hidden" {
-        /// How deep a contact may press into the thickness.
+        /// Largest depth of a contact within the thickness.
         COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden().unused();
         /// Kinds of element pairs that are tested between objects.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().elsewhere("the `collisionFlag` of each object counts");
@@ -94,23 +94,23 @@ node_table! {
         INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo", Data::State).multi();
         /// Initial state of each collider.
         INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi();
-        /// Each constraint as it is now.
+        /// Current state of each constraint.
         INPUT_CURRENT: Plugged = plug("inputCurrent", "ic", Data::Constraint).multi();
-        /// Each constraint as it is at the start.
+        /// Initial state of each constraint.
         INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi();
         /// Solved state of each active object.
         OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao", Data::State).multi().output();
     }
     "Internal" {
-        /// Time of the solve before.
+        /// Time of the previous solve.
         LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden();
         /// Number of the evaluation.
         EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden();
-        /// Leaves out setting up objects.
+        /// Skips the setup of objects.
         SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden();
         /// `startFrame` as a time.
         START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden();
-        /// Reading it makes the node evaluate.
+        /// Reading it evaluates the node.
         FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden();
     }
 }

@@ -1,4 +1,4 @@
-//! What all dynamic objects inherit from classic particles. None of it takes effect yet.
+//! Attributes that all dynamic objects inherit from Maya's classic particles.
 
 use super::key::{Plugged, choice, float, floats, int, ints, plug, text, toggle, vector, vectors};
 use super::kind::Data;
@@ -6,72 +6,72 @@ use super::node_type::node_table;
 use super::value::Choice;
 
 node_table! {
-    /// The classic particle shape, which every object of a nucleus descends from.
+    /// Maya's classic particle shape, the ancestor of all objects of a nucleus.
     PARTICLE = "particle", inherits None, hides [];
     "General" {
-        /// How many particles there are.
+        /// Number of particles.
         COUNT: i64 = int("count", "cnt", 0).output();
-        /// Takes part in the simulation; cloth that does not follows its input mesh. Maya shows it as Enable.
+        /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::soft_body");
     }
     "Time Attributes" {
-        /// The time it is evaluated for; driven by `time1.outTime`.
+        /// Time of the evaluation; driven by `time1.outTime`.
         CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
-        /// The frame of its initial state; driven by its nucleus.
+        /// Frame of the initial state; driven by the nucleus.
         START_FRAME: f64 = float("startFrame", "stf", 1.0);
     }
     "Dynamic Properties" {
-        /// How much of the fields' forces is felt.
+        /// Factor on the forces of fields.
         DYNAMICS_WEIGHT: f64 = float("dynamicsWeight", "dw", 1.0).min(0.0).max(1.0).solved("nucleus_graph::compile::fields");
-        /// Feels fields in world space.
+        /// Evaluates fields in world space.
         FORCES_IN_WORLD: bool = toggle("forcesInWorld", "fiw", true);
-        /// How much of the velocity is kept from frame to frame.
+        /// Share of the velocity that is kept from frame to frame.
         CONSERVE: f64 = float("conserve", "con", 1.0).min(0.0).max(1.0);
     }
     "Per Particle (Array) Attributes" {
-        /// Where the particles are.
+        /// Positions of the particles.
         POSITION: Vec<[f64; 3]> = vectors("position", "pos");
-        /// How fast the particles are.
+        /// Velocities of the particles.
         VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel");
-        /// How the velocity of the particles changes.
+        /// Accelerations of the particles.
         ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc");
-        /// Where the particles are in world space.
+        /// Positions of the particles in world space.
         WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output();
-        /// How fast the particles are in world space.
+        /// Velocities of the particles in world space.
         WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output();
         /// Mass of each particle.
         MASS: Vec<f64> = floats("mass", "mas");
-        /// Number of each particle.
+        /// Identifier of each particle.
         PARTICLE_ID: Vec<f64> = floats("particleId", "id").output();
-        /// When each particle came to be.
+        /// Time of birth of each particle.
         BIRTH_TIME: Vec<f64> = floats("birthTime", "bt").output();
-        /// How old each particle is.
+        /// Age of each particle.
         AGE: Vec<f64> = floats("age", "ag").output();
     }
     "Emission Attributes" {
-        /// Particles die when they leave the volume they came from.
+        /// Particles die when they leave the volume that they were emitted from.
         DIE_ON_EMISSION_VOLUME_EXIT: bool = toggle("dieOnEmissionVolumeExit", "dve", false);
         /// Emits in world space.
         EMISSION_IN_WORLD: bool = toggle("emissionInWorld", "eiw", true);
-        /// No more particles than this; -1 is no bound.
+        /// Largest number of particles; -1 for no limit.
         MAX_COUNT: i64 = int("maxCount", "mxc", -1).solved("nucleus_graph::compile::emission");
-        /// Share of the particles that is emitted.
+        /// Share of the particles that are emitted.
         LEVEL_OF_DETAIL: f64 = float("levelOfDetail", "lod", 1.0).min(0.0).max(1.0).solved("nucleus_graph::compile::emission");
-        /// How much velocity particles take from their emitter.
+        /// Share of the emitter's velocity that particles inherit.
         INHERIT_FACTOR: f64 = float("inheritFactor", "inh", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_graph::compile::emission");
-        /// Where random emission begins.
+        /// Seed of random emission.
         SEED: i64 = int("seed", "sd", 1).multi().solved("nucleus_graph::compile::emission");
     }
     "Lifespan" {
-        /// How it is decided how long particles live.
+        /// Source of the lifespans: forever, constant, or random.
         LIFESPAN_MODE: Choice = choice("lifespanMode", "lfm", 0, &[(0, "Live forever"), (1, "Constant"), (2, "Random range"), (3, "lifespanPP only")]).solved("nucleus_graph::compile::emission");
-        /// By how much the time they live varies.
+        /// Range of random lifespans.
         LIFESPAN_RANDOM: f64 = float("lifespanRandom", "lfr", 0.0).unit("s").solved("nucleus_graph::compile::emission");
-        /// How long particles live: each of them, or in the mean. Maya adds it to a node when it creates particles.
+        /// Lifespan of the particles: constant, or the mean of random ones. Maya adds the attribute when it creates particles.
         LIFESPAN: f64 = float("lifespan", "lifespan", 1.0).min(0.0).unit("s").solved("nucleus_graph::compile::emission").extension();
-        /// How long each particle lives in the end.
+        /// Lifespan of each particle.
         FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output();
-        /// Where random lifespans begin.
+        /// Seed of random lifespans.
         GENERAL_SEED: i64 = int("generalSeed", "gsd", 0).solved("nucleus_graph::compile::emission");
     }
     "Time/General" {
@@ -79,27 +79,27 @@ node_table! {
         EXPRESSIONS_AFTER_DYNAMICS: bool = toggle("expressionsAfterDynamics", "ead", false);
     }
     "Goal Weights and Objects" {
-        /// How the pull of goals changes with their weight.
+        /// Method by which the weight of goals acts.
         GOAL_SMOOTHNESS: f64 = float("goalSmoothness", "gsm", 3.0).min(0.0).soft(0.0, 10.0);
-        /// What particles are drawn to.
+        /// Goals of the particles.
         GOAL_GEOMETRY: Plugged = plug("goalGeometry", "ggeo", Data::Mesh).multi();
-        /// How strongly they are drawn.
+        /// Weights of the goals.
         GOAL_WEIGHT: f64 = float("goalWeight", "gw", 0.0).min(0.0).max(1.0).multi();
-        /// Whether they are drawn.
+        /// Whether the goals are active.
         GOAL_ACTIVE: bool = toggle("goalActive", "ga", true).multi();
     }
     "Classic memory caching" {
         /// Keeps frames in memory.
         CACHE_DATA: bool = toggle("cacheData", "chd", false);
-        /// How many frames it keeps.
+        /// Number of frames in memory.
         CACHE_WIDTH: i64 = int("cacheWidth", "chw", 1);
     }
     "Classic collisions" {
-        /// How often a particle can collide in a frame.
+        /// Largest number of collisions of a particle in a frame.
         TRACE_DEPTH: i64 = int("traceDepth", "trd", 10).min(0.0);
     }
     "Shading" {
-        /// How particles are drawn.
+        /// Render type of the particles.
         PARTICLE_RENDER_TYPE: Choice = choice("particleRenderType", "prt", 3, &[(0, "MultiPoint"), (1, "MultiStreak"), (2, "Numeric"), (3, "Points"), (4, "Spheres"), (5, "Sprites"), (6, "Streak"), (7, "Blobby Surface (s/w)"), (8, "Cloud (s/w)"), (9, "Tube (s/w)")]);
     }
     "Initial State" {
@@ -111,61 +111,61 @@ node_table! {
         ACCELERATION0: Vec<[f64; 3]> = vectors("acceleration0", "acc0");
         /// Initial masses.
         MASS0: Vec<f64> = floats("mass0", "mas0");
-        /// Initial numbers.
+        /// Initial identifiers.
         PARTICLE_ID0: Vec<f64> = floats("particleId0", "id0");
     }
     "Classic Particle" {
-        /// Positions that ramps work on.
+        /// Positions, as the input of ramps.
         RAMP_POSITION: Vec<[f64; 3]> = vectors("rampPosition", "rps");
-        /// Middle of all particles.
+        /// Centroid of the particles.
         CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output();
-        /// Positions at the evaluation before.
+        /// Positions at the previous evaluation.
         LAST_POSITION: Vec<[f64; 3]> = vectors("lastPosition", "lpos").output();
-        /// Velocities that ramps work on.
+        /// Velocities, as the input of ramps.
         RAMP_VELOCITY: Vec<[f64; 3]> = vectors("rampVelocity", "rvl");
-        /// Velocities at the evaluation before.
+        /// Velocities at the previous evaluation.
         LAST_VELOCITY: Vec<[f64; 3]> = vectors("lastVelocity", "lvel").output();
-        /// Accelerations that ramps work on.
+        /// Accelerations, as the input of ramps.
         RAMP_ACCELERATION: Vec<[f64; 3]> = vectors("rampAcceleration", "rac");
-        /// Middle of all particles in world space.
+        /// Centroid of the particles in world space.
         WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output();
-        /// World positions at the evaluation before.
+        /// World positions at the previous evaluation.
         LAST_WORLD_POSITION: Vec<[f64; 3]> = vectors("lastWorldPosition", "lwps").output();
-        /// World velocities, seen from the object.
+        /// World velocities in object space.
         WORLD_VELOCITY_IN_OBJECT_SPACE: Vec<[f64; 3]> = vectors("worldVelocityInObjectSpace", "wvo");
-        /// World velocities at the evaluation before.
+        /// World velocities at the previous evaluation.
         LAST_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("lastWorldVelocity", "lwvl").output();
-        /// Initial numbers of the emitters that particles come from.
+        /// Initial emitter identifiers of the particles.
         EMITTER_ID0: Vec<f64> = floats("emitterId0", "eid0").output();
-        /// Begins with a frame of a cache of classic particles.
+        /// Starts from a frame of a cache of classic particles.
         USE_STARTUP_CACHE: bool = toggle("useStartupCache", "usc", false);
-        /// Where that cache is.
+        /// Path of that cache.
         STARTUP_CACHE_PATH: String = text("startupCachePath", "scp");
-        /// Which of its frames is taken.
+        /// Frame of that cache.
         STARTUP_CACHE_FRAME: i64 = int("startupCacheFrame", "scf", 0);
         /// Positions kept in memory.
         CACHED_POSITION: Vec<[f64; 3]> = vectors("cachedPosition", "cpos").output();
-        /// Positions kept in memory, one evaluation back.
+        /// Positions kept in memory, of the previous evaluation.
         LAST_CACHED_POSITION: Vec<[f64; 3]> = vectors("lastCachedPosition", "lcps").output();
         /// World positions kept in memory.
         CACHED_WORLD_POSITION: Vec<[f64; 3]> = vectors("cachedWorldPosition", "cwps").output();
-        /// Middle of the particles kept in memory, in world space.
+        /// Centroid kept in memory, in world space.
         CACHED_WORLD_CENTROID: [f64; 3] = vector("cachedWorldCentroid", "cwcn", [0.0, 0.0, 0.0], ["cwcx", "cwcy", "cwcz"]).output();
         /// Velocities kept in memory.
         CACHED_VELOCITY: Vec<[f64; 3]> = vectors("cachedVelocity", "cvel").output();
         /// World velocities kept in memory.
         CACHED_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("cachedWorldVelocity", "cwvl").output();
-        /// The count is being worked out.
+        /// Whether the count is being computed.
         COMPUTING_COUNT: bool = toggle("computingCount", "cmp", false).hidden();
         /// Masses kept in memory.
         MASS_CACHE: Vec<f64> = floats("massCache", "masc").output();
-        /// Numbers of particles kept in memory.
+        /// Identifiers kept in memory.
         ID_CACHE: Vec<f64> = floats("idCache", "idc").output();
-        /// Numbers of particles in rising order.
+        /// Identifiers in ascending order.
         SORTED_ID: Vec<u32> = ints("sortedId", "sid").output();
-        /// Place of each of the sorted numbers.
+        /// Index of each sorted identifier.
         ID_INDEX: Vec<u32> = ints("idIndex", "idix").output();
-        /// The same at the start.
+        /// The same at the start frame.
         NEXT_ID0: i64 = int("nextId0", "nid0", 0);
         /// Initial times of birth.
         BIRTH_TIME0: Vec<f64> = floats("birthTime0", "bt0");
@@ -175,23 +175,23 @@ node_table! {
         AGE0: Vec<f64> = floats("age0", "ag0");
         /// Ages kept in memory.
         AGE_CACHE: Vec<f64> = floats("ageCache", "agc").output();
-        /// Emitter that each particle comes from.
+        /// Emitter of each particle.
         EMITTER_ID: Vec<f64> = floats("emitterId", "eid").output();
-        /// Collisions are to be noticed as events.
+        /// Whether collisions create events.
         COLLISION_EVENTS: bool = toggle("collisionEvents", "cev", false).hidden();
-        /// Particles are to die.
+        /// Whether particles die.
         DEATH: bool = toggle("death", "dth", false).hidden();
-        /// State of the random numbers.
+        /// State of the random number generator.
         RAND_STATE: [f64; 3] = vector("randState", "rnst", [0.0, 0.0, 0.0], ["rstx", "rsty", "rstz"]).hidden();
-        /// Runs the expression for new particles.
+        /// Whether the creation expression runs.
         EXECUTE_CREATION_EXPRESSION: bool = toggle("executeCreationExpression", "ece", false).hidden();
-        /// Runs the expression that comes before dynamics.
+        /// Whether the expression before dynamics runs.
         EXECUTE_RUNTIME_BEFORE_DYNAMICS_EXPRESSION: bool = toggle("executeRuntimeBeforeDynamicsExpression", "erbe", false).hidden();
-        /// Runs the expression that comes after dynamics.
+        /// Whether the expression after dynamics runs.
         EXECUTE_RUNTIME_AFTER_DYNAMICS_EXPRESSION: bool = toggle("executeRuntimeAfterDynamicsExpression", "erae", false).hidden();
-        /// Time as expressions see it.
+        /// Time, for expressions.
         TIME: f64 = float("time", "tim", 0.0).sink();
-        /// Frame as expressions see it.
+        /// Frame, for expressions.
         FRAME: f64 = float("frame", "frm", 0.0).sink();
         /// Text of the expression run in every frame.
         INTERNAL_RUNTIME_EXPRESSION: String = text("internalRuntimeExpression", "irx");
@@ -201,13 +201,13 @@ node_table! {
         INTERNAL_RUNTIME_AFTER_DYNAMICS_EXPRESSION: String = text("internalRuntimeAfterDynamicsExpression", "irax");
         /// Text of the expression run for new particles.
         INTERNAL_CREATION_EXPRESSION: String = text("internalCreationExpression", "icx");
-        /// Particle that an expression is run for.
+        /// Index of the particle that an expression runs for.
         CURRENT_PARTICLE: i64 = int("currentParticle", "xcp", 0).hidden();
-        /// How many died in the evaluation before.
+        /// Number of particles that died in the previous evaluation.
         DIED_LAST_TIME: i64 = int("diedLastTime", "dlt", 0).hidden();
-        /// How many more there were after the evaluation before.
+        /// Change of the count in the previous evaluation.
         NET_EMITTED_LAST_TIME: i64 = int("netEmittedLastTime", "nlt", 0).hidden();
-        /// The first particle that has just been emitted.
+        /// Index of the first newly emitted particle.
         START_EMITTED_INDEX: i64 = int("startEmittedIndex", "sei", -1).hidden();
         /// Positions, for fields.
         FIELD_DATA_POSITION: Vec<[f64; 3]> = vectors("fieldDataPosition", "fdp").output();
@@ -223,117 +223,117 @@ node_table! {
         EMITTER_DATA_VELOCITY: Vec<[f64; 3]> = vectors("emitterDataVelocity", "edv").output();
         /// Length of the time step, for emitters.
         EMITTER_DATA_DELTA_TIME: f64 = float("emitterDataDeltaTime", "edt", 0.0).output();
-        /// Reading it makes the node evaluate.
+        /// Reading it evaluates the node.
         FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden();
-        /// The current time as it was saved.
+        /// The saved current time.
         CURRENT_TIME_SAVE: f64 = float("currentTimeSave", "cts", 0.0).hidden();
         /// Time of this evaluation.
         EVALUATION_TIME: f64 = float("evaluationTime", "eti", 0.0);
         /// Time of the scene.
         CURRENT_SCENE_TIME: f64 = float("currentSceneTime", "cst", 1.0);
-        /// Time of the evaluation before.
+        /// Time of the previous evaluation.
         LAST_TIME_EVALUATED: f64 = float("lastTimeEvaluated", "lti", 0.0).output();
-        /// Time of the scene at the evaluation before.
+        /// Time of the scene at the previous evaluation.
         LAST_SCENE_TIME: f64 = float("lastSceneTime", "lst", 0.0);
-        /// Time of what is kept in memory.
+        /// Time of the data kept in memory.
         CACHED_TIME: f64 = float("cachedTime", "chti", 0.0).output();
-        /// Time of the scene that this evaluation spans.
+        /// Interval of scene time of this evaluation.
         SCENE_TIME_STEP_SIZE: f64 = float("sceneTimeStepSize", "sts", 0.0).output();
         /// Points of that geometry.
         INPUT_GEOMETRY_POINTS: Vec<[f64; 3]> = vectors("inputGeometryPoints", "igpt").output();
-        /// Space in which that geometry is taken.
+        /// Space in which that geometry is read.
         INPUT_GEOMETRY_SPACE: Choice = choice("inputGeometrySpace", "igs", 0, &[(0, "Geometry Local"), (1, "World"), (2, "Particle Local")]);
-        /// Keeps as many particles as that geometry has points.
+        /// Keeps the number of particles equal to the number of points of that geometry.
         ENFORCE_COUNT_FROM_HISTORY: bool = toggle("enforceCountFromHistory", "ecfh", true);
         /// Space in which that geometry is moved.
         TARGET_GEOMETRY_SPACE: Choice = choice("targetGeometrySpace", "tgs", 2, &[(0, "Geometry Local"), (1, "World"), (2, "Particle Local")]);
-        /// Collisions have been worked out.
+        /// Whether collisions have been computed.
         COLLISIONS: bool = toggle("collisions", "col", false).hidden();
-        /// How much speed a classic collider gives back.
+        /// Bounce of a classic collider.
         COLLISION_RESILIENCE: f64 = float("collisionResilience", "crs", 0.0);
         /// Friction of a classic collider.
         COLLISION_FRICTION: f64 = float("collisionFriction", "cfr", 0.0);
-        /// Distance kept from a classic collider.
+        /// Offset from a classic collider.
         COLLISION_OFFSET: f64 = float("collisionOffset", "cof", 0.0);
-        /// Events so far.
+        /// Number of events so far.
         TOTAL_EVENT_COUNT: i64 = int("totalEventCount", "tec", 0).output();
-        /// An event has happened.
+        /// Whether an event has happened.
         EVENT_TEST: bool = toggle("eventTest", "evt", false).output();
-        /// Events up to the evaluation before.
+        /// Number of events up to the previous evaluation.
         LAST_TOTAL_EVENT_COUNT: i64 = int("lastTotalEventCount", "ltec", 0);
-        /// Where the random numbers of events begin.
+        /// Seed of the random numbers of events.
         EVENT_SEED: i64 = int("eventSeed", "esd", 0);
-        /// State of the random numbers of events.
+        /// State of the random number generator of events.
         EVENT_RAND_STATE: [f64; 3] = vector("eventRandState", "erst", [0.0, 0.0, 0.0], ["ersx", "ersy", "ersz"]).hidden();
-        /// Draws more than usual, for Maya's developers.
+        /// Debug drawing, for Maya's developers.
         DEBUG_DRAW: i64 = int("debugDraw", "dbd", 0).hidden();
-        /// How many events there are.
+        /// Number of events.
         NUMBER_OF_EVENTS: i64 = int("numberOfEvents", "nev", 0);
-        /// How many names of events were ever given.
+        /// Number of event names ever assigned.
         EVENT_NAME_COUNT: i64 = int("eventNameCount", "enc", 0);
-        /// Takes its colour from the emitter.
+        /// Inherits the colour of the emitter.
         INHERIT_COLOR: bool = toggle("inheritColor", "inc", false);
-        /// Dynamics is to be done.
+        /// Whether dynamics are evaluated.
         DO_DYNAMICS: bool = toggle("doDynamics", "ddy", false).hidden();
-        /// Emission is to be done.
+        /// Whether emission is evaluated.
         DO_EMISSION: bool = toggle("doEmission", "dem", false).hidden();
-        /// Emission is done in any case.
+        /// Whether emission is always evaluated.
         FORCE_EMISSION: bool = toggle("forceEmission", "fem", false).hidden();
-        /// Ages are to be brought up to date.
+        /// Whether ages are updated.
         DO_AGE: bool = toggle("doAge", "dag", false).hidden();
-        /// When that was done last.
+        /// Time of the last update.
         AGES_LAST_DONE: f64 = float("agesLastDone", "agld", 0.0).hidden();
-        /// When the node was evaluated last.
+        /// Time of the last evaluation.
         TIME_LAST_COMPUTED: f64 = float("timeLastComputed", "tlc", 0.0).hidden();
-        /// What it hangs from has moved.
+        /// Whether its parent has moved.
         PARENT_MATRIX_DIRTY: bool = toggle("parentMatrixDirty", "pmd", false).hidden();
         /// Version of the saved node.
         NEW_FILE_FORMAT: i64 = int("newFileFormat", "nff", 0).hidden();
         /// Draws particles from back to front.
         DEPTH_SORT: bool = toggle("depthSort", "ds", false);
-        /// Clouds are drawn without an axis.
+        /// Whether clouds are drawn without an axis.
         DISABLE_CLOUD_AXIS: bool = toggle("disableCloudAxis", "dca", false);
-        /// Uses the direction of velocities only.
+        /// Whether only the direction of velocities is used.
         NORMALIZE_VELOCITY: bool = toggle("normalizeVelocity", "nvl", false);
-        /// Reads a cache of another kind.
+        /// Whether a cache of another type is read.
         USE_CUSTOM_CACHE: bool = toggle("useCustomCache", "ucc", false);
     }
     "Internal" {
-        /// What all fields together do to each particle.
+        /// Sum of the forces of all fields, per particle.
         FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden();
-        /// Number that the next particle will get.
+        /// Identifier of the next particle.
         NEXT_ID: i64 = int("nextId", "nid", 0).hidden();
-        /// There are as many particles as there may be: emitters stop.
+        /// Whether the largest number of particles is reached, which stops emitters.
         IS_FULL: bool = toggle("isFull", "ifl", false).output().hidden();
-        /// Time that this evaluation spans; emitters read it.
+        /// Interval of this evaluation, for emitters.
         TIME_STEP_SIZE: f64 = float("timeStepSize", "tss", 0.0).output().hidden();
-        /// The start frame as a time; emitters read it.
+        /// The start frame as a time, for emitters.
         START_TIME: f64 = float("startTime", "stt", 0.0).output().hidden();
     }
     "Connections" {
         /// Forces of the fields, one list per field.
         INPUT_FORCE: Plugged = plug("inputForce", "ifc", Data::Vectors).multi();
-        /// Where the object stood at the evaluation before.
+        /// Transform at the previous evaluation.
         LAST_WORLD_MATRIX: Plugged = plug("lastWorldMatrix", "lwm", Data::Matrix).output();
-        /// From the number of a particle to its place.
+        /// Map from identifiers to indices.
         ID_MAPPING: Plugged = plug("idMapping", "idm", Data::Bundle).output();
-        /// What particles emit in turn.
+        /// Particles that this object emits.
         EMISSION: Plugged = plug("emission", "emt", Data::NewParticles).output();
-        /// Particles that come in from emitters.
+        /// Particles from emitters.
         NEW_PARTICLES: Plugged = plug("newParticles", "npt", Data::NewParticles).multi().sink();
-        /// What expressions read.
+        /// Inputs of expressions.
         INPUT: Plugged = plug("input", "xi", Data::Bundle).multi();
-        /// What expressions write.
+        /// Outputs of expressions.
         OUTPUT: Plugged = plug("output", "xo", Data::Bundle).multi().output();
-        /// What fields are told about the particles.
+        /// Data of the particles for fields.
         FIELD_DATA: Plugged = plug("fieldData", "fd", Data::FieldData).output();
-        /// What emitters are told about the particles.
+        /// Data of the particles for emitters.
         EMITTER_DATA: Plugged = plug("emitterData", "ed", Data::Bundle).output();
         /// Geometry that a soft body is made from.
         INPUT_GEOMETRY: Plugged = plug("inputGeometry", "igeo", Data::Mesh);
         /// Geometry that a soft body moves.
         TARGET_GEOMETRY: Plugged = plug("targetGeometry", "tgeo", Data::Mesh).output();
-        /// Where that geometry stands.
+        /// Transform of that geometry.
         TARGET_GEOMETRY_WORLD_MATRIX: Plugged = plug("targetGeometryWorldMatrix", "tgm", Data::Matrix);
         /// Names of the UV sets of goals.
         GOAL_UV_SET_NAME: Plugged = plug("goalUvSetName", "guv", Data::Text).multi();
@@ -341,29 +341,29 @@ node_table! {
         COLLISION_DATA: Plugged = plug("collisionData", "cda", Data::Bundle);
         /// Surface of a classic collider.
         COLLISION_GEOMETRY: Plugged = plug("collisionGeometry", "cge", Data::Mesh);
-        /// Collisions that have happened.
+        /// Collisions of this evaluation.
         COLLISION_RECORDS: Plugged = plug("collisionRecords", "crc", Data::Bundle).output();
         /// Particles that an event emits into.
         EVENT_TARGET: Plugged = plug("eventTarget", "etg", Data::Message).multi();
         /// Names of events.
         EVENT_NAME: Plugged = plug("eventName", "evn", Data::Text).multi();
-        /// Whether each event is in use.
+        /// Whether each event is active.
         EVENT_VALID: Plugged = plug("eventValid", "evv", Data::Number).multi();
-        /// At which collision each event happens.
+        /// Number of the collision at which each event happens.
         EVENT_COUNT: Plugged = plug("eventCount", "ecp", Data::Number).multi();
-        /// How many particles each event emits.
+        /// Number of particles that each event emits.
         EVENT_EMIT: Plugged = plug("eventEmit", "eve", Data::Number).multi();
-        /// How many particles each event splits one into.
+        /// Number of particles that each event splits one into.
         EVENT_SPLIT: Plugged = plug("eventSplit", "evs", Data::Number).multi();
         /// Whether the particle dies with each event.
         EVENT_DIE: Plugged = plug("eventDie", "evd", Data::Number).multi();
-        /// Whether those numbers vary.
+        /// Whether those numbers are random.
         EVENT_RANDOM: Plugged = plug("eventRandom", "evr", Data::Number).multi();
-        /// How far new particles of each event fan out.
+        /// Spread of the new particles of each event.
         EVENT_SPREAD: Plugged = plug("eventSpread", "esp", Data::Number).multi();
         /// Procedure called by each event.
         EVENT_PROC: Plugged = plug("eventProc", "epr", Data::Text).multi();
-        /// What is needed to put geometry on particles.
+        /// Data for instanced geometry.
         INSTANCE_DATA: Plugged = plug("instanceData", "idt", Data::Bundle).multi();
         /// Fields that belong to it.
         FIELD_CONNECTIONS: Plugged = plug("fieldConnections", "fc", Data::Message).multi();
@@ -379,9 +379,9 @@ node_table! {
         SHAPE_NAME_MSG: Plugged = plug("shapeNameMsg", "snmg", Data::Message);
         /// Values that shaders read for each particle.
         SAMPLER_PER_PARTICLE_DATA: Plugged = plug("samplerPerParticleData", "spd", Data::Bundle).output();
-        /// Settings of fields that differ by particle.
+        /// Settings of fields per particle.
         PP_FIELD_DATA: Plugged = plug("ppFieldData", "ppfd", Data::FieldSettings).multi().output();
-        /// The same for fields that the particles own.
+        /// The same, for fields that the particles own.
         OWNER_PP_FIELD_DATA: Plugged = plug("ownerPPFieldData", "opfd", Data::FieldSettings).multi().output();
         /// Positions after deformers.
         DEFORMED_POSITION: Plugged = plug("deformedPosition", "dpos", Data::Mesh);

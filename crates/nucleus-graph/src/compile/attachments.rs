@@ -23,7 +23,7 @@ pub(crate) struct AttachmentState {
     pub(crate) held: Vec<Option<Vec<Vector3<f64>>>>,
     /// Whether each constraint of links has been formed and is enabled.
     pub(crate) formed: Vec<bool>,
-    /// What each emitter keeps from frame to frame.
+    /// The state of each emitter from frame to frame.
     pub(crate) emitters: Vec<EmitterState>,
 }
 

@@ -6,7 +6,7 @@ use crate::graph::NodeId;
 use super::compiler::Compiler;
 use super::units::CLASSIC;
 
-/// What an attribute needs.
+/// A condition for an attribute to have an effect.
 enum Need {
     /// Another attribute that is ever above zero.
     Number(&'static Key<f64>),

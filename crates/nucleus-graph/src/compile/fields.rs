@@ -51,7 +51,7 @@ impl EvaluationInterval<'_> {
         let node = FieldNode { id: source.node, to: &self.to, placement: placements[1] };
         let travel = placements[1].offset - placements[0].offset;
         let metre = self.nucleus.units.length(1.0);
-        // Maya keeps the weight of what is not particles at 1.
+        // In Maya the weight of objects other than particles is 1.
         let weight = |node: NodeId| match self.graph.node(node).node_type() {
             of if of.has_no_use_for(&particle::DYNAMICS_WEIGHT.row) => 1.0,
             _ => self.to.get(node, &particle::DYNAMICS_WEIGHT),
@@ -84,7 +84,8 @@ impl FieldNode<'_> {
         unit(self.vector(key))
     }
 
-    /// What the field does; `velocity` is that of its node in scene units per second, `metre` a scene unit in metres.
+    /// The effect of the field; `velocity` is that of its node in scene units per second, `metre` a scene unit in
+    /// metres.
     fn kind(&self, node_type: &'static NodeType, velocity: Vector3<f64>, metre: f64) -> FieldKind {
         let force = self.number(&field::MAGNITUDE) * metre;
         let is = |other: &'static NodeType| node_type.is_a(other);

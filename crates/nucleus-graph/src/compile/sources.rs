@@ -91,7 +91,7 @@ pub(super) struct EmittingMesh {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// What an emitter keeps from frame to frame.
+/// The state of an emitter from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct EmitterState {
     /// Particles emitted so far.

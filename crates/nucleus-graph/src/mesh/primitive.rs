@@ -319,7 +319,7 @@ pub enum PrimitiveError {
     BadLength {
         /// Its name: `width`, `radius` ...
         name: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// Too few subdivisions to close the shape.
@@ -327,7 +327,7 @@ pub enum PrimitiveError {
     TooFewSubdivisions {
         /// Its name: `width`, `axis` ...
         name: &'static str,
-        /// What was given.
+        /// The given value.
         value: u32,
         /// The smallest valid number.
         min: u32,

@@ -55,7 +55,7 @@ pub enum AssignError {
     /// The attribute does not take this value.
     #[error("{message}{}", hint(.help))]
     Value {
-        /// What the attribute takes, and what was found.
+        /// The values that the attribute accepts, and the value found.
         message: String,
         /// How to fix it.
         help: Option<String>,

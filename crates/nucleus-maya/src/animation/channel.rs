@@ -68,7 +68,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// What a connection drives an attribute with.
+    /// The source of a driven attribute.
     pub(crate) fn driven(
         &self,
         wire: Wire,

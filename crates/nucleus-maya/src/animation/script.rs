@@ -21,7 +21,7 @@ impl Script {
     /// Translates a text.
     ///
     /// # Errors
-    /// What is not understood: commands, vectors, strings, loops, random numbers.
+    /// The part that is not supported: commands, vectors, strings, loops, random numbers.
     pub fn parse(text: &str) -> Result<Self, String> {
         let steps = syntax::parse(text)?;
         steps.iter().try_for_each(check_step)?;

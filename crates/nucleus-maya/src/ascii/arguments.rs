@@ -1,4 +1,4 @@
-//! Arguments of a command: flags in their short and long forms, and what is left.
+//! Arguments of a command: flags in their short and long forms, and positional arguments.
 
 use super::statements::{Token, Tokens};
 
@@ -25,7 +25,7 @@ impl Flag {
 pub struct Arguments<'a> {
     /// Flags by their short name, each with its first argument if it takes any.
     flags: Vec<(&'static str, Option<Token<'a>>)>,
-    /// What is no flag, in order.
+    /// Positional arguments, in order.
     pub plain: Vec<Token<'a>>,
 }
 

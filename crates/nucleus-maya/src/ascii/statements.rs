@@ -143,7 +143,7 @@ impl<'a> Tokens<'a> {
         at
     }
 
-    /// What follows the tokens taken so far.
+    /// The text after the tokens read so far.
     pub fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -173,7 +173,7 @@ impl<'a> Iterator for Tokens<'a> {
     }
 }
 
-/// The text of a string, given what is between its quotes.
+/// The text of a string, from the characters between its quotes.
 pub fn unescaped(raw: &str) -> Cow<'_, str> {
     if !raw.contains('\\') {
         return Cow::Borrowed(raw);

@@ -59,7 +59,7 @@ pub enum ImportError {
         file: PathBuf,
         /// The line from 1.
         line: usize,
-        /// What is wrong.
+        /// The mistake.
         message: String,
     },
     /// The scene that a file gives is refused by the graph.

@@ -51,7 +51,7 @@ const PASSED_OVER: [&str; 34] = [
     "polyHoleFace",
 ];
 
-/// What an operator does to its input.
+/// The result of an operator.
 pub(crate) enum Operation {
     /// Done.
     Done(Poly),

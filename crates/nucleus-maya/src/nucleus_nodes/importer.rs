@@ -1,4 +1,4 @@
-//! An import, step by step: choose nodes, build meshes, set values, place, connect.
+//! The steps of an import: choose nodes, build meshes, set values, place, connect.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub(crate) struct Importer<'s> {
     pub(super) omissions: Omissions,
 }
 
-/// What an import gives.
+/// The result of an import.
 pub(crate) struct Carried {
     pub(crate) graph: Graph,
     pub(crate) frames: [i64; 2],

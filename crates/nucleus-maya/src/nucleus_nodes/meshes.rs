@@ -9,7 +9,7 @@ use crate::scene::{MayaScene, NodeId};
 
 use super::importer::Importer;
 
-/// What a mesh becomes.
+/// How a mesh is imported.
 pub(super) enum Plan {
     /// A primitive of ours, by its creation node.
     Primitive(NodeId, &'static NodeType),
@@ -38,7 +38,7 @@ impl Plan {
 }
 
 impl Importer<'_> {
-    /// Decides what a mesh becomes; `name` is that of our node.
+    /// Decides how a mesh is imported; `name` is that of our node.
     pub(super) fn plan(&self, id: NodeId, name: &str) -> Plan {
         let scene = self.scene;
         let names = [name, scene.name(id)];

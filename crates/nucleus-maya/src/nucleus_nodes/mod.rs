@@ -9,7 +9,7 @@
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!
-//! **Invariant:** what the tables of `nucleus_graph::attributes` name is carried over by them; nothing here lists the
+//! **Invariant:** attributes are carried over by the tables of `nucleus_graph::attributes`; nothing here lists the
 //! attributes of cloth.
 
 mod attributes;

@@ -205,7 +205,7 @@ impl Importer<'_> {
         }
     }
 
-    /// Sets what the file sets.
+    /// Sets the channels that the file sets.
     fn set_parts(&mut self, from: NodeId, to: OwnId, parts: &Parts) {
         let given = |vector: crate::scene::Vector3| {
             let mut all = vector.parts.iter().chain(std::iter::once(&vector.whole));
@@ -221,7 +221,7 @@ impl Importer<'_> {
         ];
         for (row, channels, default, given) in sets {
             if given {
-                // A file of ours says what is set, even if it is the default.
+                // A file of this crate sets values explicitly, even if they are the default.
                 let default = if is_own { f64::NAN } else { default };
                 self.set_channels(to, row, channels.clone(), default);
             }

@@ -52,7 +52,7 @@ impl Importer<'_> {
         }
     }
 
-    /// Connects what else is connected between nodes that are carried over.
+    /// Makes all other connections between nodes that are carried over.
     pub(super) fn connect_the_rest(&mut self) {
         for wire in &self.scene.wires {
             let (Some(out), Some(input)) = (self.plug(wire.from), self.plug(wire.to)) else { continue };
@@ -67,7 +67,7 @@ impl Importer<'_> {
         }
     }
 
-    /// Connects two plugs. What a creation command has connected already is no omission.
+    /// Connects two plugs. A connection that a creation command has already made is no omission.
     pub(super) fn join(&mut self, from: Plug, to: Plug) {
         match self.graph.connect(from, to) {
             Ok(()) | Err(GraphError::InputTaken { .. }) => {}

@@ -21,7 +21,7 @@ pub struct Vector3 {
 pub struct Set<'a> {
     /// The step that has the name, with its index range.
     pub segment: Segment<'a>,
-    /// What follows it.
+    /// The path after it.
     pub rest: PlugPath<'a>,
     /// The values.
     pub values: Values<'a>,
@@ -110,7 +110,7 @@ impl MayaScene {
     }
 
     /// The numbers of an array attribute, `width` for each element, in the order of the indices. Elements that no file
-    /// gives are 0. `None` if an index leads far beyond what is given: a broken file.
+    /// gives are 0. `None` if an index is far beyond the given elements: a broken file.
     pub fn array(&self, id: NodeId, names: &[&str], width: usize, parts: &[Names]) -> Option<Vec<f64>> {
         let mut all: Vec<f64> = Vec::new();
         let mut given = 0;

@@ -103,8 +103,8 @@ impl MayaScene {
     /// Reads a scene, and all files that it refers to.
     ///
     /// # Errors
-    /// When the scene itself cannot be read, is binary, or holds no statement of Maya. What is wrong with a part of
-    /// it, or with a file that it refers to, is an omission.
+    /// When the scene itself cannot be read, is binary, or holds no statement of Maya. A mistake in a part of
+    /// it, or in a file that it refers to, is an omission.
     pub fn read(path: &Path) -> Result<Self, ImportError> {
         Self::of_text(SourceText::read(path)?)
     }

@@ -1,6 +1,6 @@
 //! Units of a file: `currentUnit -l centimeter -a degree -t film`.
 
-/// What a unit of a file is in Maya's own: centimetres, degrees and frames.
+/// The units of a file in Maya's internal units: centimetres, degrees and frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
     /// Centimetres in a unit of length.

@@ -25,7 +25,7 @@ use crate::omissions::Omissions;
 
 use writer::Writer;
 
-/// A scene as the text of a `.ma` file, and what Maya will not know.
+/// A scene as the text of a `.ma` file, and the omissions.
 ///
 /// # Errors
 /// When a mesh that the scene names cannot be read.

@@ -2,8 +2,8 @@
 //!
 //! Gravity and forces supply energy along the displacement of the points. A change of an attribute may raise elastic
 //! energy, and so may pins that move apart. Drivers (wind, colliders, pins) push; in the frame of reference of a driver
-//! that moves at u, it does no work. If gravity, forces and changes supply w joules to m kilograms, the root mean square
-//! speed never exceeds √(2 w / m) + 2 u, whatever pushes how often, as long as nothing bounces.
+//! that moves at u, it does no work. If gravity, forces and changes supply w joules to m kilograms, the root mean
+//! square speed never exceeds √(2 w / m) + 2 u, independent of the number of pushes, as long as nothing bounces.
 //!
 //! Elastic energy does not count as motion: an unconverged solve leaves links longer than their stiffness implies, and
 //! that energy was never supplied.

@@ -52,7 +52,7 @@ pub(super) fn errors(point: &Point) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// What a recommendation was asked for.
+/// The target of a recommendation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wish {
     /// Errors not above these.
@@ -119,7 +119,7 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Why nothing cheaper was chosen, or what a limit of time costs in accuracy.
+/// The reason why no cheaper setting was chosen, or the accuracy lost to a time limit.
 fn reason(trade: &Trade, wish: &Wish, chosen: &Point) -> Option<String> {
     match wish {
         Wish::Error(request) => {
@@ -311,7 +311,7 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
     text
 }
 
-/// The quantities and their frames, and what the references resolve.
+/// The quantities and their frames, and the smallest errors that the references resolve.
 fn measure(trade: &Trade) -> String {
     let floor = match trade.reference {
         Some(_) => format!("; resolved from {}", percent(2.0 * trade.measure.essential_floor())),

@@ -23,7 +23,7 @@ pub struct Point {
     pub ms: f64,
     /// The error in each quantity; empty if the run was not finite.
     pub errors: Vec<Component>,
-    /// The largest error that the references resolve; if they resolve none, what they would resolve. `None` if the run
+    /// The largest error that the references resolve; if they resolve none, their noise floor. `None` if the run
     /// was not finite.
     pub error: Option<f64>,
     /// The quantity of that error; `None` if all errors are within the noise of the references.
@@ -206,7 +206,7 @@ pub(super) fn is_resolved(floor: f64, error: f64) -> bool {
     2.0 * floor <= error
 }
 
-/// The largest error that can be told from the noise of the references, with its quantity.
+/// The largest error above the noise of the references, with its quantity.
 fn largest_resolved(errors: &[Component]) -> (Option<f64>, Option<Quantity>) {
     let resolved = errors.iter().filter(|component| component.is_resolved());
     match resolved.max_by(|a, b| a.error.total_cmp(&b.error)) {

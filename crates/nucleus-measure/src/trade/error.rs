@@ -1,9 +1,9 @@
 //! The error of a run: one figure for each quantity that an artist looks at, each against the reference and with the
 //! noise of the reference itself.
 //!
-//! A single figure misleads: cloth can be where it should be and still be visibly stretched. A setting therefore meets
-//! a wanted error only if every quantity does. The noise floor of a quantity is its difference between two references
-//! of steps h and h/2; an error below twice the floor cannot be told from none.
+//! A single figure misleads: cloth can be in the right position and still be visibly stretched. A setting therefore
+//! meets a wanted error only if every quantity does. The noise floor of a quantity is its difference between two
+//! references of steps h and h/2; an error below twice the floor is not resolved.
 
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +52,7 @@ impl Quantity {
     }
 
     /// Whether a wanted error that the references do not resolve in this quantity makes the whole recommendation
-    /// unresolved. The others are held to what the references resolve.
+    /// unresolved. In other quantities the error that the references resolve counts.
     fn is_essential(self) -> bool {
         matches!(self, Self::Position | Self::Stretch | Self::Strain)
     }
@@ -70,7 +70,7 @@ pub struct Component {
 }
 
 impl Component {
-    /// Whether the error can be told from the noise of the references.
+    /// Whether the error is larger than the noise of the references.
     pub fn is_resolved(&self) -> bool {
         self.error > 2.0 * self.floor
     }
@@ -210,7 +210,7 @@ impl Request {
         self.bounds.iter().find(|(of, _)| *of == quantity).map(|(_, error)| *error).or(self.every)
     }
 
-    /// The components of a run that miss the request. An error that cannot be told from the noise of the references
+    /// The components of a run that miss the request. An error within the noise of the references
     /// misses nothing.
     pub fn missed<'a>(&'a self, errors: &'a [Component]) -> impl Iterator<Item = &'a Component> {
         errors.iter().filter(|component| {

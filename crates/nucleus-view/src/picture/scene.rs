@@ -40,7 +40,7 @@ pub struct Style {
     pub size: [u32; 2],
     /// Samples along each side of a pixel, 1 to 8: supersampling.
     pub samples: u32,
-    /// What is behind the objects and the floor.
+    /// The background, behind the objects and the floor.
     pub background: Background,
     /// Linear colours of objects by their names, instead of those by their order.
     pub tints: Vec<(String, [f32; 3])>,
@@ -66,7 +66,7 @@ impl Default for Style {
     }
 }
 
-/// What is behind the objects and the floor.
+/// The background, behind the objects and the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Background {
     /// A grey that darkens downwards.

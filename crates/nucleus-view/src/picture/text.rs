@@ -57,8 +57,8 @@ fn scale(height: u32) -> f32 {
     height as f32 / atlas().height.max(1) as f32
 }
 
-/// Draws a text in a line of this height, with its upper left corner at a pixel. What lies outside the picture is left
-/// out.
+/// Draws a text in a line of this height, with its upper left corner at a pixel. Parts outside the picture are
+/// clipped.
 pub(super) fn draw_text(image: &mut Image, text: &str, [left, top]: [u32; 2], height: u32, colour: &Vec3) {
     let step = 1.0 / scale(height).max(1e-6);
     let [right, bottom] = image.size();

@@ -13,7 +13,7 @@ use nucleus_cache::atomic_file;
 pub use row::Counts;
 use row::Row;
 
-/// What was collected.
+/// The collected results.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Collected {
     /// Counts by outcome.

@@ -1,4 +1,5 @@
-//! One run of a wedge, in this process: resumes what an earlier attempt left, and writes the result when it has ended.
+//! One run of a wedge, in this process: resumes the cache of an earlier attempt, and writes the result when it has
+//! ended.
 
 use std::fs;
 use std::time::Instant;
@@ -99,7 +100,7 @@ fn simulate(folder: &WedgeFolder, planned: &PlannedRun, run: Run, threads: u16) 
             Err(error) => say!("{error:#}; the run starts again"),
         }
     }
-    // What is left of an attempt that cannot be resumed would be in the way.
+    // The files of an attempt that cannot be resumed would block the new one.
     for left in [nucleus_cache::part_path(&cache), cache.clone()] {
         let _ = fs::remove_file(left);
     }

@@ -40,7 +40,7 @@ pub struct Density {
     sums: Vec<Sums>,
 }
 
-/// What the solver is given of one particle.
+/// Inputs of the pressure solver, per particle.
 #[derive(Debug, Clone, Copy)]
 pub struct Load {
     /// Excess of density that must go.

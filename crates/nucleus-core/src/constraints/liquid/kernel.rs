@@ -26,7 +26,7 @@ pub fn slope(q: f32) -> f32 {
     (3.0 * inner * inner - 0.75 * outer * outer) / NORM
 }
 
-/// What a half-space full of liquid adds to the sum of a particle whose distance from it is `q`, and the derivative.
+/// Density that a half-space of liquid at distance `q` adds to a particle, and its derivative.
 ///
 /// A sheet at distance t, spread evenly, weighs S(t) = 2 pi times the integral of r W(r) from t on; the half-space is the
 /// integral of S from q on.

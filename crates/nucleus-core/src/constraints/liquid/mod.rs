@@ -1,13 +1,14 @@
-//! Liquids: particles that keep their volume, slow each other down and hold together (position-based fluids: Macklin &
+//! Liquids: particles with constant volume, viscosity and surface tension (position-based fluids: Macklin &
 //! Müller 2013).
 //!
 //! A pass comes first in each time step, on the predicted positions: neighbours, then viscosity and surface tension, then
 //! density as a constraint. Contact follows, and corrections become velocities as those of all constraints do. Inside,
 //! lengths are in rest distances, from the liquid's first particle.
 //!
-//! A liquid begins every frame anew, so that a checkpoint holds nothing of it, and again when particles come or go. Within
-//! a frame it keeps the pressure, and how much each particle was too dense: an excess from before a time step, as between
-//! particles that were born too near, goes at a limited rate, since its correction becomes velocity.
+//! A liquid is set up again at the start of each frame, so a checkpoint stores nothing of it, and after births and
+//! deaths. Within a frame it keeps the pressure and the excess density of each particle: an excess from before a time
+//! step, as between particles that were born too near, is removed at a limited rate, because its correction becomes
+//! velocity.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -52,7 +53,7 @@ const MAX_FALL: f64 = 0.004;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 
-/// What a liquid knows within a frame.
+/// State of a liquid within a frame.
 #[derive(Debug, Default)]
 pub struct LiquidSolver {
     neighbours: Neighbours,
@@ -93,7 +94,7 @@ impl LiquidSolver {
     }
 }
 
-/// What a liquid sees of the scene.
+/// Inputs of a liquid from the scene.
 #[derive(Clone, Copy)]
 pub struct LiquidScene<'a, R: Real> {
     /// The objects.
@@ -241,7 +242,7 @@ impl LiquidSolver {
         walls.sort();
     }
 
-    /// Prepares what the pressure has to do, after viscosity and surface tension.
+    /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
         let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
@@ -275,7 +276,7 @@ impl LiquidSolver {
             }
             let now = neighbours.sums[at][0] - 1.0;
             let kept = &mut excess[particle as usize];
-            // What is left of an old excess this time step; a soft liquid has its excess by its pressure.
+            // Remaining excess of earlier time steps. The excess of a compressible liquid follows from its pressure.
             *kept = if settings.incompressibility < 1.0 {
                 0.0
             } else {

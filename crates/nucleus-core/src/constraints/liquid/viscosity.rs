@@ -1,6 +1,6 @@
-//! Viscosity: velocities of neighbours approach each other, as fast as the kinematic viscosity says, however high it is.
+//! Viscosity: implicit diffusion of velocity at the rate of the kinematic viscosity, stable at any value.
 //!
-//! Implicit diffusion of velocity (as Takahashi et al. 2015, in the simpler form of a Laplacian): with the velocity u* of
+//! As in Takahashi et al. 2015, in the simpler form of a Laplacian: with the velocity u* of
 //! the prediction,
 //!
 //! ```text

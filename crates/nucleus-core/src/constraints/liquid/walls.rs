@@ -1,4 +1,4 @@
-//! Walls: what the ground plane, colliders and cloth add to the density of particles near them, and what they are pushed by.
+//! Walls: the density that the ground plane, colliders and cloth add to particles near them, and the reaction on cloth.
 //!
 //! Near a wall a particle lacks neighbours. The plane counts as a half-space full of liquid that begins at half a rest
 //! distance. Surfaces of meshes are covered with samples, each of which counts as much as its area (as the boundary
@@ -182,7 +182,7 @@ impl Walls {
         }
     }
 
-    /// What the mobility of cloth adds to the diagonal of a particle.
+    /// Term of the mobility of cloth in the diagonal entry of a particle.
     #[inline]
     pub fn mobility(&self, pairs: &[Pair]) -> f32 {
         let of = |pair: &Pair| {

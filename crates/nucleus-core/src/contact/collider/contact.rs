@@ -106,8 +106,8 @@ pub enum Certificate {
     Separated,
     /// It is not certified: the safeguard acts.
     Unproven,
-    /// The two touched at the start of the step, and one is behind the other's plane now: nothing tells their
-    /// sides.
+    /// The two touched at the start of the step, and one is behind the other's plane now: their sides are
+    /// undefined.
     Inseparable,
 }
 

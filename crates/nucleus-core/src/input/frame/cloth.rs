@@ -66,7 +66,7 @@ pub struct ClothFrame {
     pub layer: f64,
     /// Self-collision.
     pub self_collision: SelfCollision,
-    /// Rest angles, their scale, and which bends stay.
+    /// Rest angles, their scale, and permanent bends.
     pub bending: Bending,
     /// Strain above which links lengthen permanently (`restitutionTension` over the stretch resistance);
     /// infinite for none.
@@ -85,51 +85,55 @@ pub struct ClothFrame {
     pub point_field: Option<PointField>,
     /// Its wind shadow, and the air that it pushes.
     pub wind_field: WindField,
-    /// What makes its points a liquid; `None` where they are balls.
+    /// Attributes of a liquid; `None` if its points are balls.
     pub liquid: Option<Liquid>,
 }
 
-impl Default for ClothFrame {
+impl ClothFrame {
     /// Maya's defaults of an nCloth, except `thickness`, which Maya computes from the mesh.
+    pub const DEFAULT: Self = Self {
+        stretch_resistance: 20.0,
+        compression_resistance: 10.0,
+        shear_resistance: 0.0,
+        bend_resistance: 0.1,
+        stiffness: Stiffness::NONE,
+        rest_length_scale: 1.0,
+        stretch_damp: 0.1,
+        damp: 0.0,
+        drag: 0.05,
+        tangential_drag: 0.0,
+        lift: 0.05,
+        feels_gravity: true,
+        feels_wind: true,
+        local_force: Vector3::new(0.0, 0.0, 0.0),
+        local_wind: Vector3::new(0.0, 0.0, 0.0),
+        collide: true,
+        thickness: 0.0,
+        friction: 0.1,
+        stickiness: 0.0,
+        bounce: 0.0,
+        collide_strength: 1.0,
+        push_out: PushOut::OFF,
+        crossover_push: 0.0,
+        self_crossover_push: 0.0,
+        elements: Elements::Faces,
+        layer: 0.0,
+        self_collision: SelfCollision::OFF,
+        bending: Bending::DEFAULT,
+        yield_strain: f64::INFINITY,
+        pressure: Pressure::Off,
+        rigidity: 0.0,
+        deform_resistance: 0.0,
+        input_attract: InputAttract::OFF,
+        field: None,
+        point_field: None,
+        wind_field: WindField::OFF,
+        liquid: None,
+    };
+}
+
+impl Default for ClothFrame {
     fn default() -> Self {
-        Self {
-            stretch_resistance: 20.0,
-            compression_resistance: 10.0,
-            shear_resistance: 0.0,
-            bend_resistance: 0.1,
-            stiffness: Stiffness::default(),
-            rest_length_scale: 1.0,
-            stretch_damp: 0.1,
-            damp: 0.0,
-            drag: 0.05,
-            tangential_drag: 0.0,
-            lift: 0.05,
-            feels_gravity: true,
-            feels_wind: true,
-            local_force: Vector3::zeros(),
-            local_wind: Vector3::zeros(),
-            collide: true,
-            thickness: 0.0,
-            friction: 0.1,
-            stickiness: 0.0,
-            bounce: 0.0,
-            collide_strength: 1.0,
-            push_out: PushOut::OFF,
-            crossover_push: 0.0,
-            self_crossover_push: 0.0,
-            elements: Elements::Faces,
-            layer: 0.0,
-            self_collision: SelfCollision::OFF,
-            bending: Bending::DEFAULT,
-            yield_strain: f64::INFINITY,
-            pressure: Pressure::Off,
-            rigidity: 0.0,
-            deform_resistance: 0.0,
-            input_attract: InputAttract::OFF,
-            field: None,
-            point_field: None,
-            wind_field: WindField::OFF,
-            liquid: None,
-        }
+        Self::DEFAULT
     }
 }

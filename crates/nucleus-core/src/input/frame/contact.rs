@@ -45,14 +45,14 @@ impl SelfCollision {
     pub const OFF: Self = Self { on: false, thickness: 0.0, elements: Elements::Faces, edges: true };
 }
 
-/// A force field round a surface (`forceField`).
+/// A force field around a surface (`forceField`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceField {
     /// On which side it acts, and in which direction.
     pub side: FieldSide,
-    /// Acceleration at the surface in m/s²; above 0 it pushes away.
+    /// Acceleration at the surface in m/s²; above 0 it repels.
     pub magnitude: f64,
-    /// How far it reaches, in metres.
+    /// Range in metres.
     pub distance: f64,
     /// Factor from the surface (first) to the distance (last), evenly spaced.
     pub falloff: [f64; Self::SAMPLES],

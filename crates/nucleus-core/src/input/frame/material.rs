@@ -14,6 +14,11 @@ pub struct Stiffness {
     pub bend: Option<f64>,
 }
 
+impl Stiffness {
+    /// None given: resistances count.
+    pub const NONE: Self = Self { stretch: None, compression: None, shear: None, bend: None };
+}
+
 /// How a hinge measures its angle (`bendSolver`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BendSolver {
@@ -21,11 +26,11 @@ pub enum BendSolver {
     Simple,
     /// The angle with its sign, up to 180° either way.
     Signed,
-    /// The same, and a hinge that is folded past 180° is pushed back the way it came.
+    /// The same; a hinge that is folded past 180° is unfolded in the direction it came from.
     FlipTracking,
 }
 
-/// What else bending knows beside its resistance.
+/// Attributes of bending other than its resistance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bending {
     /// Factor on rest angles (`bendAngleScale`): 0 is flat, 1 as modelled.

@@ -51,7 +51,7 @@ impl Member {
 }
 
 impl Forming<'_> {
-    /// All links of the constraint. Their order does not depend on positions, other than through what is near.
+    /// All links of the constraint. Their order depends on positions only through the choice of near elements.
     pub(super) fn links(&self) -> Vec<Link> {
         let links = match self.values.kind {
             kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE => self.to_surface(),

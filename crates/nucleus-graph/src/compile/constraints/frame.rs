@@ -60,7 +60,7 @@ impl EvaluationInterval<'_> {
         frames
     }
 
-    /// What does not collide in this interval.
+    /// The collision exclusions of this interval.
     pub(crate) fn exclusions(&self) -> Vec<Arc<Exclusion>> {
         let enabled = self.nucleus.constraints.iter().filter(|source| self.is_enabled(source));
         enabled.filter_map(|source| source.exclusion.clone()).collect()

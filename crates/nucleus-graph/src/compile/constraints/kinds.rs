@@ -19,8 +19,8 @@ pub(super) const TEARABLE: i32 = 7;
 pub(super) const DISABLE_COLLISION: i32 = 8;
 pub(super) const EXCLUDE_PAIRS: i32 = 9;
 
-/// What each kind writes, where that differs from the defaults of the node. `type: transform` means pins unless one of
-/// [`SOFT`] is given.
+/// The values that each kind writes, where they differ from the defaults of the node. `type: transform` means pins
+/// unless one of [`SOFT`] is given.
 const WRITTEN: &[(i32, &str, f64)] = &[
     (TRANSFORM, "constraintRelation", 0.0),
     (1, "componentRelation", 1.0),

@@ -16,7 +16,7 @@ pub(crate) struct ConstraintSource {
     pub(crate) members: Vec<Member>,
     /// Whether its transform is ever animated.
     pub(crate) moves: bool,
-    /// What it joins; `None` for exclusions alone.
+    /// The role of its links; `None` for exclusions alone.
     pub(crate) part: Option<Part>,
     /// Elements that do not collide while it is enabled.
     pub(crate) exclusion: Option<Arc<Exclusion>>,
@@ -26,7 +26,7 @@ pub(crate) struct ConstraintSource {
     pub(super) seams: Vec<(ClothId, [u32; 2], [u32; 2])>,
 }
 
-/// What the links of a source are for.
+/// The role of the links of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Part {
     /// The strength and the glue of the constraint.

@@ -71,7 +71,7 @@ impl Compiler<'_> {
         constraints
     }
 
-    /// The links of a constraint, a force to its origin, and what does not collide.
+    /// The links of a constraint, a force to its origin, and its collision exclusions.
     fn sources_of(&self, node: NodeId, members: Vec<Member>) -> Vec<ConstraintSource> {
         let values = Values::new(&self.start, node);
         let to_space = values.choice(&con::CONSTRAINT_RELATION) == 0;
@@ -279,8 +279,8 @@ fn joins_itself(kind: i32) -> bool {
     matches!(kind, 1 | kinds::WELD_BORDERS | kinds::TEARABLE | kinds::DISABLE_COLLISION)
 }
 
-/// What does not collide: for `disableCollision` the members with anything, else the first member with the others, or
-/// the only member with itself.
+/// The elements that do not collide: for `disableCollision` the members with anything, else the first member with the
+/// others, or the only member with itself.
 fn exclusion(values: &Values<'_>, members: &[Member]) -> Exclusion {
     let side = |members: &[Member]| {
         let (mut cloths, mut colliders) = (Vec::new(), Vec::new());

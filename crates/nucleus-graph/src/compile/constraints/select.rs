@@ -99,7 +99,7 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// What a selection is of, for values by point and for messages.
+/// The mesh of a selection, for values per point and for messages.
 pub(super) struct Selected {
     /// The constraint, or another node that names the elements.
     pub(super) owner: NodeId,

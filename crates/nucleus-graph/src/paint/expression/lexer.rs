@@ -6,7 +6,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// What is wrong: lower case, no full stop, names in backticks.
+    /// The mistake: lower case, no full stop, names in backticks.
     pub message: String,
     /// The place: byte offsets into the expression.
     pub span: Range<usize>,

@@ -72,7 +72,7 @@ impl Value {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct SyntaxError {
-    /// What is wrong: lower case, no full stop.
+    /// The mistake: lower case, no full stop.
     pub message: String,
     /// The place: byte offsets into the text. Empty where a character is missing.
     pub span: Range<usize>,
