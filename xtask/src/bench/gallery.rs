@@ -8,7 +8,7 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
 use super::report::Report;
-use super::table::{StageRow, Table, by_stage, figure};
+use super::table::{StageRow, Table, figure};
 use super::timed::Timed;
 
 /// Default folder of scenes, from the root of the repository.
@@ -118,7 +118,7 @@ fn stage_table(all: &[Runs]) -> Table {
         |name: &str, run: &Timed| (vec![name.to_owned(), run.threads.to_string()], run.ms(), run.shares);
     let rows: Vec<StageRow> =
         all.iter().flat_map(|Runs { name, runs }| runs.iter().map(move |run| row(name, run))).collect();
-    by_stage("Contact scenes: milliseconds per frame by stage", &["scene", "threads"], &rows)
+    Table::by_stage("Contact scenes: milliseconds per frame by stage", &["scene", "threads"], &rows)
 }
 
 #[cfg(test)]

@@ -90,18 +90,20 @@ const LEAST: f64 = 0.002;
 /// A run: its first cells, milliseconds per frame, and the share of each of [`STAGES`].
 pub type StageRow = (Vec<String>, f64, [f64; STAGES.len()]);
 
-/// Table of milliseconds by stage; `first` are the heads of the first cells.
-pub fn by_stage(title: &str, first: &[&str], runs: &[StageRow]) -> Table {
-    let is_used = |k: &usize| runs.iter().any(|(_, _, shares)| shares[*k] > LEAST);
-    let used: Vec<usize> = (0..STAGES.len()).filter(is_used).collect();
-    let names = used.iter().map(|&k| STAGES[k].1);
-    let head: Vec<&str> = first.iter().copied().chain(["ms"]).chain(names).collect();
-    let mut table = Table::new(title, &head);
-    for (cells, ms, shares) in runs {
-        let stages = used.iter().map(|&k| figure(ms * shares[k]));
-        table.row(cells.iter().cloned().chain([figure(*ms)]).chain(stages));
+impl Table {
+    /// Table of milliseconds by stage; `first` are the heads of the first cells.
+    pub fn by_stage(title: &str, first: &[&str], runs: &[StageRow]) -> Self {
+        let is_used = |k: &usize| runs.iter().any(|(_, _, shares)| shares[*k] > LEAST);
+        let used: Vec<usize> = (0..STAGES.len()).filter(is_used).collect();
+        let names = used.iter().map(|&k| STAGES[k].1);
+        let head: Vec<&str> = first.iter().copied().chain(["ms"]).chain(names).collect();
+        let mut table = Self::new(title, &head);
+        for (cells, ms, shares) in runs {
+            let stages = used.iter().map(|&k| figure(ms * shares[k]));
+            table.row(cells.iter().cloned().chain([figure(*ms)]).chain(stages));
+        }
+        table
     }
-    table
 }
 
 #[cfg(test)]
@@ -128,7 +130,7 @@ mod tests {
     fn stages_without_time_have_no_column() {
         let mut shares = [0.0; STAGES.len()];
         (shares[0], shares[3], shares[8]) = (0.25, 0.749, 0.001);
-        let table = by_stage("by stage", &["points"], &[(vec!["33²".to_owned()], 8.0, shares)]);
+        let table = Table::by_stage("by stage", &["points"], &[(vec!["33²".to_owned()], 8.0, shares)]);
         assert_eq!(table.head, ["points", "ms", STAGES[0].1, STAGES[3].1]);
         assert_eq!(table.rows, [["33²", "8.00", "2.00", "5.99"]]);
     }

@@ -90,7 +90,7 @@ impl Fmt {
             return Ok(Outcome::Problem);
         } else {
             // A link stays a link: the file that it leads to is replaced.
-            let file = path.canonicalize().unwrap_or_else(|_| path.clone());
+            let file = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
             atomic_file::write(&file, formatted.as_bytes())
                 .with_context(|| format!("cannot write `{}`", path.display()))?;
         }

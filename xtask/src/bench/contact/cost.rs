@@ -5,7 +5,7 @@ use super::run::RunSpec;
 use super::scene::Setting;
 use super::workload::{TYPICAL, Workload};
 use crate::bench::report::Report;
-use crate::bench::table::{StageRow, Table, by_stage, figure};
+use crate::bench::table::{StageRow, Table, figure};
 use crate::bench::timed::Timed;
 
 /// Points along the side of W3 sheets, and frames: the fall, and the same time on the ball.
@@ -71,7 +71,7 @@ fn scaling(report: &mut Report) -> anyhow::Result<()> {
     report.show(growth_table(&runs));
     let rows: Vec<StageRow> =
         runs.iter().map(|(points, run)| (vec![points.to_string()], run.ms(), run.shares)).collect();
-    report.show(by_stage("Piles: milliseconds per frame by stage", &["points"], &rows));
+    report.show(Table::by_stage("Piles: milliseconds per frame by stage", &["points"], &rows));
     if let (Some(first), Some(last)) = (runs.first(), runs.last()) {
         let ratio = nanoseconds(last) / nanoseconds(first);
         let target =

@@ -6,7 +6,7 @@ use super::peers::{PEERS, answer};
 use super::run::RunResult;
 use super::workload::{TYPICAL, Workload};
 use crate::bench::peers::SOURCE;
-use crate::bench::table::{Table, by_stage, figure};
+use crate::bench::table::{Table, figure};
 
 /// All runs of a workload.
 pub fn own(workload: Workload, runs: &[RunResult]) -> Table {
@@ -56,7 +56,7 @@ pub fn by_stage(workload: Workload, runs: &[RunResult]) -> Table {
     let typical = runs.iter().filter(|run| run.spec.setting.evaluations == TYPICAL);
     let row = |run: &RunResult| (vec![format!("{}²", run.spec.size)], run.ms(), run.timed.shares);
     let title = format!("{}: milliseconds per frame by stage, {TYPICAL} evaluations", workload.name());
-    by_stage(&title, &["points"], &typical.map(row).collect::<Vec<_>>())
+    Table::by_stage(&title, &["points"], &typical.map(row).collect::<Vec<_>>())
 }
 
 /// The same run on several numbers of threads, with the speed-up relative to the first.
