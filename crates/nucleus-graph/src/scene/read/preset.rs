@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::attributes::{Attribute, NodeType};
+use crate::attributes::{Attribute, NodeType, n_base};
 use crate::diagnostic::{Diagnostic, Findings, nearest};
 use crate::graph::Setting;
 use crate::memory::Memory;
@@ -162,7 +162,10 @@ fn read_lone_node(
     let graph =
         nodes::read_lone(&declaration, file, &|name, source| find_within(open, name, source), findings);
     let (_, node) = graph.iter().find(|(_, node)| node.name() == declaration.name)?;
-    let row = |name: &&'static str| node_type.attribute(name);
-    let set = node.settings().iter().filter_map(|(name, setting)| Some((row(name)?, setting.clone())));
-    Some((node_type, set.collect()))
+    // The preset that it is based on is part of it.
+    let mut all = node.preset().clone();
+    all.extend(node.settings().iter().map(|(name, setting)| (*name, setting.clone())));
+    all.remove(n_base::PRESET.row.name);
+    let with_row = |(name, setting)| Some((node_type.attribute(name)?, setting));
+    Some((node_type, all.into_iter().filter_map(with_row).collect()))
 }
