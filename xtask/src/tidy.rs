@@ -67,6 +67,7 @@ pub fn problems(root: &Path) -> io::Result<Vec<String>> {
             problems.extend(solved_problems(root, &name, &text));
         }
     }
+    problems.extend(missing_tests(root)?);
     for package in packages(root)? {
         let src = root.join(&package).join("src");
         let circles = imports::circles(&src)?;
@@ -105,6 +106,33 @@ fn retired_words(name: &str, text: &str) -> Vec<String> {
         Some(format!("{name}:{}: `{word}` is a retired word; use the field's term", index + 1))
     };
     text.lines().enumerate().filter_map(of_line).collect()
+}
+
+/// Tests that a page names and no source file has.
+fn missing_tests(root: &Path) -> io::Result<Vec<String>> {
+    // A name of four words or more, all in lower case: only tests are named like that.
+    let is_test = |name: &str| {
+        name.split('_').count() > 3
+            && name.chars().all(|c| c == '_' || c.is_ascii_lowercase() || c.is_ascii_digit())
+    };
+    let mut named = Vec::new();
+    let mut functions = BTreeSet::new();
+    for path in files::below(root)? {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        let name = files::name(root, &path);
+        let keyword = if name.ends_with(".rs") { "fn " } else { "def " };
+        if name.ends_with(".rs") || name.ends_with(".py") {
+            let words = text.split(keyword).skip(1).filter_map(|rest| rest.split(['(', '<']).next());
+            functions.extend(words.map(str::to_owned));
+        } else if name.ends_with(".md") {
+            for (index, line) in text.lines().enumerate() {
+                let tests = line.split('`').skip(1).step_by(2).filter(|word| is_test(word));
+                named.extend(tests.map(|test| (format!("{name}:{}", index + 1), test.to_owned())));
+            }
+        }
+    }
+    let missing = named.iter().filter(|(_, test)| !functions.contains(test));
+    Ok(missing.map(|(place, test)| format!("{place}: there is no test `{test}`")).collect())
 }
 
 /// Attributes of a table that name a module that is not there.

@@ -1,4 +1,4 @@
-//! A Maya scene as a scene of ours.
+//! A Maya scene as a Nucleus scene.
 
 use std::path::Path;
 

@@ -7,7 +7,7 @@
 //! | You want to know...                                    | Read                          |
 //! |--------------------------------------------------------|-------------------------------|
 //! | how a scene is imported                                | [`import_scene`]              |
-//! | how a scene of ours is written                         | [`maya_ascii`], `write/`      |
+//! | how a Nucleus scene is written                         | [`maya_ascii`], `write/`      |
 //! | Maya's attribute presets                               | [`read_maya_preset`]          |
 //! | Maya's caches                                          | [`ncache`]                    |
 //! | what is left out, and why                              | [`omissions`]                 |

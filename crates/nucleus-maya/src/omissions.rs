@@ -26,7 +26,7 @@ pub enum Cause {
     NoNucleus,
     /// A nucleus without members.
     EmptyNucleus,
-    /// An object of a nucleus that is no object of ours, by its type.
+    /// An object of a nucleus that Nucleus does not have, by its type.
     OtherMember(String),
     /// A mesh that cannot be built, and why.
     Mesh(String),

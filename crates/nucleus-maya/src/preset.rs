@@ -56,7 +56,7 @@ pub fn read_maya_preset(path: &Path) -> Result<(Preset, Omissions), ImportError>
     Ok((Preset { name, doc, node_type, settings }, omissions))
 }
 
-/// A preset as a file of ours: `nCloth(friction: 0.4)`.
+/// A preset as a Nucleus preset file: `nCloth(friction: 0.4)`.
 pub fn preset_text(preset: &Preset) -> String {
     let doc: String = preset.doc.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let lines: Vec<String> = preset.lines().into_iter().map(|line| format!("    {line},\n")).collect();

@@ -1,4 +1,4 @@
-//! Scenes of Maya, written by hand, become scenes of ours.
+//! Scenes of Maya, written by hand, become Nucleus scenes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -127,13 +127,13 @@ fn long_names_other_units_and_gaps_are_read_as_well() {
     let file = "meshes/Tuch__gro____neu_.obj";
     assert_eq!(read.points(file), [[-1.0, 0.0, 1.0], [2.0, 0.0, 1.0], [-1.0, 0.0, -1.0], [1.0, 0.0, -1.0]]);
     assert_eq!(read.faces(file), ["1 2 4", "1 4 3"]);
-    // Left out in the file means the default of Maya's node, not ours.
+    // An attribute that the file leaves out has the default of Maya's node.
     assert_eq!(read.get(cloth, &n_base::THICKNESS), 0.1);
     assert!(read.is_set(cloth, &n_base::THICKNESS.row));
     assert_round_trip(&read);
 }
 
-/// Maya's own placement of a node against that of ours, at several frames.
+/// Maya's own placement of a node against that of the Nucleus node, at several frames.
 fn assert_placed(file: &str, maya: &str, ours: &str) {
     let read = read(file);
     let scene = MayaScene::read(&folder().join(file)).unwrap();

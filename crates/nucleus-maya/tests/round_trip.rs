@@ -1,4 +1,4 @@
-//! A scene of ours, written as Maya ASCII and imported again, is the same scene.
+//! A Nucleus scene, written as Maya ASCII and imported again, is the same scene.
 
 use std::path::Path;
 

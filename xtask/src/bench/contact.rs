@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_run_already_is_not_run_again_on_threads() {
+    fn a_known_run_is_not_repeated_on_threads() {
         let spec = RunSpec { frames: 2, ..RunSpec::full(Workload::Layers, 9, 6) };
         let mut known = spec.timed(1).unwrap();
         let runs = on_threads(&spec, &[1, 3], std::slice::from_ref(&known)).unwrap();

@@ -37,7 +37,7 @@ fn a_map_that_fits_its_tree_is_tidy() {
 }
 
 #[test]
-fn what_is_there_and_not_named_is_found() {
+fn a_module_that_the_map_does_not_name_is_found() {
     let more = [("crates/two/Cargo.toml", ""), ("crates/one/src/new.rs", ""), ("scenes/a.ron", "")];
     assert_eq!(
         found(PAGE, &more),
@@ -50,7 +50,7 @@ fn what_is_there_and_not_named_is_found() {
 }
 
 #[test]
-fn what_is_named_and_not_there_is_found() {
+fn a_named_module_that_does_not_exist_is_found() {
     let page = format!("{PAGE}| `step` | again |\n| `old` | gone |\n### `crates/gone`\n");
     assert_eq!(
         found(&page, &[]),
@@ -134,4 +134,15 @@ fn a_retired_word_is_found_at_its_line_but_not_inside_another() {
     let problems = page(&format!("a\na {word}."));
     assert!(problems.len() == 1 && problems[0].starts_with("docs/page.md:2: "), "{problems:?}");
     assert_eq!(retired_words("docs/claims.md", word), [""; 0], "the paper keeps its words");
+}
+
+#[test]
+fn a_test_that_a_page_names_exists() {
+    let page = "A row: `a_row_has_its_own_test`, and `serde_json`, `max_iterations_per_step.rs`.\n";
+    let test = "#[test]\nfn a_row_has_its_own_test() {}\n";
+    assert_eq!(found(PAGE, &[("docs/rows.md", page), ("crates/one/src/tests.rs", test)]), [""; 0]);
+    assert_eq!(
+        found(PAGE, &[("docs/rows.md", page)]),
+        ["docs/rows.md:1: there is no test `a_row_has_its_own_test`"]
+    );
 }

@@ -207,7 +207,7 @@ fn write(path: &Path, text: &str, force: bool) -> Result<()> {
         .map_err(|error| anyhow!("cannot write `{}`: {error}", path.display()))
 }
 
-/// A scene of ours for a path that may be a Maya scene: then it is imported beside `cache`.
+/// A Nucleus scene for a path that may be a Maya scene: then it is imported beside `cache`.
 ///
 /// # Errors
 /// As [`import`].

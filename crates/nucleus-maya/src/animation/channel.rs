@@ -1,4 +1,4 @@
-//! A driven attribute as keys of ours: the same keys where that is exact, else a key at every frame.
+//! A driven attribute as Nucleus keys: the same keys where that is exact, else a key at every frame.
 
 use nucleus_graph::animation::{Curve, Key, Tangent};
 use nucleus_graph::graph::Channel;

@@ -196,7 +196,7 @@ impl MayaCurve {
         }
     }
 
-    /// The curve as one of ours, times a factor: with the same keys where ours can follow it, else `None`.
+    /// The curve as a Nucleus curve, times a factor: with the same keys if that is exact, else `None`.
     pub fn exact(&self, factor: f64) -> Option<Curve> {
         let last = self.keys.len() - 1;
         let tangent = |k: usize| -> Tangent {

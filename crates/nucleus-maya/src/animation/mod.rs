@@ -5,11 +5,11 @@
 //! | the value of a curve with Maya's tangents              | [`MayaCurve`]       |
 //! | the value of an attribute at a frame                   | [`Evaluator`]       |
 //! | an expression node                                     | [`Script`]          |
-//! | how a driven attribute becomes keys of ours            | `channel.rs`        |
+//! | how a driven attribute becomes Nucleus keys            | `channel.rs`        |
 //! | where a transform is                                   | `placement.rs`      |
 //! | the names of its attributes                            | [`names`]           |
 //!
-//! **Invariant:** a curve that ours can follow exactly keeps its keys. Any other is sampled at every frame, between
+//! **Invariant:** a curve that a Nucleus curve represents exactly keeps its keys. Any other is sampled at every frame, between
 //! which the solver interpolates linearly anyway (N2.4-7).
 
 mod channel;

@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_artists_write_is_translated() {
+    fn common_expressions_are_translated() {
         for (text, value) in [
             (".O[0] = frame", 12.0),
             (".O[0] = time * 2;", 1.0),
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_maya_can_do_is_refused_with_its_name() {
+    fn commands_of_maya_are_refused_by_name() {
         for (text, word) in [
             ("move 1 2 3 ball;", "`move` is a command"),
             (".O[0] = rand(1);", "`rand` gives other numbers"),

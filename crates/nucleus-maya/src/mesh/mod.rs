@@ -25,7 +25,7 @@ pub(crate) use primitives::own_primitive;
 
 use crate::scene::{MayaScene, NodeId};
 
-/// Whether a creation node makes a primitive of ours, along the same axis unless that does not matter.
+/// Whether a creation node makes a Nucleus primitive, along the same axis unless that does not matter.
 pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {
     own_primitive(scene, id).is_some() && (any_axis || primitives::is_upright(scene, id))
 }

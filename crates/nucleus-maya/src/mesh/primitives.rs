@@ -18,7 +18,7 @@ const AXIS: Vector3 =
 /// Most points of a primitive that this module makes.
 const MAX_POINTS: u64 = 20_000_000;
 
-/// The primitive of ours that a creation node makes, if it is one.
+/// The Nucleus primitive that a creation node makes, if it is one.
 pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> {
     let length = |names: &[&str], default| scene.stored_or(id, names, default) * scene.units.centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
@@ -50,7 +50,7 @@ pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> 
     })
 }
 
-/// Whether the primitive stands along y, as those of ours do.
+/// Whether the primitive stands along y, as Nucleus primitives do.
 pub(crate) fn is_upright(scene: &MayaScene, id: NodeId) -> bool {
     let [x, y, z] = scene.stored_vector(id, AXIS, [0.0, 1.0, 0.0]);
     x.abs() < 1e-9 && z.abs() < 1e-9 && y > 0.0

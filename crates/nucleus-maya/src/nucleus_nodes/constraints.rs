@@ -67,7 +67,7 @@ impl Importer<'_> {
         self.set(to, &dynamic_constraint::COMPONENTS.row, setting);
     }
 
-    /// The components in the short form: as a scene of ours lists them, else runs of points.
+    /// The components in the short form: as a Nucleus scene lists them, else runs of points.
     fn listed(&self, from: NodeId, parts: &[Part]) -> Vec<Component> {
         let stored = self.scene.string(from, &[dynamic_constraint::COMPONENTS.row.name]);
         if let Some(text) = stored.filter(|_| self.is_own) {

@@ -146,7 +146,7 @@ impl<'s> Importer<'s> {
         Ok(())
     }
 
-    /// The preset that a scene of ours names.
+    /// The preset that a Nucleus scene names.
     fn apply_preset(&mut self, id: OwnId) {
         let node = self.graph.node(id);
         let Some(Setting::Fixed(Value::Text(name))) = node.settings().get(n_base::PRESET.row.name) else {

@@ -192,7 +192,7 @@ fn sources_of(scene: &MayaScene, id: NodeId) -> Vec<NodeId> {
     inputs.iter().filter_map(of).collect()
 }
 
-/// Fields and emitters of objects that are carried over; in a scene of ours, all.
+/// Fields and emitters of objects that are carried over; in a Nucleus scene, all.
 fn effects(scene: &MayaScene, chosen: &BTreeSet<NodeId>, is_own: bool) -> Vec<NodeId> {
     let is_effect = |id: &NodeId| {
         let node_type = attributes::node_type(scene.kind(*id));

@@ -1,4 +1,4 @@
-//! Meshes as nodes of ours: a primitive where it is one, else an OBJ file, or one for each frame.
+//! Meshes as Nucleus nodes: a primitive where it is one, else an OBJ file, or one for each frame.
 
 use nucleus_graph::attributes::{self, Attribute, NodeType, Value, mesh};
 use nucleus_graph::graph::{NodeId as OwnId, Setting};
@@ -11,9 +11,9 @@ use super::importer::Importer;
 
 /// How a mesh is imported.
 pub(super) enum Plan {
-    /// A primitive of ours, by its creation node.
+    /// A Nucleus primitive, by its creation node.
     Primitive(NodeId, &'static NodeType),
-    /// The file that a scene of ours names.
+    /// The file that a Nucleus scene names.
     File(String),
     /// The text of an OBJ file that the artist gives.
     Given(String),
@@ -74,7 +74,7 @@ impl Importer<'_> {
         }
     }
 
-    /// The primitive of ours that a shape shows unchanged.
+    /// The Nucleus primitive that a shape shows unchanged.
     fn own_primitive(&self, id: NodeId) -> Option<Plan> {
         let scene = self.scene;
         if scene.units.centimetres != 1.0 || scene.kind(id) != "mesh" {

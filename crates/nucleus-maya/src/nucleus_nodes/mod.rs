@@ -1,11 +1,11 @@
-//! From Maya's nodes to ours: which are carried over, under which names, with which values and connections.
+//! From Maya's nodes to Nucleus nodes: which are carried over, under which names, with which values and connections.
 //!
 //! | You want to know...                                   | Read                |
 //! |-------------------------------------------------------|---------------------|
 //! | which nodes a simulation needs                        | `kept.rs`           |
 //! | values of attributes, ramps, vertex maps              | `attributes.rs`     |
 //! | transforms with pivots, joints, shear                 | `transforms.rs`     |
-//! | meshes: primitives of ours, OBJ files, sequences      | `meshes.rs`         |
+//! | meshes: Nucleus primitives, OBJ files, sequences      | `meshes.rs`         |
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!

@@ -1,4 +1,4 @@
-//! Transforms of Maya as transforms of ours, which have no pivots: the same placement at every frame, with the same keys.
+//! Transforms of Maya as Nucleus transforms, which have no pivots: the same placement at every frame, with the same keys.
 //!
 //! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO T`), and through `S R T` in
 //! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain

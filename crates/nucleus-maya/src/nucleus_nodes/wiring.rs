@@ -97,7 +97,7 @@ impl Importer<'_> {
         Some(Plug { node, attribute, index: None, part: Some(part) })
     }
 
-    /// Whether an object of ours has its mesh and its nucleus.
+    /// Whether a Nucleus object has its mesh and its nucleus.
     pub(super) fn is_joined(&self, to: OwnId) -> bool {
         self.graph.targets(to, &n_base::CURRENT_STATE).next().is_some()
     }

@@ -1,9 +1,9 @@
-//! A scene of ours as Maya ASCII, wired as Maya's creation commands do.
+//! A Nucleus scene as Maya ASCII, wired as Maya's creation commands do.
 //!
 //! | You want to know...                                     | Read           |
 //! |---------------------------------------------------------|----------------|
 //! | the order of the file                                   | [`maya_ascii`] |
-//! | a node of ours as a transform and a shape               | `nodes.rs`     |
+//! | a Nucleus node as a transform and a shape               | `nodes.rs`     |
 //! | settings and curves as `setAttr` and `animCurve`        | `values.rs`    |
 //! | values that Maya computes when it makes an object       | `creation.rs`  |
 //! | embedded meshes                                         | `meshes.rs`    |

@@ -1,4 +1,4 @@
-//! A node of ours as Maya's: a transform and a shape, a node with a transform of its own, or a plain node.
+//! A Nucleus node as Maya's: a transform and a shape, a node with a transform of its own, or a plain node.
 
 use std::fmt::Write;
 

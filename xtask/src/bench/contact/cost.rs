@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_takes_n_log_n_has_the_same_figure_at_every_size() {
+    fn n_log_n_growth_has_the_same_figure_at_every_size() {
         let setting = Setting { evaluations: 1, self_collide: true };
         let program = pile::program(20, setting, &tempfile::tempdir().unwrap()).unwrap();
         let mut run = Timed::run(&program, 1, Some(1), |_| {});
