@@ -126,9 +126,9 @@ node_table! {
     }
     "Caching" {
         /// Attributes that a cache stores.
-        CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 0, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamic State")]);
+        CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 0, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamic State")]).elsewhere("a run records every frame in its own cache, which `--from` starts from");
         /// Use of a cache.
-        CACHE_USAGE: Choice = choice("cacheUsage", "cu", 0, &[(0, "None"), (1, "Cache/Simulation"), (2, "Cache File Info")]);
+        CACHE_USAGE: Choice = choice("cacheUsage", "cu", 0, &[(0, "None"), (1, "Cache/Simulation"), (2, "Cache File Info")]).elsewhere("a run records every frame in its own cache, which `--from` starts from");
     }
     "Dynamic Properties Maps" {
         /// Texture of the map of stretch.
@@ -228,8 +228,8 @@ node_table! {
     }
     "Connections" {
         /// The solved mesh in world space.
-        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh", Data::Mesh).output();
+        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh", Data::Mesh).output().solved("nucleus_graph::graph");
         /// The mesh at the start frame.
-        OUTPUT_START_MESH: Plugged = plug("outputStartMesh", "otms", Data::Mesh).output();
+        OUTPUT_START_MESH: Plugged = plug("outputStartMesh", "otms", Data::Mesh).output().elsewhere("the first frame of the cache is the mesh at the start");
     }
 }
