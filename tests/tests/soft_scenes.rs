@@ -79,6 +79,22 @@ fn a_slinky_turns_over_on_every_step_by_its_own_weight() {
     assert!(end.y < -2.0 * 0.07 && end.x > 2.0 * 0.105, "two steps on by itself: {end}");
 }
 
+// EVIDENCE: N1.2-7  what is bent beyond the restitution angle stays bent
+#[test]
+fn a_can_keeps_a_dent_that_would_spring_back_if_nothing_yielded() {
+    // How far the wall at the height of the ball has moved inwards at the end, in metres.
+    let dent = |changes: &[(&str, &str)]| {
+        let frames = film(&changed("can", changes), 59);
+        let towards_ball = |points: &[Vec3]| {
+            points.iter().filter(|p| (p.y - 0.09).abs() < 0.008).map(|p| p.x).fold(0.0, f64::max)
+        };
+        towards_ball(&frames[0]) - towards_ball(&frames[58])
+    };
+    let elastic = [("restitutionAngle: 2,", ""), ("restitutionTension: 0.05,", "")];
+    let [dented, sprung] = [dent(&[]), dent(&elastic)];
+    assert!(dented > 0.01 && sprung < 0.5 * dented, "{dented} m, {sprung} m without yielding");
+}
+
 /// Horizontal distance flown and height lost in metres.
 fn glide(lift: &str, drag: &str) -> [f64; 2] {
     let changes = [("lift: 3", lift), ("drag: 0.004", drag)];

@@ -77,7 +77,7 @@ node_table! {
     "Pressure" {
         /// Source of the pressure: set manually, or computed from the enclosed gas.
         PRESSURE_METHOD: Choice = choice("pressureMethod", "pmth", 0, &[(0, "Manual Pressure Setting"), (1, "Volume Tracking Model")]).solved("nucleus_core::constraints::pressure");
-        /// Manual gauge pressure along the normals; 1 is 1 kPa.
+        /// Manual gauge pressure along the normals; 1 is 1 kPa. It inflates a mesh to five times its size at most.
         PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
         /// Excess air inside at the start, in start volumes.
         START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
@@ -89,7 +89,7 @@ node_table! {
         PUMP_RATE: f64 = float("pumpRate", "pure", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
         /// Share of the excess air that is retained; at 0 pressure equalizes within 1/24 s.
         AIR_TIGHTNESS: f64 = float("airTightness", "aits", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::pressure");
-        /// Seals the openings of the mesh. Off: air flows through them, and its thrust acts on the mesh.
+        /// Volume tracking: seals the openings of the mesh. Off: air flows through them, and its thrust acts on the mesh.
         SEAL_HOLES: bool = toggle("sealHoles", "shol", true).solved("nucleus_core::constraints::pressure");
     }
     "Quality Settings" {
