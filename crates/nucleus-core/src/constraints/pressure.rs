@@ -238,9 +238,13 @@ impl Sums {
     /// The push λ within its limits, for a chamber of this volume in m³ along its normals, and of this radius in metres.
     /// A vacuum is a pressure that inflates the mesh inside out. What coasts beyond the limit is brought back to it.
     fn limited(&self, push: f64, volume: f64, radius: f64) -> f64 {
-        let sphere = 4.0 / 3.0 * std::f64::consts::PI * (BURST_STRETCH * radius).powi(3);
+        if self.mobility <= 0.0 {
+            return push; // nothing moves
+        }
+        let burst = BURST_STRETCH * radius;
+        let sphere = 4.0 / 3.0 * std::f64::consts::PI * burst * burst * burst;
         let side = if volume < 0.0 { -1.0 } else { 1.0 };
-        if side * volume > sphere && self.mobility > 0.0 {
+        if side * volume > sphere {
             return side * (sphere - side * volume) / self.mobility;
         }
         let towards = if push < 0.0 { -volume } else { volume };
