@@ -337,7 +337,10 @@ impl<R: Real> MaterialMaps<R> {
             stickiness: column(|factors| &factors.stickiness),
             bounce: column(|factors| &factors.bounce),
             strength: column(|factors| &factors.collide_strength),
-            max_thickness_factor: cloths.iter().map(|cloth| max_factor(&cloth.vertex_maps.thickness)).collect(),
+            max_thickness_factor: cloths
+                .iter()
+                .map(|cloth| max_factor(&cloth.vertex_maps.thickness))
+                .collect(),
             colliders: colliders.iter().map(ColliderMaps::new).collect(),
         }
     }
