@@ -61,6 +61,40 @@ fn the_coils_of_a_slinky_are_as_far_apart_as_the_weight_below_them_says() {
     }
 }
 
+/// The hand lets go in frame 15, when the last turn has come down beside the first.
+// EVIDENCE: N1.2-6  a slinky walks down steps, turning over on each
+#[test]
+fn a_slinky_turns_over_on_every_step_by_its_own_weight() {
+    let frames = film(&changed("slinky_on_steps", &[]), 71);
+    // Mean heights of the first and of the last turn in a frame, in steps of 7 cm below the top one.
+    let turns = |frame: usize| {
+        let points = &frames[frame - 2];
+        [&points[..24], &points[points.len() - 24..]].map(|turn| -mean(turn).y / 0.07)
+    };
+    let lead = |[first, last]: [f64; 2]| last - first;
+    assert!(lead(turns(20)) > 0.5, "the last turn lies on the second step: {:?}", turns(20));
+    assert!((38..56).any(|frame| lead(turns(frame)) < -0.5), "then the first turn comes down beyond it");
+    assert!((56..=72).any(|frame| lead(turns(frame)) > 0.5), "and the last turn beyond that");
+    let end = mean(&frames[70]);
+    assert!(end.y < -2.0 * 0.07 && end.x > 2.0 * 0.105, "two steps on by itself: {end}");
+}
+
+// EVIDENCE: N1.2-7  what is bent beyond the restitution angle stays bent
+#[test]
+fn a_can_keeps_a_dent_that_would_spring_back_if_nothing_yielded() {
+    // How far the wall at the height of the ball has moved inwards at the end, in metres.
+    let dent = |changes: &[(&str, &str)]| {
+        let frames = film(&changed("can", changes), 59);
+        let towards_ball = |points: &[Vec3]| {
+            points.iter().filter(|p| (p.y - 0.09).abs() < 0.008).map(|p| p.x).fold(0.0, f64::max)
+        };
+        towards_ball(&frames[0]) - towards_ball(&frames[58])
+    };
+    let elastic = [("restitutionAngle: 2,", ""), ("restitutionTension: 0.05,", "")];
+    let [dented, sprung] = [dent(&[]), dent(&elastic)];
+    assert!(dented > 0.01 && sprung < 0.5 * dented, "{dented} m, {sprung} m without yielding");
+}
+
 /// Horizontal distance flown and height lost in metres.
 fn glide(lift: &str, drag: &str) -> [f64; 2] {
     let changes = [("lift: 3", lift), ("drag: 0.004", drag)];

@@ -24,7 +24,7 @@ use mesh::{Mesh, ring};
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 16] = [
+const ALL: [Entry; 17] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -36,6 +36,7 @@ const ALL: [Entry; 16] = [
     ("balloon", soft::balloon),
     ("trampoline", soft::trampoline),
     ("slinky", soft::slinky),
+    ("slinky_standing", soft::slinky_standing),
     ("aeroplane", soft::aeroplane),
     ("bridge", soft::bridge),
     ("disc", soft::disc),

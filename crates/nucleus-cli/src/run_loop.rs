@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use nucleus_cache::{RecordError, Recorder};
 use nucleus_core::{Real, Stage, StateView, StepObserver, SubstepIndex};
 use nucleus_graph::checks::Judge;
-use nucleus_graph::{FrameReport, Simulation};
+use nucleus_graph::{FrameReport, Simulation, flat_cloths};
 use serde_json::{Value, json};
 
 use crate::process::Outcome;
@@ -65,7 +65,8 @@ impl<R: Real> Run<R> {
         let audit = simulation.audit().filter(|_| audit);
         let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
         let hash = combined_hash(&simulation);
-        let summary = Summary { hash, statistics, ending, checks, audit, recorded, frames, objects };
+        let flat = flat_cloths(&simulation);
+        let summary = Summary { hash, statistics, ending, checks, audit, recorded, frames, objects, flat };
         let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
         Ok(Finished { outcome, text, report })
     }

@@ -28,6 +28,8 @@ pub struct Summary<'a> {
     pub frames: (i64, i64),
     /// The objects of the run.
     pub objects: &'a [Object],
+    /// Cloths that started flat, are pressed together, and are flat still.
+    pub flat: Vec<String>,
 }
 
 impl Summary<'_> {
@@ -52,6 +54,10 @@ impl Summary<'_> {
 
     fn warning(&self) -> Option<String> {
         warnings::large_strain(&self.statistics, self.checks)
+    }
+
+    fn hint(&self) -> Option<String> {
+        warnings::flat(&self.flat)
     }
 
     /// The summary as text.
@@ -87,7 +93,9 @@ impl Summary<'_> {
         }
         self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
         let tolerated = warnings::tolerated(statistics, self.checks);
-        for line in tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warning()) {
+        for line in
+            tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warning()).chain(self.hint())
+        {
             writeln!(text, "{line}")?;
         }
         text += &self.ending_line();
@@ -157,6 +165,7 @@ impl Summary<'_> {
             "intersections": over_run(&statistics.intersections),
             "unresolved_contact": self.unresolved_contact(),
             "warning": self.warning(),
+            "hint": self.hint(),
             "sanitized": statistics.sanitized,
             "first_sanitized": statistics.first_sanitized.map(|(input, _)| sanitized(input, self.objects)),
             "checks": checks,

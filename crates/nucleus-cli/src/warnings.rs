@@ -105,6 +105,15 @@ pub fn large_strain(statistics: &RunStatistics, checks: &[Outcome]) -> Option<St
     })
 }
 
+/// A hint at what lets cloths fold that are pressed together and stay flat.
+pub fn flat(cloths: &[String]) -> Option<String> {
+    let first = cloths.first()?;
+    Some(format!(
+        "hint: `{first}` is pressed together and stays flat, because it is perfectly flat at the start: give it an \
+         `initialPerturbation`, say a tenth of its thickness, and it folds"
+    ))
+}
+
 /// The strictest limit of the checks with this name.
 fn limit(checks: &[Outcome], name: &str) -> Option<f64> {
     let own = checks.iter().filter(|outcome| outcome.check.form().name == name);

@@ -15,6 +15,7 @@ use crate::input::validation::{InvalidInput, LastPositions, sanitize};
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
+use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
 use crate::output::{ContactState, ParticleAge, StateView, StepObserver};
 use crate::output::{PassCost, StepReport};
@@ -120,7 +121,7 @@ impl<R: CompiledReal> Solver<R> {
 
 impl<R: Real> Solver<R> {
     pub(crate) fn build(builder: ModelBuilder, threads: usize) -> Self {
-        let ModelBuilder { cloths, colliders, link_orders, field_maps } = builder;
+        let ModelBuilder { cloths, colliders, link_orders, collider_maps } = builder;
         let self_collides = cloths.len() > 1 || cloths.iter().any(|cloth| cloth.lists.self_collision);
         let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
         for (cloth, order) in cloths.iter().zip(&link_orders) {
@@ -130,9 +131,12 @@ impl<R: Real> Solver<R> {
         let mut state = State::new(&cloths, &models);
         let pool = ThreadPool::new(threads);
         whole::prepare(&mut models, &mut state, &pool);
-        let colliders = colliders.into_iter().zip(field_maps);
-        let colliders: Vec<_> = colliders.map(|(collider, map)| ColliderModel::new(collider, map)).collect();
-        let contact = ContactSystem::new(&cloths, &models, &colliders, &state, self_collides);
+        let colliders = colliders.into_iter().zip(&collider_maps);
+        let with_map =
+            |(collider, maps): (_, &VertexMaps)| ColliderModel::new(collider, maps.field_magnitude.clone());
+        let colliders: Vec<_> = colliders.map(with_map).collect();
+        let contact =
+            ContactSystem::new(&cloths, &models, (&colliders, &collider_maps), &state, self_collides);
         drop(cloths);
         let liquids = models.iter().map(|_| LiquidSolver::default()).collect();
         for population in &state.populations {

@@ -4,7 +4,8 @@ mod scenes;
 
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, FieldSide, ForceField,
-    FrameInput, LinkOrder, Mass, ModelBuilder, PointField, Real, Solver, StateView, Surface, WindField,
+    FrameInput, LinkOrder, Mass, ModelBuilder, PointField, Real, Solver, StateView, Surface, VertexMaps,
+    WindField,
 };
 use scenes::{Vec3, frame, grid, physical, still};
 
@@ -244,7 +245,8 @@ fn the_force_field_of_a_collider_is_as_strong_as_its_map() {
         let mut builder = ModelBuilder::new();
         builder.cloth(particle(Vec3::new(0.5, -0.25, 0.5), 1.0)).expect("a point");
         builder.collider(Collider { surface: tile(2.0, Vec3::zeros()) }).expect("a good mesh");
-        builder.set_field_map(ColliderId(0), map)?;
+        let maps = VertexMaps { field_magnitude: map, ..VertexMaps::default() };
+        builder.set_collider_maps(ColliderId(0), maps)?;
         let colliders = vec![ColliderFrame { field: Some(field), ..ColliderFrame::default() }];
         let input = FrameInput { duration: 1e-3, colliders, ..air(Vec3::zeros(), vec![still()]) };
         let mut solver = Solver::<f64>::new(builder, 1);

@@ -3,8 +3,9 @@
 mod scenes;
 
 use nucleus_core::{
-    Cloth, ClothFrame, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane, Mass, ModelBuilder,
-    Solver,
+    BendSolver, Bending, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FieldSide,
+    ForceField, FrameInput, GroundPlane, InputAttract, InputMesh, Mass, ModelBuilder, PointField, Pressure,
+    Solver, WindField,
 };
 use scenes::{Vec3, frame, grid, physical};
 
@@ -121,4 +122,117 @@ fn collider_contact_is_a_pass_only_where_both_sides_collide() {
     frame.colliders[0].collide = true;
     frame.cloths[0].collide = false;
     assert_eq!(names(&frame), ["predict"]);
+}
+
+/// An effect on a whole cloth: the list that it needs, the attribute that switches it on, its pass, and whether it needs
+/// memory of its own.
+type WholeEffect = (fn(&mut ClothLists), fn(&mut FrameInput), &'static str, bool);
+
+const WHOLE_EFFECTS: [WholeEffect; 11] = [
+    (
+        |lists| lists.pressure = true,
+        |frame| frame.cloths[0].pressure = Pressure::Manual { pascals: 10.0, damping: 0.0 },
+        "pressure",
+        true,
+    ),
+    (|lists| lists.shape = true, |frame| frame.cloths[0].rigidity = 1.0, "shape", true),
+    (|lists| lists.shape = true, |frame| frame.cloths[0].deform_resistance = 1.0, "shape", true),
+    (
+        |lists| (lists.stretch, lists.plastic) = (true, true),
+        |frame| (frame.cloths[0].stretch_resistance, frame.cloths[0].yield_strain) = (20.0, 0.1),
+        "yield",
+        true,
+    ),
+    (
+        |lists| (lists.bend, lists.bend_angles) = (true, true),
+        |frame| {
+            frame.cloths[0].bend_resistance = 0.1;
+            frame.cloths[0].bending = Bending { solver: BendSolver::FlipTracking, ..Bending::DEFAULT };
+        },
+        "yield",
+        true,
+    ),
+    (
+        |_| {},
+        |frame| {
+            frame.cloths[0].input_attract = InputAttract { strength: 0.5, damp: 0.5, motion_drag: 0.0 };
+            let goal = grid(CELLS as u32 + 1, CELLS as u32 + 1, Vec3::x(), Vec3::z()).positions;
+            frame.input_meshes = vec![InputMesh { cloth: ClothId(0), start: goal.clone(), end: goal }];
+        },
+        "attract",
+        false,
+    ),
+    (
+        |lists| lists.air = true,
+        |frame| (frame.cloths[0].drag, frame.wind, frame.wind_noise) = (0.05, Vec3::x(), 0.5),
+        "gusts",
+        true,
+    ),
+    (
+        |lists| lists.air = true,
+        |frame| {
+            (frame.cloths[0].drag, frame.wind) = (0.05, Vec3::x());
+            frame.cloths[0].wind_field =
+                WindField { shadow_distance: 1.0, self_shadow: true, ..WindField::OFF };
+        },
+        "wind shadow",
+        true,
+    ),
+    (
+        |lists| lists.air = true,
+        |frame| {
+            frame.cloths[0].drag = 0.05;
+            frame.cloths[0].wind_field = WindField { push_distance: 1.0, ..WindField::OFF };
+        },
+        "air push",
+        true,
+    ),
+    (
+        |_| {},
+        |frame| {
+            frame.cloths[0].point_field = Some(PointField {
+                magnitude: 1.0,
+                self_attract: 1.0,
+                radius: 0.1,
+                distance: 0.5,
+                falloff: [1.0; ForceField::SAMPLES],
+            });
+        },
+        "point field",
+        false,
+    ),
+    (
+        |_| {},
+        |frame| {
+            let falloff = [1.0; ForceField::SAMPLES];
+            let field = ForceField { side: FieldSide::Double, magnitude: 1.0, distance: 9.0, falloff };
+            frame.colliders = vec![ColliderFrame { field: Some(field), ..ColliderFrame::default() }];
+        },
+        "force field",
+        false,
+    ),
+];
+
+/// Bytes of the columns and lists of a sheet.
+fn bytes(lists: ClothLists) -> usize {
+    let mut builder = ModelBuilder::new();
+    let side = CELLS as u32 + 1;
+    let surface = grid(side, side, Vec3::x(), Vec3::z());
+    builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
+    Solver::<f32>::new(builder, 1).memory()
+}
+
+#[test]
+fn an_effect_on_a_whole_cloth_takes_a_pass_where_it_is_on_and_bytes_where_it_can_ever_be() {
+    for (list, set, name, needs_memory) in WHOLE_EFFECTS {
+        let (mut lists, mut frame) = (ClothLists::NONE, bare());
+        list(&mut lists);
+        let rows_off = passes(lists, &frame);
+        assert_eq!(rows_off, [("predict", POINTS)], "{name} is at zero, and takes no pass");
+        set(&mut frame);
+        let found = passes(lists, &frame);
+        assert!(found.iter().any(|(known, rows)| *known == name && *rows > 0), "{name}: {found:?}");
+        let more = bytes(lists) - bytes(ClothLists::NONE);
+        assert_eq!(more > 0, needs_memory, "{name} takes {more} bytes");
+    }
 }

@@ -9,6 +9,7 @@ use nucleus_core::{
     Mass, ModelBuilder, Pin, PointId, Pressure, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
     Surface,
 };
+use proptest::prelude::*;
 use scenes::{Vec3, frame};
 
 const CLOTH: ClothId = ClothId(0);
@@ -482,4 +483,70 @@ fn what_a_soft_body_remembers_goes_on_from_a_checkpoint_with_the_same_bits() {
         resumed.step(&input, &mut ());
     });
     assert_eq!(straight.state_hash(), resumed.state_hash());
+}
+
+/// Distance in metres of the farthest point from the middle of an icosphere of 1 m, over `frames` frames and at their end;
+/// `None` if any position is not finite.
+fn farthest_of_a_ball(
+    pressure: Pressure,
+    density: f64,
+    input: FrameInput,
+    frames: usize,
+) -> Option<[f64; 2]> {
+    let mut solver = weighing(density, icosphere(1.0), ClothLists { pressure: true, ..LINKS });
+    let cloth = ClothFrame { pressure, ..input.cloths[0] };
+    let input = FrameInput { cloths: vec![cloth], gravity: Vec3::zeros(), ..input };
+    let (mut farthest, mut now): (f64, f64) = (0.0, 0.0);
+    for _ in 0..frames {
+        if !solver.step(&input, &mut ()).finite {
+            return None;
+        }
+        let all = points(&solver, 642);
+        let middle = mean(&all);
+        now = all.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+        farthest = farthest.max(now);
+    }
+    Some([farthest, now])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Gauge pressures up to 10 000 atmospheres, masses from a milligram to a ton per square metre.
+    #[test]
+    fn no_pressure_blows_a_mesh_up(
+        magnitude in 0.0..9.0f64, vacuum: bool, tracks_gas: bool, density in -6.0..3.0f64, substeps in 1..12u32,
+        classic: bool, stretch in 0.0..40.0f64,
+    ) {
+        let pascals = 10f64.powf(magnitude) * if vacuum { -1.0 } else { 1.0 };
+        let pressure = match tracks_gas {
+            false => Pressure::Manual { pascals, damping: 0.0 },
+            true => Pressure::Gas {
+                start: pascals / 1e5, bulk: pascals.abs(), pump: pascals / 1e5, tightness: 1.0, damping: 0.0, sealed: true,
+            },
+        };
+        let resistance = if classic { ResistanceModel::Classic } else { PHYSICAL };
+        let cloth = ClothFrame { stretch_resistance: stretch, ..ClothFrame::default() };
+        let input = FrameInput { cloths: vec![cloth], ..frame(substeps, resistance) };
+        let farthest = farthest_of_a_ball(pressure, 10f64.powf(density), input, 6);
+        // Nothing is pushed beyond the burst stretch of 5; what coasts beyond it is brought back.
+        prop_assert!(farthest.is_some_and(|[farthest, _]| farthest < 15.0), "{farthest:?}");
+    }
+}
+
+#[test]
+fn weak_rubber_is_inflated_to_the_burst_stretch_and_no_further() {
+    for resistance in [ResistanceModel::Classic, PHYSICAL] {
+        let pressure = Pressure::Manual { pascals: 2000.0, damping: 0.0 };
+        let cloth = ClothFrame {
+            stretch_resistance: 0.5,
+            compression_resistance: 0.0,
+            damp: 4.0,
+            ..ClothFrame::default()
+        };
+        let input = FrameInput { cloths: vec![cloth], ..frame(4, resistance) };
+        let [most, end] = farthest_of_a_ball(pressure, 0.2, input, 24).expect("it is finite");
+        // The mesh of flat faces has a little less area than the sphere.
+        assert!((4.5..5.5).contains(&end) && most < 8.0, "{resistance:?}: {end}, {most} at most");
+    }
 }

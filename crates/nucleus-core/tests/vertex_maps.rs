@@ -359,3 +359,130 @@ fn a_sheet_slides_down_a_slope_by_its_mapped_friction_plus_that_of_the_slope() {
         }
     }
 }
+
+/// A sheet of 0.2 m at rest on two halves of a floor, one collider of 8 m with a map that is `factors[0]` where x < 0 and
+/// `factors[1]` where x > 0; the position and the height of its middle after half a second.
+fn on_a_mapped_floor(
+    x: f64,
+    maps: VertexMaps,
+    cloth: ClothFrame,
+    collider: ColliderFrame,
+    pull: Vec3,
+) -> Vec3 {
+    let mut builder = ModelBuilder::new();
+    let mut sheet = grid(5, 5, Vec3::x() * 0.2, Vec3::z() * 0.2);
+    sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(x - 0.1, 0.0201, -0.1));
+    builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), LINKS)).expect("a good mesh");
+    let collider_of = builder.collider(Collider { surface: floor() }).expect("a good mesh");
+    builder.set_collider_maps(collider_of, maps).expect("good maps");
+    let input = FrameInput {
+        gravity: pull,
+        cloths: vec![cloth],
+        colliders: vec![collider],
+        ..frame(6, physical(48.0))
+    };
+    let mut solver = Solver::<f64>::new(builder, 1);
+    (0..12).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    solver.point(CLOTH, 12)
+}
+
+/// A floor of 8 m with a row of points at x = 0.
+fn floor() -> Surface {
+    let mut floor = grid(9, 9, Vec3::x() * 8.0, Vec3::z() * 8.0);
+    floor.positions.iter_mut().for_each(|p| *p -= Vec3::new(4.0, 0.0, 4.0));
+    floor
+}
+
+/// `low` at the points with x below zero, `high` at those above, the mean between.
+fn by_half(low: f64, high: f64) -> Vec<f64> {
+    let of = |p: &Vec3| {
+        if p.x < -0.1 {
+            low
+        } else if p.x > 0.1 {
+            high
+        } else {
+            (low + high) / 2.0
+        }
+    };
+    floor().positions.iter().map(of).collect()
+}
+
+const FLOOR: fn() -> ColliderFrame =
+    || ColliderFrame { collide: true, thickness: 0.01, friction: 0.4, ..ColliderFrame::default() };
+const LYING: fn() -> ClothFrame = || ClothFrame { thickness: 0.01, friction: 0.1, ..still() };
+
+#[test]
+fn a_sheet_slides_down_a_collider_by_the_friction_of_the_colliders_map() {
+    let slope = Vec3::new(0.0, -9.81 * 0.75f64.sqrt(), 9.81 * 0.5);
+    let maps = || VertexMaps { friction: by_half(0.0, 2.0), ..VertexMaps::default() };
+    // On the low half only the sheet's own 0.1 holds; on the high half 0.9, more than the slope of 0.577.
+    let [slippery, rough] = [-2.5, 2.5].map(|x| on_a_mapped_floor(x, maps(), LYING(), FLOOR(), slope).z);
+    let expected = 9.81 * (0.5 - 0.1 * 0.75f64.sqrt()) * 0.125;
+    assert!((slippery - expected).abs() < 0.03 * 0.61, "{slippery} for {expected}");
+    assert!(rough.abs() < 1e-3, "{rough}");
+}
+
+#[test]
+fn a_sheet_lies_as_high_as_the_thickness_map_of_a_collider_says() {
+    let maps = || VertexMaps { thickness: by_half(0.0, 3.0), ..VertexMaps::default() };
+    let down = Vec3::new(0.0, -9.81, 0.0);
+    // Below 3 thicknesses of 0.01 the start is inside: the depth is resolved at 1 m/s.
+    let [thin, thick] = [-2.5, 2.5].map(|x| on_a_mapped_floor(x, maps(), LYING(), FLOOR(), down).y);
+    assert!((thin - 0.01).abs() < 2e-4 && (thick - 0.04).abs() < 2e-4, "{thin} {thick}");
+    // Half way between a point of factor 0 and the row of 1.5: 0.75.
+    let between = on_a_mapped_floor(-0.5, maps(), LYING(), FLOOR(), down).y;
+    assert!((between - 0.0175).abs() < 2e-3, "{between}");
+}
+
+#[test]
+fn a_collider_collides_bounces_and_sticks_where_its_maps_say() {
+    let down = Vec3::new(0.0, -9.81, 0.0);
+    let strength = || VertexMaps { collide_strength: by_half(0.0, 1.0), ..VertexMaps::default() };
+    let [fallen, held] = [-2.5, 2.5].map(|x| on_a_mapped_floor(x, strength(), LYING(), FLOOR(), down).y);
+    assert!((fallen + 9.81 * 0.125).abs() < 0.05 && (held - 0.02).abs() < 2e-4, "{fallen} {held}");
+    // Pulled upwards: what sticks with 1 never parts.
+    let stickiness = || VertexMaps { stickiness: by_half(0.0, 1.0), ..VertexMaps::default() };
+    let sticky = || ColliderFrame { stickiness: 1.0, ..FLOOR() };
+    let [risen, stuck] =
+        [-2.5, 2.5].map(|x| on_a_mapped_floor(x, stickiness(), LYING(), sticky(), -down * 0.1).y);
+    assert!(risen > 0.1 && stuck < 0.025, "{risen} {stuck}");
+}
+
+#[test]
+fn a_drop_bounces_only_where_the_bounce_map_of_a_collider_says() {
+    let maps = || VertexMaps { bounce: by_half(0.0, 1.0), ..VertexMaps::default() };
+    let highest = |x: f64| {
+        let mut builder = ModelBuilder::new();
+        let mut sheet = grid(3, 3, Vec3::x() * 0.1, Vec3::z() * 0.1);
+        sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(x - 0.05, 0.52, -0.05));
+        builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), LINKS)).expect("a good mesh");
+        let floor = builder.collider(Collider { surface: floor() }).expect("a good mesh");
+        builder.set_collider_maps(floor, maps()).expect("good maps");
+        let bouncy = ColliderFrame { bounce: 0.8, ..FLOOR() };
+        let input =
+            FrameInput { cloths: vec![LYING()], colliders: vec![bouncy], ..frame(20, physical(48.0)) };
+        let mut solver = Solver::<f64>::new(builder, 1);
+        // It lands after 0.32 s, and is highest 0.26 s later.
+        (0..8).for_each(|_| _ = solver.step(&input, &mut ()));
+        let after = |_| {
+            solver.step(&input, &mut ());
+            solver.point(CLOTH, 4).y
+        };
+        (8..18).map(after).fold(0.0, f64::max)
+    };
+    let [dead, lively] = [-2.5, 2.5].map(highest);
+    // 0.8² of the 0.5 m that it fell.
+    assert!(dead < 0.03 && (lively - 0.02 - 0.32).abs() < 0.03, "{dead} {lively}");
+}
+
+#[test]
+fn maps_of_ones_on_a_collider_change_a_slide_by_rounding_alone() {
+    let slope = Vec3::new(0.0, -9.81 * 0.75f64.sqrt(), 9.81 * 0.5);
+    let ones = || vec![1.0; floor().positions.len()];
+    let maps = VertexMaps { friction: ones(), thickness: ones(), ..VertexMaps::default() };
+    let [mapped, plain] =
+        [maps, VertexMaps::default()].map(|maps| on_a_mapped_floor(2.5, maps, LYING(), FLOOR(), slope));
+    assert!((mapped - plain).norm() < 1e-9 && plain.z > 0.01, "{mapped:?} {plain:?}");
+}

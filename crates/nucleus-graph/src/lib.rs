@@ -14,6 +14,7 @@
 //! | which conditions a run has to meet               | [`checks::Judge`]          |
 //! | whether anything passes through anything         | [`audit::Audit`]           |
 //! | what looks wrong before the first step           | [`first_frame_warnings`]   |
+//! | what looks wrong after the last step            | [`flat_cloths`]            |
 //! | how values change over time                      | [`animation::Curve`]       |
 //! | where meshes come from                           | [`mesh::read_obj`]         |
 //! | values that differ from point to point           | [`paint`]                  |
@@ -33,6 +34,7 @@ mod diagnostic;
 mod files;
 mod first_frame;
 pub mod graph;
+mod last_frame;
 pub mod memory;
 pub mod mesh;
 pub mod paint;
@@ -42,4 +44,5 @@ mod simulation;
 pub use checks::FrameReport;
 pub use files::LineSpan;
 pub use first_frame::first_frame_warnings;
+pub use last_frame::flat_cloths;
 pub use simulation::Simulation;

@@ -46,11 +46,21 @@ fn flat_disc(around: usize, radii: &[f64]) -> Mesh {
 
 /// A coil of ribbon: seven turns of radius 4, each 0.3 below the one before, of twelve rows of two points; 1.2 wide.
 pub fn slinky() -> Mesh {
+    coil(7, -0.3)
+}
+
+/// The same coil of fourteen turns, each 0.3 above the one before.
+pub fn slinky_standing() -> Mesh {
+    coil(14, 0.3)
+}
+
+/// A coil of ribbon from its first turn on; `pitch` is the way along y from turn to turn.
+fn coil(turns: u32, pitch: f64) -> Mesh {
     let row = |k: u32| {
         let turn = std::f64::consts::TAU * f64::from(k) / 12.0;
-        [3.4, 4.6].map(|r| [r * turn.cos(), -0.3 * f64::from(k) / 12.0, r * turn.sin()]).to_vec()
+        [3.4, 4.6].map(|r| [r * turn.cos(), pitch * f64::from(k) / 12.0, r * turn.sin()]).to_vec()
     };
-    Mesh::rows((0..=84).map(row).collect(), false)
+    Mesh::rows((0..=12 * turns).map(row).collect(), false)
 }
 
 /// A paper dart, 20 long and 24 wide at its tail, that points along -z: two wings that rise to the sides, and a tail that is

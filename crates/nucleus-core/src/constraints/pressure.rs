@@ -9,6 +9,11 @@
 //! A boundary loop of the mesh is a hole. Sealed, it is capped: the cap carries the pressure to its rim. Open, the missing
 //! cap leaves a net force -p A (thrust), and air streams through at the speed of Bernoulli's law, plus the air that the
 //! opening runs into.
+//!
+//! A constant pressure on a surface that grows does unlimited work: beyond some size no linear stiffness holds it (a balloon
+//! bursts). So the push of a time step is limited: it moves no point farther than the radius of a sphere of the mesh's rest
+//! area, and it holds a chamber within [`BURST_STRETCH`] times that sphere. No mesh that keeps its area encloses
+//! more than the sphere does (isoperimetric inequality), so cloth that is not stretched never meets the limit.
 
 use nalgebra::Vector3;
 
@@ -34,6 +39,9 @@ const NEWTON: usize = 12;
 /// Volume that a collapsed chamber counts as, as a share of its volume at the start.
 const LEAST_VOLUME: f64 = 1e-3;
 
+/// Stretch of the sphere of a chamber's rest area beyond which pressure inflates it no further: about where rubber breaks.
+pub const BURST_STRETCH: f64 = 5.0;
+
 /// The chambers and holes of one cloth, fixed once it is compiled.
 #[derive(Debug, Clone, Default)]
 pub struct PressureModel {
@@ -43,7 +51,8 @@ pub struct PressureModel {
     chamber: Vec<u32>,
     /// Holes, their corners so that the cap faces outwards.
     holes: Vec<Hole>,
-    chambers: u32,
+    /// By chamber: radius in metres of a sphere whose area is that of the chamber's faces at rest.
+    radii: Vec<f64>,
     sealed: bool,
     /// First of the chambers in the state.
     pub first: usize,
@@ -64,6 +73,8 @@ struct Sums {
     volume: f64,
     /// Σ w |a|².
     mobility: f64,
+    /// The largest w² |a|² of a point.
+    fastest: f64,
     /// Area of the holes in m², and the flow of still air into them in m³/s.
     hole: f64,
     inflow: f64,
@@ -82,8 +93,15 @@ impl PressureModel {
             let corners: Vec<u32> = corners.into_iter().map(place).collect();
             Hole { chamber: chamber[(corners[0] - first) as usize], corners }
         });
+        let holes = holes.collect();
+        let mut areas = vec![0.0; parts.len()];
+        for [a, b, c] in surface.faces.triangles() {
+            let [x, y, z] = [a, b, c].map(|point| surface.positions[point as usize]);
+            areas[chamber[(place(a) - first) as usize] as usize] += (y - x).cross(&(z - x)).norm() / 2.0;
+        }
+        let radii = areas.into_iter().map(|area| (area / (4.0 * std::f64::consts::PI)).sqrt()).collect();
         let triangles = triangles_by_block(surface, place, blocks);
-        Self { triangles, holes: holes.collect(), chambers: parts.len() as u32, chamber, sealed, first: 0 }
+        Self { triangles, holes, radii, chamber, sealed, first: 0 }
     }
 
     /// Whether the cloth has any.
@@ -93,7 +111,7 @@ impl PressureModel {
 
     /// How many chambers there are.
     pub fn chambers(&self) -> usize {
-        self.chambers as usize
+        self.radii.len()
     }
 
     /// Triangles that are pushed, each once for every block that it touches.
@@ -103,7 +121,7 @@ impl PressureModel {
 
     /// Bytes of its lists.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.chamber[..]) + self.rows() * size_of::<[u32; 3]>()
+        size_of_val(&self.chamber[..]) + size_of_val(&self.radii[..]) + self.rows() * size_of::<[u32; 3]>()
     }
 
     /// The chambers as they are when nothing has moved yet.
@@ -120,15 +138,16 @@ impl PressureModel {
         &self,
         blocks: &Blocks,
         state: &mut State<R>,
-        pressure: &Pressure,
-        [h, air_density]: [f64; 2],
+        frame: &PressureFrame<'_>,
         pool: &ThreadPool,
     ) {
         self.find_areas(blocks, state, pool);
         let sums = self.sums(blocks, state);
         let gases = &mut state.chambers[self.first..self.first + sums.len()];
-        let step = |(sums, chamber): (&Sums, &mut Chamber)| chamber.step(pressure, sums, h, air_density);
-        let pushes: Vec<R> = sums.iter().zip(gases).map(step).map(R::from_f64).collect();
+        let step = |((sums, chamber), radius): ((&Sums, &mut Chamber), &f64)| {
+            chamber.step(frame, sums, radius * frame.rest_scale)
+        };
+        let pushes: Vec<R> = sums.iter().zip(gases).zip(&self.radii).map(step).map(R::from_f64).collect();
         let displacement = DisjointSlice::new(&mut state.displacement);
         let (area, first) = (&state.area, blocks.range(0).start);
         pool.parallel_for(blocks.len(), |block| {
@@ -182,7 +201,9 @@ impl PressureModel {
             let Some(sums) = sums.get_mut(chamber as usize) else { continue };
             let a: Vector3<f64> = state.area[row as usize].xyz().map(R::to_f64).into();
             sums.volume += a.dot(&(Vector3::from(state.position(row)) - origin));
-            sums.mobility += state.displacement[row as usize].0[3].to_f64() * a.norm_squared();
+            let inverse_mass = state.displacement[row as usize].0[3].to_f64();
+            sums.mobility += inverse_mass * a.norm_squared();
+            sums.fastest = sums.fastest.max(inverse_mass * inverse_mass * a.norm_squared());
         }
         for hole in self.holes.iter().filter(|_| !self.sealed) {
             let corners: Vec<_> =
@@ -201,19 +222,55 @@ impl PressureModel {
     }
 }
 
+/// What pushes a cloth from within in one time step.
+pub struct PressureFrame<'a> {
+    /// The attributes.
+    pub pressure: &'a Pressure,
+    /// Length of the time step in seconds.
+    pub h: f64,
+    /// The nucleus's `airDensity`.
+    pub air_density: f64,
+    /// Factor on the rest lengths of the cloth.
+    pub rest_scale: f64,
+}
+
+impl Sums {
+    /// The push λ within its limits, for a chamber of this volume in m³ along its normals, and of this radius in metres.
+    /// A vacuum is a pressure that inflates the mesh inside out. What coasts beyond the limit is brought back to it.
+    fn limited(&self, push: f64, volume: f64, radius: f64) -> f64 {
+        if self.mobility <= 0.0 {
+            return push; // nothing moves
+        }
+        let burst = BURST_STRETCH * radius;
+        let sphere = 4.0 / 3.0 * std::f64::consts::PI * burst * burst * burst;
+        let side = if volume < 0.0 { -1.0 } else { 1.0 };
+        if side * volume > sphere {
+            return side * (sphere - side * volume) / self.mobility;
+        }
+        let towards = if push < 0.0 { -volume } else { volume };
+        let (growth, advance) = (push.abs() * self.mobility, push.abs() * self.fastest.sqrt());
+        let room = sphere - towards;
+        let by_growth = if growth > room { room / growth } else { 1.0 };
+        let by_advance = if advance > radius { radius / advance } else { 1.0 };
+        push * by_growth.min(by_advance)
+    }
+}
+
 impl Chamber {
-    /// Advances the gas by a time step; λ in Pa·s², along the area vectors.
-    fn step(&mut self, pressure: &Pressure, sums: &Sums, h: f64, air_density: f64) -> f64 {
+    /// Advances the gas by a time step; λ in Pa·s², along the area vectors. `radius` is that of a sphere of the rest area.
+    fn step(&mut self, frame: &PressureFrame<'_>, sums: &Sums, radius: f64) -> f64 {
+        let PressureFrame { h, air_density, .. } = *frame;
         // A mesh that is inside out has its gas on the side its normals turn from.
         let side = if self.start_volume < 0.0 { -1.0 } else { 1.0 };
         let (volume, start) = (side * sums.volume / 3.0, side * self.start_volume);
         let before = std::mem::replace(&mut self.volume, side * volume) * side;
-        match *pressure {
+        match *frame.pressure {
             Pressure::Off => 0.0,
             Pressure::Manual { pascals, damping } => {
                 let damping = if start > 0.0 { h * damping / start } else { 0.0 };
                 let push =
                     (h * h * pascals - damping * (volume - before) * side) / (1.0 + damping * sums.mobility);
+                let push = sums.limited(push, sums.volume / 3.0, radius);
                 self.volume += push * sums.mobility;
                 push
             }
@@ -227,6 +284,7 @@ impl Chamber {
                 let gas =
                     Gas { amount: self.amount * start, bulk: h * h * bulk, damping: h * damping / start };
                 let push = gas.solve(volume.max(LEAST_VOLUME * start), before, sums.mobility);
+                let push = sums.limited(push, volume, radius);
                 let after = (volume + push * sums.mobility).max(LEAST_VOLUME * start);
                 self.volume = side * after;
                 let gauge = bulk * (gas.amount / after - 1.0);

@@ -10,6 +10,7 @@ use crate::state::{Chamber, State};
 use super::angle::AngleMemory;
 use super::attract::Attraction;
 use super::plastic;
+use super::pressure::PressureFrame;
 use super::shape::UNTURNED;
 
 /// Gives the chambers and shells of all cloths their places in the state.
@@ -38,7 +39,9 @@ pub fn relax<R: Real>(
     let (cloth, settings) = (&cloths[whole.cloth], &frame.cloths[whole.cloth]);
     match whole.effect {
         WholeEffect::Pressure if cloth.pressure.is_on() => {
-            cloth.pressure.inflate(&cloth.blocks, state, &settings.pressure, [h, frame.air_density], pool);
+            let (air_density, rest_scale) = (frame.air_density, settings.rest_length_scale);
+            let pushed = PressureFrame { pressure: &settings.pressure, h, air_density, rest_scale };
+            cloth.pressure.inflate(&cloth.blocks, state, &pushed, pool);
         }
         WholeEffect::Pressure => {}
         WholeEffect::Shape(strength) => cloth.shape.relax(state, strength, pool),

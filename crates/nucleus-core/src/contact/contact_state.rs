@@ -131,8 +131,17 @@ impl<R: Real> ContactPoints<'_, R> {
         let state = &self.contact.collider_states[collider];
         let ours = contact.points.map(|point| self.state.position(point));
         let theirs = contact.collider_points.map(|point| state.point(point, state.now).into());
-        let (_, (shares, _), distance) = shortest_line::<f64, N, M>((ours, theirs));
-        let thickness = self.rest_gap(material, contact.points, shares.map(R::from_f64));
+        let (_, (shares, weights), distance) = shortest_line::<f64, N, M>((ours, theirs));
+        let maps = self.contact.material_maps.of_collider(collider);
+        let thickness = match maps {
+            None => self.rest_gap(material, contact.points, shares.map(R::from_f64)),
+            Some(maps) => {
+                let material = material.scaled(maps.at(contact.collider_points, weights));
+                let (most, points) = (R::from_f64(material.thickness), contact.points);
+                let points = (points, [], &(shares.map(R::from_f64), []));
+                material.mapped_thickness(&self.contact.material_maps, points, most).to_f64()
+            }
+        };
         states.raise_all_by_gap(contact.points, shares, distance / thickness);
     }
 

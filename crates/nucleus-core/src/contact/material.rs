@@ -1,6 +1,7 @@
 //! Contact materials: thickness, friction, stickiness, bounce, strength, layers and element types of a pair of
 //! objects in a frame; and vertex maps of them.
 
+use crate::contact::collider_maps::{ColliderFactors, ColliderMaps, max_factor};
 use crate::contact::response::ADHESION_RANGE;
 use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane};
 use crate::math::Real;
@@ -96,19 +97,20 @@ impl<R: Real> ContactMaterial<R> {
         })
     }
 
-    /// A cloth with a collider; `None` where they do not collide. `max_thickness_factor` is the largest factor of
-    /// the cloth's thickness map.
+    /// A cloth with a collider; `None` where they do not collide. `max_thickness_factor` holds the largest factor of
+    /// each thickness map.
     pub fn for_collider(
         cloth: &ClothFrame,
         collider: &ColliderFrame,
-        max_thickness_factor: f64,
+        max_thickness_factor: [f64; 2],
     ) -> Option<Self> {
         let strength = [cloth.collide_strength, collider.collide_strength].map(|side| side.min(1.0));
         if !cloth.collide || !collider.collide || strength.iter().any(|&side| side <= 0.0) {
             return None;
         }
         let per_side = |sides: [f64; 2]| sides.map(R::from_f64);
-        let thickness = cloth.thickness * max_thickness_factor + collider.thickness;
+        let thickness =
+            cloth.thickness * max_thickness_factor[0] + collider.thickness * max_thickness_factor[1];
         Some(Self {
             thickness: thickness.max(MIN_THICKNESS),
             adhesion_range: adhesion_range(cloth.stickiness + collider.stickiness),
@@ -134,8 +136,21 @@ impl<R: Real> ContactMaterial<R> {
             bounce: ground.bounce,
             ..ColliderFrame::default()
         };
-        let material = Self::for_collider(cloth, &plane, max_thickness_factor)?;
+        let material = Self::for_collider(cloth, &plane, [max_thickness_factor, 1.0])?;
         Some(Self { thickness: cloth.thickness * max_thickness_factor, ..material })
+    }
+
+    /// The material where the attributes of the collider, its second side, have these factors.
+    pub fn scaled(&self, factors: ColliderFactors) -> Self {
+        let scaled = |[ours, theirs]: [R; 2], factor: f64| [ours, theirs * R::from_f64(factor)];
+        Self {
+            thicknesses: scaled(self.thicknesses, factors.thickness),
+            friction: scaled(self.friction, factors.friction),
+            stickiness: scaled(self.stickiness, factors.stickiness),
+            bounce: scaled(self.bounce, factors.bounce),
+            strength: scaled(self.strength, factors.strength),
+            ..*self
+        }
     }
 
     /// Whether two sets of materials give the same candidates.
@@ -180,8 +195,19 @@ impl<R: Real> ContactMaterial<R> {
         max_thickness: R,
     ) -> R {
         if maps.thickness.is_empty() {
-            return max_thickness;
+            max_thickness
+        } else {
+            self.mapped_thickness(maps, points, max_thickness)
         }
+    }
+
+    /// The same where either side has a map.
+    pub fn mapped_thickness<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+        max_thickness: R,
+    ) -> R {
         let [ours, theirs] = per_side(&maps.thickness, self.thicknesses, points);
         let (there, least) = (ours + theirs, R::from_f64(MIN_THICKNESS));
         let there = if there < least { least } else { there };
@@ -269,17 +295,30 @@ pub struct MaterialMaps<R> {
     pub strength: Vec<R>,
     /// The largest factor on the thickness of each cloth.
     pub max_thickness_factor: Vec<f64>,
+    /// By collider.
+    pub colliders: Vec<ColliderMaps>,
 }
 
 impl<R: Real> MaterialMaps<R> {
     /// The number of factors.
     pub fn len(&self) -> usize {
         let columns = [&self.thickness, &self.friction, &self.stickiness, &self.bounce, &self.strength];
-        columns.iter().map(|column| column.len()).sum()
+        let of_colliders: usize = self.colliders.iter().map(ColliderMaps::len).sum();
+        columns.iter().map(|column| column.len()).sum::<usize>() + of_colliders
     }
 
-    /// The maps of all cloths, over `places` rows.
-    pub fn new(cloths: &[Cloth], models: &[ClothModel<R>], places: usize) -> Self {
+    /// The maps of the colliders that have any.
+    pub fn of_collider(&self, collider: usize) -> Option<&ColliderMaps> {
+        self.colliders.get(collider).filter(|maps| maps.len() > 0)
+    }
+
+    /// The largest factors on the thickness of a cloth and of a collider.
+    pub fn max_thickness_factors(&self, cloth: usize, collider: usize) -> [f64; 2] {
+        [self.max_thickness_factor[cloth], self.colliders[collider].max_thickness_factor]
+    }
+
+    /// The maps of all cloths, over `places` rows, and of all colliders.
+    pub fn new(cloths: &[Cloth], models: &[ClothModel<R>], places: usize, colliders: &[VertexMaps]) -> Self {
         let column = |of: fn(&VertexMaps) -> &Vec<f64>| {
             if cloths.iter().all(|cloth| of(&cloth.vertex_maps).is_empty()) {
                 return Vec::new();
@@ -292,14 +331,17 @@ impl<R: Real> MaterialMaps<R> {
             }
             column
         };
-        let largest = |map: &Vec<f64>| map.iter().copied().reduce(f64::max).unwrap_or(1.0);
         Self {
             thickness: column(|factors| &factors.thickness),
             friction: column(|factors| &factors.friction),
             stickiness: column(|factors| &factors.stickiness),
             bounce: column(|factors| &factors.bounce),
             strength: column(|factors| &factors.collide_strength),
-            max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.vertex_maps.thickness)).collect(),
+            max_thickness_factor: cloths
+                .iter()
+                .map(|cloth| max_factor(&cloth.vertex_maps.thickness))
+                .collect(),
+            colliders: colliders.iter().map(ColliderMaps::new).collect(),
         }
     }
 }

@@ -39,7 +39,7 @@
 //! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
 //! | the closest points of two elements | [`narrow_phase`] |
 //! | certificates for linear motion | [`ccd`] |
-//! | thickness, friction and further attributes of a pair; vertex maps | [`material`] |
+//! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
 //! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
 //! | restitution at the end of a step | [`restitution`] |
 //! | the positions that contacts read and write; counters | [`time_step`] |
@@ -89,6 +89,7 @@ pub mod bvh;
 pub mod ccd;
 pub mod cloth;
 pub mod collider;
+pub mod collider_maps;
 pub mod contact_state;
 pub mod depenetration;
 pub mod exclusion;

@@ -69,9 +69,11 @@ fn restitution_at_colliders<R: Real>(
             let contact = collider_contacts[index].point_face
                 [collider_contacts[index].active.point_face[active] as usize];
             let (h, interval) = (restitution.h.to_f64(), collider_contacts[index].interval);
-            let view = ColliderStepArgs { material, material_maps, h, time: [span.to; 2], interval };
-            let touch = contact.touching_surface(&view.of(state, &collider_states[collider]), frame.duration);
-            let bounce = material.bounce_at(material_maps, (contact.points, [], &([R::ONE], [])));
+            let view =
+                ColliderStepArgs { material, material_maps, at: collider, h, time: [span.to; 2], interval };
+            let step = view.of(state, &collider_states[collider]);
+            let touch = contact.touching_surface(&step, frame.duration);
+            let bounce = contact.bounce(&step);
             if let Some((normal, surface)) = touch.filter(|_| bounce > R::ZERO) {
                 let row = contact.points[0] as usize;
                 let restitution = Restitution { coefficient: bounce, ..restitution };

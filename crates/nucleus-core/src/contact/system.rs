@@ -15,6 +15,7 @@ use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
 use crate::model::builder::Cloth;
+use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Schedule, StepInterval};
@@ -64,10 +65,11 @@ impl<R: Real> ContactSystem<R> {
     pub fn new(
         cloths: &[Cloth],
         models: &[ClothModel<R>],
-        colliders: &[ColliderModel],
+        colliders: (&[ColliderModel], &[VertexMaps]),
         state: &State<R>,
         self_collides: bool,
     ) -> Self {
+        let (colliders, collider_maps) = colliders;
         let bounded = if colliders.is_empty() { 0 } else { state.anchor.len() };
         let with_each =
             |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
@@ -83,7 +85,7 @@ impl<R: Real> ContactSystem<R> {
             bounds_violated: vec![true; bounded],
             collider_materials: Vec::new(),
             ground_materials: Vec::new(),
-            material_maps: MaterialMaps::new(cloths, models, state.anchor.len()),
+            material_maps: MaterialMaps::new(cloths, models, state.anchor.len(), collider_maps),
             cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
             contact_mask: Vec::with_capacity(models.len()),
             has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),

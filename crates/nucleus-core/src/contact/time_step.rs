@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicU64;
 use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
+use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
@@ -144,6 +145,8 @@ pub struct ColliderStep<'a, R> {
     pub material: ContactMaterial<R>,
     /// Vertex maps of contact attributes.
     pub material_maps: &'a MaterialMaps<R>,
+    /// Those of the collider, if it has any.
+    pub collider_maps: Option<&'a ColliderMaps>,
 }
 
 impl<R: Real> ColliderStep<'_, R> {
@@ -158,15 +161,26 @@ impl<R: Real> ColliderStep<'_, R> {
         R::from_f64(self.material.thickness * self.material.adhesion_range)
     }
 
-    /// The distance to keep at a contact, in metres.
+    /// The distance to keep at a contact, in metres, given the material there.
     #[inline(always)]
-    pub(in crate::contact) fn rest_gap<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
-        if self.material_maps.thickness.is_empty() {
+    pub(in crate::contact) fn rest_gap<const N: usize>(
+        &self,
+        material: &ContactMaterial<R>,
+        points: [u32; N],
+        weights: [R; N],
+    ) -> R {
+        if self.material_maps.thickness.is_empty() && self.collider_maps.is_none() {
             return self.thickness;
         }
         let most = R::from_f64(self.material.thickness);
-        self.material.thickness_at(self.material_maps, (points, [], &(weights, [])), most)
+        material.mapped_thickness(self.material_maps, (points, [], &(weights, [])), most)
             * self.thickness_scale
+    }
+
+    /// Whether collisions with this collider are carried out in part: cloth may then pass through it.
+    #[inline(always)]
+    pub(in crate::contact) fn is_partial(&self) -> bool {
+        self.material.is_partial(self.material_maps) || self.collider_maps.is_some_and(|maps| maps.is_partial)
     }
 
     /// The cloth's points at the start and at the end of the step.
@@ -183,7 +197,8 @@ impl<R: Real> ColliderStep<'_, R> {
 
     /// Whether collisions of a point are carried out in full.
     pub fn has_full_strength(&self, point: u32) -> bool {
-        self.material.strength_at(self.material_maps, ([point], [], &([R::ONE], []))) >= R::ONE
+        self.collider_maps.is_none_or(|maps| !maps.is_partial)
+            && self.material.strength_at(self.material_maps, ([point], [], &([R::ONE], []))) >= R::ONE
     }
 
     /// Position of a point at the start of the step, in metres.
@@ -253,6 +268,8 @@ pub struct ColliderStepArgs<'a, R> {
     pub material: ContactMaterial<R>,
     /// Vertex maps of contact attributes.
     pub material_maps: &'a MaterialMaps<R>,
+    /// The collider, by its index.
+    pub at: usize,
     /// Length of the step in seconds.
     pub h: f64,
     /// Start and end of the step, as shares of the frame.
@@ -284,6 +301,7 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             thickness_scale: R::ONE,
             material: self.material,
             material_maps: self.material_maps,
+            collider_maps: self.material_maps.of_collider(self.at),
         }
     }
 }

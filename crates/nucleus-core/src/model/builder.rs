@@ -184,8 +184,8 @@ pub struct ModelBuilder {
     pub(crate) colliders: Vec<Collider>,
     /// By cloth.
     pub(crate) link_orders: Vec<LinkOrder>,
-    /// By collider: factors on the magnitude of its force field by point; empty where they are 1.
-    pub(crate) field_maps: Vec<Vec<f64>>,
+    /// By collider: vertex maps of its contact attributes and its force field.
+    pub(crate) collider_maps: Vec<VertexMaps>,
 }
 
 impl ModelBuilder {
@@ -237,7 +237,7 @@ impl ModelBuilder {
     pub fn collider(&mut self, collider: Collider) -> Result<ColliderId, BuildError> {
         check_surface(&collider.surface)?;
         self.colliders.push(collider);
-        self.field_maps.push(Vec::new());
+        self.collider_maps.push(VertexMaps::default());
         Ok(ColliderId(self.colliders.len() as u32 - 1))
     }
 
@@ -246,15 +246,14 @@ impl ModelBuilder {
         self.link_orders[cloth.index()] = order;
     }
 
-    /// Sets factors on the magnitude of a collider's force field, one per point in the mesh's order.
+    /// Sets the vertex maps of a collider, one factor per point in the mesh's order. Those of contact attributes and of
+    /// the force field have an effect.
     ///
     /// # Errors
-    /// When there is not one per point, or one is no number from 0 to 1e6.
-    pub fn set_field_map(&mut self, collider: ColliderId, factors: Vec<f64>) -> Result<(), BuildError> {
-        let points = self.colliders[collider.index()].surface.positions.len();
-        let maps = VertexMaps { field_magnitude: factors, ..VertexMaps::default() };
-        maps.check(points)?;
-        self.field_maps[collider.index()] = maps.field_magnitude;
+    /// When there is not one factor per point, or one is no number from 0 to 1e6.
+    pub fn set_collider_maps(&mut self, collider: ColliderId, maps: VertexMaps) -> Result<(), BuildError> {
+        maps.check(self.colliders[collider.index()].surface.positions.len())?;
+        self.collider_maps[collider.index()] = maps;
         Ok(())
     }
 }

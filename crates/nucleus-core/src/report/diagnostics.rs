@@ -222,6 +222,7 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &
         let view = ColliderStepArgs {
             material,
             material_maps,
+            at: list.collider,
             h: schedule.h,
             time: [1.0; 2],
             interval: list.interval,

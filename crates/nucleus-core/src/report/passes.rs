@@ -141,10 +141,9 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
         |wanted: Pass| schedule.passes.iter().filter(|round| **round == wanted).count() as f64 * steps;
     let (cloths, max_thickness_factor) = (&frame.cloths, &solver.contact.material_maps.max_thickness_factor);
     let at_colliders = |cloth: usize| {
-        let with = |collider| {
-            ContactMaterial::<R>::for_collider(&cloths[cloth], collider, max_thickness_factor[cloth])
-        };
-        frame.colliders.iter().filter_map(with).collect::<Vec<_>>()
+        let factors = |collider| solver.contact.material_maps.max_thickness_factors(cloth, collider);
+        let with = |(at, collider)| ContactMaterial::<R>::for_collider(&cloths[cloth], collider, factors(at));
+        frame.colliders.iter().enumerate().filter_map(with).collect::<Vec<_>>()
     };
     let on_ground = |cloth: usize| {
         let with =

@@ -77,7 +77,7 @@ node_table! {
     "Pressure" {
         /// Source of the pressure: set manually, or computed from the enclosed gas.
         PRESSURE_METHOD: Choice = choice("pressureMethod", "pmth", 0, &[(0, "Manual Pressure Setting"), (1, "Volume Tracking Model")]).solved("nucleus_core::constraints::pressure");
-        /// Manual gauge pressure along the normals; 1 is 1 kPa.
+        /// Manual gauge pressure along the normals; 1 is 1 kPa. It inflates a mesh to five times its size at most.
         PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
         /// Excess air inside at the start, in start volumes.
         START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
@@ -89,7 +89,7 @@ node_table! {
         PUMP_RATE: f64 = float("pumpRate", "pure", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
         /// Share of the excess air that is retained; at 0 pressure equalizes within 1/24 s.
         AIR_TIGHTNESS: f64 = float("airTightness", "aits", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::pressure");
-        /// Seals the openings of the mesh. Off: air flows through them, and its thrust acts on the mesh.
+        /// Volume tracking: seals the openings of the mesh. Off: air flows through them, and its thrust acts on the mesh.
         SEAL_HOLES: bool = toggle("sealHoles", "shol", true).solved("nucleus_core::constraints::pressure");
     }
     "Quality Settings" {
@@ -126,9 +126,9 @@ node_table! {
     }
     "Caching" {
         /// Attributes that a cache stores.
-        CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 0, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamic State")]);
+        CACHEABLE_ATTRIBUTES: Choice = choice("cacheableAttributes", "caat", 0, &[(0, "Position"), (1, "Position And Velocity"), (2, "Dynamic State")]).elsewhere("a run records every frame in its own cache, which `--from` starts from");
         /// Use of a cache.
-        CACHE_USAGE: Choice = choice("cacheUsage", "cu", 0, &[(0, "None"), (1, "Cache/Simulation"), (2, "Cache File Info")]);
+        CACHE_USAGE: Choice = choice("cacheUsage", "cu", 0, &[(0, "None"), (1, "Cache/Simulation"), (2, "Cache File Info")]).elsewhere("a run records every frame in its own cache, which `--from` starts from");
     }
     "Dynamic Properties Maps" {
         /// Texture of the map of stretch.
@@ -228,8 +228,8 @@ node_table! {
     }
     "Connections" {
         /// The solved mesh in world space.
-        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh", Data::Mesh).output();
+        OUTPUT_MESH: Plugged = plug("outputMesh", "omsh", Data::Mesh).output().solved("nucleus_graph::graph");
         /// The mesh at the start frame.
-        OUTPUT_START_MESH: Plugged = plug("outputStartMesh", "otms", Data::Mesh).output();
+        OUTPUT_START_MESH: Plugged = plug("outputStartMesh", "otms", Data::Mesh).output().elsewhere("the first frame of the cache is the mesh at the start");
     }
 }

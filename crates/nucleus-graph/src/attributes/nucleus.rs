@@ -87,30 +87,30 @@ node_table! {
     }
     "Connections" {
         /// Current state of each active object.
-        INPUT_ACTIVE: Plugged = plug("inputActive", "niao", Data::State).multi();
+        INPUT_ACTIVE: Plugged = plug("inputActive", "niao", Data::State).multi().solved("nucleus_graph::compile::objects");
         /// Initial state of each active object.
-        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias", Data::State).multi();
+        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias", Data::State).multi().elsewhere("the connection of `inputActive` stands for both");
         /// Current state of each collider.
-        INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo", Data::State).multi();
+        INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo", Data::State).multi().solved("nucleus_graph::compile::objects");
         /// Initial state of each collider.
-        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi();
+        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi().elsewhere("the connection of `inputPassive` stands for both");
         /// Current state of each constraint.
-        INPUT_CURRENT: Plugged = plug("inputCurrent", "ic", Data::Constraint).multi();
+        INPUT_CURRENT: Plugged = plug("inputCurrent", "ic", Data::Constraint).multi().solved("nucleus_graph::compile::constraints");
         /// Initial state of each constraint.
-        INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi();
+        INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi().elsewhere("the connection of `inputCurrent` stands for both");
         /// Solved state of each active object.
-        OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao", Data::State).multi().output();
+        OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao", Data::State).multi().output().solved("nucleus_graph::graph");
     }
     "Internal" {
         /// Time of the previous solve.
-        LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden();
+        LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// Number of the evaluation.
-        EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden();
+        EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// Skips the setup of objects.
-        SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden();
+        SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// `startFrame` as a time.
-        START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden();
+        START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// Reading it evaluates the node.
-        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden();
+        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().elsewhere("Maya's own bookkeeping between evaluations");
     }
 }

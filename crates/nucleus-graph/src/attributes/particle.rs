@@ -10,7 +10,7 @@ node_table! {
     PARTICLE = "particle", inherits None, hides [];
     "General" {
         /// Number of particles.
-        COUNT: i64 = int("count", "cnt", 0).output();
+        COUNT: i64 = int("count", "cnt", 0).output().elsewhere("the cache of a run holds it for every frame");
         /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::soft_body");
     }
@@ -30,17 +30,17 @@ node_table! {
     }
     "Per Particle (Array) Attributes" {
         /// Positions of the particles.
-        POSITION: Vec<[f64; 3]> = vectors("position", "pos");
+        POSITION: Vec<[f64; 3]> = vectors("position", "pos").elsewhere("the cache of a run holds it for every frame");
         /// Velocities of the particles.
-        VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel");
+        VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").elsewhere("the cache of a run holds it for every frame");
         /// Accelerations of the particles.
-        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc");
+        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc").elsewhere("the cache of a run holds it for every frame");
         /// Positions of the particles in world space.
-        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output();
+        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output().elsewhere("the cache of a run holds it for every frame");
         /// Velocities of the particles in world space.
-        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output();
+        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output().elsewhere("the cache of a run holds it for every frame");
         /// Mass of each particle.
-        MASS: Vec<f64> = floats("mass", "mas");
+        MASS: Vec<f64> = floats("mass", "mas").elsewhere("`pointMass` and its map give the masses of cloth");
         /// Identifier of each particle.
         PARTICLE_ID: Vec<f64> = floats("particleId", "id").output();
         /// Time of birth of each particle.
@@ -104,9 +104,9 @@ node_table! {
     }
     "Initial State" {
         /// Initial positions.
-        POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0");
+        POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").elsewhere("the initial state of cloth is in `startPositions` and `startVelocities`");
         /// Initial velocities.
-        VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0");
+        VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").elsewhere("the initial state of cloth is in `startPositions` and `startVelocities`");
         /// Initial accelerations.
         ACCELERATION0: Vec<[f64; 3]> = vectors("acceleration0", "acc0");
         /// Initial masses.
@@ -118,7 +118,7 @@ node_table! {
         /// Positions, as the input of ramps.
         RAMP_POSITION: Vec<[f64; 3]> = vectors("rampPosition", "rps");
         /// Centroid of the particles.
-        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output();
+        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output().elsewhere("the cache of a run holds it for every frame");
         /// Positions at the previous evaluation.
         LAST_POSITION: Vec<[f64; 3]> = vectors("lastPosition", "lpos").output();
         /// Velocities, as the input of ramps.
@@ -128,7 +128,7 @@ node_table! {
         /// Accelerations, as the input of ramps.
         RAMP_ACCELERATION: Vec<[f64; 3]> = vectors("rampAcceleration", "rac");
         /// Centroid of the particles in world space.
-        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output();
+        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output().elsewhere("the cache of a run holds it for every frame");
         /// World positions at the previous evaluation.
         LAST_WORLD_POSITION: Vec<[f64; 3]> = vectors("lastWorldPosition", "lwps").output();
         /// World velocities in object space.
@@ -224,7 +224,7 @@ node_table! {
         /// Length of the time step, for emitters.
         EMITTER_DATA_DELTA_TIME: f64 = float("emitterDataDeltaTime", "edt", 0.0).output();
         /// Reading it evaluates the node.
-        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden();
+        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// The saved current time.
         CURRENT_TIME_SAVE: f64 = float("currentTimeSave", "cts", 0.0).hidden();
         /// Time of this evaluation.
@@ -300,21 +300,21 @@ node_table! {
     }
     "Internal" {
         /// Sum of the forces of all fields, per particle.
-        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden();
+        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden().elsewhere("the cache of a run holds it for every frame");
         /// Identifier of the next particle.
         NEXT_ID: i64 = int("nextId", "nid", 0).hidden();
         /// Whether the largest number of particles is reached, which stops emitters.
         IS_FULL: bool = toggle("isFull", "ifl", false).output().hidden();
         /// Interval of this evaluation, for emitters.
-        TIME_STEP_SIZE: f64 = float("timeStepSize", "tss", 0.0).output().hidden();
+        TIME_STEP_SIZE: f64 = float("timeStepSize", "tss", 0.0).output().hidden().elsewhere("Maya's own bookkeeping between evaluations");
         /// The start frame as a time, for emitters.
-        START_TIME: f64 = float("startTime", "stt", 0.0).output().hidden();
+        START_TIME: f64 = float("startTime", "stt", 0.0).output().hidden().elsewhere("Maya's own bookkeeping between evaluations");
     }
     "Connections" {
         /// Forces of the fields, one list per field.
-        INPUT_FORCE: Plugged = plug("inputForce", "ifc", Data::Vectors).multi();
+        INPUT_FORCE: Plugged = plug("inputForce", "ifc", Data::Vectors).multi().solved("nucleus_graph::compile::fields");
         /// Transform at the previous evaluation.
-        LAST_WORLD_MATRIX: Plugged = plug("lastWorldMatrix", "lwm", Data::Matrix).output();
+        LAST_WORLD_MATRIX: Plugged = plug("lastWorldMatrix", "lwm", Data::Matrix).output().elsewhere("Maya's own bookkeeping between evaluations");
         /// Map from identifiers to indices.
         ID_MAPPING: Plugged = plug("idMapping", "idm", Data::Bundle).output();
         /// Particles that this object emits.
@@ -326,7 +326,7 @@ node_table! {
         /// Outputs of expressions.
         OUTPUT: Plugged = plug("output", "xo", Data::Bundle).multi().output();
         /// Data of the particles for fields.
-        FIELD_DATA: Plugged = plug("fieldData", "fd", Data::FieldData).output();
+        FIELD_DATA: Plugged = plug("fieldData", "fd", Data::FieldData).output().elsewhere("the connection of `inputForce` says which fields it feels");
         /// Data of the particles for emitters.
         EMITTER_DATA: Plugged = plug("emitterData", "ed", Data::Bundle).output();
         /// Geometry that a soft body is made from.
@@ -366,7 +366,7 @@ node_table! {
         /// Data for instanced geometry.
         INSTANCE_DATA: Plugged = plug("instanceData", "idt", Data::Bundle).multi();
         /// Fields that belong to it.
-        FIELD_CONNECTIONS: Plugged = plug("fieldConnections", "fc", Data::Message).multi();
+        FIELD_CONNECTIONS: Plugged = plug("fieldConnections", "fc", Data::Message).multi().elsewhere("Maya's note of the fields made on it; `inputForce` says which it feels");
         /// Colliders that belong to it.
         COLLISION_CONNECTIONS: Plugged = plug("collisionConnections", "cc", Data::Message).multi();
         /// Nodes that refer to it.
@@ -380,7 +380,7 @@ node_table! {
         /// Values that shaders read for each particle.
         SAMPLER_PER_PARTICLE_DATA: Plugged = plug("samplerPerParticleData", "spd", Data::Bundle).output();
         /// Settings of fields per particle.
-        PP_FIELD_DATA: Plugged = plug("ppFieldData", "ppfd", Data::FieldSettings).multi().output();
+        PP_FIELD_DATA: Plugged = plug("ppFieldData", "ppfd", Data::FieldSettings).multi().output().elsewhere("the connection of `inputForce` says which fields it feels");
         /// The same, for fields that the particles own.
         OWNER_PP_FIELD_DATA: Plugged = plug("ownerPPFieldData", "opfd", Data::FieldSettings).multi().output();
         /// Positions after deformers.

@@ -98,30 +98,10 @@ fn attributes_are_found_by_short_names_and_by_vector_components() {
     assert_eq!(cloth.part("displayColorG").map(|(_, part)| part), Some(1));
 }
 
-/// Sections that hold what cloth and its solver do; the others are of caches, connections and classic particles.
-const SOLVED_GROUPS: [&str; 16] = [
-    "Gravity and Wind",
-    "Ground Plane",
-    "Solver Attributes",
-    "Scale Attributes",
-    "Time Attributes",
-    "Collisions",
-    "Collision Properties Maps",
-    "Dynamic Properties",
-    "Dynamic Properties Maps",
-    "Pressure",
-    "Quality Settings",
-    "Wind Field Generation",
-    "Force Field Generation",
-    "Force Field Maps",
-    "Nucleus (open)",
-    "Hidden",
-];
-
 #[test]
-fn every_row_of_cloth_and_its_solver_has_an_effect_or_says_why_not() {
-    for node_type in [&n_cloth::N_CLOTH, &nucleus::NUCLEUS] {
-        let rows = node_type.attributes().into_iter().filter(|row| SOLVED_GROUPS.contains(&row.group));
+fn every_row_of_cloth_colliders_and_their_solver_has_an_effect_or_says_why_not() {
+    for node_type in [&n_cloth::N_CLOTH, &n_rigid::N_RIGID, &nucleus::NUCLEUS] {
+        let rows = node_type.attributes().into_iter();
         let idle = rows.filter(|row| row.effect == Effect::NotYet && !node_type.has_no_use_for(row));
         assert_eq!(idle.map(|row| row.name).collect::<Vec<_>>(), Vec::<&str>::new(), "{}", node_type.name);
     }

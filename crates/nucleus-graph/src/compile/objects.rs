@@ -8,13 +8,12 @@ use crate::graph::{Graph, NodeId};
 use super::animated_mesh::AnimatedMesh;
 use super::compiler::{CompiledNucleus, Compiler};
 use super::initial_state::PlacedObject;
-use super::map_values::MapOfCloth;
 use super::program::ObjectKind;
 use super::soft_body::{self, area};
 use super::sources::{ClothSource, ColliderSource, MapScales};
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::{self, CLASSIC};
-use super::vertex_maps::{CompiledMaps, FIELD_MAGNITUDE};
+use super::vertex_maps::CompiledMaps;
 
 impl Compiler<'_> {
     /// Compiles all objects and constraints, except broken ones and those made from a broken mesh. The result is
@@ -168,13 +167,9 @@ impl Compiler<'_> {
         self.warn_of_contradictions(id);
         let surface = self.program.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());
-        let before = self.findings.errors();
-        let field_map = self.map_values(&MapOfCloth { cloth: id, mesh, points, map: &FIELD_MAGNITUDE });
-        if self.findings.errors() > before {
-            return None;
-        }
+        let maps = self.collider_maps(id, mesh, points)?;
         let added = self.program.model.collider(Collider { surface }).and_then(|collider| {
-            self.program.model.set_field_map(collider, field_map.unwrap_or_default())?;
+            self.program.model.set_collider_maps(collider, maps)?;
             Ok(collider)
         });
         match added {

@@ -65,7 +65,7 @@ pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLis
                 || graph.changes(cloth, &BEND_SOLVER)
                 || node.get(&BEND_SOLVER) == FLIP_TRACKING),
         pressure,
-        seals_holes: pressure && node.get(&SEAL_HOLES),
+        seals_holes: by_volume && node.get(&SEAL_HOLES),
         shape,
         shells: shape && node.get(&USE_POLYGON_SHELLS),
         plastic: lists.stretch && below(&RESTITUTION_TENSION, NO_TENSION),
@@ -360,7 +360,8 @@ impl Compiler<'_> {
     /// Warns of pressure in a mesh that cannot hold it.
     pub(super) fn check_pressure(&mut self, cloth: NodeId, surface: &Surface) {
         let node = self.scene.graph.node(cloth);
-        if self.start.get(cloth, &n_cloth::PRESSURE_METHOD) == MANUAL {
+        let is_manual = self.start.get(cloth, &n_cloth::PRESSURE_METHOD) == MANUAL;
+        if is_manual && !self.scene.graph.is_ever_nonzero(cloth, &n_cloth::PRESSURE) {
             return;
         }
         let middle = surface.positions.iter().sum::<Vector3<f64>>() / surface.positions.len() as f64;
@@ -370,18 +371,32 @@ impl Compiler<'_> {
         let area = area(surface);
         // A sphere has 0.094.
         let is_flat = volume.abs() < 1e-4 * area.powf(1.5);
-        let place = self.scene.source.place(&format!("{}.pressureMethod", node.name()));
-        if is_flat {
-            let message = format!("`{}` encloses no volume, so no air is held in it", node.name());
-            self.findings
-                .warning(&place, message)
-                .help("use a closed mesh, or `pressureMethod: manualPressureSetting`");
-        } else if volume < 0.0 {
-            let message = format!("the faces of `{}` face inwards", node.name());
-            self.findings
-                .warning(&place, message)
-                .help("its air is kept inside all the same; drag and push-out see it reversed");
-        }
+        let attribute = if is_manual { &n_cloth::PRESSURE.row } else { &n_cloth::PRESSURE_METHOD.row };
+        let name = node.name();
+        let (message, help) = match is_manual {
+            true if is_open(surface) => (
+                format!(
+                    "`{name}` has open edges: pressure set by hand pushes its faces along their normals, and the whole of it \
+                     away"
+                ),
+                "close the mesh, hold it by a constraint, or write `pressureMethod: volumeTrackingModel`, which seals holes",
+            ),
+            true if volume < 0.0 => (
+                format!("the faces of `{name}` face inwards: a pressure above 0 turns it inside out"),
+                "reverse its normals, or the sign of `pressure`",
+            ),
+            false if is_flat => (
+                format!("`{name}` encloses no volume, so no air is held in it"),
+                "use a closed mesh, or `pressureMethod: manualPressureSetting`",
+            ),
+            false if volume < 0.0 => (
+                format!("the faces of `{name}` face inwards"),
+                "its air is kept inside all the same; drag and push-out see it reversed",
+            ),
+            _ => return,
+        };
+        let place = self.scene.source.place(&format!("{name}.{}", attribute.name));
+        self.findings.warning(&place, message).help(help);
     }
 }
 
@@ -407,6 +422,18 @@ pub(super) fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
         _ => share * share * (3.0 - 2.0 * share),
     };
     a.value + (b.value - a.value) * share
+}
+
+/// Whether an edge of a surface belongs to one face only.
+fn is_open(surface: &Surface) -> bool {
+    let sides = |face: &[u32]| {
+        let next = face.iter().cycle().skip(1);
+        let side = |(&a, &b): (&u32, &u32)| [a.min(b), a.max(b)];
+        face.iter().zip(next).map(side).collect::<Vec<_>>()
+    };
+    let mut edges: Vec<[u32; 2]> = surface.faces.iter().flat_map(sides).collect();
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| a == b).any(|uses| uses.len() == 1)
 }
 
 /// Area of a surface in the square of its unit.

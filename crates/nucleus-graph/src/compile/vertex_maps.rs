@@ -157,6 +157,29 @@ impl Compiler<'_> {
         Some(CompiledMaps { scales, vertex_maps })
     }
 
+    /// The vertex maps of a collider: of its contact attributes and its force field; `None` after an error, which is
+    /// reported.
+    pub(super) fn collider_maps(
+        &mut self,
+        collider: NodeId,
+        mesh: NodeId,
+        points: usize,
+    ) -> Option<VertexMaps> {
+        let before = self.findings.errors();
+        let mut read =
+            |map| self.map_values(&MapOfCloth { cloth: collider, mesh, points, map }).unwrap_or_default();
+        let maps = VertexMaps {
+            thickness: read(&THICKNESS),
+            friction: read(&FRICTION),
+            stickiness: read(&STICKINESS),
+            bounce: read(&BOUNCE),
+            collide_strength: read(&COLLIDE_STRENGTH),
+            field_magnitude: read(&FIELD_MAGNITUDE),
+            ..VertexMaps::default()
+        };
+        (self.findings.errors() == before).then_some(maps)
+    }
+
     /// Reports points whose mass is zero, or too small to divide by.
     fn check_mass(&mut self, cloth: NodeId, mass: &SplitMap) {
         const MIN_FACTOR: f64 = 1e-6;

@@ -11,7 +11,7 @@ use super::scenes::{of_nodes, program, scene};
 fn sheet(nucleus: &str, cloth: &str) -> String {
     of_nodes(
         &format!(
-            r#""n": nucleus({nucleus}), "p": polyPlane(subdivisions: (4, 4)), "c": nCloth(inputMesh: "p", {cloth}),
+            r#""n": nucleus({nucleus}), "p": polyPlane(subdivisions: (4, 4)), "r": polyPlane(), "c": nCloth(inputMesh: "p", {cloth}),
                "h": dynamicConstraint(components: ["c.vtx[20:24]"])"#
         ),
         "",
@@ -131,6 +131,12 @@ fn settings_that_make_no_sense_are_named_with_what_to_do() {
              `pressureMethod: manualPressureSetting`",
         ),
         (
+            "pressure: 0.5",
+            "warning at 0.5: `c` has open edges: pressure set by hand pushes its faces along their normals, and the whole \
+             of it away | close the mesh, hold it by a constraint, or write `pressureMethod: volumeTrackingModel`, which \
+             seals holes",
+        ),
+        (
             "pumpRate: 1",
             "warning at 1: `pumpRate` of `c` has no effect: `pressureMethod` is manualPressureSetting | write \
              `pressureMethod: volumeTrackingModel`",
@@ -164,6 +170,20 @@ fn settings_that_make_no_sense_are_named_with_what_to_do() {
             r#"restShapeMesh: "n""#,
             "error at \"n\": `restShapeMesh` of `c` takes a mesh, but `n` is of type nucleus | ",
         ),
+        (
+            r#"restShapeMesh: "r""#,
+            "error at \"r\": `r` cannot be the rest shape of `c`: it has 121 points and 100 faces, the input mesh 25 and 16 | a \
+             rest shape has the points and faces of the input mesh, elsewhere",
+        ),
+        (
+            "massPerVertex: [1, 2, 3]",
+            "error at [1, 2, 3]: `massPerVertex` of `c` has 3 values, but `p` has 25 points | ",
+        ),
+        (
+            "sealHoles: false, pressureMethod: manualPressureSetting",
+            "warning at false: `sealHoles` of `c` has no effect: `pressureMethod` is manualPressureSetting | write \
+             `pressureMethod: volumeTrackingModel`",
+        ),
         (r#"restShapeMesh: "q""#, "error at \"q\": there is no node `q` | did you mean `p`?"),
     ] {
         assert_eq!(said(&sheet("", cloth)), [expected], "{cloth}");
@@ -180,6 +200,11 @@ fn pressure_in_a_mesh_that_is_inside_out_is_a_warning() {
     let expected = "warning at volumeTrackingModel: the faces of `c` face inwards | its air is kept inside all the \
         same; drag and push-out see it reversed";
     assert_eq!(said(&text), [expected]);
+    let by_hand = text.replace("pressureMethod: volumeTrackingModel", "pressure: keys([(1, 0), (9, 1)])");
+    let expected = "warning at keys([(1, 0), (9, 1)]): the faces of `c` face inwards: a pressure above 0 turns it inside \
+        out | reverse its normals, or the sign of `pressure`";
+    assert_eq!(said(&by_hand), [expected]);
+    assert_eq!(said(&by_hand.replace("scaleX: -1", "")), Vec::<String>::new());
 }
 
 #[test]

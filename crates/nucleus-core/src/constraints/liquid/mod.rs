@@ -207,8 +207,8 @@ impl LiquidSolver {
         }
         let bounds = grid::bounds(positions);
         for (at, model) in colliders.iter().enumerate() {
-            let Some(material) =
-                ContactMaterial::<R>::for_collider(own, &frame.colliders[at], factors[step.cloth])
+            let factors = contact.material_maps.max_thickness_factors(step.cloth, at);
+            let Some(material) = ContactMaterial::<R>::for_collider(own, &frame.colliders[at], factors)
             else {
                 continue;
             };

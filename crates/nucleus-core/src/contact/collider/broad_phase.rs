@@ -156,6 +156,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
         let view = ColliderStepArgs {
             material,
             material_maps,
+            at: collider,
             h: pass.schedule.h,
             time: [pass.span.from; 2],
             interval,

@@ -11,6 +11,8 @@ use nalgebra::Vector3;
 use crate::bytes::{Encode, Reader};
 use crate::contact::ccd::separated_throughout;
 use crate::contact::collider::motion_bounds::{MotionBounds, diagonal};
+use crate::contact::collider_maps::ColliderMaps;
+use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, Row4, dot};
@@ -216,8 +218,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub fn gap_ratio(&self, step: &ColliderStep<'_, R>) -> f64 {
         let (x, q) = (step.cloth_positions(self.points)[1], step.collider_positions(self.collider_points)[1]);
         let (b, c) = closest(x, q);
-        (interpolate(x, b) - interpolate(q, c)).norm()
-            / step.rest_gap(self.points, b.map(R::from_f64)).to_f64()
+        (interpolate(x, b) - interpolate(q, c)).norm() / self.rest_gap(step, b.map(R::from_f64)).to_f64()
     }
 
     /// The gap at the contact, and the smallest gap of any point, at a share of the candidate interval.
@@ -328,7 +329,33 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub(super) fn may_interpenetrate(&self, step: &ColliderStep<'_, R>) -> bool {
         let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
         let all = step.material.strength.iter().any(|&side| side < R::ONE);
-        step.material.is_partial(step.material_maps) && (all || of_points(&step.material_maps.strength))
+        let there = || step.collider_maps.is_some_and(|maps| maps.are_partial(&self.collider_points));
+        step.is_partial() && (all || of_points(&step.material_maps.strength) || there())
+    }
+
+    /// The material at the contact. `mapped` holds it where the collider has vertex maps.
+    #[inline(always)]
+    pub(super) fn material<'m>(
+        &self,
+        step: &'m ColliderStep<'_, R>,
+        mapped: &'m mut Option<ContactMaterial<R>>,
+    ) -> &'m ContactMaterial<R> {
+        match step.collider_maps {
+            None => &step.material,
+            Some(maps) => mapped.insert(self.mapped_material(step, maps)),
+        }
+    }
+
+    #[cold]
+    fn mapped_material(&self, step: &ColliderStep<'_, R>, maps: &ColliderMaps) -> ContactMaterial<R> {
+        let (x, q) = (step.cloth_positions(self.points)[1], step.collider_positions(self.collider_points)[1]);
+        step.material.scaled(maps.at(self.collider_points, closest(x, q).1))
+    }
+
+    /// The distance to keep at the contact, in metres, with these weights of the cloth's points.
+    #[inline(always)]
+    pub(super) fn rest_gap(&self, step: &ColliderStep<'_, R>, weights: [R; N]) -> R {
+        step.rest_gap(self.material(step, &mut None), self.points, weights)
     }
 
     #[cold]

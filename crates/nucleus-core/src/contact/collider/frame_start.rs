@@ -170,17 +170,16 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
             .as_ref()
             .and_then(|ground| ContactMaterial::for_ground(cloth, ground, max_thickness_factor))
     };
-    let materials: Vec<_> = settings()
-        .flat_map(|(cloth, &max_thickness_factor)| {
-            frame
-                .colliders
-                .iter()
-                .map(move |collider| ContactMaterial::for_collider(cloth, collider, max_thickness_factor))
-        })
-        .collect();
+    let maps = &contact.material_maps;
+    let with = |cloth: usize, collider: usize| {
+        let (own, theirs) = (&frame.cloths[cloth], &frame.colliders[collider]);
+        ContactMaterial::for_collider(own, theirs, maps.max_thickness_factors(cloth, collider))
+    };
+    let colliders = frame.colliders.len();
+    let pairs = (0..frame.cloths.len()).flat_map(|cloth| (0..colliders).map(move |at| (cloth, at)));
+    let materials: Vec<_> = pairs.map(|(cloth, collider)| with(cloth, collider)).collect();
     contact.ground_materials = settings().map(for_ground).collect();
     let before = std::mem::replace(&mut contact.collider_materials, materials);
-    let colliders = frame.colliders.len();
     let is_same = |cloth: usize| {
         let of_cloth = cloth * colliders..(cloth + 1) * colliders;
         let before = before.get(of_cloth.clone()).unwrap_or_default();

@@ -128,6 +128,7 @@ fn for_contacts_of<R: Real>(
         let view = ColliderStepArgs {
             material,
             material_maps,
+            at: list.collider,
             h: pass.schedule.h,
             time: [pass.span.from, pass.span.to],
             interval: list.interval,

@@ -3,7 +3,7 @@
 use crate::contact::collider::contact::{
     ColliderContact, Outcome, Point, best_plane, closest, cross_direction, interpolate, separated,
 };
-use crate::contact::material::ContactPoints;
+use crate::contact::material::{ContactMaterial, ContactPoints};
 use crate::contact::response::Restitution;
 use crate::contact::response::{Adhesion, Push, coulomb_correction};
 use crate::contact::time_step::ColliderStep;
@@ -29,7 +29,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         if least < R::ZERO || !self.plane_is_valid(moved, step) {
             return self.resolve_exact(step, least);
         }
-        let rest_gap = step.rest_gap(self.points, self.weights);
+        let rest_gap = self.rest_gap(step, self.weights);
         if gap >= rest_gap * touching {
             return Outcome::Separated;
         }
@@ -46,7 +46,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let at_start = closest(x0, q0);
         let start_line = interpolate(x0, at_start.0) - interpolate(q0, at_start.1);
         let at_end = closest(x1, q1);
-        let thickness = step.rest_gap(self.points, at_end.0.map(R::from_f64)).to_f64();
+        let thickness = self.rest_gap(step, at_end.0.map(R::from_f64)).to_f64();
         let line = interpolate(x1, at_end.0) - interpolate(q1, at_end.1);
         let distance = line.norm();
         let mut proof = None;
@@ -95,14 +95,15 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
         let depenetration = self.collider_depenetration(step);
         let mut push = Push::new(rest_gap, gaps, dot(self.normal, depenetration), step.h);
-        if step.material.is_partial(step.material_maps) {
-            push = push.scaled(
-                step.material.strength_at(step.material_maps, self.contact_points(&(self.weights, []))),
-            );
+        let mut mapped = None;
+        let material = self.material(step, &mut mapped);
+        if step.is_partial() {
+            push = push
+                .scaled(material.strength_at(step.material_maps, self.contact_points(&(self.weights, []))));
         }
         let (along, depenetration_along) =
             (scale(self.normal, push.length()), scale(self.normal, push.depenetration));
-        let [friction_part, given_back] = self.friction(step, depenetration, along, push.length());
+        let [friction_part, given_back] = self.friction(step, material, depenetration, along, push.length());
         let (moved, depenetration) = (add(along, friction_part), add(depenetration_along, given_back));
         for k in 0..N {
             let mobile = rows[k].0[3] * self.weights[k] / mobility;
@@ -114,7 +115,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
     }
 
-    /// The points of the cloth's element and their weights; the collider has no vertex maps.
+    /// The points of the cloth's element and their weights. The collider's vertex maps are in its material at the
+    /// contact.
     pub(super) fn contact_points<'a>(&self, weights: &'a ([R; N], [R; 0])) -> ContactPoints<'a, R, N, 0> {
         (self.points, [], weights)
     }
@@ -151,12 +153,13 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     fn friction(
         &self,
         step: &ColliderStep<'_, R>,
+        material: &ContactMaterial<R>,
         depenetration: [R; 3],
         along: [R; 3],
         pushed: R,
     ) -> [[R; 3]; 2] {
         let limit =
-            step.material.friction_at(step.material_maps, self.contact_points(&(self.weights, []))) * pushed;
+            material.friction_at(step.material_maps, self.contact_points(&(self.weights, []))) * pushed;
         if limit <= R::ZERO {
             return [[R::ZERO; 3]; 2];
         }
@@ -178,12 +181,13 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// Applies adhesion between the cloth's element and the surface.
     pub fn adhere(&self, step: &ColliderStep<'_, R>) {
-        let weights = &(self.weights, []);
+        let (weights, mut mapped) = (&(self.weights, []), None);
+        let material = self.material(step, &mut mapped);
         let adhesion = Adhesion {
             range: step.interaction_range(),
-            thickness: step.rest_gap(self.points, self.weights),
-            stickiness: step.material.stickiness_at(step.material_maps, self.contact_points(weights)),
-            friction: step.material.friction_at(step.material_maps, self.contact_points(weights)),
+            thickness: self.rest_gap(step, self.weights),
+            stickiness: material.stickiness_at(step.material_maps, self.contact_points(weights)),
+            friction: material.friction_at(step.material_maps, self.contact_points(weights)),
         };
         let rows = self.points.map(|point| step.row(point));
         let start = self.points.map(|point| step.start(point));
@@ -207,11 +211,16 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 }
 
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// The larger coefficient of restitution at the contact.
+    pub fn bounce(&self, step: &ColliderStep<'_, R>) -> R {
+        self.material(step, &mut None).bounce_at(step.material_maps, self.contact_points(&(self.weights, [])))
+    }
+
     /// The normal, and the collider's velocity at the contact in m/s, if the two touch at the end of the step.
     pub fn touching_surface(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
         let moved = self.points.map(|point| step.row(point).xyz());
         let (gap, _) = self.gaps(moved, step.shares[1]);
         let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
-        Restitution::touches(gap, step.rest_gap(self.points, self.weights)).then_some((self.normal, velocity))
+        Restitution::touches(gap, self.rest_gap(step, self.weights)).then_some((self.normal, velocity))
     }
 }
