@@ -1,5 +1,5 @@
 //! Exports of `nucleus export` read by other tools: Blender, Pixar's USD, VTK, Foxglove's types, rerun and Khronos' glTF
-//! validator; and films, written with an ffmpeg ([`films`]).
+//! validator; meshes that Pixar's USD and trimesh write, read by nucleus; and films, written with an ffmpeg ([`films`]).
 //!
 //! Compares each export with the cache, read by the independent `mcap` package, point by point.
 
@@ -27,9 +27,10 @@ pub struct Options {
 }
 
 /// The scripts; each prints its results as one line of JSON.
-const SCRIPTS: [(&str, &str); 5] = [
+const SCRIPTS: [(&str, &str); 6] = [
     ("cache.py", include_str!("interop/cache.py")),
     ("blender.py", include_str!("interop/blender.py")),
+    ("inputs.py", include_str!("interop/inputs.py")),
     ("scenes.py", include_str!("interop/scenes.py")),
     ("viewers.py", include_str!("interop/viewers.py")),
     ("gltf.js", include_str!("interop/gltf.js")),
@@ -37,7 +38,18 @@ const SCRIPTS: [(&str, &str); 5] = [
 
 /// Virtual environments: Blender needs an older numpy than rerun.
 const ENVIRONMENTS: [(&str, &[&str]); 2] = [
-    ("readers", &["bpy==5.0.1", "numpy<2", "usd-core==26.11", "vtk==9.7.2", "mcap==1.6.0", "zstandard"]),
+    (
+        "readers",
+        &[
+            "bpy==5.0.1",
+            "numpy<2",
+            "usd-core==26.11",
+            "vtk==9.7.2",
+            "trimesh==5.2.0",
+            "mcap==1.6.0",
+            "zstandard",
+        ],
+    ),
     (
         "viewers",
         &[
@@ -67,7 +79,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
         &["build", "--release", "--package", "nucleus-cli", "--package", "nucleus-interop", "--examples"],
     )?;
     let caches = if options.cache.is_empty() { own_caches(root, &place)? } else { options.cache.clone() };
-    let mut failed = 0;
+    let mut failed = check_inputs(root, &place)?;
     for cache in caches {
         println!("\n== {}", cache.display());
         let folder = place.join("files");
@@ -77,7 +89,7 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
         export(root, &cache, &folder)?;
         failed += check(&place, &cache, &folder)?;
     }
-    ensure!(failed == 0, "{failed} exports are not read as they were recorded");
+    ensure!(failed == 0, "{failed} files are not read as they were written");
     films::run(root, &place)
 }
 
@@ -114,28 +126,45 @@ fn export(root: &Path, cache: &Path, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Lets nucleus read meshes of other tools; returns the number that differ.
+fn check_inputs(root: &Path, place: &Path) -> anyhow::Result<usize> {
+    println!("\n== inputs");
+    let nucleus = files::target(root).join("release/nucleus");
+    let mut command = Command::new(python(place, "readers"));
+    verdicts(command.arg(place.join("inputs.py")).arg(nucleus).arg(place.join("inputs")), "inputs.py")
+}
+
 /// Runs every reader; returns the number of differing exports.
 fn check(place: &Path, cache: &Path, folder: &Path) -> anyhow::Result<usize> {
-    let python = |environment: &str| place.join(environment).join("bin/python");
     let mut failed = 0;
     for (program, script) in [
-        (python("readers"), "blender.py"),
-        (python("readers"), "scenes.py"),
-        (python("viewers"), "viewers.py"),
+        (python(place, "readers"), "blender.py"),
+        (python(place, "readers"), "scenes.py"),
+        (python(place, "viewers"), "viewers.py"),
         ("node".into(), "gltf.js"),
     ] {
         let mut command = Command::new(&program);
         command.arg(place.join(script)).arg(cache).arg(folder);
-        let output = command.env("NODE_PATH", place.join("node/node_modules")).output();
-        let output = output.with_context(|| format!("`{}` cannot be started", program.display()))?;
-        let said = String::from_utf8_lossy(&output.stdout);
-        let found = said.lines().rev().find_map(|line| serde_json::from_str::<Vec<Value>>(line).ok());
-        let Some(rows) = found.filter(|_| output.status.success()) else {
-            bail!("{script}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr));
-        };
-        failed += rows.iter().map(report).filter(|fine| !fine).count();
+        failed += verdicts(command.env("NODE_PATH", place.join("node/node_modules")), script)?;
     }
     Ok(failed)
+}
+
+fn python(place: &Path, environment: &str) -> PathBuf {
+    place.join(environment).join("bin/python")
+}
+
+/// Runs a script and prints its results; returns the number that differ.
+fn verdicts(command: &mut Command, script: &str) -> anyhow::Result<usize> {
+    let output = command.output();
+    let output =
+        output.with_context(|| format!("`{}` cannot be started", command.get_program().display()))?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let found = said.lines().rev().find_map(|line| serde_json::from_str::<Vec<Value>>(line).ok());
+    let Some(rows) = found.filter(|_| output.status.success()) else {
+        bail!("{script}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr));
+    };
+    Ok(rows.iter().map(report).filter(|fine| !fine).count())
 }
 
 /// Prints a result; returns whether it matches.

@@ -62,6 +62,7 @@ mod error;
 mod messages;
 mod read;
 mod run;
+mod selections;
 mod texture_coordinates;
 mod write;
 
@@ -75,6 +76,7 @@ pub use read::playback::{Playback, Sizes};
 pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
 pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source};
+pub use selections::SelectedPoints;
 pub use texture_coordinates::TextureCoordinates;
 pub use write::frame_recorder::FrameRecorder;
 pub use write::recorder::{Recorded, Recorder};

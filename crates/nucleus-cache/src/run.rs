@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nucleus_core::{ClothId, ColliderId, Faces};
 
 use crate::camera::Camera;
+use crate::selections::SelectedPoints;
 use crate::texture_coordinates::TextureCoordinates;
 
 /// Which states of the run are recorded.
@@ -75,12 +76,16 @@ pub struct RunInfo {
     pub strain: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
+    /// The ground plane at each frame from the start frame on; empty if it does not move.
+    pub ground_motion: Vec<Plane>,
     /// Particle radius of each particle object, by object name, in scene units.
     pub radii: BTreeMap<String, f64>,
     /// Cameras of the scene; the first is the default for pictures.
     pub cameras: Vec<Camera>,
     /// Texture coordinates of each object that has any, by object name.
     pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
+    /// The points that constraints name.
+    pub selections: Vec<SelectedPoints>,
     /// Frames between two checkpoints; 0 records none.
     pub checkpoint: u32,
     /// Compression level; a reader accepts both.
@@ -106,9 +111,11 @@ impl Default for RunInfo {
             contacts: false,
             strain: false,
             ground: None,
+            ground_motion: Vec::new(),
             radii: BTreeMap::new(),
             cameras: Vec::new(),
             texture_coordinates: BTreeMap::new(),
+            selections: Vec::new(),
             checkpoint: 0,
             packing: Packing::Fast,
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -132,6 +139,17 @@ impl RunInfo {
         positive("frames per second", self.frames_per_second)
             .or_else(|| positive("units per metre", self.units_per_metre))
             .or_else(backwards)
+    }
+
+    /// The ground plane at a time in frames, linear between two frames; the last plane holds for all later frames.
+    pub fn ground_at(&self, frame: f64) -> Option<Plane> {
+        let place = (frame - f64::from(self.start)).max(0.0);
+        let plane = |index: usize| self.ground_motion.get(index).or(self.ground_motion.last()).copied();
+        let Some(before) = plane(place as usize) else { return self.ground };
+        let (after, share) = (plane(place as usize + 1).unwrap_or(before), place.fract());
+        let between = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share);
+        let Plane { origin, normal } = after;
+        Some(Plane { origin: between(before.origin, origin), normal: between(before.normal, normal) })
     }
 
     /// Seconds from the start frame to the end of `substep` of `substeps` in `frame`.
@@ -192,6 +210,17 @@ pub enum Source {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_moving_ground_plane_is_linear_between_frames_and_holds_at_the_end() {
+        let at = |height: f64| Plane { origin: [0.0, height, 0.0], normal: [0.0, 1.0, 0.0] };
+        let ground_motion = vec![at(0.0), at(2.0), at(8.0)];
+        let run = RunInfo { start: 5, ground: Some(at(0.0)), ground_motion, ..RunInfo::default() };
+        for (frame, height) in [(4.0, 0.0), (5.0, 0.0), (5.5, 1.0), (6.0, 2.0), (7.0, 8.0), (9.5, 8.0)] {
+            assert_eq!(run.ground_at(frame), Some(at(height)));
+        }
+        assert_eq!(RunInfo { ground: Some(at(3.0)), ..RunInfo::default() }.ground_at(9.0), Some(at(3.0)));
+    }
 
     proptest! {
         #[test]

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use nucleus_cache::{
-    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, Source,
-    TextureCoordinates,
+    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, SelectedPoints,
+    Source, TextureCoordinates,
 };
-use nucleus_core::Real;
+use nucleus_core::{GroundPlane, Real};
 use nucleus_graph::Simulation;
-use nucleus_graph::compile::{self, Program};
+use nucleus_graph::compile::{self, NucleusProgram, Program};
 use nucleus_graph::scene::Scene;
 use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
@@ -92,7 +92,12 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
     let program = simulation.program();
     let (start, end) = frames(program)?;
     let units = program.units_per_metre();
-    let plane = program.first_input().plane;
+    let in_scene_units =
+        |plane: GroundPlane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() };
+    let mut ground_motion: Vec<Plane> = program.ground_planes().into_iter().map(in_scene_units).collect();
+    if ground_motion.windows(2).all(|pair| pair[0] == pair[1]) {
+        ground_motion.clear();
+    }
     Ok(RunInfo {
         scene_path: scene.0.display().to_string(),
         scene_text: scene.1.to_owned(),
@@ -100,12 +105,18 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         end,
         frames_per_second: program.time().fps,
         units_per_metre: units,
-        ground: plane
-            .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
+        ground: program.first_input().plane.map(in_scene_units),
+        ground_motion,
+        selections: program.nuclei().iter().flat_map(NucleusProgram::selections).map(selected).collect(),
         radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         ..RunInfo::default()
     })
+}
+
+fn selected(selection: &compile::NamedSelection) -> SelectedPoints {
+    let compile::NamedSelection { owner, object, points, .. } = selection.clone();
+    SelectedPoints { owner, object, points }
 }
 
 /// A compiled camera as a camera of a cache.

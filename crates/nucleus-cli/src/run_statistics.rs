@@ -151,6 +151,8 @@ pub struct RunStatistics {
     pub last_frame_time: Duration,
     /// The largest strain, and its frame.
     pub worst_strain: Option<(f64, i32)>,
+    /// The largest strain that 1 % of the links exceed, and its frame.
+    pub worst_strain_99: Option<(f64, i32)>,
     /// The smallest gap over thickness, and its frame. `None` if there was no contact.
     pub smallest_gap: Option<(f64, i32)>,
     /// Pairs of elements that the safeguard left unresolved, over all time steps.
@@ -208,6 +210,9 @@ impl RunStatistics {
         let frame = figures.frame;
         if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {
             self.worst_strain = Some((figures.max_strain, frame));
+        }
+        if self.worst_strain_99.is_none_or(|(worst, _)| figures.strain_99 > worst) {
+            self.worst_strain_99 = Some((figures.strain_99, frame));
         }
         if let Some(gap) =
             figures.min_gap.filter(|&gap| self.smallest_gap.is_none_or(|(least, _)| gap < least))

@@ -68,10 +68,13 @@ impl Summary<'_> {
         let each = figures::number(statistics.milliseconds());
         writeln!(text, "frames {start} to {last} in {seconds} s, {each} ms/frame")?;
         if let Some((strain, frame)) = statistics.worst_strain {
-            writeln!(text, "worst strain {} at frame {frame}", figures::percent(strain))?;
+            let of_99 = statistics.worst_strain_99.map_or(String::new(), |(strain, frame)| {
+                format!("; p99 strain {} at frame {frame}", figures::percent(strain))
+            });
+            writeln!(text, "worst strain {} at frame {frame}{of_99}", figures::percent(strain))?;
         }
         if let Some((gap, frame)) = statistics.smallest_gap {
-            writeln!(text, "smallest gap {} of the thickness, at frame {frame}", figures::number(gap))?;
+            writeln!(text, "minimum gap {} of the thickness, at frame {frame}", figures::number(gap))?;
         }
         if statistics.particles.most > 0 {
             let Count { most, frame, end, .. } = statistics.particles;
@@ -158,6 +161,7 @@ impl Summary<'_> {
             "seconds": statistics.time.as_secs_f64(),
             "milliseconds_per_frame": statistics.milliseconds(),
             "worst_strain": at(statistics.worst_strain),
+            "worst_strain_99": at(statistics.worst_strain_99),
             "smallest_gap": at(statistics.smallest_gap),
             "pairs_unresolved": statistics.pairs_unresolved.total,
             "most_unresolved": most(&statistics.pairs_unresolved),

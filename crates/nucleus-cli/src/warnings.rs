@@ -100,7 +100,8 @@ pub fn large_strain(statistics: &RunStatistics, checks: &[Outcome]) -> Option<St
         let (percent, above) = (figures::percent(strain), figures::number((100.0 * strain).ceil() / 100.0));
         format!(
             "warning: cloth is stretched by {percent} at frame {frame}: try more `evaluations` or `subSteps` of the \
-             nucleus (`nucleus trade` measures how many are needed), or allow it with the check `{MAX_STRETCH}({above})`"
+             nucleus (`nucleus trade` measures how many are needed); a flat, symmetric sheet that cannot buckle folds with \
+             a small `initialPerturbation` of the cloth; or allow it with the check `{MAX_STRETCH}({above})`"
         )
     })
 }

@@ -2,7 +2,7 @@
 //! Messages about a file give a line and column, never its content: a scene may name any file that the user can read.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// Opens a regular file. Also returns its length in bytes.
@@ -16,6 +16,14 @@ pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
         return Err(io::Error::new(ErrorKind::InvalidInput, "it is a device or a pipe, not a file"));
     }
     File::open(path).map(|file| (file, about.len()))
+}
+
+/// The bytes of a regular file.
+pub(crate) fn read_all(path: &Path) -> io::Result<Vec<u8>> {
+    let (mut file, length) = open(path)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The length of a file in bytes, or 0 if it cannot be found: reading it then reports the error.

@@ -41,6 +41,20 @@ pub enum ViewError {
         /// The error of the encoder.
         source: png::EncodingError,
     },
+    /// The EXR picture could not be encoded.
+    #[error("cannot write the picture `{}`", path.display())]
+    Exr {
+        /// The file.
+        path: PathBuf,
+        /// The error of the encoder.
+        source: exr::error::Error,
+    },
+    /// An EXR picture needs linear colours, which the style did not ask for.
+    #[error("`{}` needs a picture with linear colours", path.display())]
+    NoLinearColours {
+        /// The file.
+        path: PathBuf,
+    },
     /// The GIF could not be encoded or written.
     #[error("cannot write the film `{}`", path.display())]
     Gif {

@@ -3,7 +3,7 @@
 mod sample;
 
 use nucleus_cache::Playback;
-use nucleus_view::{Bounds, Camera, Film, GifWriter, Ground, Image, Style, ViewError, draw};
+use nucleus_view::{Background, Bounds, Camera, Film, GifWriter, Ground, Image, Style, ViewError, draw};
 use sample::{FRAMES, Sample};
 
 fn small() -> Style {
@@ -146,6 +146,59 @@ fn the_floor_is_the_ground_plane_of_the_scene() {
     let found = at(&mut cache, Ground::Below);
     assert_eq!(found, at(&mut cache, Ground::At(-1.5)));
     assert_ne!(found, at(&mut cache, Ground::At(0.0)));
+}
+
+#[test]
+fn the_floor_moves_with_the_ground_plane() {
+    let (_folder, mut cache) = recorded(Sample { plane: Some(-1.5), rise: 0.125, ..Sample::default() });
+    let camera =
+        Camera { eye: [1.0, 6.0, 30.0], target: [1.0, -1.0, 0.0], field_of_view: 20.0, ..Camera::default() };
+    for (place, height) in [(0, -1.5), (8, -0.5)] {
+        let at = |cache: &mut Playback, ground| {
+            let style = Style { ground, ..small() };
+            Film::of(cache, 1, style).unwrap().seen_by(camera).picture(place).unwrap()
+        };
+        assert_eq!(at(&mut cache, Ground::Below), at(&mut cache, Ground::At(height)), "picture {place}");
+    }
+}
+
+#[test]
+fn an_exr_holds_the_linear_colours_of_the_picture_and_its_opacities() {
+    let (folder, mut cache) = recorded(Sample::default());
+    let path = folder.path().join("a.exr");
+    let style = Style { keeps_linear: true, samples: 2, background: Background::Transparent, ..small() };
+    let picture = Film::of(&mut cache, 1, style.clone()).unwrap().picture(12).unwrap();
+    picture.write_exr(&path).unwrap();
+    let read = exr::prelude::read_first_rgba_layer_from_file(
+        &path,
+        |size, _| vec![[0.0_f32; 4]; size.width() * size.height()],
+        |pixels, at, (red, green, blue, alpha): (f32, f32, f32, f32)| {
+            pixels[at.y() * 96 + at.x()] = [red, green, blue, alpha];
+        },
+    );
+    let pixels = read.unwrap().layer_data.channel_data.pixels;
+    assert_eq!(pixels.len(), 96 * 54);
+    let mut covered = [0; 3];
+    for (place, [red, green, blue, alpha]) in pixels.into_iter().enumerate() {
+        // Colours are multiplied by the opacity, and bytes are encoded with a square root.
+        assert!((alpha * 255.0 - f32::from(picture.alpha()[place])).abs() < 0.7);
+        covered[if alpha == 0.0 {
+            0
+        } else if alpha < 1.0 {
+            1
+        } else {
+            2
+        }] += 1;
+        for (linear, byte) in [red, green, blue].into_iter().zip(&picture.bytes()[3 * place..]) {
+            let encoded = (linear / alpha.max(1e-3)).min(1.0).sqrt() * 255.0;
+            assert!((encoded - f32::from(*byte)).abs() < 1.0, "{encoded} and {byte} at {place}");
+        }
+    }
+    assert!(covered.iter().all(|count| *count > 20), "nothing, edges and objects: {covered:?}");
+    let style = Style { keeps_linear: false, ..style };
+    let without = Film::of(&mut cache, 1, style).unwrap().picture(12).unwrap();
+    assert_eq!(without.bytes(), picture.bytes());
+    assert!(matches!(without.write_exr(&path), Err(ViewError::NoLinearColours { .. })));
 }
 
 /// The bytes of a picture are the same on every machine, so a hash of an inspected picture identifies it.

@@ -19,26 +19,25 @@ USD = "USD " + ".".join(str(part) for part in Usd.GetVersion()[1:])
 VTK = "VTK " + vtk.vtkVersion().GetVTKVersion()
 
 
-def usd():
-    path = f"{folder}/run.usda"
-    stage = Usd.Stage.Open(path)
-    verdicts.same("usda: units", USD, 1 / cache.units, UsdGeom.GetStageMetersPerUnit(stage))
-    verdicts.same("usda: up", USD, "Y", UsdGeom.GetStageUpAxis(stage))
+def usd(end):
+    stage = Usd.Stage.Open(f"{folder}/run.{end}")
+    verdicts.same(f"{end}: units", USD, 1 / cache.units, UsdGeom.GetStageMetersPerUnit(stage))
+    verdicts.same(f"{end}: up", USD, "Y", UsdGeom.GetStageUpAxis(stage))
     times = (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond())
-    verdicts.same("usda: times", USD, (cache.at[0], cache.at[-1], cache.fps), times)
+    verdicts.same(f"{end}: times", USD, (cache.at[0], cache.at[-1], cache.fps), times)
     for name, known in cache.objects.items():
         prim = stage.GetPrimAtPath(f"/run/{plain(name, True)}")
         points = UsdGeom.PointBased(prim)
         found = [np.array(points.GetPointsAttr().Get(at)) for at in cache.at]
-        verdicts.compare(f"usda {name}", USD, known["positions"], found)
+        verdicts.compare(f"{end} {name}", USD, known["positions"], found)
         if known["faces"]:
             mesh = UsdGeom.Mesh(prim)
             counts, corners = mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get()
             flat = [corner for face in known["faces"] for corner in face]
-            verdicts.same(f"usda {name}: faces", USD, ([len(f) for f in known["faces"]], flat), (list(counts), list(corners)))
+            verdicts.same(f"{end} {name}: faces", USD, ([len(f) for f in known["faces"]], flat), (list(counts), list(corners)))
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     errors = UsdValidation.ValidationContext(validators).Validate(stage)
-    verdicts.same(f"usda: {len(validators)} validators", USD, [], [error.GetMessage() for error in errors])
+    verdicts.same(f"{end}: {len(validators)} validators", USD, [], [error.GetMessage() for error in errors])
 
 
 def grids():
@@ -105,7 +104,8 @@ def ncache(end):
         verdicts.compare(f"{end} {name}", reader, known["positions"], found)
 
 
-usd()
+usd("usda")
+usd("usdc")
 grids()
 plys()
 ncache("mc")

@@ -1,5 +1,5 @@
-//! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene`, `nucleus.cameras` and
-//! `nucleus.uvs`.
+//! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene`, `nucleus.cameras`,
+//! `nucleus.uvs` and `nucleus.selections`.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::camera;
 use crate::error::OpenError;
 use crate::messages::attribute::{CONTACTS, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo};
-use crate::texture_coordinates;
+use crate::{selections, texture_coordinates};
 
 /// Format version. A reader refuses a higher one.
 const FORMAT: u32 = 1;
@@ -18,11 +18,14 @@ pub(crate) const PROFILE: &str = "nucleus";
 pub(crate) const LIBRARY: &str = concat!("nucleus ", env!("CARGO_PKG_VERSION"));
 const SCENE: &str = "nucleus.scene";
 const CAMERAS: &str = "nucleus.cameras";
+const SELECTIONS: &str = "nucleus.selections";
 const UVS: &str = "nucleus.uvs";
 const RUN: &str = "nucleus.run";
 /// Number of cameras; a reader detects a lost camera by it.
 const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
+/// The ground plane at each frame, a line each, if it moves.
+const GROUND_MOTION: &str = "ground motion";
 /// Prefix of the key for the particle radius of an object; the object's name follows.
 const RADIUS: &str = "radius of ";
 const CHECKPOINT: &str = "checkpoint";
@@ -65,24 +68,25 @@ impl RunInfo {
         if self.packing == Packing::Small {
             run.insert(PACKING.to_owned(), SMALL.to_owned());
         }
-        if let Some(Plane { origin, normal }) = self.ground {
-            run.insert(
-                GROUND.to_owned(),
-                origin.iter().chain(&normal).map(f64::to_string).collect::<Vec<_>>().join(" "),
-            );
+        run.extend(self.ground.map(|plane| (GROUND.to_owned(), numbers_of(&plane))));
+        if !self.ground_motion.is_empty() {
+            let lines: Vec<String> = self.ground_motion.iter().map(numbers_of).collect();
+            run.insert(GROUND_MOTION.to_owned(), lines.join("\n"));
         }
         let scene = [("path", &self.scene_path), ("text", &self.scene_text)]
             .map(|(key, value)| (key.to_owned(), value.clone()));
         [with_checksum(SCENE, scene.into()), with_checksum(RUN, run)]
     }
 
-    /// The record of the cameras and that of the texture coordinates, if there are any.
+    /// The records of the cameras, the texture coordinates and the selections, if there are any.
     pub(crate) fn extras_to_metadata(&self) -> impl Iterator<Item = Metadata> {
         let cameras =
             (!self.cameras.is_empty()).then(|| with_checksum(CAMERAS, camera::to_keys(&self.cameras)));
         let uvs = (!self.texture_coordinates.is_empty())
             .then(|| with_checksum(UVS, texture_coordinates::to_keys(&self.texture_coordinates)));
-        cameras.into_iter().chain(uvs)
+        let selections = (!self.selections.is_empty())
+            .then(|| with_checksum(SELECTIONS, selections::to_keys(&self.selections)));
+        cameras.into_iter().chain(uvs).chain(selections)
     }
 
     /// The run, and whether its scene is undamaged. A damaged scene is left out.
@@ -107,6 +111,8 @@ impl RunInfo {
         // Lost coordinates cost a texture in an export, no frame.
         let uvs = find(UVS).filter(|record| checksum_holds(record));
         let uvs = uvs.map(|record| texture_coordinates::from_keys(&record.metadata)).unwrap_or_default();
+        let selections = find(SELECTIONS).filter(|record| checksum_holds(record));
+        let selections = selections.map(|record| selections::from_keys(&record.metadata)).unwrap_or_default();
         let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
         let (scene_is_sound, mut scene) =
             (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
@@ -123,9 +129,11 @@ impl RunInfo {
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
             ground: run.ground()?,
+            ground_motion: run.ground_motion()?,
             radii: run.radii()?,
             cameras,
             texture_coordinates: uvs,
+            selections,
             checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
             packing: run.packing(),
             version,
@@ -220,12 +228,28 @@ impl Keys {
     /// Six numbers: a point and the normal.
     fn ground(&mut self) -> Result<Option<Plane>, OpenError> {
         let Some(value) = self.0.remove(GROUND) else { return Ok(None) };
-        let numbers: Option<Vec<f64>> =
-            value.split(' ').map(|x| x.parse().ok().filter(|x: &f64| x.is_finite())).collect();
-        match numbers.as_deref() {
-            Some(&[x, y, z, a, b, c]) => Ok(Some(Plane { origin: [x, y, z], normal: [a, b, c] })),
-            _ => Err(OpenError::BadValue { key: GROUND, value }),
-        }
+        plane(&value).map(Some).ok_or(OpenError::BadValue { key: GROUND, value })
+    }
+
+    /// A plane in each line.
+    fn ground_motion(&mut self) -> Result<Vec<Plane>, OpenError> {
+        let value = self.0.remove(GROUND_MOTION).unwrap_or_default();
+        let planes: Option<Vec<Plane>> = value.lines().map(plane).collect();
+        planes.ok_or(OpenError::BadValue { key: GROUND_MOTION, value })
+    }
+}
+
+fn numbers_of(plane: &Plane) -> String {
+    let numbers = plane.origin.iter().chain(&plane.normal);
+    numbers.map(f64::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn plane(line: &str) -> Option<Plane> {
+    let number = |x: &str| x.parse().ok().filter(|x: &f64| x.is_finite());
+    let numbers: Vec<f64> = line.split(' ').map(number).collect::<Option<_>>()?;
+    match numbers.as_slice() {
+        &[x, y, z, a, b, c] => Some(Plane { origin: [x, y, z], normal: [a, b, c] }),
+        _ => None,
     }
 }
 
@@ -238,12 +262,14 @@ mod tests {
     fn metadata_of_a_run_comes_back() {
         let extra = BTreeMap::from([("host".to_owned(), "a b\nc".to_owned())]);
         let ground = Some(Plane { origin: [0.1, -2.0, 0.0], normal: [0.0, 1.0, 1e-9] });
+        let raised = Plane { origin: [0.1, 4.0, 0.0], normal: [0.0, 1.0, 0.0] };
         let run = RunInfo {
             scene_path: "a.ron".into(),
             start: -3,
             end: 9,
             extra,
             ground,
+            ground_motion: ground.into_iter().chain([raised]).collect(),
             contacts: true,
             radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
             ..RunInfo::default()

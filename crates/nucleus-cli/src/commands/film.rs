@@ -15,12 +15,13 @@ use crate::process;
 /// Kinds of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputKind {
+    /// A PNG or EXR.
     Still,
     AnimatedPng,
     Gif,
     /// A film that ffmpeg encodes.
     Film,
-    /// A PNG per frame.
+    /// A PNG or EXR per frame.
     Sequence,
 }
 
@@ -30,13 +31,13 @@ impl OutputKind {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let end = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         Ok(match end.as_str() {
-            "png" if name.contains('#') => Self::Sequence,
+            "png" | "exr" if name.contains('#') => Self::Sequence,
             "png" if animate => Self::AnimatedPng,
-            "png" => Self::Still,
+            "png" | "exr" => Self::Still,
             "gif" => Self::Gif,
             "mp4" | "mov" | "webm" => Self::Film,
             _ => bail!(
-                "`{name}` does not end with .png, .gif, .mp4, .mov or .webm; `####` in the name of a .png stands for the frame number"
+                "`{name}` does not end with .png, .exr, .gif, .mp4, .mov or .webm; `####` in the name of a .png or .exr stands for the frame number"
             ),
         })
     }
@@ -68,7 +69,10 @@ pub fn write<R: Read + Seek>(
             if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
             }
-            each(film, report, |image, frame| picture(image, &numbered(out, frame)))?;
+            each(film, report, |image, frame| {
+                let out = numbered(out, frame);
+                Ok(if is_exr(&out) { image.write_exr(out) } else { image.write_png_fast(out) }?)
+            })?;
         }
         OutputKind::Still | OutputKind::AnimatedPng => {
             let mut file = AnimationWriter::create(out, size, film.fps())?;
@@ -93,7 +97,12 @@ impl std::error::Error for Interrupted {}
 
 /// Writes one picture.
 pub fn picture(image: &Image, out: &Path) -> Result<()> {
-    Ok(image.write_png(out)?)
+    Ok(if is_exr(out) { image.write_exr(out) } else { image.write_png(out) }?)
+}
+
+/// Whether a file is an EXR picture by its name.
+pub fn is_exr(out: &Path) -> bool {
+    out.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"))
 }
 
 fn each<R: Read + Seek>(
@@ -196,7 +205,8 @@ mod tests {
         let kind = |name: &str| OutputKind::of(Path::new(name), false).unwrap();
         assert_eq!(kind("a.png"), OutputKind::Still);
         assert_eq!(kind("a.GIF"), OutputKind::Gif);
-        assert_eq!(kind("a/b.####.png"), OutputKind::Sequence);
+        assert_eq!([kind("a.exr"), kind("a.EXR")], [OutputKind::Still; 2]);
+        assert_eq!([kind("a/b.####.png"), kind("b.#.exr")], [OutputKind::Sequence; 2]);
         assert_eq!(kind("a.mp4"), OutputKind::Film);
         assert!(OutputKind::of(Path::new("a.jpg"), true).is_err());
     }

@@ -13,11 +13,11 @@ use crate::process::Outcome;
 use crate::progress::ShareProgress;
 use crate::{figures, files, output, process};
 
-/// Draws a cache: a frame as a PNG, or the run as an animated PNG, a GIF, a film, or a PNG per frame.
+/// Draws a cache: a frame as a PNG or EXR, or the run as an animated PNG, a GIF, a film, or a picture per frame.
 ///
-/// The name of the output determines its kind: `hang.png` is a still, or an animated PNG with --animate; `hang.gif` is a
-/// GIF; `hang.mp4`, `.mov` and `.webm` are films, for which ffmpeg must be installed; `frames/hang.####.png` is a PNG per
-/// frame, with the frame number.
+/// The name of the output determines its kind: `hang.png` is a still, or an animated PNG with --animate; `hang.exr` is a
+/// still with linear colours; `hang.gif` is a GIF; `hang.mp4`, `.mov` and `.webm` are films, for which ffmpeg must be
+/// installed; `frames/hang.####.png` (or `.exr`) is a picture per frame, with the frame number.
 #[derive(Debug, Args)]
 pub struct Render {
     /// The cache (.mcap).
@@ -83,7 +83,7 @@ impl Render {
         let is_still = matches!(kind, OutputKind::Still | OutputKind::Sequence);
         ensure!(
             is_still || self.background != Background::Transparent,
-            "a film has no opacities; `--background none` is for a .png, or for pictures as `frames/####.png`"
+            "a film has no opacities; `--background none` is for a .png or .exr, or for pictures as `frames/####.png`"
         );
         let drawn = match kind {
             OutputKind::Still => self.still(&mut cache, &out)?,
@@ -105,7 +105,7 @@ impl Render {
         let frame = cache.time_samples()[moment].frame;
         // The height of the floor is that of the whole run, estimated from 24 of its frames.
         let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
-        let mut film = Film::of(cache, every, self.style())?;
+        let mut film = Film::of(cache, every, self.style(out))?;
         let camera = self.with_options(film.framing(moment)?);
         film::picture(&look_through(film.seen_by(camera), scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
@@ -114,7 +114,7 @@ impl Render {
     fn film(&self, cache: &mut Playback, out: &Path, kind: OutputKind) -> Result<String> {
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let scene_camera = self.scene_camera(cache)?;
-        let mut film = Film::of(cache, self.every as usize, self.style())?;
+        let mut film = Film::of(cache, self.every as usize, self.style(out))?;
         if let Some(frames) = self.frames {
             let (first, last) = frames
                 .within(start)
@@ -134,7 +134,7 @@ impl Render {
         })
     }
 
-    fn style(&self) -> Style {
+    fn style(&self, out: &Path) -> Style {
         let colouring = match self.strain {
             Some(full_scale) => Colouring::Strain { full_scale },
             None => Colouring::Objects,
@@ -146,6 +146,7 @@ impl Render {
             background: self.background,
             tints: self.tint.clone(),
             samples: self.samples,
+            keeps_linear: film::is_exr(out),
             ..Style::default()
         }
     }

@@ -25,7 +25,7 @@ impl Check {
         match file.report()? {
             None => Ok(Outcome::InvalidInput),
             Some(_) => {
-                output::print(&format!("`{}` can run: {count}\n", self.scene.display()))?;
+                output::report(&format!("`{}` can run: {count}\n", self.scene.display()));
                 Ok(Outcome::Success)
             }
         }

@@ -118,13 +118,13 @@ impl SceneInfo {
 
 /// `select hand: sheet.vtx[3, 5:8], 5 points`.
 fn selection_line(selection: &NamedSelection) -> String {
-    let NamedSelection { owner, object, kind, elements } = selection;
+    let NamedSelection { owner, object, kind, elements, .. } = selection;
     let count = figures::count(elements.len(), kind.noun());
     format!("select {owner}: {object}.{}[{}], {count}", kind.word(), ranges(elements))
 }
 
 fn selection_json(selection: &NamedSelection) -> Value {
-    let NamedSelection { owner, object, kind, elements } = selection;
+    let NamedSelection { owner, object, kind, elements, .. } = selection;
     json!({ "owner": owner, "object": object, "kind": kind.noun(), "count": elements.len(), "elements": elements })
 }
 

@@ -14,8 +14,8 @@ use crate::process::Outcome;
 /// Writes a small scene as a starting point.
 #[derive(Debug, Args)]
 pub struct New {
-    /// The file to write (.ron). An existing file is not replaced.
-    scene: PathBuf,
+    /// The file to write (.ron); default: the name of the template. An existing file is not replaced.
+    scene: Option<PathBuf>,
     /// The scene to write.
     #[arg(long, value_enum, default_value_t)]
     template: Template,
@@ -43,6 +43,12 @@ enum Template {
 }
 
 impl Template {
+    /// The file that is written unless another one is given: `cape.ron`.
+    fn name(self) -> String {
+        let value = self.to_possible_value();
+        format!("{}.ron", value.as_ref().map_or("scene", |value| value.get_name()))
+    }
+
     fn text(self) -> &'static str {
         match self {
             Self::Drape => include_str!("templates/drape.ron"),
@@ -59,16 +65,17 @@ impl Template {
 impl New {
     /// Writes the file, and its mesh if it has one; prints the command that runs it.
     pub fn run(self) -> Result<Outcome> {
-        let path = self.scene.display();
+        let scene = self.scene.unwrap_or_else(|| self.template.name().into());
+        let path = scene.display();
         let mut text = self.template.text().to_owned();
         if self.template == Template::Garment {
-            let stem = self.scene.file_stem().context("the scene has no name")?.to_string_lossy();
+            let stem = scene.file_stem().context("the scene has no name")?.to_string_lossy();
             let mesh = format!("{stem}_skirt.obj");
             text = text.replace("MESH", &mesh);
-            write_new(&self.scene, &text)?;
-            write_new(&self.scene.with_file_name(mesh), &skirt())?;
+            write_new(&scene, &text)?;
+            write_new(&scene.with_file_name(mesh), &skirt())?;
         } else {
-            write_new(&self.scene, &text)?;
+            write_new(&scene, &text)?;
         }
         output::report(&format!("wrote `{path}`; run and play it with `nucleus play {path}`\n"));
         Ok(Outcome::Success)

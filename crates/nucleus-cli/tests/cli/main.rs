@@ -6,6 +6,8 @@ mod documentation;
 mod extremes;
 mod info;
 mod initial_state;
+mod mesh_files;
+mod messages;
 mod output;
 mod play;
 mod reference;

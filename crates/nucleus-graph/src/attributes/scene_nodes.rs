@@ -88,8 +88,10 @@ pub mod mesh {
         /// A mesh from a file, with points in the order of the file.
         MESH = "mesh", inherits Some(&SURFACE_SHAPE), hides [];
         "Nucleus (open)" {
-            /// An OBJ file, relative to the scene file. `####` in its name stands for the frame number: one file per frame.
+            /// An OBJ, PLY, glTF or USD file, relative to the scene file. `####` in its name stands for the frame number: one file per frame. A glTF or USD file plays its animation: transforms, point caches, blend shapes and skins.
             FILE: String = text("file", "file").solved("nucleus_graph::mesh").extension();
+            /// The object of a glTF or USD file: the meshes at and below the nodes or prims of this name. All meshes if it is empty.
+            OBJECT: String = text("object", "object").solved("nucleus_graph::mesh").extension();
         }
     }
 }

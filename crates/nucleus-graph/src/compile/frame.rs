@@ -13,6 +13,7 @@ use nucleus_core::{
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus};
 use crate::graph::NodeId;
+use crate::scene::document::TimeSpan;
 
 use super::animated_mesh::Points;
 use super::attachments::AttachmentState;
@@ -36,6 +37,16 @@ impl Program {
         let start = self.nuclei()[nucleus].start() as f64;
         self.interval(nucleus, [start, start + 1.0], 1.0, false)
             .input(&mut AttachmentState::default(), &|_, _| Vector3::zeros())
+    }
+
+    /// The ground plane of the first nucleus at each frame of the run; frames without one are left out.
+    pub fn ground_planes(&self) -> Vec<GroundPlane> {
+        let TimeSpan { start, end, .. } = self.time();
+        let at = |frame: i64| {
+            let interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
+            interval.ground_plane(&interval.nucleus_space())
+        };
+        (start..=end).filter_map(at).collect()
     }
 
     /// The nodes that are evaluated for a frame of the first nucleus, in the order of evaluation.

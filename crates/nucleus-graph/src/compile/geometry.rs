@@ -1,4 +1,4 @@
-//! Surfaces of mesh nodes: primitives and OBJ files. Each is made once, within the memory limit.
+//! Surfaces of mesh nodes: primitives and files. Each is made once, within the memory limit.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,12 @@ use crate::attributes::{
 use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{Graph, Node, NodeId};
-use crate::memory::{self, Budget, Cost, Size, TooLarge};
-use crate::mesh::{ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj, read_obj_uvs};
+use crate::memory::{Budget, Cost, Size};
+use crate::mesh::{MeshFormat, ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj_uvs};
 use crate::scene::document::{Scene, Source};
 
-use super::animated_mesh::{AnimatedMesh, NumberedFile, Points};
+use super::animated_mesh::{AnimatedMesh, NumberedFile};
+use super::mesh_files::{Mesh, read_files, report_too_large};
 
 /// The minimum bytes of a point in a file: `v 0 0 0` and the end of the line, or `0 0 0`.
 const MIN_POINT_BYTES: u64 = 6;
@@ -24,14 +25,6 @@ pub(super) struct Geometry {
     made: BTreeMap<NodeId, Option<Mesh>>,
     /// The memory that the scene may take.
     pub(super) budget: Budget,
-}
-
-/// A mesh before any blend.
-struct Mesh {
-    /// At the first frame.
-    surface: Surface,
-    /// Points of each frame from the first frame of the scene on, where there is a file for each; else empty.
-    frames: Vec<Points>,
 }
 
 impl Geometry {
@@ -87,7 +80,7 @@ impl Geometry {
         Some(own.blended(node, target))
     }
 
-    /// The texture coordinates of a node's points; `None` if its kind has none. Reads the file on each call.
+    /// The texture coordinates of a node's points; `None` if it has none. Reads an OBJ file on each call.
     pub(super) fn uvs(&self, scene: &Scene, node: NodeId) -> Result<Option<Vec<Option<[f64; 2]>>>, ObjError> {
         let own = scene.graph.node(node);
         if own.node_type() == &poly_plane::POLY_PLANE {
@@ -99,6 +92,9 @@ impl Geometry {
             return Ok(None);
         }
         let file = self.file_of(scene, node).unwrap_or_default();
+        if MeshFormat::of(&file) != MeshFormat::Obj {
+            return Ok(self.made.get(&node).and_then(|mesh| mesh.as_ref()?.uvs.clone()));
+        }
         let uvs = read_obj_uvs(scene.source.path(&file))?;
         Ok(Some(uvs).filter(|uvs| uvs.iter().any(Option::is_some)))
     }
@@ -133,7 +129,7 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
             return None;
         }
         match primitive.surface() {
-            Ok(surface) => Mesh { surface, frames: Vec::new() },
+            Ok(surface) => Mesh { surface, frames: Vec::new(), uvs: None },
             Err(error) => {
                 findings.error(&scene.source.place(node.name()), format!("`{}`: {error}", node.name()));
                 return None;
@@ -184,75 +180,6 @@ fn count(number: i64) -> u32 {
     u32::try_from(number).unwrap_or_default()
 }
 
-/// Reports a mesh that exceeds the memory limit.
-fn report_too_large(scene: &Scene, node: &Node, refused: &TooLarge, findings: &mut Findings) {
-    if !refused.is_first {
-        return;
-    }
-    let name = node.name();
-    let error = findings.error(&scene.source.place(name), format!("the mesh `{name}` takes {refused}"));
-    error.help(refused.help("make it coarser"));
-}
-
-/// Reads the file of a mesh, or one file per frame.
-fn read_files(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings) -> Option<Mesh> {
-    let file = node.get(&mesh::FILE);
-    let name = node.name();
-    if file.is_empty() {
-        let error = findings.error(&scene.source.place(name), format!("`{name}` has no `file`"));
-        error.help("add `file: \"...\"`, an OBJ file");
-        return None;
-    }
-    let place = scene.source.place(&format!("{name}.file"));
-    let read = |file: &str, budget: &Budget, findings: &mut Findings| {
-        let path = scene.source.path(file);
-        if let Err(refused) = budget.check(files::length(&path).saturating_mul(memory::MESH_BYTE)) {
-            let error = findings.error(&place, format!("to read `{}` takes {refused}", path.display()));
-            error.help(refused.help("take a smaller file"));
-            return None;
-        }
-        match read_obj(path) {
-            Ok(surface) => Some(surface),
-            Err(error) => {
-                findings.error(&place, error.to_string());
-                None
-            }
-        }
-    };
-    let points = |surface: &Surface| surface.positions.len() as u64;
-    let Some(numbered) = NumberedFile::new(&file) else {
-        let surface = read(&file, budget, findings)?;
-        let size = Size { points: points(&surface), corners: surface.faces.corners().len() as u64 };
-        let claimed = budget.claim(Cost::MESH.of(size));
-        return match claimed {
-            Ok(()) => Some(Mesh { surface, frames: Vec::new() }),
-            Err(refused) => {
-                report_too_large(scene, node, &refused, findings);
-                None
-            }
-        };
-    };
-    let surface = read(&numbered.at(scene.time.start), budget, findings)?;
-    let mut frames: Vec<Points> = vec![surface.positions.as_slice().into()];
-    for frame in scene.time.start + 1..=scene.time.end {
-        let file = numbered.at(frame);
-        if let Err(refused) = budget.claim(points(&surface) * memory::SHAPE_POINT) {
-            report_too_large(scene, node, &refused, findings);
-            return None;
-        }
-        let points = read(&file, budget, findings)?.positions;
-        let (first, now) = (surface.positions.len(), points.len());
-        if now != first {
-            let message =
-                format!("`{name}` has {first} points at frame {}, but {now} in `{file}`", scene.time.start);
-            findings.error(&place, message).help("a mesh keeps its points from frame to frame");
-            return None;
-        }
-        frames.push(points.into());
-    }
-    Some(Mesh { surface, frames })
-}
-
 /// An upper bound of the points of an object before it is made, which limits the points that a scene may name: from the
 /// size of its file. `None` where it is unknown, as for a file per frame.
 pub(crate) fn max_points(
@@ -268,7 +195,8 @@ pub(crate) fn max_points(
     let mesh = graph.node(mesh);
     if mesh.node_type() == &mesh::MESH {
         let file = mesh.get(&mesh::FILE);
-        return (!file.contains('#')).then(|| of_file(&file));
+        let is_bounded = !file.contains('#') && MeshFormat::of(&file) == MeshFormat::Obj;
+        return is_bounded.then(|| of_file(&file));
     }
     primitive(mesh).map(|primitive| primitive.size().points)
 }

@@ -42,6 +42,7 @@ mod frame;
 mod geometry;
 mod initial_state;
 mod map_values;
+mod mesh_files;
 mod objects;
 mod particles;
 mod perturbation;

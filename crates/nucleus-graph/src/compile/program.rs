@@ -88,6 +88,8 @@ pub struct NamedSelection {
     pub kind: ElementKind,
     /// Their numbers.
     pub elements: Vec<u32>,
+    /// The points of these elements, each once, in order.
+    pub points: Vec<u32>,
 }
 
 /// The role of an object in the solver.

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::attributes::{mesh, n_base, poly_plane};
 use crate::graph::Node;
-use crate::mesh::{CornerUvs, poly_plane_uvs, read_obj_corner_uvs};
+use crate::mesh::{CornerUvs, MeshFile, MeshFormat, poly_plane_uvs, read_obj_corner_uvs};
 use crate::scene::document::Scene;
 
 use super::animated_mesh::NumberedFile;
+use super::mesh_files::frames_of;
 use super::program::{Object, Program};
 
 /// Distinct texture coordinates, and their index at each corner of a face; the indices are empty where every point has one
@@ -20,11 +21,14 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
         let (node, _) = program.node_of(object.kind);
         let mesh = scene.graph.source(node, &n_base::INPUT_MESH)?;
         let (values, corners) = of_mesh(scene, scene.graph.node(mesh))?;
-        let fits = match corners.is_empty() {
+        // Where each point has one value, in the order of the points, an index says nothing.
+        let is_per_point = corners.is_empty() || corners == object.faces.corners();
+        let fits = match is_per_point {
             true => values.len() == object.points,
             // Degenerate faces were left out of the mesh.
             false => corners.len() == object.faces.corners().len(),
         };
+        let corners = if is_per_point { Vec::new() } else { corners };
         fits.then(|| (object.name.clone(), (values, corners)))
     };
     program.objects().iter().filter_map(of).collect()
@@ -42,5 +46,12 @@ fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
     }
     let file = node.get(&mesh::FILE);
     let file = NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start));
-    read_obj_corner_uvs(scene.source.path(&file)).ok().flatten()
+    let path = scene.source.path(&file);
+    match MeshFormat::of(&path) {
+        MeshFormat::Obj => read_obj_corner_uvs(path).ok().flatten(),
+        _ => {
+            let opened = MeshFile::open(path, &node.get(&mesh::OBJECT), frames_of(scene)).ok()?;
+            opened.mesh(scene.time.start).ok()?.uvs
+        }
+    }
 }

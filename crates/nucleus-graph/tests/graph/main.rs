@@ -5,6 +5,7 @@ mod constraints;
 mod independence;
 mod maps;
 mod materials;
+mod mesh_files;
 mod mutations;
 mod particles;
 mod pulling;

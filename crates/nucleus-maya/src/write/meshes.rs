@@ -6,7 +6,7 @@ use std::fmt::Write;
 use nucleus_core::Surface;
 use nucleus_graph::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
 use nucleus_graph::graph::NodeId;
-use nucleus_graph::mesh::{Primitive, read_obj};
+use nucleus_graph::mesh::{MeshFormat, Primitive, read_obj};
 
 use super::writer::Writer;
 
@@ -46,6 +46,12 @@ impl Writer<'_> {
         let file = self.graph().node(id).get(&mesh::FILE);
         if file.is_empty() {
             return Ok(None);
+        }
+        if MeshFormat::of(&file) != MeshFormat::Obj {
+            let name = self.graph().node(id).name();
+            return Err(format!(
+                "`{name}` is read from `{file}`: Maya ASCII takes meshes of OBJ files; convert it first"
+            ));
         }
         let path = self.scene.source.path(&numbered(&file, self.scene.time.start));
         read_obj(&path).map(Some).map_err(|error| error.to_string())

@@ -235,8 +235,20 @@ function readRun(metadata) {
     scene: scene.get("path") ?? "",
     cameras: readCameras(metadata.get("nucleus.cameras")),
     floor: levelPlane(run.get("ground")),
+    floors: (run.get("ground motion") ?? "").split("\n").map(levelPlane),
     radii: readRadii(run),
+    selections: readSelections(metadata.get("nucleus.selections")),
   };
+}
+
+// The points that constraints name: the constraint, the object, and the points with runs as their ends, `3 5:8`.
+function readSelections(keys) {
+  const entries = [...(keys ?? [])].filter(([key]) => key.startsWith("selection ")).sort(([a], [b]) => (a < b ? -1 : 1));
+  return entries.map(([, text]) => {
+    const [owner, object, points] = text.split("\n");
+    const runs = (points ?? "").split(" ").filter(Boolean).map((run) => run.split(":").map(Number));
+    return { owner, object, points: runs.flatMap(([first, last = first]) => Array.from({ length: last - first + 1 }, (_, k) => first + k)) };
+  });
 }
 
 // The radius of the particles of each object with particles, by its name.
@@ -244,6 +256,13 @@ function readRadii(run) {
   const before = "radius of ";
   const found = [...run].filter(([key, text]) => key.startsWith(before) && Number(text) > 0);
   return new Map(found.map(([key, text]) => [key.slice(before.length), Number(text)]));
+}
+
+// The height of the floor at a time in frames from the start, if the ground plane moves; linear between two frames.
+export function floorAt({ floors }, frames) {
+  const place = Math.min(Math.max(frames, 0), floors.length - 1);
+  const [before, after] = [floors[Math.floor(place)], floors[Math.ceil(place)]];
+  return before === null || after === null ? null : before + (after - before) * (place % 1);
 }
 
 // The height of a plane, given as point and normal, if it is horizontal; else null.

@@ -17,6 +17,7 @@ export function optionsOf({ timeline, scene, camera, series }) {
   if (COLOURINGS.includes(colour)) {
     options.set(colour, colour in scales ? short(scales[colour]) : "");
   }
+  new Set(scene.selections.filter(({ isShown }) => isShown).map(({ owner }) => owner)).forEach((owner) => options.append("select", owner));
   wireframe && options.set("wireframe", "");
   scene.twins.length > 0 && options.set("twin", twin);
   ["in", "out"].forEach((name, k) => marks[k] !== null && options.set(name, cache.frameNumber(marks[k])));
@@ -48,6 +49,9 @@ export async function applyAddress(player) {
   }
   if (options.has("wireframe") && !scene.look.wireframe) {
     player.toggleWireframe();
+  }
+  if (options.has("select")) {
+    player.select(options.getAll("select"));
   }
   applyCamera(player, options);
   if (["over", "beside", "off"].includes(options.get("twin"))) {

@@ -137,7 +137,7 @@ async function start() {
   const player = new Player(byId("canvas"));
   globalThis.nucleusPlayer = player; // for the console, and for `cargo xtask book --only caches`
   listen(player);
-  byId("panel").open = window.innerWidth > 720; // else it covers the picture
+  byId("panel").open = window.innerWidth > 900; // else it covers the picture
   byId("series").hidden = window.innerHeight < 480;
   byId("fit").addEventListener("click", () => player.fitDifference());
   follow(player).catch(showError);

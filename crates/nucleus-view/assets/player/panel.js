@@ -28,6 +28,23 @@ export function showObjects(scene, onChange) {
   countPoints(scene);
 }
 
+// A line per selection, with a checkbox to show its points.
+export function showSelections(scene, onChange) {
+  byId("selections").hidden = scene.selections.length === 0;
+  byId("selection-list").replaceChildren(...scene.selections.map((selection) => {
+    const box = element("input", { type: "checkbox", checked: selection.isShown });
+    box.addEventListener("change", () => {
+      selection.isShown = box.checked;
+      box.blur();
+      onChange();
+    });
+    const swatch = element("i", { className: "swatch" });
+    swatch.style.background = `rgb(${selection.colour.map((x) => Math.round(255 * x)).join(" ")})`;
+    const count = element("small", { textContent: `${plain(selection.points.length)} points of ${selection.object}` });
+    return element("label", {}, box, swatch, element("span", { textContent: selection.owner }), count);
+  }));
+}
+
 // Shows the number of points of each object in its current mesh.
 export function countPoints(scene) {
   for (const { count, mesh, topology } of scene.objects) {

@@ -1,11 +1,11 @@
 // The player: one open cache, the scene, the camera and the timeline.
 
-import { Cache } from "./cache.js";
+import { Cache, floorAt } from "./cache.js";
 import { Camera } from "./camera.js";
 import { distances, fittedScale, percentile } from "./compare.js";
 import {
-  byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showNotice, showObjects, showSeriesFigures,
-  showSeriesNow, showSpeed, showState, showTime,
+  byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showNotice, showObjects, showSelections,
+  showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
 } from "./panel.js";
 import { Scene, unionOf } from "./scene.js";
 import { Series } from "./series.js";
@@ -58,7 +58,9 @@ export class Player {
     document.title = `${name} – Nucleus`;
     byId("name").textContent = cache.run.scene || name;
     byId("name").title = `${name}, written by Nucleus ${cache.run.version}`;
+    scene.setSelections(cache.run.selections);
     showObjects(scene, this.redraw);
+    showSelections(scene, this.redraw);
     showIncomplete(cache);
     byId("camera").hidden = cache.run.cameras.length === 0;
     camera.track = cache.run.cameras[0] ?? null;
@@ -88,7 +90,9 @@ export class Player {
     before.pause();
     if (isNew) {
       this.scene.setObjects(cache.objects);
+      this.scene.setSelections(cache.run.selections);
       showObjects(this.scene, this.redraw);
+      showSelections(this.scene, this.redraw);
     }
     this.take(cache);
     Object.assign(this.timeline, { index: Math.min(index, cache.frames.length - 1), marks, speed, isLooping });
@@ -131,6 +135,7 @@ export class Player {
       }
       this.timeline.times = state.times;
       this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
+      scene.moveFloor(floorAt(cache.run, this.camera.frames));
       scene.update(state, twin);
       this.series.mark(state.index, this.timeline.marks);
       showTime(cache, state);
@@ -143,6 +148,14 @@ export class Player {
     } catch (error) {
       showNotice(`Frame ${cache.frameNumber(index)}: ${error.message} ${error.hint ?? ""}`);
     }
+  }
+
+  // Shows the points of the constraints of these names, and hides those of all others.
+  select(owners) {
+    this.scene.selections.forEach((selection) => (selection.isShown = owners.includes(selection.owner)));
+    showSelections(this.scene, this.redraw);
+    byId("selections").open ||= owners.length > 0;
+    this.redraw();
   }
 
   // The state of the other run at the same time, if there is one.

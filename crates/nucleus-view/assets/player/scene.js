@@ -4,7 +4,7 @@ import { cross, multiply, normalise, orthographic, scale, view } from "./camera.
 import { VertexArray, context, depthTarget, program } from "./gl.js";
 import { Mesh } from "./mesh.js";
 import {
-  CONTACT_STATE_COLOURS, DEPTH, FLOOR, LINES, PARTICLES, STRAIN, SURFACE, objectColours,
+  CONTACT_STATE_COLOURS, DEPTH, DOTS, FLOOR, LINES, PARTICLES, SELECTION_COLOURS, STRAIN, SURFACE, objectColours,
 } from "./shading.js";
 
 const BACKGROUND = [0.0075, 0.0085, 0.0105];
@@ -19,11 +19,13 @@ export class Scene {
     const make = ({ vertex, fragment }) => program(this.gl, vertex, fragment);
     this.programs = {
       surface: make(SURFACE), lines: make(LINES), particles: make(PARTICLES), floor: make(FLOOR), depth: make(DEPTH),
+      dots: make(DOTS),
     };
     this.shadow = depthTarget(this.gl, 2048);
     this.empty = this.gl.createVertexArray();
     this.objects = [];
     this.twins = [];
+    this.selections = [];
     // Colour by "object", "strain", "speed", "difference" or "contacts"; a scalar has a value of full saturation.
     this.look = { wireframe: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
@@ -41,6 +43,17 @@ export class Scene {
     for (const one of this.objects) {
       one.twin = this.twins.find(({ name }) => name === one.name);
     }
+  }
+
+  // Replaces the selections: points of objects that constraints name. They are hidden until they are chosen.
+  setSelections(selections) {
+    const wasShown = new Set(this.selections.filter(({ isShown }) => isShown).map(({ owner, object }) => `${owner}/${object}`));
+    this.selections.forEach(({ vertices }) => vertices.delete());
+    const isKnown = ({ object }) => this.objects.some(({ name }) => name === object);
+    this.selections = selections.filter(isKnown).map((selection, k) => ({
+      ...selection, colour: SELECTION_COLOURS[k % SELECTION_COLOURS.length], vertices: new VertexArray(this.gl, [3]),
+      isShown: wasShown.has(`${selection.owner}/${selection.object}`),
+    }));
   }
 
   // Shows the twins over the objects or beside them, or hides them.
@@ -68,6 +81,11 @@ export class Scene {
     this.stage = stage;
     this.floor = floor;
     this.isShadowStale = true;
+  }
+
+  // Moves the floor to a height; null leaves it.
+  moveFloor(height) {
+    this.floor = height ?? this.floor;
   }
 
   // Sets the state: the positions of each object, and their mesh.
@@ -134,6 +152,7 @@ export class Scene {
     gl.enable(gl.DEPTH_TEST);
     this.objects.filter(({ isShown }) => isShown).forEach((object) => this.drawObject(object, eye));
     this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawObject(twin, eye));
+    this.selections.filter(({ isShown }) => isShown).forEach((selection) => this.drawSelection(selection, eye));
     gl.bindVertexArray(null);
     gl.finish(); // so that frames do not queue up on slow graphics
   }
@@ -222,6 +241,20 @@ export class Scene {
     this.use(this.programs.lines, { ...eye, ink: [0.35, 0.75, 1, 0.8] });
     vertices.draw(gl.LINES, EDGES);
     gl.disable(gl.BLEND);
+  }
+
+  // Draws the points of a selection where its object is now.
+  drawSelection({ object, points, colour, vertices }, eye) {
+    const { gl } = this;
+    const own = this.objects.find(({ name }) => name === object);
+    if (!own?.isShown || !own.mesh.points) {
+      return;
+    }
+    const known = points.filter((point) => 3 * point + 2 < own.mesh.points.length);
+    vertices.set(POSITION, Float32Array.from(known.flatMap((point) => [...own.mesh.points.slice(3 * point, 3 * point + 3)])));
+    this.use(this.programs.dots, { ...eye, colour, size: 7 * Math.min(window.devicePixelRatio || 1, 2) });
+    gl.bindVertexArray(vertices.array);
+    gl.drawArrays(gl.POINTS, 0, known.length);
   }
 
   drawObject(object, eye) {

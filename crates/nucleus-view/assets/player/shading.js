@@ -134,6 +134,29 @@ void main() {
 }`,
 };
 
+// The colours of selections, which differ from those of objects.
+export const SELECTION_COLOURS = [[1, 0.75, 0.1], [0.25, 0.8, 1], [0.6, 0.95, 0.35], [1, 0.45, 0.85]];
+
+export const DOTS = {
+  vertex: `${HEAD}
+layout(location = 0) in vec3 position;
+uniform float size;
+void main() {
+  gl_Position = projection * view * vec4(position, 1.0);
+  gl_Position.z -= 1e-3 * gl_Position.w; // in front of their faces
+  gl_PointSize = size;
+}`,
+  fragment: `${HEAD}
+uniform vec3 colour;
+out vec4 shown;
+void main() {
+  vec2 from = gl_PointCoord * 2.0 - 1.0;
+  float far = dot(from, from);
+  if (far > 1.0) discard;
+  shown = vec4(colour * (far > 0.55 ? 0.25 : 1.0), 1.0);
+}`,
+};
+
 // The floor is a large square that fades into the background.
 export const FLOOR = {
   vertex: `${HEAD}

@@ -101,7 +101,7 @@ fn start(
 ) -> Result<png::Writer<BufWriter<File>>, png::EncodingError> {
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(png::Compression::Balanced);
     encoder.set_animated(UNKNOWN_COUNT, 0)?;
     // The delay is a fraction of two 16-bit numbers, 60 / (frames per minute).
     let per_minute = (fps * 60.0).clamp(60.0, 60_000.0).round() as u16;

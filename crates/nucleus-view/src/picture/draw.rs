@@ -23,7 +23,13 @@ pub fn draw(objects: &[Object], camera: &Camera, style: &Style) -> Image {
     let fragments = visibility::draw(&mesh, &view);
     let is_transparent = style.background == Background::Transparent;
     let floor = if is_transparent { None } else { floor_height(objects, style.ground) };
-    let options = Options { floor, wireframe: style.wireframe, samples, background: style.background };
+    let options = Options {
+        floor,
+        wireframe: style.wireframe,
+        samples,
+        background: style.background,
+        keeps_linear: style.keeps_linear,
+    };
     let mut image = shade(&mesh, &fragments, &view, &light, options);
     if let Colouring::Strain { full_scale } = style.colouring {
         strain::draw_legend(&mut image, full_scale);
@@ -60,9 +66,11 @@ struct Options {
     /// Samples along each side of a pixel.
     samples: u32,
     background: Background,
+    /// Whether the picture keeps its linear colours.
+    keeps_linear: bool,
 }
 
-/// Shades every sample and averages the samples of each pixel.
+/// Shades the surfaces of every pixel.
 fn shade(mesh: &Mesh, fragments: &[Fragment], view: &View, light: &Light, options: Options) -> Image {
     let samples = options.samples;
     let shader = Shader {
@@ -72,25 +80,53 @@ fn shade(mesh: &Mesh, fragments: &[Fragment], view: &View, light: &Light, option
         key: Light::key_direction(view),
         floor: options.floor.map(|height| Floor::new(height, view, light)),
         background: options.background,
+        samples,
         // A line has the same width in pixels for any number of samples.
         line_width: if options.wireframe { 0.55 * samples as f32 } else { 0.0 },
     };
     let [width, height] = view.size.map(|side| side / samples);
     let mut image = Image::new(width, height);
-    image.fill_rows(options.background == Background::Transparent, |column, row| {
-        let (mut sum, mut covered) = (Vec3::zeros(), 0.0);
-        for sample in 0..samples * samples {
-            let x = column * samples + sample % samples;
-            let y = row * samples + sample / samples;
-            let (colour, opacity) = shader.colour(&fragments[(y * view.size[0] + x) as usize], [x, y]);
-            sum += colour * opacity;
-            covered += opacity;
-        }
-        // Colours are not multiplied by opacity, as PNG demands.
-        let colour = if covered > 0.0 { sum / covered } else { sum };
-        (colour, covered / (samples * samples) as f32)
-    });
+    let has_alpha = options.background == Background::Transparent;
+    let pixel = |column: u32, row: u32| shader.pixel(fragments, [column, row]);
+    image.fill_rows(has_alpha, options.keeps_linear, pixel);
     image
+}
+
+/// What a pixel shows: each surface with the samples that it covers.
+struct Surfaces {
+    found: [Surface; 64],
+    count: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Surface {
+    /// The primitive; of the floor and the background, one beyond all.
+    key: u32,
+    covered: u32,
+    /// Its sample nearest to the centre of the pixel, and twice the distance of that.
+    sample: u32,
+    distance: u32,
+}
+
+impl Surfaces {
+    fn new() -> Self {
+        Self { found: [Surface { key: 0, covered: 0, sample: 0, distance: 0 }; 64], count: 0 }
+    }
+
+    fn add(&mut self, key: u32, sample: u32, distance: u32) {
+        match self.found[..self.count].iter_mut().find(|surface| surface.key == key) {
+            Some(surface) => {
+                surface.covered += 1;
+                if distance < surface.distance {
+                    (surface.sample, surface.distance) = (sample, distance);
+                }
+            }
+            None => {
+                self.found[self.count] = Surface { key, covered: 1, sample, distance };
+                self.count += 1;
+            }
+        }
+    }
 }
 
 struct Shader<'a> {
@@ -101,6 +137,8 @@ struct Shader<'a> {
     key: Vec3,
     floor: Option<Floor>,
     background: Background,
+    /// Samples along each side of a pixel.
+    samples: u32,
     /// Width of a wireframe line on each side of an edge, in samples.
     line_width: f32,
 }
@@ -115,26 +153,66 @@ struct SurfacePoint {
 }
 
 impl Shader<'_> {
-    /// The linear colour of a sample, and its opacity.
-    fn colour(&self, fragment: &Fragment, [x, y]: [u32; 2]) -> (Vec3, f32) {
-        let ray = self.view.ray([x as f32 + 0.5, y as f32 + 0.5]);
-        let surface = if fragment.inverse_depth > 0.0 {
-            self.view.eye + ray / fragment.inverse_depth
-        } else {
-            self.view.eye
-        };
-        if fragment.inverse_depth > 0.0 && !self.is_under_floor(&surface) {
-            return (self.shade_surface(&self.surface_point(fragment, &surface, &ray), &ray), 1.0);
+    /// The linear colour of a pixel, and its opacity. Visibility is found per sample; each primitive is shaded once, and
+    /// weighs as many samples as it covers (multisampling, Akeley 1993). With lines every sample is shaded.
+    fn pixel(&self, fragments: &[Fragment], [column, row]: [u32; 2]) -> (Vec3, f32) {
+        let n = self.samples;
+        let at = |sample: u32| [column * n + sample % n, row * n + sample / n];
+        let fragment = |[x, y]: [u32; 2]| &fragments[(y * self.view.size[0] + x) as usize];
+        let mut surfaces = Surfaces::new();
+        for sample in 0..n * n {
+            let place = at(sample);
+            let fragment = fragment(place);
+            let is_surface = fragment.inverse_depth > 0.0 && !self.is_under_floor(fragment, place);
+            let key = match is_surface {
+                true if self.line_width > 0.0 => sample,
+                true => fragment.primitive,
+                false => u32::MAX,
+            };
+            let from_centre = |place: u32| (2 * place + 1).abs_diff(n);
+            surfaces.add(key, sample, from_centre(sample % n).pow(2) + from_centre(sample / n).pow(2));
         }
-        let Some(background) = self.background(y) else { return (Vec3::zeros(), 0.0) };
-        let floor = self.floor.as_ref().and_then(|floor| floor.shade(self.view, &ray, self.light));
+        let (mut sum, mut covered) = (Vec3::zeros(), 0.0);
+        for surface in &surfaces.found[..surfaces.count] {
+            let place = at(surface.sample);
+            let (colour, opacity) = match surface.key {
+                u32::MAX => self.floor_or_background(place),
+                _ => (self.surface_colour(fragment(place), place), 1.0),
+            };
+            let weight = opacity * surface.covered as f32;
+            sum += colour * weight;
+            covered += weight;
+        }
+        // Colours are not multiplied by opacity, as PNG demands.
+        let colour = if covered > 0.0 { sum / covered } else { sum };
+        (colour, covered / (n * n) as f32)
+    }
+
+    fn ray(&self, [x, y]: [u32; 2]) -> Vec3 {
+        self.view.ray([x as f32 + 0.5, y as f32 + 0.5])
+    }
+
+    fn surface_colour(&self, fragment: &Fragment, place: [u32; 2]) -> Vec3 {
+        let ray = self.ray(place);
+        let position = self.view.eye + ray / fragment.inverse_depth;
+        self.shade_surface(&self.surface_point(fragment, &position, &ray), &ray)
+    }
+
+    fn floor_or_background(&self, place: [u32; 2]) -> (Vec3, f32) {
+        let Some(background) = self.background(place[1]) else { return (Vec3::zeros(), 0.0) };
+        let ray = self.ray(place);
+        let shaded = |floor: &Floor| floor.shade(self.view, &ray, self.samples as f32, self.light);
+        let floor = self.floor.as_ref().and_then(shaded);
         (floor.map_or(background, |(colour, opacity)| background.lerp(&colour, opacity)), 1.0)
     }
 
-    /// Whether the floor hides a point from the eye.
-    fn is_under_floor(&self, point: &Vec3) -> bool {
+    /// Whether the floor hides what a sample shows from the eye.
+    fn is_under_floor(&self, fragment: &Fragment, place: [u32; 2]) -> bool {
         let slack = self.view.distance * 1e-3;
-        self.floor.as_ref().is_some_and(|floor| floor.hides(self.view, point, slack))
+        self.floor.as_ref().is_some_and(|floor| {
+            let point = self.view.eye + self.ray(place) / fragment.inverse_depth;
+            floor.hides(self.view, &point, slack)
+        })
     }
 
     fn background(&self, row: u32) -> Option<Vec3> {

@@ -14,8 +14,7 @@ use crate::error::ViewError;
 
 /// A run as pictures with one camera and one floor, so that nothing moves but the objects.
 ///
-/// The floor is the ground plane of the scene where the cache has a level one. The cache records the plane at the start
-/// frame only, so a plane that moves is drawn where it starts.
+/// The floor is the ground plane of the scene where the cache has a level one; it moves with the plane.
 ///
 /// ```no_run
 /// use nucleus_view::{Film, Style};
@@ -37,6 +36,8 @@ pub struct Film<'a, R> {
     /// The box around the simulated objects over the run.
     stage: Bounds,
     style: Style,
+    /// Whether the floor is the ground plane, which may move.
+    is_ground_plane: bool,
 }
 
 impl<'a, R: Read + Seek> Film<'a, R> {
@@ -54,12 +55,11 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         }
         let Survey { framed, stage, floor } = survey(cache, &moments)?;
         let camera = Camera::framing(&framed, style.size);
-        // The floor is horizontal, so an inclined plane cannot be drawn.
-        let plane = cache.run().ground.filter(|plane| plane.normal[1] > 0.999 * norm(plane.normal));
-        let floor = plane.map_or(floor, |plane| Ground::At(plane.origin[1] as f32));
-        let ground = if style.ground == Ground::Below { floor } else { style.ground };
+        let is_ground_plane = style.ground == Ground::Below;
+        let ground = if is_ground_plane { floor } else { style.ground };
         let fps = cache.run().frames_per_second / every as f64;
-        Ok(Self { cache, moments, fps, camera, scene_camera: None, stage, style: Style { ground, ..style } })
+        let style = Style { ground, ..style };
+        Ok(Self { cache, moments, fps, camera, scene_camera: None, stage, style, is_ground_plane })
     }
 
     /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
@@ -114,6 +114,17 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         Self { scene_camera: Some(camera), ..self }
     }
 
+    /// The floor at a recorded time: the ground plane if there is a level one. The floor is horizontal, so an inclined
+    /// plane cannot be drawn.
+    fn ground_at(&self, moment: usize) -> Ground {
+        let (run, moments) = (self.cache.run(), self.cache.time_samples());
+        let frame =
+            moments.get(moment).map(|moment| f64::from(run.start) + moment.time * run.frames_per_second);
+        let plane = frame.filter(|_| self.is_ground_plane).and_then(|frame| run.ground_at(frame));
+        let level = plane.filter(|plane| plane.normal[1] > 0.999 * norm(plane.normal));
+        level.map_or(self.style.ground, |plane| Ground::At(plane.origin[1] as f32))
+    }
+
     /// The camera at a recorded time. Within a frame, the pose of a camera of the scene is interpolated linearly.
     fn camera_at(&self, moment: usize) -> Camera {
         let (run, moments) = (self.cache.run(), self.cache.time_samples());
@@ -151,7 +162,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// If the index is out of range, or the frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (positions, camera) = (positions(self.cache, moment)?, self.camera_at(moment));
-        Ok(draw(&objects(self.cache, moment, &positions)?, &camera, &self.style))
+        let style = Style { ground: self.ground_at(moment), ..self.style.clone() };
+        Ok(draw(&objects(self.cache, moment, &positions)?, &camera, &style))
     }
 
     /// Writes all pictures as one animated PNG that plays in real time.

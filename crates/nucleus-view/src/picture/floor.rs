@@ -5,7 +5,7 @@ use super::light::{Light, diffuse, smoothstep};
 use super::scene::Vec3;
 
 /// Points along a side of the grid on which the visible fraction of the sky is sampled; it varies slowly between them.
-const SIDE: usize = 128;
+const SIDE: usize = 80;
 
 /// Linear colour.
 const FLOOR: [f32; 3] = [0.545, 0.54, 0.53];
@@ -50,7 +50,8 @@ impl Floor {
     }
 
     /// The linear colour of the floor along a ray from the eye, and its opacity, 0 to 1; `None` where the ray misses it.
-    pub fn shade(&self, view: &View, ray: &Vec3, light: &Light) -> Option<(Vec3, f32)> {
+    /// Lines are filtered over a square of `samples` samples of the view to each side.
+    pub fn shade(&self, view: &View, ray: &Vec3, samples: f32, light: &Light) -> Option<(Vec3, f32)> {
         let depth = (self.height - view.eye.y) / ray.y;
         if !depth.is_finite() || depth <= 0.0 {
             return None;
@@ -65,7 +66,7 @@ impl Floor {
         let key = 1.0 - near * (1.0 - light.key_visibility(&point, &Vec3::y()));
         let sky = 1.0 - near * (1.0 - self.sky_visibility(&point));
         let length = ray.norm();
-        let width = depth / view.scale * length / (ray.y.abs() / length).max(0.05);
+        let width = samples * depth / view.scale * length / (ray.y.abs() / length).max(0.05);
         let lines = self.lines(&point, width) * (1.0 - smoothstep(0.4, 1.6, far));
         let colour = Vec3::from(FLOOR) * (1.0 - lines * (1.0 - LINE_DARKER));
         Some((diffuse(&colour, &Vec3::y(), key, sky, &self.key), opacity))

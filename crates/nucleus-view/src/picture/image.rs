@@ -1,17 +1,20 @@
 //! A picture in memory, and its encoding as PNG.
 
-use std::io::BufWriter;
+use std::io::{BufWriter, Cursor, Write};
 use std::num::NonZero;
 use std::path::Path;
 use std::thread;
 
+use exr::prelude::{
+    Compression, Encoding, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage, f16,
+};
 use nucleus_cache::atomic_file::AtomicFile;
 
 use super::scene::Vec3;
 use crate::error::ViewError;
 
-/// A picture of 8 bits per channel, row by row from the top left.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A picture of 8 bits per channel, row by row from the top left; with linear colours if the style asks for them.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Image {
     width: u32,
     height: u32,
@@ -19,6 +22,9 @@ pub struct Image {
     bytes: Vec<u8>,
     /// Opacity of each pixel; empty if all are opaque.
     alpha: Vec<u8>,
+    /// Linear red, green and blue of each pixel, not multiplied by its opacity, and the opacity; empty unless they were
+    /// asked for.
+    linear: Vec<[f32; 4]>,
 }
 
 impl Image {
@@ -26,12 +32,18 @@ impl Image {
     pub const LARGEST_SIDE: u32 = 8192;
 
     pub(super) fn new(width: u32, height: u32) -> Self {
-        Self { width, height, bytes: vec![0; 3 * width as usize * height as usize], alpha: Vec::new() }
+        let bytes = vec![0; 3 * width as usize * height as usize];
+        Self { width, height, bytes, alpha: Vec::new(), linear: Vec::new() }
     }
 
     /// Opacity of every pixel, row by row from the top left; empty if all are opaque.
     pub fn alpha(&self) -> &[u8] {
         &self.alpha
+    }
+
+    /// Linear colour of every pixel, not multiplied by its opacity, and the opacity; empty unless the style keeps them.
+    pub fn linear(&self) -> &[[f32; 4]] {
+        &self.linear
     }
 
     /// Width and height, in pixels.
@@ -58,11 +70,51 @@ impl Image {
     /// # Errors
     /// If the file cannot be created or written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
-        let path = path.as_ref();
+        self.write_compressed(path.as_ref(), png::Compression::Balanced)
+    }
+
+    /// Writes the picture as a larger PNG file in less time, for sequences.
+    ///
+    /// # Errors
+    /// As [`Image::write_png`].
+    pub fn write_png_fast(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
+        self.write_compressed(path.as_ref(), png::Compression::Fast)
+    }
+
+    fn write_compressed(&self, path: &Path, compression: png::Compression) -> Result<(), ViewError> {
         let create = |source| ViewError::Create { path: path.into(), source };
         let mut file = AtomicFile::create(path).map_err(create)?;
-        let encoded = self.encode(BufWriter::new(&mut file));
+        let encoded = self.encode(BufWriter::new(&mut file), compression);
         encoded.map_err(|source| ViewError::Encode { path: path.into(), source })?;
+        file.commit().map_err(create)
+    }
+
+    /// Writes the picture as an OpenEXR file of 16-bit floats: linear colours, multiplied by their opacity, with the
+    /// primaries of BT.709. The file gets its name when it is complete.
+    ///
+    /// # Errors
+    /// If the picture has no linear colours, or the file cannot be created or written.
+    pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<(), ViewError> {
+        let path = path.as_ref();
+        if self.linear.is_empty() {
+            return Err(ViewError::NoLinearColours { path: path.into() });
+        }
+        let mut bytes = Cursor::new(Vec::new());
+        let width = self.width as usize;
+        let pixel = |at: Vec2<usize>| {
+            let [red, green, blue, alpha] = self.linear[at.y() * width + at.x()];
+            let [red, green, blue] = [red, green, blue].map(|x| f16::from_f32(x * alpha));
+            (red, green, blue, f16::from_f32(alpha))
+        };
+        let size = (width, self.height as usize);
+        let channels = SpecificChannels::rgba(pixel);
+        let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::SMALL_LOSSLESS };
+        let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
+        let written = exr::prelude::Image::from_layer(layer).write().non_parallel().to_buffered(&mut bytes);
+        written.map_err(|source| ViewError::Exr { path: path.into(), source })?;
+        let create = |source| ViewError::Create { path: path.into(), source };
+        let mut file = AtomicFile::create(path).map_err(create)?;
+        file.write_all(bytes.get_ref()).map_err(create)?;
         file.commit().map_err(create)
     }
 
@@ -72,14 +124,14 @@ impl Image {
     /// If the encoder fails.
     pub fn to_png(&self) -> Result<Vec<u8>, ViewError> {
         let mut bytes = Vec::new();
-        let encoded = self.encode(&mut bytes);
+        let encoded = self.encode(&mut bytes, png::Compression::Balanced);
         encoded.map_err(|source| ViewError::Encode { path: "a picture in memory".into(), source })?;
         Ok(bytes)
     }
 
-    fn encode(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
+    fn encode(&self, to: impl Write, compression: png::Compression) -> Result<(), png::EncodingError> {
         let mut encoder = png::Encoder::new(to, self.width, self.height);
-        encoder.set_compression(png::Compression::High);
+        encoder.set_compression(compression);
         if self.alpha.is_empty() {
             encoder.set_color(png::ColorType::Rgb);
             let mut writer = encoder.write_header()?;
@@ -104,29 +156,44 @@ impl Image {
         if let Some(alpha) = self.alpha.get_mut(first / 3) {
             *alpha = (*alpha).max((share * 255.0) as u8);
         }
+        if let Some([red, green, blue, alpha]) = self.linear.get_mut(first / 3) {
+            let mixed = Vec3::new(*red, *green, *blue).lerp(linear, share);
+            [*red, *green, *blue] = mixed.into();
+            *alpha = alpha.max(share);
+        }
     }
 
     /// Sets every pixel to `colour(column, row)`: a linear colour and its opacity, 0 to 1. Rows are divided among all
     /// cores; the result does not depend on their number, because pixels are independent.
-    pub(super) fn fill_rows(&mut self, has_alpha: bool, colour: impl Fn(u32, u32) -> (Vec3, f32) + Sync) {
+    pub(super) fn fill_rows(
+        &mut self,
+        has_alpha: bool,
+        keeps_linear: bool,
+        colour: impl Fn(u32, u32) -> (Vec3, f32) + Sync,
+    ) {
         let cores = thread::available_parallelism().map_or(1, NonZero::get);
-        let width = self.width as usize;
-        self.alpha = vec![255; if has_alpha { self.bytes.len() / 3 } else { 0 }];
+        let (width, pixels) = (self.width as usize, self.bytes.len() / 3);
+        self.alpha = vec![255; if has_alpha { pixels } else { 0 }];
+        self.linear = vec![[0.0; 4]; if keeps_linear { pixels } else { 0 }];
         // More bands than cores, because bands of background take less time.
         let band_rows = (self.height as usize).div_ceil(4 * cores);
         let colour = &colour;
         let mut alphas = self.alpha.chunks_mut(band_rows * width);
+        let mut linears = self.linear.chunks_mut(band_rows * width);
         thread::scope(|scope| {
             for (band, bytes) in self.bytes.chunks_mut(band_rows * 3 * width).enumerate() {
-                let alpha = alphas.next();
+                let (alpha, linear) = (alphas.next(), linears.next());
                 scope.spawn(move || {
-                    let mut alpha = alpha.into_iter().flatten();
+                    let (mut alpha, mut linear) = (alpha.into_iter().flatten(), linear.into_iter().flatten());
                     for (place, pixel) in bytes.chunks_exact_mut(3).enumerate() {
                         let (row, column) = (band * band_rows + place / width, place % width);
-                        let (linear, opacity) = colour(column as u32, row as u32);
-                        pixel.copy_from_slice(&encoded(&linear));
+                        let (shaded, opacity) = colour(column as u32, row as u32);
+                        pixel.copy_from_slice(&encoded(&shaded));
                         if let Some(alpha) = alpha.next() {
                             *alpha = (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+                        }
+                        if let Some(linear) = linear.next() {
+                            *linear = [shaded.x, shaded.y, shaded.z, opacity];
                         }
                     }
                 });

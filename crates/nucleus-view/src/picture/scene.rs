@@ -42,6 +42,8 @@ pub struct Style {
     pub samples: u32,
     /// The background, behind the objects and the floor.
     pub background: Background,
+    /// Whether the picture keeps its linear colours, which an EXR file holds.
+    pub keeps_linear: bool,
     /// Linear colours of objects by their names, instead of those by their order.
     pub tints: Vec<(String, [f32; 3])>,
     /// The quantity that the colour of a cloth shows.
@@ -58,6 +60,7 @@ impl Default for Style {
             size: [960, 540],
             samples: 3,
             background: Background::Studio,
+            keeps_linear: false,
             tints: Vec::new(),
             colouring: Colouring::Objects,
             wireframe: false,

@@ -38,6 +38,8 @@ pub struct Sample {
     pub torn: bool,
     /// Height of a ground plane.
     pub plane: Option<f64>,
+    /// The plane rises by this in each frame.
+    pub rise: f64,
 }
 
 /// Writes the run as a cache of the frames 1 to [`FRAMES`].
@@ -55,7 +57,11 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         scene_path: "scenes/sample.ron".into(),
         end: FRAMES,
         contacts: sample.contacts,
-        ground: sample.plane.map(|y| Plane { origin: [0.0, y, 0.0], normal: [0.0, 1.0, 0.0] }),
+        ground: sample.plane.map(plane),
+        ground_motion: match sample.plane.filter(|_| sample.rise != 0.0) {
+            Some(y) => (0..FRAMES).map(|frame| plane(y + sample.rise * f64::from(frame))).collect(),
+            None => Vec::new(),
+        },
         detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
         ..RunInfo::default()
     };
@@ -63,6 +69,10 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
     let mut recorder = Recorder::create(path, &run, objects()).unwrap();
     recorder.record_start(&State { time: 0.0, frame: 1, broken: false }).unwrap();
     recorder
+}
+
+fn plane(y: f64) -> Plane {
+    Plane { origin: [0.0, y, 0.0], normal: [0.0, 1.0, 0.0] }
 }
 
 /// A camera that approaches the flag.

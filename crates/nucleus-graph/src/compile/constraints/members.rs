@@ -1,5 +1,6 @@
 //! From the nodes of a constraint to its members and sources.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId};
@@ -138,8 +139,7 @@ impl Compiler<'_> {
             return false;
         }
         let is_passive = |member: &Member| matches!(member.object, MemberObject::Collider(_));
-        let objects: std::collections::BTreeSet<_> =
-            members.iter().map(|member| member.object.key()).collect();
+        let objects: BTreeSet<_> = members.iter().map(|member| member.object.key()).collect();
         let needs_two = matches!(
             kind,
             kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE | kinds::MATCH | kinds::EXCLUDE_PAIRS
@@ -233,7 +233,15 @@ impl Compiler<'_> {
             false => self.selected(&of, component, &elements),
         };
         let [owner, named] = [constraint, object].map(|id| self.scene.graph.node(id).name().to_owned());
-        self.program.selections.push(NamedSelection { owner, object: named, kind, elements: chosen.clone() });
+        let corners: BTreeSet<u32> = chosen.iter().flat_map(|at| elements.corners(kind, *at)).collect();
+        let selection = NamedSelection {
+            owner,
+            object: named,
+            kind,
+            elements: chosen.clone(),
+            points: corners.into_iter().collect(),
+        };
+        self.program.selections.push(selection);
         if chosen.is_empty() {
             return None;
         }
