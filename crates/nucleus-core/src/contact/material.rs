@@ -1,8 +1,9 @@
 //! Contact materials: thickness, friction, stickiness, bounce, strength, layers and element types of a pair of
 //! objects in a frame; and vertex maps of them.
 
+use crate::contact::kept_gaps::KeptGaps;
 use crate::contact::response::ADHESION_RANGE;
-use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane};
+use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane, ResistanceModel};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::model::builder::Cloth;
@@ -39,6 +40,8 @@ pub struct ContactMaterial<R> {
     pub elements: [Elements; 2],
     /// Whether edges collide with edges.
     pub edges: bool,
+    /// Whether points in contact with a collider do not slide, whatever pushes them (Classic).
+    pub grips: bool,
 }
 
 /// The points of the two elements of a contact, and the weight of each of them.
@@ -63,6 +66,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: [R::ONE; 2],
             elements: [own.elements; 2],
             edges: own.edges,
+            grips: false,
         })
     }
 
@@ -93,6 +97,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: mobility.map(R::from_f64),
             elements: [a.elements, b.elements],
             edges: flat(a) && flat(b),
+            grips: false,
         })
     }
 
@@ -122,6 +127,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: [R::ONE, R::ZERO],
             elements: [cloth.elements, Elements::Faces],
             edges: true,
+            grips: false,
         })
     }
 
@@ -153,6 +159,13 @@ impl<R: Real> ContactMaterial<R> {
             material.iter().map(|material| material.as_ref().map(of)).collect::<Vec<_>>()
         };
         found(now) == found(before)
+    }
+
+    /// The same for a frame with this resistance model. Classic: frictions that add up to 1 or more grip, as in recorded
+    /// output of the original (a sum of 4.1 holds cloth in place while the cloth beside it stretches to twice its length).
+    pub fn for_resistance(self, resistance: ResistanceModel) -> Self {
+        let is_full = self.friction[0] + self.friction[1] >= R::ONE;
+        Self { grips: resistance == ResistanceModel::Classic && is_full, ..self }
     }
 
     /// Whether the pair has adhesion.
@@ -269,6 +282,8 @@ pub struct MaterialMaps<R> {
     pub strength: Vec<R>,
     /// The largest factor on the thickness of each cloth.
     pub max_thickness_factor: Vec<f64>,
+    /// Gaps to colliders that points keep from the start (Classic).
+    pub kept_gaps: KeptGaps<R>,
 }
 
 impl<R: Real> MaterialMaps<R> {
@@ -300,6 +315,7 @@ impl<R: Real> MaterialMaps<R> {
             bounce: column(|factors| &factors.bounce),
             strength: column(|factors| &factors.collide_strength),
             max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.vertex_maps.thickness)).collect(),
+            kept_gaps: KeptGaps::default(),
         }
     }
 }

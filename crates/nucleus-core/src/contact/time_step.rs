@@ -161,12 +161,13 @@ impl<R: Real> ColliderStep<'_, R> {
     /// The distance to keep at a contact, in metres.
     #[inline(always)]
     pub(in crate::contact) fn rest_gap<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
-        if self.material_maps.thickness.is_empty() {
+        let maps = self.material_maps;
+        if maps.thickness.is_empty() && maps.kept_gaps.is_empty() {
             return self.thickness;
         }
         let most = R::from_f64(self.material.thickness);
-        self.material.thickness_at(self.material_maps, (points, [], &(weights, [])), most)
-            * self.thickness_scale
+        let thickness = self.material.thickness_at(maps, (points, [], &(weights, [])), most);
+        maps.kept_gaps.at(points, weights, thickness) * self.thickness_scale
     }
 
     /// The cloth's points at the start and at the end of the step.

@@ -8,11 +8,13 @@
 //! | how a driven attribute becomes keys of ours            | `channel.rs`        |
 //! | where a transform is                                   | `placement.rs`      |
 //! | the names of its attributes                            | [`names`]           |
+//! | where a constraint puts a transform                    | `constraint.rs`     |
 //!
 //! **Invariant:** a curve that ours can follow exactly keeps its keys. Any other is sampled at every frame, between
 //! which the solver interpolates linearly anyway (N2.4-7).
 
 mod channel;
+mod constraint;
 mod curve;
 mod evaluator;
 pub mod names;

@@ -169,6 +169,7 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
             .plane
             .as_ref()
             .and_then(|ground| ContactMaterial::for_ground(cloth, ground, max_thickness_factor))
+            .map(|material| material.for_resistance(frame.resistance))
     };
     let materials: Vec<_> = settings()
         .flat_map(|(cloth, &max_thickness_factor)| {
@@ -176,6 +177,7 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
                 .colliders
                 .iter()
                 .map(move |collider| ContactMaterial::for_collider(cloth, collider, max_thickness_factor))
+                .map(|material| material.map(|material| material.for_resistance(frame.resistance)))
         })
         .collect();
     contact.ground_materials = settings().map(for_ground).collect();
