@@ -293,7 +293,8 @@ impl ColliderModel {
 
 fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
     let links = stretch_links(surface, cloth.lists.cross_links);
-    let rest = |link: &Link| mean(&cloth.vertex_maps.rest_length, link.ends.map(|end| end as usize).into_iter());
+    let rest =
+        |link: &Link| mean(&cloth.vertex_maps.rest_length, link.ends.map(|end| end as usize).into_iter());
     links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect()
 }
 

@@ -22,7 +22,7 @@ impl Evaluator<'_> {
         }
         // A constraint that depends on itself finds this.
         self.constraints.borrow_mut().insert(key, None);
-        let found = self.solve(id, frame);
+        let found = self.nested(|| self.solve(id, frame));
         self.constraints.borrow_mut().insert(key, found);
         found
     }

@@ -60,13 +60,18 @@ impl<'s> Evaluator<'s> {
 
     /// The value of a plug at a frame; `None` if its node computes it in a way that is not read.
     pub fn output(&self, plug: PlugRef, frame: f64) -> Option<f64> {
+        self.nested(|| self.computed(plug, frame)).filter(|x| x.is_finite())
+    }
+
+    /// Follows a chain of nodes one further; `None` where it is too long.
+    pub(super) fn nested<T>(&self, work: impl FnOnce() -> Option<T>) -> Option<T> {
         if self.depth.get() > MAX_DEPTH {
             return None;
         }
         self.depth.set(self.depth.get() + 1);
-        let value = self.computed(plug, frame).filter(|x| x.is_finite());
+        let found = work();
         self.depth.set(self.depth.get() - 1);
-        value
+        found
     }
 
     fn computed(&self, plug: PlugRef, frame: f64) -> Option<f64> {
@@ -236,13 +241,10 @@ impl<'s> Evaluator<'s> {
             return Some(self.constrained(node, frame)?[names::driven_by(last)?.0][part]);
         }
         let (vector, default) = names::vector_of_whole(last)?;
-        if !matches!(self.scene.kind(node), "transform" | "joint") || self.depth.get() >= MAX_DEPTH {
+        if !matches!(self.scene.kind(node), "transform" | "joint") {
             return None;
         }
-        self.depth.set(self.depth.get() + 1);
-        let value = self.vector(node, vector, [default; 3], frame)[part];
-        self.depth.set(self.depth.get() - 1);
-        Some(value)
+        self.nested(|| Some(self.vector(node, vector, [default; 3], frame)[part]))
     }
 }
 

@@ -36,6 +36,8 @@ fn beveled(mesh: &Poly, offset: f64) -> Option<Poly> {
     // The new point of a face at a point, by the side that starts there.
     let mut starts: HashMap<(u32, u32), u32> = HashMap::new();
     let mut ends: HashMap<(u32, u32), u32> = HashMap::new();
+    // The side that starts at each new point.
+    let mut leaving: Vec<(u32, u32)> = Vec::new();
     for face in mesh.faces() {
         let first = made.points.len() as u32;
         let count = face.len();
@@ -44,6 +46,7 @@ fn beveled(mesh: &Poly, offset: f64) -> Option<Poly> {
             made.points.push(inset(mesh, [before, point, after], offset)?);
             let twice = starts.insert((point, after), first + k as u32).is_some();
             ends.insert((before, point), first + k as u32);
+            leaving.push((point, after));
             if twice {
                 return None;
             }
@@ -69,9 +72,9 @@ fn beveled(mesh: &Poly, offset: f64) -> Option<Poly> {
             }
             ring.push(corner);
             // The face that runs along this side the other way, and its side that leaves the point.
-            let other = *ends.get(&(side.1, side.0))?;
-            side = *starts.iter().find(|(side, at)| **at == other && side.0 == point)?.0;
+            side = leaving[*ends.get(&(side.1, side.0))? as usize];
         }
+        ring.reverse();
         if ring.len() >= 3 {
             made.face(&ring);
         }

@@ -208,8 +208,8 @@ fn effects(scene: &MayaScene, chosen: &BTreeSet<NodeId>, is_own: bool) -> Vec<No
 fn surface_of(scene: &MayaScene, id: NodeId) -> Option<NodeId> {
     const SURFACE: f64 = 2.0;
     let parent = scene.node(id).parent?;
-    let is_surface = scene.kind(id) == "pointEmitter"
-        && scene.stored_or(id, &["emt", "emitterType"], 1.0) == SURFACE;
+    let is_surface =
+        scene.kind(id) == "pointEmitter" && scene.stored_or(id, &["emt", "emitterType"], 1.0) == SURFACE;
     let is_shown = |mesh: &NodeId| !scene.switch_or(*mesh, &["io", "intermediateObject"], false);
     let shapes = scene.of_kind("mesh").filter(|mesh| scene.node(*mesh).parent == Some(parent));
     shapes.filter(is_shown).find(|mesh| is_surface && !is_output(scene, *mesh))
