@@ -35,7 +35,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver 7";
+const KIND: [u8; 8] = *b"solver 8";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -126,7 +126,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         bounds_violated,
         collider_materials,
         ground_materials,
-        material_maps: _,
+        material_maps,
         cloth_contacts,
         pair_filter,
         touches,
@@ -137,6 +137,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     collider_materials.encode(out);
     ground_materials.encode(out);
     touches.encode(out);
+    material_maps.kept_gaps.encode(out);
     state.save(out);
     collider_states.save(out);
     cloth_contacts.save(out);
@@ -152,6 +153,7 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     contact.collider_materials = Encode::decode(from)?;
     contact.ground_materials = Encode::decode(from)?;
     contact.touches = Encode::decode(from)?;
+    contact.material_maps.kept_gaps = Encode::decode(from)?;
     state.load(from)?;
     for population in &mut state.populations {
         population.restored()?;
@@ -313,6 +315,7 @@ fn references_are_valid<R: Real>(solver: &Solver<R>) -> bool {
     let sizes = solver.model.colliders.iter().map(|collider| collider.positions.len());
     let filter = solver.contact.pair_filter.is_valid(rows, sizes);
     links
+        && solver.contact.material_maps.kept_gaps.is_valid(rows)
         && filter
         && pairs
         && cloth_contacts
@@ -398,6 +401,7 @@ checkpoint_struct!([R: Real] Trajectories<R> { columns: [origin, travel], values
 encode_struct!([R: Real] ContactMaterial<R> {
     thickness: f64, adhesion_range: f64, thicknesses: [R; 2], friction: [R; 2], stickiness: [R; 2], bounce: [R; 2],
     strength: [R; 2], untangling_rate: f64, depenetrates: bool, mobility: [R; 2], elements: [Elements; 2], edges: bool,
+    grips: bool,
 });
 
 encode_struct!([] Intersection { edge: [u32; 2], wings: [u32; 2], face: [u32; 3], correction: Correction });

@@ -176,6 +176,47 @@ fn a_rotation_about_a_pivot_leaves_the_pivot_where_it_is() {
 }
 
 #[test]
+fn constraints_of_transforms_place_what_they_drive() {
+    let read = read("constrained.ma");
+    // By hand: the hand turns x to y, has twice the size, and moves from x = 5 to 15 in ten frames.
+    for (frame, x) in [(1.0, 5.0), (6.0, 10.0), (11.0, 15.0)] {
+        let assert_at = |name: &str, point: [f64; 3], expected: [f64; 3]| {
+            let at = read.graph().placement(read.node(name), frame).point(Vector3::from(point));
+            assert!((at - Vector3::from(expected)).norm() < 1e-9, "{name} at frame {frame}: {at}");
+        };
+        assert_at("held", [0.0; 3], [x, 1.0, 0.0]);
+        assert_at("held", [1.0, 0.0, 0.0], [x, 2.0, 0.0]);
+        assert_at("between", [0.0; 3], [x / 4.0, 3.0, 7.0]);
+        assert_at("turned", [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    }
+    assert_round_trip(&read);
+    // A constraint that depends on itself ends.
+    let scene = MayaScene::read(&folder().join("constrained.ma")).unwrap();
+    let evaluator = Evaluator::new(&scene);
+    assert!(evaluator.world(scene.find("loop").unwrap(), 1.0).is_identity());
+}
+
+#[test]
+fn a_surface_emitter_brings_its_mesh_along() {
+    let read = read("surface_emitter.ma");
+    let graph = read.graph();
+    let parent = graph.node(read.node("emitter1")).parent().expect("a parent");
+    assert_eq!(parent, read.node("lawn"));
+    assert_eq!(graph.node(parent).node_type(), &poly_plane::POLY_PLANE);
+    assert_round_trip(&read);
+}
+
+#[test]
+fn lift_is_read_in_scene_units_where_a_unit_is_no_metre() {
+    assert!(read("drape.ma").get("nucleus1", &nucleus::LIFT_IN_SCENE_UNITS));
+    let constrained = read("constraint.ma");
+    let nucleus = constrained.graph().iter().find(|(_, node)| node.node_type() == &nucleus::NUCLEUS);
+    let settings = nucleus.expect("a nucleus").1.settings();
+    let is_scaled = settings.contains_key(nucleus::SPACE_SCALE.row.name);
+    assert_eq!(settings.contains_key(nucleus::LIFT_IN_SCENE_UNITS.row.name), is_scaled);
+}
+
+#[test]
 fn a_curve_that_ours_can_follow_keeps_its_keys() {
     let read = read("pivots.ma");
     let text = write_scene(&read.imported.scene);

@@ -6,6 +6,7 @@ mod documentation;
 mod extremes;
 mod info;
 mod initial_state;
+mod maya;
 mod mesh_files;
 mod messages;
 mod output;

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
-use crate::contact::response::{Adhesion, Push, coulomb_correction};
+use crate::contact::response::{Adhesion, Push, Restitution, coulomb_correction};
 use crate::contact::time_step::PositionWriter;
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
@@ -187,6 +187,8 @@ impl<R: Real> GroundContact<'_, R> {
             if gap < thickness && row.0[3] > R::ZERO {
                 contacts += 1;
                 self.push(point, row, [thickness, gap]);
+            } else if self.material.grips && Restitution::touches(gap, thickness) && row.0[3] > R::ZERO {
+                self.push(point, row, [thickness; 2]);
             }
         }
         contacts
@@ -235,8 +237,11 @@ impl<R: Real> GroundContact<'_, R> {
         }
         let motion = sub(sub(row.xyz(), start), self.plane.travel);
         let friction = self.material.friction_at(self.material_maps, ([point], [], &([R::ONE], [])));
-        let [friction_part, given_back] =
-            coulomb_correction([motion, depenetration], normal, friction * push.length());
+        let limit = match self.material.grips {
+            true => R::from_f64(f64::from(f32::MAX)),
+            false => friction * push.length(),
+        };
+        let [friction_part, given_back] = coulomb_correction([motion, depenetration], normal, limit);
         let moved = add(scale(normal, push.length()), friction_part);
         (0..3).for_each(|axis| row.0[axis] += moved[axis]);
         self.writer.push_by_collider(point, row, add(scale(normal, push.depenetration), given_back));

@@ -2,8 +2,9 @@
 //! objects in a frame; and vertex maps of them.
 
 use crate::contact::collider_maps::{ColliderFactors, ColliderMaps, max_factor};
+use crate::contact::kept_gaps::KeptGaps;
 use crate::contact::response::ADHESION_RANGE;
-use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane};
+use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane, ResistanceModel};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::model::builder::Cloth;
@@ -40,6 +41,8 @@ pub struct ContactMaterial<R> {
     pub elements: [Elements; 2],
     /// Whether edges collide with edges.
     pub edges: bool,
+    /// Whether points in contact with a collider do not slide, whatever pushes them (Classic).
+    pub grips: bool,
 }
 
 /// The points of the two elements of a contact, and the weight of each of them.
@@ -64,6 +67,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: [R::ONE; 2],
             elements: [own.elements; 2],
             edges: own.edges,
+            grips: false,
         })
     }
 
@@ -94,6 +98,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: mobility.map(R::from_f64),
             elements: [a.elements, b.elements],
             edges: flat(a) && flat(b),
+            grips: false,
         })
     }
 
@@ -124,6 +129,7 @@ impl<R: Real> ContactMaterial<R> {
             mobility: [R::ONE, R::ZERO],
             elements: [cloth.elements, Elements::Faces],
             edges: true,
+            grips: false,
         })
     }
 
@@ -168,6 +174,13 @@ impl<R: Real> ContactMaterial<R> {
             material.iter().map(|material| material.as_ref().map(of)).collect::<Vec<_>>()
         };
         found(now) == found(before)
+    }
+
+    /// The same for a frame with this resistance model. Classic: frictions that add up to 1 or more grip, as in recorded
+    /// output of the original (a sum of 4.1 holds cloth in place while the cloth beside it stretches to twice its length).
+    pub fn for_resistance(self, resistance: ResistanceModel) -> Self {
+        let is_full = self.friction[0] + self.friction[1] >= R::ONE;
+        Self { grips: resistance == ResistanceModel::Classic && is_full, ..self }
     }
 
     /// Whether the pair has adhesion.
@@ -297,6 +310,8 @@ pub struct MaterialMaps<R> {
     pub max_thickness_factor: Vec<f64>,
     /// By collider.
     pub colliders: Vec<ColliderMaps>,
+    /// Gaps to colliders that points keep from the start (Classic).
+    pub kept_gaps: KeptGaps<R>,
 }
 
 impl<R: Real> MaterialMaps<R> {
@@ -342,6 +357,7 @@ impl<R: Real> MaterialMaps<R> {
                 .map(|cloth| max_factor(&cloth.vertex_maps.thickness))
                 .collect(),
             colliders: colliders.iter().map(ColliderMaps::new).collect(),
+            kept_gaps: KeptGaps::default(),
         }
     }
 }

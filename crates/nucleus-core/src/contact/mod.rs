@@ -46,6 +46,7 @@
 //! | contact with colliders | [`collider`] |
 //! | contact among cloths, friction anchors, untangling | [`cloth`] |
 //! | the ground plane | [`ground`] |
+//! | gaps that points keep from the start (Classic) | [`kept_gaps`] |
 //! | points inside a collider | [`depenetration`] |
 //! | push-out of points near a surface | [`push_out`] |
 //! | the state of contact, and the inputs and outputs of its passes | [`system`] |
@@ -59,6 +60,7 @@
 //! | Constant | Value | Reason |
 //! |---|--:|---|
 //! | `material::MIN_THICKNESS` | 10 µm | certificates need a gap above rounding error |
+//! | `collider::start_gaps::START_GAP` | 20 µm | a point that starts in a surface begins on its outer side (Classic) |
 //! | `response::DEPENETRATION_SPEED` | 1 m/s | a depth from before the step resolves without a jump |
 //! | `response::ADHESION_RANGE` | 1.5 t | adhesion acts on contacts that have just separated |
 //! | `response::TOUCHING` | 1e-3 t | gap that still counts as touching |
@@ -95,6 +97,7 @@ pub mod depenetration;
 pub mod exclusion;
 pub mod force_field;
 pub mod ground;
+pub mod kept_gaps;
 pub mod material;
 pub mod narrow_phase;
 pub mod pair_filter;

@@ -169,12 +169,13 @@ impl<R: Real> ColliderStep<'_, R> {
         points: [u32; N],
         weights: [R; N],
     ) -> R {
-        if self.material_maps.thickness.is_empty() && self.collider_maps.is_none() {
+        let maps = self.material_maps;
+        if maps.thickness.is_empty() && maps.kept_gaps.is_empty() && self.collider_maps.is_none() {
             return self.thickness;
         }
         let most = R::from_f64(self.material.thickness);
-        material.mapped_thickness(self.material_maps, (points, [], &(weights, [])), most)
-            * self.thickness_scale
+        let thickness = material.mapped_thickness(maps, (points, [], &(weights, [])), most);
+        maps.kept_gaps.at(points, weights, thickness) * self.thickness_scale
     }
 
     /// Whether collisions with this collider are carried out in part: cloth may then pass through it.

@@ -97,6 +97,9 @@ pub enum LinkOrder {
     /// One after another, by colours.
     #[default]
     Sequential,
+    /// One after another as the mesh numbers them: edges by their lower end, then cross links. A block of points keeps
+    /// this order, and the links between blocks follow. It costs more than colours.
+    Mesh,
     /// One after another, outwards from these points (`sortLinks`).
     Outwards(Vec<PointId>),
     /// All from the same state (`evaluationOrder`: Parallel).

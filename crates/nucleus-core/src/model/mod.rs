@@ -138,10 +138,18 @@ impl<R: Real> ClothModel<R> {
         let blocks = model.blocks.clone();
         let maps = MapReader { maps: &cloth.vertex_maps, point: &point, blocks: &blocks };
         let distances = link_order::distances(surface, order_of_links);
-        let levels = |rows: &[LinkRow<R>]| link_order::levels(rows, &distances, point);
+        let keeps_order = *order_of_links == LinkOrder::Mesh;
+        let columns = model.blocks.columns();
+        let levels = |rows: &[LinkRow<R>]| match keeps_order {
+            true => link_order::levels_of_list(rows, first, columns),
+            false => link_order::levels(rows, &distances, point),
+        };
         let mut strength_maps = StrengthMaps::default();
         if cloth.lists.stretch {
-            let rows = stretch_rows(surface, cloth, place);
+            let mut rows = stretch_rows(surface, cloth, place);
+            if !keeps_order {
+                rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
+            }
             let levels = levels(&rows);
             strength_maps.stretch = maps.links(&rows, &levels);
             strength_maps.damp = maps.damping(&rows, &levels);
@@ -287,9 +295,7 @@ fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -
     let links = stretch_links(surface, cloth.lists.cross_links);
     let rest =
         |link: &Link| mean(&cloth.vertex_maps.rest_length, link.ends.map(|end| end as usize).into_iter());
-    let mut rows: Vec<LinkRow<R>> = links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect();
-    rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));
-    rows
+    links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect()
 }
 
 fn mean_length(surface: &Surface) -> f64 {

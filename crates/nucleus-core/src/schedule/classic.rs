@@ -8,7 +8,7 @@ use crate::constraints::stretch::LinkStrength;
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::Real;
 use crate::schedule::pass::{Effect, Pass, Sweep, WholeEffect, WholeSweep};
-use crate::schedule::resistance::{Share, share};
+use crate::schedule::resistance::{CLASSIC_SHARE, Share, share};
 
 /// The passes of a Classic substep in the order of their due times: the k-th of n sweeps is due in the middle of the
 /// k-th of n equal parts of the substep, the k-th of n contact passes at its end.
@@ -22,7 +22,7 @@ pub fn classic<R: Real>(
     for (cloth, settings) in frame.cloths.iter().enumerate() {
         for (count, effect) in classic_effects(settings) {
             let Share { sweeps, strength } = share(count, substep);
-            let effect = effect(R::from_f64(strength));
+            let effect = effect(R::from_f64(strength * CLASSIC_SHARE));
             let due_time = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
             due.extend((0..sweeps).map(|k| (due_time(k), PassOrSweep::Sweep(Sweep { cloth, effect }))));
         }

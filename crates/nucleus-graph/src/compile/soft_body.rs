@@ -353,6 +353,8 @@ impl Compiler<'_> {
                     self.findings.warning(&place, message);
                 }
                 self.program.model.set_link_order(cloth, LinkOrder::Outwards(held));
+            } else if self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC {
+                self.program.model.set_link_order(cloth, LinkOrder::Mesh);
             }
         }
     }

@@ -19,13 +19,15 @@ pub struct Evaluator<'s> {
     pub scene: &'s MayaScene,
     curves: RefCell<HashMap<NodeId, Option<Rc<MayaCurve>>>>,
     scripts: RefCell<HashMap<NodeId, Rc<Result<Script, String>>>>,
+    pub(super) constraints: RefCell<HashMap<(NodeId, u64), Option<names::Driven>>>,
     depth: Cell<u32>,
 }
 
 impl<'s> Evaluator<'s> {
     /// For a scene.
     pub fn new(scene: &'s MayaScene) -> Self {
-        Self { scene, curves: RefCell::default(), scripts: RefCell::default(), depth: Cell::new(0) }
+        let (curves, scripts, constraints) = (RefCell::default(), RefCell::default(), RefCell::default());
+        Self { scene, curves, scripts, constraints, depth: Cell::new(0) }
     }
 
     /// The curve of an `animCurve` node.
@@ -58,13 +60,18 @@ impl<'s> Evaluator<'s> {
 
     /// The value of a plug at a frame; `None` if its node computes it in a way that is not read.
     pub fn output(&self, plug: PlugRef, frame: f64) -> Option<f64> {
+        self.nested(|| self.computed(plug, frame)).filter(|x| x.is_finite())
+    }
+
+    /// Follows a chain of nodes one further; `None` where it is too long.
+    pub(super) fn nested<T>(&self, work: impl FnOnce() -> Option<T>) -> Option<T> {
         if self.depth.get() > MAX_DEPTH {
             return None;
         }
         self.depth.set(self.depth.get() + 1);
-        let value = self.computed(plug, frame).filter(|x| x.is_finite());
+        let found = work();
         self.depth.set(self.depth.get() - 1);
-        value
+        found
     }
 
     fn computed(&self, plug: PlugRef, frame: f64) -> Option<f64> {
@@ -148,6 +155,10 @@ impl<'s> Evaluator<'s> {
                 let named = |name: &str| self.named(node, name, frame);
                 script.as_ref().as_ref().ok()?.output(index, &named).ok()
             }
+            kind if names::is_constraint(kind) => match names::driven_by(last.name) {
+                Some((of, part)) => Some(self.constrained(node, frame)?[of][part?]),
+                None => self.number(node, &[last.name], frame),
+            },
             // An attribute that is passed on: of a transform, a locator, a control.
             "transform" | "joint" | "locator" | "nucleus" | "nCloth" | "nRigid" | "nParticle"
             | "dynamicConstraint" | "camera" | "mesh" | "network" | "script" => {
@@ -226,14 +237,14 @@ impl<'s> Evaluator<'s> {
     pub fn part_of(&self, wire: Wire, part: usize, frame: f64) -> Option<f64> {
         let node = wire.from.node;
         let last = self.scene.path(wire.from).last().name;
+        if names::is_constraint(self.scene.kind(node)) {
+            return Some(self.constrained(node, frame)?[names::driven_by(last)?.0][part]);
+        }
         let (vector, default) = names::vector_of_whole(last)?;
-        if !matches!(self.scene.kind(node), "transform" | "joint") || self.depth.get() >= MAX_DEPTH {
+        if !matches!(self.scene.kind(node), "transform" | "joint") {
             return None;
         }
-        self.depth.set(self.depth.get() + 1);
-        let value = self.vector(node, vector, [default; 3], frame)[part];
-        self.depth.set(self.depth.get() - 1);
-        Some(value)
+        self.nested(|| Some(self.vector(node, vector, [default; 3], frame)[part]))
     }
 }
 

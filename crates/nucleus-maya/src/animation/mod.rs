@@ -8,11 +8,13 @@
 //! | how a driven attribute becomes Nucleus keys            | `channel.rs`        |
 //! | where a transform is                                   | `placement.rs`      |
 //! | the names of its attributes                            | [`names`]           |
+//! | where a constraint puts a transform                    | `constraint.rs`     |
 //!
 //! **Invariant:** a curve that a Nucleus curve represents exactly keeps its keys. Any other is sampled at every frame, between
 //! which the solver interpolates linearly anyway (N2.4-7).
 
 mod channel;
+mod constraint;
 mod curve;
 mod evaluator;
 pub mod names;

@@ -76,3 +76,26 @@ pub(crate) fn vector_of_whole(whole: &str) -> Option<(Vector3, f64)> {
     let all = [(TRANSLATE, 0.0), (ROTATE, 0.0), (SCALE, 1.0)];
     all.into_iter().find(|(vector, _)| vector.whole.contains(&whole))
 }
+
+/// What a constraint gives its transform: translation and rotation, in the units of the file.
+pub(crate) type Driven = [[f64; 3]; 2];
+
+/// Whether a node is a constraint that is read.
+pub(crate) fn is_constraint(kind: &str) -> bool {
+    matches!(kind, "parentConstraint" | "pointConstraint" | "orientConstraint")
+}
+
+/// The place of an output of a constraint in [`Driven`]: translation or rotation, and the component if it is one.
+pub(crate) fn driven_by(name: &str) -> Option<(usize, Option<usize>)> {
+    let kinds: [[&str; 2]; 2] = [["ct", "constraintTranslate"], ["cr", "constraintRotate"]];
+    let (kind, rest) = kinds.iter().enumerate().find_map(|(kind, [short, long])| {
+        name.strip_prefix(long).or_else(|| name.strip_prefix(short)).map(|rest| (kind, rest))
+    })?;
+    match rest {
+        "" => Some((kind, None)),
+        "x" | "X" => Some((kind, Some(0))),
+        "y" | "Y" => Some((kind, Some(1))),
+        "z" | "Z" => Some((kind, Some(2))),
+        _ => None,
+    }
+}

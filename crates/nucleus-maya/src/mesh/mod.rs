@@ -5,12 +5,13 @@
 //! | points, faces and edges of a mesh                   | [`Poly`]           |
 //! | `.vt`, `.ed`, `.fc` and `.pt` of a shape            | `embedded.rs`      |
 //! | Maya's primitives                                   | `primitives.rs`    |
-//! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs` |
+//! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs`, `bevel.rs` |
 //! | the mesh of a shape at a frame                      | `history.rs`, one level up |
 //! | a mesh as an OBJ file                               | [`obj_text`]       |
 //!
 //! **Invariant:** points are in the space of the shape, in centimetres, and keep Maya's numbers as far as those are known.
 
+mod bevel;
 pub(crate) mod embedded;
 mod extrude;
 mod obj;

@@ -6,7 +6,7 @@ use crate::animation::Matrix;
 use crate::scene::{MayaScene, NodeId, Vector3};
 
 use super::poly::{Components, Poly};
-use super::{embedded, extrude, subdivide};
+use super::{bevel, embedded, extrude, subdivide};
 
 const TRANSLATE: Vector3 = Vector3 {
     whole: &["t", "translate"],
@@ -105,6 +105,10 @@ pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation 
         }
         "polyExtrudeFace" => match extrude::extrude(scene, id, &mesh, &picked()) {
             Some(extruded) => mesh = extruded,
+            None => return Operation::Unknown(mesh),
+        },
+        "polyBevel" | "polyBevel2" | "polyBevel3" => match bevel::bevel(scene, id, &mesh, &picked()) {
+            Some(beveled) => mesh = beveled,
             None => return Operation::Unknown(mesh),
         },
         "polySplitVert" => mesh = split_points(&mesh, &picked()),

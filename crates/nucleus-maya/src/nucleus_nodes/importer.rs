@@ -279,6 +279,11 @@ impl<'s> Importer<'s> {
         let row = &nucleus::RESISTANCE_MODEL.row;
         if !self.is_own && !self.options.physical {
             self.set(to, row, Setting::Fixed(Value::Choice(Choice(0))));
+            // The original reads speeds for lift in scene units; where a unit is a metre that is the same.
+            if self.scene.stored(from, &["spsc", "spaceScale"]).is_some_and(|scale| scale != 1.0) {
+                let row = &nucleus::LIFT_IN_SCENE_UNITS.row;
+                self.set(to, row, Setting::Fixed(Value::Bool(true)));
+            }
         }
         let stored = self.scene.stored(from, &["stf", "startFrame"]);
         let is_automatic = self.is_own && {

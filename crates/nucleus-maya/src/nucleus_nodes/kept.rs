@@ -68,7 +68,9 @@ impl KeptNodes {
         for id in objects {
             chosen.extend(sources_of(scene, id));
         }
-        chosen.extend(effects(scene, &chosen, is_own));
+        let effects = effects(scene, &chosen, is_own);
+        chosen.extend(effects.iter().filter_map(|id| surface_of(scene, *id)));
+        chosen.extend(effects);
         chosen.extend(cameras(scene));
         let everything = is_own || nuclei.is_empty();
         if everything {
@@ -200,6 +202,17 @@ fn effects(scene: &MayaScene, chosen: &BTreeSet<NodeId>, is_own: bool) -> Vec<No
     };
     let acts = |id: &NodeId| scene.leaving(*id).any(|wire| chosen.contains(&wire.to.node));
     scene.ids().filter(|id| is_effect(id) && (is_own || acts(id))).collect()
+}
+
+/// The mesh that a surface emitter lies on: a shape of its parent.
+fn surface_of(scene: &MayaScene, id: NodeId) -> Option<NodeId> {
+    const SURFACE: f64 = 2.0;
+    let parent = scene.node(id).parent?;
+    let is_surface =
+        scene.kind(id) == "pointEmitter" && scene.stored_or(id, &["emt", "emitterType"], 1.0) == SURFACE;
+    let is_shown = |mesh: &NodeId| !scene.switch_or(*mesh, &["io", "intermediateObject"], false);
+    let shapes = scene.of_kind("mesh").filter(|mesh| scene.node(*mesh).parent == Some(parent));
+    shapes.filter(is_shown).find(|mesh| is_surface && !is_output(scene, *mesh))
 }
 
 /// Cameras of the artist; else the perspective view that every file has.

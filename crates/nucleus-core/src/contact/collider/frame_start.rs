@@ -169,11 +169,13 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
             .plane
             .as_ref()
             .and_then(|ground| ContactMaterial::for_ground(cloth, ground, max_thickness_factor))
+            .map(|material| material.for_resistance(frame.resistance))
     };
     let maps = &contact.material_maps;
     let with = |cloth: usize, collider: usize| {
         let (own, theirs) = (&frame.cloths[cloth], &frame.colliders[collider]);
         ContactMaterial::for_collider(own, theirs, maps.max_thickness_factors(cloth, collider))
+            .map(|material| material.for_resistance(frame.resistance))
     };
     let colliders = frame.colliders.len();
     let pairs = (0..frame.cloths.len()).flat_map(|cloth| (0..colliders).map(move |at| (cloth, at)));

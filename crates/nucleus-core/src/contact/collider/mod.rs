@@ -12,6 +12,7 @@
 //! | the contacts of one cloth with one collider, the active ones, and a sweep over them | [`contacts`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
 //! | its push, friction, adhesion and restitution | [`response`] |
+//! | starts inside the contact thickness | [`start_gaps`] |
 //! | the passes of a time step | [`pass`] |
 
 pub mod broad_phase;
@@ -22,6 +23,7 @@ pub mod motion_bounds;
 pub mod pass;
 pub mod query;
 mod response;
+pub mod start_gaps;
 
 use nalgebra::Vector3;
 

@@ -7,6 +7,7 @@ use crate::contact::collider::broad_phase::update_collider_candidates;
 use crate::contact::collider::contacts::{
     ColliderContacts, adhere, certify, for_unproven_points, resolve, revert_to_start,
 };
+use crate::contact::collider::start_gaps::release_cleared_points;
 use crate::contact::ground::GroundContact;
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::{ContactPass, ContactSystem};
@@ -31,6 +32,7 @@ pub fn resolve_collider_contacts<R: Real>(
             continue;
         }
         update_collider_candidates(pass, cloth);
+        release_cleared_points(pass, cloth);
         watch.enter(Stage::Contact);
         for_contacts_of(pass, cloth, |list, step, pool, counters| {
             let step = step.with_thickness_scale(thickness_scale);

@@ -24,6 +24,9 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
         if least >= step.thickness * touching {
+            if step.material.grips && Restitution::touches(gap, step.rest_gap(self.points, self.weights)) {
+                self.hold(step);
+            }
             return Outcome::Separated;
         }
         if least < R::ZERO || !self.plane_is_valid(moved, step) {
@@ -31,10 +34,20 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
         let rest_gap = self.rest_gap(step, self.weights);
         if gap >= rest_gap * touching {
+            if step.material.grips && Restitution::touches(gap, rest_gap) {
+                self.hold(step);
+            }
             return Outcome::Separated;
         }
         self.push(step, rest_gap, [self.gap_at_start(step), gap]);
         Outcome::Pushed
+    }
+
+    /// Reverses sliding of a contact that touches without a push: constraint sweeps drag its points in between.
+    #[cold]
+    fn hold(&self, step: &ColliderStep<'_, R>) {
+        let gap = step.rest_gap(self.points, self.weights);
+        self.push(step, gap, [gap; 2]);
     }
 
     /// Repeats the test with exact closest points, and sets the plane that belongs to them. `least` is the
@@ -158,8 +171,13 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         along: [R; 3],
         pushed: R,
     ) -> [[R; 3]; 2] {
-        let limit =
-            material.friction_at(step.material_maps, self.contact_points(&(self.weights, []))) * pushed;
+        let limit = match material.grips {
+            true => R::from_f64(f64::from(f32::MAX)),
+            false => {
+                material.friction_at(step.material_maps, self.contact_points(&(self.weights, [])))
+                    * pushed
+            }
+        };
         if limit <= R::ZERO {
             return [[R::ZERO; 3]; 2];
         }

@@ -1,0 +1,87 @@
+//! Scenes of Maya: `nucleus import`, `nucleus run scene.ma`, `nucleus export --as ma`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::sample::{assert_refused, folder, nucleus, stderr, stdout};
+
+/// Puts a scene of `tests/maya` into a folder.
+fn bring(folder: &Path, name: &str) {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/maya").join(name);
+    fs::copy(from, folder.join(name)).unwrap();
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// A scene without its comments, which name the file that it is from.
+fn scene_of(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.starts_with("//")).collect()
+}
+
+#[test]
+fn an_imported_scene_is_written_with_its_omissions_at_the_head() {
+    let folder = folder();
+    bring(folder.path(), "constraint.ma");
+    let output = nucleus(folder.path(), &["import", "constraint.ma", "-o", "out.ron"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = read(folder.path(), "out.ron");
+    assert!(text.starts_with("// Imported from `constraint.ma`."), "{text}");
+    let listed = text.lines().filter(|line| line.starts_with("// - ")).count();
+    let said = stdout(&output) + &stderr(&output);
+    assert!(listed > 0 && said.contains(&format!("{listed} omission")), "{listed}: {said}");
+    let checked = nucleus(folder.path(), &["check", "out.ron"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+}
+
+#[test]
+fn a_maya_scene_runs_and_its_cache_holds_its_objects() {
+    let folder = folder();
+    bring(folder.path(), "drape.ma");
+    let output = nucleus(folder.path(), &["run", "drape.ma", "--frames", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let cache = nucleus_cache::Playback::open(folder.path().join("drape.mcap")).unwrap();
+    let names: Vec<_> = cache.objects().iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["nCloth1", "nRigid1"]);
+    assert_eq!(cache.run().scene_text, read(folder.path(), "drape.ron"));
+}
+
+#[test]
+fn a_scene_exported_to_maya_and_imported_again_is_the_same() {
+    let folder = folder();
+    bring(folder.path(), "drape.ma");
+    for arguments in [
+        ["import", "drape.ma", "-o", "first.ron", ""],
+        ["export", "first.ron", "--as=ma", "-o", "back.ma"],
+        ["import", "back.ma", "-o", "again.ron", ""],
+    ] {
+        let arguments: Vec<&str> = arguments.into_iter().filter(|argument| !argument.is_empty()).collect();
+        let output = nucleus(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    }
+    let [first, again] = ["first.ron", "again.ron"].map(|name| read(folder.path(), name));
+    assert_eq!(scene_of(&first), scene_of(&again));
+}
+
+#[test]
+fn a_binary_scene_is_refused_with_the_way_out() {
+    let folder = folder();
+    fs::write(folder.path().join("scene.mb"), "FOR4\0\0\0\u{10}Maya").unwrap();
+    for command in ["import", "run"] {
+        let output = nucleus(folder.path(), &[command, "scene.mb"]);
+        assert_refused(&output, "save it as Maya ASCII");
+    }
+}
+
+#[test]
+fn a_scene_that_is_cut_off_says_where_and_keeps_what_it_has() {
+    let folder = folder();
+    bring(folder.path(), "drape.ma");
+    let text = read(folder.path(), "drape.ma");
+    fs::write(folder.path().join("cut.ma"), &text[..2000]).unwrap();
+    let output = nucleus(folder.path(), &["import", "cut.ma", "-o", "cut.ron"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output) + &stderr(&output);
+    assert!(said.contains("`cut.ma:62:2`: the file ends inside this statement"), "{said}");
+}
