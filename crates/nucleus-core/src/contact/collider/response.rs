@@ -24,7 +24,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
         if least >= step.thickness * touching {
-            if step.material.grips && Restitution::touches(gap, step.rest_gap(self.points, self.weights)) {
+            if step.material.grips && Restitution::touches(gap, self.rest_gap(step, self.weights)) {
                 self.hold(step);
             }
             return Outcome::Separated;
@@ -46,7 +46,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Reverses sliding of a contact that touches without a push: constraint sweeps drag its points in between.
     #[cold]
     fn hold(&self, step: &ColliderStep<'_, R>) {
-        let gap = step.rest_gap(self.points, self.weights);
+        let gap = self.rest_gap(step, self.weights);
         self.push(step, gap, [gap; 2]);
     }
 
