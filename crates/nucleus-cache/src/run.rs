@@ -74,6 +74,8 @@ pub struct RunInfo {
     pub contacts: bool,
     /// Whether the strain at each cloth point is recorded. It can also be computed from positions and rest meshes.
     pub strain: bool,
+    /// Whether particles have looks of their own, which are then recorded: radius, opacity and colours.
+    pub looks: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
     /// The ground plane at each frame from the start frame on; empty if it does not move.
@@ -110,6 +112,7 @@ impl Default for RunInfo {
             velocities: false,
             contacts: false,
             strain: false,
+            looks: false,
             ground: None,
             ground_motion: Vec::new(),
             radii: BTreeMap::new(),

@@ -149,15 +149,15 @@ node_table! {
     }
     "Caching" {
         /// Positions from a cache.
-        POSITIONS: Plugged = plug("positions", "poss", Data::Vectors).elsewhere("a run records every frame in its own cache, which `--from` starts from");
+        POSITIONS: Plugged = plug("positions", "poss", Data::Vectors).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Velocities from a cache.
-        VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors).elsewhere("a run records every frame in its own cache, which `--from` starts from");
+        VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Solver state from a cache.
-        INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle).elsewhere("a run records every frame in its own cache, which `--from` starts from");
+        INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Reads the state from a cache instead of solving.
-        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false).elsewhere("a run records every frame in its own cache, which `--from` starts from");
+        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// All data from a particle cache.
-        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle).elsewhere("a run records every frame in its own cache, which `--from` starts from");
+        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
     }
     "Collision Properties Maps" {
         /// Texture of the map of thickness.
@@ -225,16 +225,16 @@ node_table! {
         /// Its current state.
         CURRENT_STATE: Plugged = plug("currentState", "cust", Data::State).output().solved("nucleus_graph::graph");
         /// Its initial state.
-        START_STATE: Plugged = plug("startState", "stst", Data::State).output().elsewhere("the connection of `currentState` stands for both");
+        START_STATE: Plugged = plug("startState", "stst", Data::State).output().solved("nucleus_graph::graph");
         /// Its index in its nucleus.
-        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output().solved("nucleus_graph::compile::constraints");
+        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output().solved("nucleus_graph::graph");
     }
     "Internal" {
         /// Whether the object is solved (cloth, particles) or animated (colliders). Set when the node is created.
-        ACTIVE: bool = toggle("active", "actv", true).hidden().elsewhere("the type of the node says whether it is solved");
+        ACTIVE: bool = toggle("active", "actv", true).hidden().elsewhere("the type of a node says whether it is solved");
         /// Time of the previous evaluation.
-        LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden().elsewhere("Maya's evaluation keeps its state in it");
         /// Outputs positions in the space of its own transform.
-        LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden().elsewhere("positions are recorded in world space");
+        LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden().elsewhere("positions are always in world space");
     }
 }

@@ -44,6 +44,8 @@ mod initial_state;
 mod map_values;
 mod mesh_files;
 mod objects;
+mod particle_expressions;
+mod particle_ramps;
 mod particles;
 mod perturbation;
 mod program;

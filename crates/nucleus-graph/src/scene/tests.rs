@@ -120,7 +120,7 @@ fn a_setting_without_effect_is_a_warning_with_the_reason_at_its_place() {
     let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
     let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
     assert_eq!(warning.severity, Severity::Warning);
-    let reason = "a run records every frame in its own cache, which `--from` starts from";
+    let reason = "a cache is a file of its own: `nucleus run --from` starts from one of its frames";
     assert_eq!(warning.message, format!("`playFromCache` of `c` has no effect: {reason}"));
     assert_eq!(&text[warning.span.clone()], "playFromCache");
     let inherited = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", lifespanRandom: 1)"#);
