@@ -35,7 +35,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver 7";
+const KIND: [u8; 8] = *b"solver 8";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -122,6 +122,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         bound_growth: _,
         contact_mask: _,
         has_unproven: _,
+        has_touched: _,
         interval_bounds,
         bounds_violated,
         collider_materials,
@@ -151,7 +152,7 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     load_column(&mut contact.bounds_violated, from)?;
     contact.collider_materials = Encode::decode(from)?;
     contact.ground_materials = Encode::decode(from)?;
-    contact.touches = Encode::decode(from)?;
+    load_column(&mut contact.touches, from)?;
     state.load(from)?;
     for population in &mut state.populations {
         population.restored()?;

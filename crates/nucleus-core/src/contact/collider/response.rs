@@ -16,6 +16,14 @@ const TOUCH_TOLERANCE: f64 = 1e-6;
 /// this times the depth of a contact.
 const MIN_MOBILITY: f64 = 0.25;
 
+impl<R: Real> ColliderStep<'_, R> {
+    /// The gap below which a contact may push, in metres.
+    #[inline(always)]
+    pub(super) fn pushing_gap(&self) -> R {
+        self.thickness * R::from_f64(1.0 - TOUCH_TOLERANCE)
+    }
+}
+
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Pushes the contact to its thickness. The caller passes points that no other task of the phase touches.
     #[inline]
@@ -23,7 +31,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let moved = self.points.map(|point| step.row(point).xyz());
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
-        if least >= step.thickness * touching {
+        if least >= step.pushing_gap() {
             return Outcome::Separated;
         }
         if least < R::ZERO || !self.plane_is_valid(moved, step) {
