@@ -122,6 +122,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         bound_growth: _,
         contact_mask: _,
         has_unproven: _,
+        has_touched: _,
         interval_bounds,
         bounds_violated,
         collider_materials,
@@ -152,7 +153,7 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     load_column(&mut contact.bounds_violated, from)?;
     contact.collider_materials = Encode::decode(from)?;
     contact.ground_materials = Encode::decode(from)?;
-    contact.touches = Encode::decode(from)?;
+    load_column(&mut contact.touches, from)?;
     contact.material_maps.kept_gaps = Encode::decode(from)?;
     state.load(from)?;
     for population in &mut state.populations {

@@ -12,7 +12,6 @@
 //! Normals and `pushOut` come once at the start of a substep, damping and the observer once at its end.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
 
 use crate::constraints::damp::damp;
 use crate::constraints::link::glue::break_links;
@@ -46,7 +45,8 @@ use crate::particles::population::Population;
 use crate::particles::slowing::slow_particles;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
-use crate::schedule::{Direction, Pass, Schedule, TimeStep};
+use crate::schedule::sweep_direction::alternating_cloths;
+use crate::schedule::{Pass, Schedule, TimeStep};
 use crate::solver::{CompiledReal, Solver};
 use crate::state::kinematics::update_anchors;
 
@@ -83,13 +83,14 @@ fn solve_frame<R: CompiledReal>(
         return StepReport { stopped: true, ..StepReport::default() };
     }
     observer.enter(Stage::Report);
-    solver.contact.touches = counters.contacts.load(Ordering::Relaxed) > 0;
+    solver.contact.end_frame();
     report(solver, frame, &schedule, &counters)
 }
 
 /// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
 /// is evaluated once per frame and interpolated inside it (§2.4).
 fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
+    solver.contact.has_touched.iter_mut().for_each(|mark| *mark.get_mut() = false);
     begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
     solver.state.move_anchors();
@@ -132,21 +133,25 @@ fn solve_substeps<R: CompiledReal>(
     observer: &mut dyn StepObserver,
 ) -> ControlFlow<()> {
     let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
-    // Alternating sweeps have two balances, one per direction: pinned or resting cloth would tremble between them.
-    // Only cloth that moves freely is stirred by sweeps in one direction.
-    let alternates_direction =
-        frame.pins.is_empty() && !solver.contact.touches && !solver.links.hold_anything();
+    let alternates = alternating_cloths(&solver.contact, &solver.links, frame);
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
         begin_substep(solver, frame, schedule, substep);
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
-            let direction = if alternates_direction { schedule.direction(step) } else { Direction::Forward };
+            let direction = schedule.direction(step);
             let schedule = schedule.split(frame, splits);
             for (index, span) in schedule.time_steps(step) {
-                let now =
-                    TimeStep { frame, schedule: &schedule, index, span, direction, max_speeds: &max_speeds };
+                let now = TimeStep {
+                    frame,
+                    schedule: &schedule,
+                    index,
+                    span,
+                    direction,
+                    alternates: &alternates,
+                    max_speeds: &max_speeds,
+                };
                 solve_time_step(solver, &now, counters, observer)?;
             }
         }
@@ -250,7 +255,7 @@ fn apply_pass<R: CompiledReal>(
                 &solver.model.cloths,
                 [&mut solver.state.displacement, &mut solver.state.corrections],
                 sweeps,
-                now.direction,
+                (now.direction, now.alternates),
                 &solver.pool,
             );
         }

@@ -27,12 +27,13 @@ pub fn sweep<R: Real>(
     cloths: &[ClothModel<R>],
     [displacement, corrections]: [&mut [Row4<R>]; 2],
     sweeps: &[Sweep<R>],
-    direction: Direction,
+    (direction, alternates): (Direction, &[bool]),
     pool: &ThreadPool,
 ) {
     for of_cloth in sweeps.chunk_by(|a, b| a.cloth == b.cloth) {
-        let Some(cloth) = of_cloth.first().map(|sweep| &cloths[sweep.cloth]) else { continue };
-        let backward = direction == Direction::Backward && cloth.alternates_direction;
+        let Some(index) = of_cloth.first().map(|sweep| sweep.cloth) else { continue };
+        let cloth = &cloths[index];
+        let backward = direction == Direction::Backward && alternates[index] && cloth.alternates_direction;
         if !cloth.valence.is_empty() {
             sweep_parallel(cloth, [displacement, corrections], of_cloth, pool);
             continue;

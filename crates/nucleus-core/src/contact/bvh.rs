@@ -6,7 +6,6 @@
 use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
-use crate::math::{Lanes as _, Real};
 use crate::model::order::by_halves;
 
 /// An axis-aligned box in metres, relative to an origin of the caller. In single precision, rounded outwards. The
@@ -82,6 +81,12 @@ impl Aabb {
         apart == [false; 4]
     }
 
+    /// The low and the high corner; the fourth number is zero.
+    #[inline(always)]
+    pub fn corners(&self) -> [[f32; 4]; 2] {
+        [self.low, self.high]
+    }
+
     /// Whether two boxes have a point in common.
     #[inline(always)]
     pub fn overlaps(&self, other: &Self) -> bool {
@@ -97,44 +102,6 @@ encode_struct!([] Aabb { low: [f32; 4], high: [f32; 4] });
 
 /// The boxes of an element at the start and at the end of linear motion.
 pub type SweptBox = [Aabb; 2];
-
-type Lanes = <f32 as Real>::Lanes;
-
-/// Four swept boxes in a structure of arrays: one box is tested against all four at once.
-#[derive(Debug, Clone, Copy)]
-pub struct Aabb4 {
-    /// Corners by end and axis.
-    low: [[[f32; 4]; 3]; 2],
-    high: [[[f32; 4]; 3]; 2],
-}
-
-impl Aabb4 {
-    /// Transposes four boxes.
-    #[inline(always)]
-    pub fn of([a, b, c, d]: &[SweptBox; 4]) -> Self {
-        let axes = |a: [f32; 4], b: [f32; 4], c: [f32; 4], d: [f32; 4]| {
-            let [x, y, z, _] = Lanes::transpose([a, b, c, d].map(Lanes::from_array));
-            [x.to_array(), y.to_array(), z.to_array()]
-        };
-        Self {
-            low: [0, 1].map(|end| axes(a[end].low, b[end].low, c[end].low, d[end].low)),
-            high: [0, 1].map(|end| axes(a[end].high, b[end].high, c[end].high, d[end].high)),
-        }
-    }
-
-    /// A bit for each of the four that `ours` may overlap, as [`Aabb::may_overlap`] says.
-    #[inline(always)]
-    pub fn overlap_mask(&self, ours: &SweptBox) -> u32 {
-        let mut gap = Lanes::splat(f32::NEG_INFINITY);
-        for axis in 0..3 {
-            let [low, high] = [ours.map(|one| one.low[axis]), ours.map(|one| one.high[axis])];
-            let above = |end: usize| Lanes::splat(low[end]) - Lanes::from_array(self.high[end][axis]);
-            let below = |end: usize| Lanes::from_array(self.low[end][axis]) - Lanes::splat(high[end]);
-            gap = gap.most(above(0).least(above(1))).most(below(0).least(below(1)));
-        }
-        !gap.above_zero() & 0b1111
-    }
-}
 
 /// Elements to a leaf.
 const LEAF_SIZE: usize = 4;
@@ -209,20 +176,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-
-    fn ways() -> impl Strategy<Value = SweptBox> {
-        let corner = || proptest::array::uniform3(-2.0..2.0f64).prop_map(Vector3::from);
-        let one = (corner(), corner()).prop_map(|(a, b)| Aabb::new(a.inf(&b), a.sup(&b)));
-        proptest::array::uniform2(one)
-    }
-
-    proptest! {
-        #[test]
-        fn four_boxes_at_once_overlap_as_each_alone(ours in ways(), theirs in proptest::array::uniform4(ways())) {
-            let alone = (0..).zip(&theirs).map(|(lane, boxes)| u32::from(Aabb::may_overlap(&ours, boxes)) << lane);
-            prop_assert_eq!(Aabb4::of(&theirs).overlap_mask(&ours), alone.sum::<u32>());
-        }
-    }
 
     fn boxes() -> impl Strategy<Value = Vec<[Vector3<f64>; 2]>> {
         let corner = || proptest::array::uniform3(-5.0..5.0f64).prop_map(Vector3::from);

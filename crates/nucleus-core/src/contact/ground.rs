@@ -4,6 +4,7 @@
 //! moves within a frame from where the last one left it, as colliders do (§2.4).
 
 use std::ops::Range;
+use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 
@@ -174,6 +175,8 @@ pub struct GroundContact<'a, R> {
     pub material_maps: &'a MaterialMaps<R>,
     /// Length of the step in seconds.
     pub h: R,
+    /// Written: whether the cloth has had a contact in this frame.
+    pub has_touched: &'a AtomicBool,
 }
 
 impl<R: Real> GroundContact<'_, R> {

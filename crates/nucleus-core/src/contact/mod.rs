@@ -28,11 +28,12 @@
 //! that violate them. A pair whose bounds keep it above 2 % of its thickness needs no certificate.
 //!
 //! **Locality.** A cloth in contact depends on the colliders near it and on the cloths in its island alone. Splits of a
-//! time step and the direction of sweeps are the exceptions: they are chosen for the whole nucleus.
+//! time step are the exception: they are chosen for the whole nucleus.
 //!
 //! | You want to know... | Read |
 //! |---|---|
 //! | boxes, and the bounding volume hierarchy | [`bvh`] |
+//! | swept boxes, eight at a time | [`box_row`] |
 //! | points, edges and triangles of a mesh, in groups; pseudonormals | [`boundary`] |
 //! | force fields of surfaces, and of points | [`force_field`], [`point_field`] |
 //! | the nearest point of a surface, and what a ray hits | [`placed_surface`] |
@@ -70,8 +71,8 @@
 //! | `collider::motion_bounds::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
 //! | `collider::query::GROUP_SIZE` | 2 triangles | fastest on a drape: 55 ms a frame, 67 with eight |
 //! | `collider::contact::PLANE_VALIDITY` | t / 256 | error of a plane around an edge below 1e-5 t |
-//! | `collider::contacts::CERTIFIED_GAP` and `cloth::element_bounds::CERTIFIED_GAP` | 0.02 t | far above rounding error |
-//! | `collider::contacts::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
+//! | `collider::active_set::CERTIFIED_GAP` and `cloth::element_bounds::CERTIFIED_GAP` | 0.02 t | far above rounding error |
+//! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
 //! | `collider::response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
 //! | `TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
@@ -87,6 +88,7 @@
 //! | `schedule::adaptive` | 1 e, e / 64, 25 % | advance and strain at which steps are split |
 
 pub mod boundary;
+pub mod box_row;
 pub mod bvh;
 pub mod ccd;
 pub mod cloth;

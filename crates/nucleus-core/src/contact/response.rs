@@ -149,9 +149,12 @@ pub struct Impact<R> {
 }
 
 impl<R: Real> Restitution<R> {
+    /// The largest gap that counts as touching, in contact thicknesses.
+    pub const MAX_TOUCHING_GAP: f64 = 1.0 + TOUCHING;
+
     /// Whether a gap counts as touching.
     pub fn touches(gap: R, thickness: R) -> bool {
-        gap <= thickness * R::from_f64(1.0 + TOUCHING)
+        gap <= thickness * R::from_f64(Self::MAX_TOUCHING_GAP)
     }
 
     /// The velocity after collision with a surface of this normal and velocity.

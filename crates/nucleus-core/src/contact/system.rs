@@ -54,8 +54,10 @@ pub struct ContactSystem<R: Real> {
     pub has_unproven: Vec<AtomicBool>,
     /// Elements that do not collide with each other.
     pub pair_filter: PairFilter,
-    /// Whether the last frame had a contact.
-    pub touches: bool,
+    /// Whether each cloth had a contact in the last frame.
+    pub touches: Vec<bool>,
+    /// Whether each cloth has had a contact in this frame.
+    pub has_touched: Vec<AtomicBool>,
     /// The ground plane.
     pub ground: Ground<R>,
 }
@@ -91,7 +93,8 @@ impl<R: Real> ContactSystem<R> {
             has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
             pair_filter: PairFilter::default(),
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
-            touches: cloths.iter().any(|cloth| !cloth.start.positions.is_empty()),
+            touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),
+            has_touched: models.iter().map(|_| AtomicBool::new(false)).collect(),
             ground: Ground::default(),
         }
     }
@@ -105,6 +108,12 @@ impl<R: Real> ContactSystem<R> {
     /// Whether a cloth collides with any collider in this frame.
     pub fn has_collider_material(&self, cloth: usize) -> bool {
         self.collider_materials_of(cloth).iter().any(Option::is_some)
+    }
+
+    /// Notes at the end of a frame which cloths had a contact in it.
+    pub fn end_frame(&mut self) {
+        let in_frame = self.has_touched.iter_mut().map(|mark| std::mem::take(mark.get_mut()));
+        self.touches.iter_mut().zip(in_frame).for_each(|(touches, in_frame)| *touches = in_frame);
     }
 
     /// Whether a pass resolves the contacts of a cloth.

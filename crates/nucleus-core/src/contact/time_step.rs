@@ -230,13 +230,20 @@ impl<R: Real> ColliderStep<'_, R> {
         Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
     }
 
-    /// How far a point of the collider moves in the candidate interval, in metres, relative to a frame that moves
-    /// by `frame_travel` metres in a frame.
+    /// How far the farthest of some points of the collider moves in the candidate interval, in metres, relative to a
+    /// frame that moves by `frame_travel` metres in a frame.
     #[inline]
-    pub(in crate::contact) fn travel(&self, point: u32, frame_travel: [R; 3]) -> f64 {
-        let [start, end] = self.collider.map(|points| points[point as usize]);
-        (end - start - Point::from(frame_travel.map(R::to_f64))).norm()
-            * (self.interval[1] - self.interval[0])
+    pub(in crate::contact) fn longest_travel<const M: usize>(
+        &self,
+        points: [u32; M],
+        frame_travel: [R; 3],
+    ) -> f64 {
+        let frame_travel = Point::from(frame_travel.map(R::to_f64));
+        let squared = |point: u32| {
+            let [start, end] = self.collider.map(|points| points[point as usize]);
+            (end - start - frame_travel).norm_squared()
+        };
+        points.map(squared).into_iter().fold(0.0, f64::max).sqrt() * (self.interval[1] - self.interval[0])
     }
 
     #[inline(always)]

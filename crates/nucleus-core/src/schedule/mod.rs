@@ -20,6 +20,7 @@
 //! | the passes over the links of a dynamic constraint | `links.rs` |
 //! | what a resistance means, how counts are shared among substeps | [`resistance`] |
 //! | when a time step is split | [`adaptive`] |
+//! | which cloths alternate the direction of their sweeps | `sweep_direction.rs` |
 
 pub mod adaptive;
 mod classic;
@@ -28,6 +29,7 @@ mod pass;
 mod physical;
 mod plan;
 pub mod resistance;
+pub mod sweep_direction;
 
 pub use pass::{Direction, Effect, Pass, StepInterval, Sweep, WholeEffect, WholeSweep};
 pub use plan::{Schedule, TimeStep};

@@ -156,8 +156,10 @@ pub struct TimeStep<'a, R> {
     pub index: u32,
     /// Its interval in the frame.
     pub span: StepInterval,
-    /// The direction of its sweeps.
+    /// The direction of its sweeps, in cloths that alternate it.
     pub direction: Direction,
+    /// Whether each cloth alternates the direction of its sweeps in this frame.
+    pub alternates: &'a [bool],
     /// Upper estimate of the speed of each cloth in this frame, in m/s.
     pub max_speeds: &'a [f64],
 }

@@ -291,12 +291,6 @@ impl<R: Real> Links<R> {
         self.constraints.iter().any(|own| own.layout.is_weld && own.layout.can_break && !own.links.is_empty())
     }
 
-    /// Whether a link holds something to a place that the solver does not move.
-    pub fn hold_anything(&self) -> bool {
-        let mut links = self.constraints.iter().flat_map(|constraint| &constraint.links);
-        links.any(|link| !link.sides.iter().all(LinkSide::is_free))
-    }
-
     /// The lowest row of the points that each row is welded to, itself among them; empty where nothing is welded.
     /// Elements that share such a point are neighbours, and do not collide.
     pub fn clusters(&self, cloths: &[ClothModel<R>]) -> Vec<u32> {

@@ -24,7 +24,7 @@ pub struct ContactList<R, const N: usize, const M: usize> {
     initial: ContactBatch<R, N, M>,
     /// Contacts of cloth found later.
     incremental: ContactBatch<R, N, M>,
-    /// Contacts of free points, and of cloth, that await their batch.
+    /// Contacts of free points, and of cloth, that wait for their batch.
     pending: [Vec<ClothContact<R, N, M>>; 2],
 }
 
@@ -108,19 +108,23 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.iter_mut().for_each(|contact| contact.renumber(number));
     }
 
-    /// Adds contacts that a search found.
-    pub fn add(&mut self, more: &[ClothContact<R, N, M>]) {
-        let [of_points, of_cloth] = &mut self.pending;
-        of_points.extend(more.iter().filter(|contact| contact.has_free_point()));
-        of_cloth.extend(more.iter().filter(|contact| !contact.has_free_point()));
-    }
-
-    /// Assigns all pending contacts to batches.
-    pub fn assign_batches(&mut self, refresh: RefreshKind, blocks: Blocks<'_>) {
+    /// Assigns to batches the contacts that wait for it, and then those that each of the tasks of a search has `found`.
+    pub fn assign_batches<'a>(
+        &mut self,
+        tasks: usize,
+        found: impl Fn(usize) -> &'a [ClothContact<R, N, M>],
+        refresh: RefreshKind,
+        blocks: Blocks<'_>,
+    ) {
         let Self { free_points, initial, incremental, pending: [of_points, of_cloth] } = self;
+        for task in 0..tasks {
+            of_points.extend(found(task).iter().filter(|contact| contact.has_free_point()));
+        }
         of_points.sort_by_key(ClothContact::points);
-        free_points.assign_batches(of_points, blocks);
-        if refresh.is_incremental() { incremental } else { initial }.assign_batches(of_cloth, blocks);
+        free_points.assign(1, |_| &of_points[..], |_| true, blocks);
+        let batch = if refresh.is_incremental() { incremental } else { initial };
+        let source = |source: usize| if source == 0 { &of_cloth[..] } else { found(source - 1) };
+        batch.assign(tasks + 1, source, |contact| !contact.has_free_point(), blocks);
     }
 
     /// Calls `work` with each contact, tasks in parallel. Returns how often it answered `true`.
@@ -133,9 +137,15 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         batches.into_iter().map(|batch| batch.count(pool, &work)).sum()
     }
 
-    /// One sweep. Returns the number of contacts that pushed.
-    pub fn sweep(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
-        self.count(pool, |contact| contact.is_resolved(step) && contact.resolve(step))
+    /// One sweep. Returns the number of contacts that pushed; marks their cloths.
+    pub fn sweep(&mut self, step: &ClothStep<'_, R>, has_touched: &[AtomicBool], pool: &ThreadPool) -> u64 {
+        self.count(pool, |contact| {
+            let has_pushed = contact.is_resolved(step) && contact.resolve(step);
+            if has_pushed {
+                contact.mark_cloths(has_touched);
+            }
+            has_pushed
+        })
     }
 
     /// The number of contacts without certificate. Marks their cloths.
@@ -143,8 +153,7 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.count(pool, |contact| {
             let is_unproven = !contact.certify(step);
             if is_unproven {
-                let cloths = contact.cloths(step.materials.len());
-                cloths.into_iter().for_each(|cloth| unproven[cloth].store(true, Ordering::Relaxed));
+                contact.mark_cloths(unproven);
             }
             is_unproven
         })
@@ -157,12 +166,22 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         self.colouring.clear();
     }
 
-    /// Sorts the pending contacts by task.
-    fn assign_batches(&mut self, pending: &[ClothContact<R, N, M>], (block, blocks): Blocks<'_>) {
-        let of_points = pending.iter().map(|contact| contact.points().map(|point| block[point as usize]));
-        self.colouring.assign(of_points, blocks);
+    /// Takes the contacts of some sources that are `own`, sorted by task.
+    fn assign<'a>(
+        &mut self,
+        sources: usize,
+        source: impl Fn(usize) -> &'a [ClothContact<R, N, M>],
+        is_own: impl Fn(&ClothContact<R, N, M>) -> bool,
+        (block, blocks): Blocks<'_>,
+    ) {
+        let of_points = |contact: &ClothContact<R, N, M>| contact.points().map(|point| block[point as usize]);
+        let all = (0..sources).flat_map(|at| (0..).zip(source(at)).map(move |(k, contact)| (at, k, contact)));
+        let own = all.filter(|&(.., contact)| is_own(contact));
+        self.colouring
+            .assign(own.map(|(at, k, contact)| (of_points(contact), (at as u64) << 32 | k)), blocks);
         self.list.clear();
-        self.list.extend(self.colouring.order.iter().map(|&(_, at)| pending[at as usize]));
+        let contact = |index: u64| source((index >> 32) as usize)[index as u32 as usize];
+        self.list.extend(self.colouring.order.iter().map(|&(_, index)| contact(index)));
     }
 
     fn count(&mut self, pool: &ThreadPool, work: impl Fn(&mut ClothContact<R, N, M>) -> bool + Sync) -> u64 {
@@ -191,7 +210,7 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
 #[derive(Debug, Clone, Default)]
 pub struct Colouring {
     /// The contacts in the order of the tasks: sort key, and former index.
-    pub order: Vec<(u64, u32)>,
+    pub order: Vec<(u64, u64)>,
     /// The run of each task.
     pub tasks: Vec<Range<u32>>,
     /// The tasks of each colour.
@@ -214,10 +233,10 @@ impl Colouring {
         self.colours.clear();
     }
 
-    /// Colours contacts, each given by the blocks of its points. There are `blocks` blocks.
-    pub fn assign(&mut self, contacts: impl Iterator<Item = [u32; 4]>, blocks: u32) {
+    /// Colours contacts, each given by the blocks of its points and its index. There are `blocks` blocks.
+    pub fn assign(&mut self, contacts: impl Iterator<Item = ([u32; 4], u64)>, blocks: u32) {
         self.order.clear();
-        self.order.extend(contacts.map(key).zip(0..));
+        self.order.extend(contacts.map(|(blocks, index)| (key(blocks), index)));
         self.order.sort_unstable();
         self.tasks.clear();
         let mut from = 0;
@@ -290,7 +309,7 @@ mod tests {
             contacts in proptest::collection::vec(proptest::array::uniform4(0u32..70), 0..200)
         ) {
             let mut colouring = Colouring::default();
-            colouring.assign(contacts.iter().copied(), 70);
+            colouring.assign(contacts.iter().copied().zip(0..), 70);
             let mut places = 0;
             for colour in &colouring.colours {
                 let mut taken = std::collections::HashMap::new();

@@ -2,7 +2,6 @@
 //! over the candidate interval. Where points violate their bounds, only the pairs of their elements are searched
 //! again.
 
-use std::sync::RwLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::bvh::Aabb;
@@ -59,9 +58,7 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
         let length = least.max(1.0 / (frame.duration / CANDIDATE_INTERVAL).round().max(1.0));
         let end = (now.from + length).min(1.0);
         cloth_contacts.interval = [now.from, end.max(now.to)];
-        if cloth_contacts.untangling.may_exist() {
-            cloth_contacts.bounds_violated.fill(true);
-        }
+        renew_intersecting(cloths, cloth_contacts);
     }
     predict_trajectories(cloths, state, cloth_contacts, frame, *now, previous_start, refresh, pool);
     let interval_share =
@@ -82,6 +79,19 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
     );
     *counters.candidate_pairs.get_mut() += cloth_contacts.cache.len();
     *counters.broad_phases.get_mut() += 1;
+}
+
+/// Has all bounds of intersecting cloths renewed, or of all cloths where intersections may exist that are not known: which
+/// contacts are disabled changes with the contours.
+fn renew_intersecting<R: Real>(cloths: &[ClothModel<R>], cloth_contacts: &mut ClothContacts<R>) {
+    let ClothContacts { untangling, bounds_violated, .. } = cloth_contacts;
+    if untangling.is_search_due {
+        return bounds_violated.fill(true);
+    }
+    for &cloth in untangling.cloth_pairs().iter().flatten() {
+        let points = cloths[cloth as usize].points();
+        bounds_violated[points.start as usize..points.end as usize].fill(true);
+    }
 }
 
 /// Marks the points that violate their bounds at the end of the step. Returns whether there are any.
@@ -203,15 +213,18 @@ fn find_candidates<R: Real>(
         cloth_contacts;
     let SearchBuffers { bounds, groups, tasks } = buffers;
     let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
-    tasks.resize_with(tasks.len().max(chunks), RwLock::default);
+    tasks.resize_with(tasks.len().max(chunks), SearchTask::default);
+    let own = DisjointSlice::new(tasks);
     let search = ClothSearch { elements, materials, bounds, untangling, input, bounds_violated, margin };
     pool.parallel_for(chunks, |task| {
         // Uncontended: a task runs once.
-        let Ok(mut own) = tasks[task].write() else { return };
+        // SAFETY: every task has its own.
+        #[allow(unsafe_code)]
+        let [own] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
         own.found.clear();
         own.group_bounds.clear();
         let end = ((task + 1) * GROUPS_PER_TASK).min(groups.len());
-        groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, &mut own));
+        groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, own));
     });
     cache.update(&tasks[..chunks], bounds_violated, refresh, (&elements.block, elements.blocks), pool);
     bounds_violated.fill(false);

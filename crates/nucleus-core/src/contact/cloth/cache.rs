@@ -1,7 +1,7 @@
 //! The contact cache: all contacts among cloths, by kind, over a candidate interval.
 
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, RwLock};
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::batches::{Blocks, ContactList};
@@ -43,7 +43,7 @@ impl<R> Default for ContactCache<R> {
 
 /// The result of a search, and the contacts that it replaces.
 struct CacheUpdate<'a, R> {
-    tasks: &'a [RwLock<SearchTask<R>>],
+    tasks: &'a [SearchTask<R>],
     bounds_violated: &'a [bool],
     refresh: RefreshKind,
     blocks: Blocks<'a>,
@@ -57,10 +57,8 @@ impl<R: Real> CacheUpdate<'_, R> {
         of: impl Fn(&FoundContacts<R>) -> &[ClothContact<R, N, M>],
     ) {
         contacts.remove_violated(self.bounds_violated, self.refresh);
-        for task in self.tasks.iter().filter_map(|task| task.read().ok()) {
-            contacts.add(of(&task.found));
-        }
-        contacts.assign_batches(self.refresh, self.blocks);
+        let found = |task: usize| of(&self.tasks[task].found);
+        contacts.assign_batches(self.tasks.len(), found, self.refresh, self.blocks);
     }
 }
 
@@ -77,7 +75,7 @@ impl<R: Real> ContactCache<R> {
     /// bounds.
     pub(super) fn update(
         &mut self,
-        tasks: &[RwLock<SearchTask<R>>],
+        tasks: &[SearchTask<R>],
         bounds_violated: &[bool],
         refresh: RefreshKind,
         blocks: Blocks<'_>,
@@ -137,12 +135,12 @@ impl<R: Real> ContactCache<R> {
     }
 
     /// One sweep. Point-face contacts go last, because they carry cloth on cloth most smoothly. Returns the
-    /// number of contacts that pushed.
-    pub fn sweep(&mut self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> u64 {
-        self.edge_edge.sweep(step, pool)
-            + self.point_point.sweep(step, pool)
-            + self.point_edge.sweep(step, pool)
-            + self.point_face.sweep(step, pool)
+    /// number of contacts that pushed; marks their cloths.
+    pub fn sweep(&mut self, step: &ClothStep<'_, R>, has_touched: &[AtomicBool], pool: &ThreadPool) -> u64 {
+        self.edge_edge.sweep(step, has_touched, pool)
+            + self.point_point.sweep(step, has_touched, pool)
+            + self.point_edge.sweep(step, has_touched, pool)
+            + self.point_face.sweep(step, has_touched, pool)
     }
 
     /// Applies adhesion between points and the elements that they touch.

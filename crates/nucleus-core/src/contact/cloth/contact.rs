@@ -3,6 +3,8 @@
 //! Its normal separated the two at the start of the time step. While it separates them at the end too, they have
 //! not passed through each other; otherwise the certificate tries other directions.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::bytes::{Encode, Reader, encode_struct};
 use crate::contact::cloth::element_bounds::ElementPoints;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
@@ -188,6 +190,13 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     pub fn cloths(&self, materials: usize) -> [usize; 2] {
         let (material, cloths) = (self.params.material as usize, materials.isqrt());
         [material / cloths, material % cloths]
+    }
+
+    /// Marks the cloths of its two sides.
+    pub(super) fn mark_cloths(&self, marks: &[AtomicBool]) {
+        let (material, cloths) = (self.params.material as usize, marks.len());
+        marks[material / cloths].store(true, Ordering::Relaxed);
+        marks[material % cloths].store(true, Ordering::Relaxed);
     }
 
     /// The points of the two and their weights.

@@ -1,7 +1,6 @@
 //! The state of contact among cloths.
 
 use std::ops::Range;
-use std::sync::RwLock;
 
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::element_bounds::ElementBounds;
@@ -110,7 +109,7 @@ pub struct SearchBuffers<R> {
     pub(super) bounds: ElementBounds,
     /// The groups with a new bound.
     pub(super) groups: Vec<u32>,
-    pub(super) tasks: Vec<RwLock<SearchTask<R>>>,
+    pub(super) tasks: Vec<SearchTask<R>>,
 }
 
 impl<R> Default for SearchBuffers<R> {

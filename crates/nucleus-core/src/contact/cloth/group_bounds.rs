@@ -1,6 +1,6 @@
-//! Swept boxes of the elements of a group, four at a time, and a cache of them.
+//! Swept boxes of the elements of a group, and a cache of them.
 
-use crate::contact::bvh::{Aabb, Aabb4, SweptBox};
+use crate::contact::box_row::BoxRow;
 use crate::contact::cloth::search::ClothSearch;
 use crate::math::Real;
 
@@ -17,37 +17,6 @@ pub struct GroupBounds {
     pub triangles: BoxRow,
     /// Whether all of its points have new bounds.
     pub all_have_new_bounds: bool,
-}
-
-/// Swept boxes in fours.
-#[derive(Debug, Default)]
-pub struct BoxRow {
-    fours: Vec<Aabb4>,
-}
-
-impl BoxRow {
-    /// Replaces all by the boxes of some elements.
-    pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> SweptBox) {
-        let four = |things: &[T]| {
-            let mut four = [[Aabb::EMPTY; 2]; 4];
-            four.iter_mut().zip(things).for_each(|(slot, thing)| *slot = boxes(thing));
-            Aabb4::of(&four)
-        };
-        self.fours.clear();
-        self.fours.extend(things.chunks(4).map(four));
-    }
-
-    /// Calls `found` with the index of each box that may overlap.
-    #[inline(always)]
-    pub fn for_each_overlap(&self, boxes: &SweptBox, mut found: impl FnMut(usize)) {
-        for (four, all) in self.fours.iter().enumerate() {
-            let mut met = all.overlap_mask(boxes);
-            while met != 0 {
-                found(4 * four + met.trailing_zeros() as usize);
-                met &= met - 1;
-            }
-        }
-    }
 }
 
 impl GroupBounds {

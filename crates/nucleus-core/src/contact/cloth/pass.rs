@@ -62,8 +62,9 @@ pub fn resolve_cloth_contacts<R: Real>(
     update_cloth_candidates(pass);
     watch.enter(Stage::Contact);
     let ContactPass { state, pool, contact, counters, schedule, .. } = pass;
-    let ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, contact_mask, .. } =
-        &mut **contact
+    let ContactSystem {
+        cloth_contacts: Some(cloth_contacts), material_maps, contact_mask, has_touched, ..
+    } = &mut **contact
     else {
         return;
     };
@@ -88,7 +89,7 @@ pub fn resolve_cloth_contacts<R: Real>(
         mask,
         ..ClothStep::new(state, materials, material_maps, schedule.h)
     };
-    *counters.contacts.get_mut() += cache.sweep(&step, pool);
+    *counters.contacts.get_mut() += cache.sweep(&step, has_touched, pool);
 }
 
 /// Applies adhesion of cloth with itself and with other cloth.

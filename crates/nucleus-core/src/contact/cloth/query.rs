@@ -1,9 +1,10 @@
-//! Broad-phase query of one element group against others: tests swept boxes four at a time, then builds contacts.
+//! Broad-phase query of one element group against others: tests rows of swept boxes, then builds contacts.
 
+use crate::contact::box_row::BoxRow;
 use crate::contact::bvh::{Aabb, SweptBox};
 use crate::contact::cloth::contact::{ClothContact, ContactParams};
 use crate::contact::cloth::element_bounds::ElementPoints;
-use crate::contact::cloth::group_bounds::{BoxRow, GroupBounds, GroupBoundsCache};
+use crate::contact::cloth::group_bounds::{GroupBounds, GroupBoundsCache};
 use crate::contact::cloth::search::ClothSearch;
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;

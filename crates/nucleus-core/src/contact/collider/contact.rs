@@ -6,16 +6,18 @@
 //! in between. Where the contact's own plane proves nothing, others are tried. Where none does, the element
 //! returns to its side of the plane that held at the start of the step.
 
+use std::sync::atomic::Ordering;
+
 use nalgebra::Vector3;
 
 use crate::bytes::{Encode, Reader};
 use crate::contact::ccd::separated_throughout;
-use crate::contact::collider::motion_bounds::{MotionBounds, diagonal};
+use crate::contact::collider::motion_bounds::{MotionBounds, squared_diagonal};
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
-use crate::contact::time_step::ColliderStep;
-use crate::math::{Real, Row4, dot};
+use crate::contact::time_step::{ColliderStep, ContactCounters};
+use crate::math::{Real, Row4, dot, max};
 
 pub(super) type Point = Vector3<f64>;
 
@@ -101,6 +103,18 @@ pub enum Outcome {
     Inseparable,
 }
 
+impl Outcome {
+    /// Counts it. Returns whether the contact moved anything.
+    pub(super) fn count(self, counters: &ContactCounters) -> bool {
+        match self {
+            Self::Separated | Self::Inseparable => return false,
+            Self::Pushed => counters.contacts.fetch_add(1, Ordering::Relaxed),
+            Self::Reverted => counters.pairs_reverted.fetch_add(1, Ordering::Relaxed),
+        };
+        true
+    }
+}
+
 /// Whether a pair provably did not pass through each other in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Certificate {
@@ -128,10 +142,10 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let (b, c) = closest(x, q);
         let line = interpolate(x, b) - interpolate(q, c);
         // Neither side moves farther than the diagonal of its bound.
-        let ours = points.map(|point| diagonal(&bounds.of(point)).to_f64()).into_iter().fold(0.0, f64::max);
-        let theirs =
-            collider_points.map(|q| step.travel(q, bounds.frame_travel)).into_iter().fold(0.0, f64::max);
         let range = step.interaction_range();
+        let ours = points.map(|point| squared_diagonal(&bounds.of(point)));
+        let ours = ours.into_iter().fold(R::ZERO, max).sqrt().to_f64();
+        let theirs = step.longest_travel(collider_points, bounds.frame_travel);
         if line.norm() > range.to_f64() + ours + theirs {
             return None;
         }
@@ -153,6 +167,23 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
         let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
         (gap < range).then_some(contact)
+    }
+
+    /// A contact with a plane of its own, for tests.
+    #[cfg(test)]
+    pub(super) fn of_plane(points: [u32; N], normal: [R; 3], plane: [[R; N]; 2]) -> Self {
+        let zero = [R::ZERO; 3];
+        Self {
+            points,
+            collider_points: [0; M],
+            group: 0,
+            normal,
+            plane,
+            weights: [R::ZERO; N],
+            surface_motion: zero,
+            plane_origin: zero,
+            idle_until: [R::ZERO; N],
+        }
     }
 
     /// Whether the contact is in the interior of the cloth's element, and on the far side of the surface. `outward` is the
@@ -206,6 +237,12 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
                 self.plane_origin[axis] -= self.weights[k] * by[axis];
             }
         }
+    }
+
+    /// The plane's offset for a point at the start and at the end of the candidate interval.
+    #[inline(always)]
+    pub(super) fn plane_ends(&self, k: usize) -> [R; 2] {
+        [self.plane[0][k], self.plane[1][k]]
     }
 
     /// The plane's offset for a point, at a share of the candidate interval.

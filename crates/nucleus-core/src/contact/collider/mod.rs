@@ -9,21 +9,27 @@
 //! | motion bounds of points | [`motion_bounds`] |
 //! | broad phase: when bounds are predicted and contacts searched | [`broad_phase`] |
 //! | which elements can touch, group by group | [`query`] |
-//! | the contacts of one cloth with one collider, the active ones, and a sweep over them | [`contacts`] |
+//! | the contacts of one cloth with one collider, and their certificates | [`contacts`] |
+//! | the contacts that can touch within the next few time steps | [`active_set`] |
+//! | a sweep over them | [`sweep`] |
+//! | the planes of the active contacts, four at a time | [`plane_columns`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
 //! | its push, friction, adhesion and restitution | [`response`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
 //! | the passes of a time step | [`pass`] |
 
+pub mod active_set;
 pub mod broad_phase;
 pub mod contact;
 pub mod contacts;
 pub mod frame_start;
 pub mod motion_bounds;
 pub mod pass;
+mod plane_columns;
 pub mod query;
 mod response;
 pub mod start_gaps;
+pub mod sweep;
 
 use nalgebra::Vector3;
 

@@ -63,10 +63,11 @@ pub fn predict_box<R: Real>(
     [corner(-R::ONE, min), corner(R::ONE, max)]
 }
 
-/// The diagonal of a bound, in metres.
-pub fn diagonal<R: Real>([low, high]: &MotionBox<R>) -> R {
-    let diagonal: [R; 3] = std::array::from_fn(|axis| high.0[axis] - low.0[axis]);
-    dot(diagonal, diagonal).sqrt()
+/// The square of the diagonal of a bound, in square metres.
+#[inline(always)]
+pub fn squared_diagonal<R: Real>([low, high]: &MotionBox<R>) -> R {
+    let diagonal = sub(high.xyz(), low.xyz());
+    dot(diagonal, diagonal)
 }
 
 /// How far a bound extends beyond an older one, in metres: the sum over all axes.

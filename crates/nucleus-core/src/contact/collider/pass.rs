@@ -4,10 +4,9 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use crate::contact::collider::broad_phase::update_collider_candidates;
-use crate::contact::collider::contacts::{
-    ColliderContacts, adhere, certify, for_unproven_points, resolve, revert_to_start,
-};
+use crate::contact::collider::contacts::{ColliderContacts, certify, for_unproven_points, revert_to_start};
 use crate::contact::collider::start_gaps::release_cleared_points;
+use crate::contact::collider::sweep::{adhere, resolve};
 use crate::contact::ground::GroundContact;
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::{ContactPass, ContactSystem};
@@ -34,11 +33,13 @@ pub fn resolve_collider_contacts<R: Real>(
         update_collider_candidates(pass, cloth);
         release_cleared_points(pass, cloth);
         watch.enter(Stage::Contact);
+        let before = *pass.counters.contacts.get_mut();
         for_contacts_of(pass, cloth, |list, step, pool, counters| {
             let step = step.with_thickness_scale(thickness_scale);
             resolve(list, &step, pool, counters);
             list.depenetration.push_outward(&model.colliders[list.collider], &step);
         });
+        *pass.contact.has_touched[cloth].get_mut() |= *pass.counters.contacts.get_mut() > before;
     }
 }
 
@@ -142,7 +143,11 @@ fn for_contacts_of<R: Real>(
 
 fn resolve_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>, thickness_scale: f64) {
     for_ground_contacts(pass, thickness_scale, |ground, points, counters| {
-        counters.contacts.fetch_add(ground.resolve(points), Ordering::Relaxed);
+        let pushed = ground.resolve(points);
+        if pushed > 0 {
+            ground.has_touched.store(true, Ordering::Relaxed);
+            counters.contacts.fetch_add(pushed, Ordering::Relaxed);
+        }
     });
 }
 
@@ -153,7 +158,7 @@ fn for_ground_contacts<R: Real>(
     work: impl Fn(&GroundContact<'_, R>, Range<u32>, &ContactCounters) + Sync,
 ) {
     let ContactPass { state, pool, model: Model { cloths, .. }, contact, counters, .. } = pass;
-    let ContactSystem { ground, ground_materials, material_maps, contact_mask, .. } = &**contact;
+    let ContactSystem { ground, ground_materials, material_maps, contact_mask, has_touched, .. } = &**contact;
     let counters = &**counters;
     let Some(plane) = ground.in_step(pass.span) else { return };
     let (writer, start, _) = PositionWriter::of(state);
@@ -168,6 +173,7 @@ fn for_ground_contacts<R: Real>(
             material,
             material_maps,
             h: R::from_f64(pass.schedule.h),
+            has_touched: &has_touched[index],
         };
         pool.parallel_for(cloth.blocks.len(), |block| work(&ground, cloth.blocks.range(block), counters));
     }

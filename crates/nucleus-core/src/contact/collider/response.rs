@@ -16,6 +16,21 @@ const TOUCH_TOLERANCE: f64 = 1e-6;
 /// this times the depth of a contact.
 const MIN_MOBILITY: f64 = 0.25;
 
+impl<R: Real> ColliderStep<'_, R> {
+    /// The gap below which a contact may push, in metres.
+    #[inline(always)]
+    fn pushing_gap(&self) -> R {
+        self.thickness * R::from_f64(1.0 - TOUCH_TOLERANCE)
+    }
+
+    /// The gap below which a contact may push or, if its material grips, hold, in metres.
+    #[inline(always)]
+    pub(super) fn active_gap(&self) -> R {
+        let tolerance = if self.material.grips { Restitution::<R>::MAX_TOUCHING_GAP } else { 1.0 - TOUCH_TOLERANCE };
+        self.thickness * R::from_f64(tolerance)
+    }
+}
+
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Pushes the contact to its thickness. The caller passes points that no other task of the phase touches.
     #[inline]
@@ -23,7 +38,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let moved = self.points.map(|point| step.row(point).xyz());
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
-        if least >= step.thickness * touching {
+        if least >= step.pushing_gap() {
             if step.material.grips && Restitution::touches(gap, self.rest_gap(step, self.weights)) {
                 self.hold(step);
             }

@@ -1,0 +1,148 @@
+//! One Gauss-Seidel sweep over the active contacts of a cloth and a collider.
+
+use crate::contact::collider::active_set::ActiveSet;
+use crate::contact::collider::contact::{ColliderContact, Outcome};
+use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::collider::plane_columns::FourPlanes;
+use crate::contact::time_step::{ColliderStep, ContactCounters};
+use crate::math::Real;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+/// Rounds over the contacts of one point while they still push.
+const MAX_ROUNDS: usize = 4;
+
+/// One sweep over the active contacts. Points go first: on a smooth surface they carry the cloth, and edges and
+/// faces, which would lift one end when the other is low, then have nothing to push. Where edges or faces push,
+/// points are swept again.
+pub fn resolve<R: Real>(
+    list: &mut ColliderContacts<R>,
+    step: &ColliderStep<'_, R>,
+    pool: &ThreadPool,
+    counters: &ContactCounters,
+) {
+    resolve_points(list, step, pool, counters);
+    let ColliderContacts { edge_edge, face_point, active, .. } = list;
+    let ActiveSet { edge_planes, face_planes, .. } = active;
+    let of_edges = resolve_all(edge_edge, &active.edge_edge, edge_planes.fours_mut(), step, counters);
+    let of_faces = resolve_all(face_point, &active.face_point, face_planes.fours_mut(), step, counters);
+    if of_edges || of_faces {
+        resolve_points(list, step, pool, counters);
+    }
+}
+
+/// Sweeps contacts of edges or faces, one after the other. Returns whether any moved anything.
+fn resolve_all<R: Real, const N: usize, const M: usize>(
+    contacts: &mut [ColliderContact<R, N, M>],
+    active: &[u32],
+    planes: &mut [FourPlanes<R, N>],
+    step: &ColliderStep<'_, R>,
+    counters: &ContactCounters,
+) -> bool {
+    let mut any = false;
+    for (indices, planes) in active.chunks(4).zip(planes) {
+        let below = planes.below(step.active_gap(), step.shares[1], |point| step.row(point));
+        if below == 0 {
+            continue;
+        }
+        // Those behind the first may come below their thickness by its push.
+        for (lane, &contact) in indices.iter().enumerate().skip(below.trailing_zeros() as usize) {
+            let contact = &mut contacts[contact as usize];
+            any |= contact.resolve(step).count(counters);
+            planes.set(lane, contact);
+        }
+    }
+    any
+}
+
+/// Sweeps point-face contacts, block by block.
+fn resolve_points<R: Real>(
+    list: &mut ColliderContacts<R>,
+    step: &ColliderStep<'_, R>,
+    pool: &ThreadPool,
+    counters: &ContactCounters,
+) {
+    let ColliderContacts { point_face, active, .. } = list;
+    let ActiveSet { point_face: active, runs, point_planes, first_fours, .. } = active;
+    let (pairs, planes) = (DisjointSlice::new(point_face), DisjointSlice::new(point_planes.fours_mut()));
+    pool.parallel_for(runs.len(), |block| {
+        let run = &active[runs[block].start as usize..runs[block].end as usize];
+        let fours = first_fours[block]..first_fours[block] + run.len().div_ceil(4) as u32;
+        // SAFETY: the runs of two blocks share no contact, no point, and no four.
+        #[allow(unsafe_code)]
+        let planes = unsafe { planes.run(fours) };
+        resolve_block(pairs, run, planes, step, counters);
+    });
+}
+
+/// Resolves the contacts of the points of a block. A point of which no contact is below its thickness stays where it is.
+fn resolve_block<R: Real>(
+    pairs: DisjointSlice<'_, ColliderContact<R, 1, 3>>,
+    run: &[u32],
+    planes: &mut [FourPlanes<R, 1>],
+    step: &ColliderStep<'_, R>,
+    counters: &ContactCounters,
+) {
+    // SAFETY: the contacts of a point belong to the task of its block.
+    #[allow(unsafe_code)]
+    let contact = |at: usize| unsafe { pairs.get(run[at]) };
+    let mut resolved = 0;
+    for four in 0..planes.len() {
+        let mut below = planes[four].below(step.active_gap(), step.shares[1], |point| step.row(point));
+        while below != 0 {
+            let at = 4 * four + below.trailing_zeros() as usize;
+            below &= below - 1;
+            if at < resolved {
+                continue;
+            }
+            let points = contact(at).points;
+            let first =
+                (resolved..at).rev().take_while(|&k| contact(k).points == points).last().unwrap_or(at);
+            let end = (at..run.len()).find(|&k| contact(k).points != points).unwrap_or(run.len());
+            resolve_point(pairs, &run[first..end], step, counters);
+            (first..end).for_each(|k| planes[k / 4].set(k % 4, &contact(k)));
+            resolved = end;
+        }
+    }
+}
+
+/// Applies adhesion between every point and its nearest face.
+pub fn adhere<R: Real>(list: &mut ColliderContacts<R>, step: &ColliderStep<'_, R>, pool: &ThreadPool) {
+    let ColliderContacts { point_face, active, .. } = list;
+    let pairs = &*point_face;
+    pool.parallel_for(active.runs.len(), |block| {
+        let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];
+        for of_point in run.chunk_by(|&a, &b| pairs[a as usize].points == pairs[b as usize].points) {
+            let gaps = of_point.iter().map(|&contact| (pairs[contact as usize].gap(step), contact));
+            let nearest = gaps.reduce(|least, next| if next.0 < least.0 { next } else { least });
+            nearest.into_iter().for_each(|(_, contact)| pairs[contact as usize].adhere(step));
+        }
+    });
+}
+
+/// Repeats the contacts of one point until none pushes. A point that is still reverted in the last round moves
+/// with the face that it would pass: points that move with a rigid surface pass no part of it.
+fn resolve_point<R: Real>(
+    pairs: DisjointSlice<'_, ColliderContact<R, 1, 3>>,
+    of_point: &[u32],
+    step: &ColliderStep<'_, R>,
+    counters: &ContactCounters,
+) {
+    for round in 1..=MAX_ROUNDS {
+        let (mut pushed, mut reverted) = (0, false);
+        for &index in of_point {
+            // SAFETY: the contacts of a point belong to the task of its block.
+            #[allow(unsafe_code)]
+            let [contact] = (unsafe { pairs.run(index..index + 1) }) else { continue };
+            let outcome = contact.resolve(step);
+            pushed += usize::from(outcome.count(counters));
+            reverted |= outcome == Outcome::Reverted;
+            if round == MAX_ROUNDS && outcome == Outcome::Reverted {
+                return contact.move_with_surface(step);
+            }
+        }
+        if pushed == 0 || (of_point.len() == 1 && !reverted) {
+            return;
+        }
+    }
+}
