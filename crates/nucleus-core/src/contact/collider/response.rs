@@ -26,7 +26,8 @@ impl<R: Real> ColliderStep<'_, R> {
     /// The gap below which a contact may push or, if its material grips, hold, in metres.
     #[inline(always)]
     pub(super) fn active_gap(&self) -> R {
-        let tolerance = if self.material.grips { Restitution::<R>::MAX_TOUCHING_GAP } else { 1.0 - TOUCH_TOLERANCE };
+        let tolerance =
+            if self.material.grips { Restitution::<R>::MAX_TOUCHING_GAP } else { 1.0 - TOUCH_TOLERANCE };
         self.thickness * R::from_f64(tolerance)
     }
 }
@@ -189,8 +190,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let limit = match material.grips {
             true => R::from_f64(f64::from(f32::MAX)),
             false => {
-                material.friction_at(step.material_maps, self.contact_points(&(self.weights, [])))
-                    * pushed
+                material.friction_at(step.material_maps, self.contact_points(&(self.weights, []))) * pushed
             }
         };
         if limit <= R::ZERO {

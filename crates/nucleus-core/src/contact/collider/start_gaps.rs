@@ -91,7 +91,8 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
             continue;
         };
         let (h, time) = (pass.schedule.h, [pass.span.from, pass.span.to]);
-        let args = ColliderStepArgs { material, material_maps, h, time, interval: list.interval };
+        let args =
+            ColliderStepArgs { material, material_maps, at: list.collider, h, time, interval: list.interval };
         let step = args.of(state, &collider_states[list.collider]);
         let thickness = R::from_f64(material.thickness);
         range = if range < thickness { thickness } else { range };
