@@ -7,6 +7,7 @@
 //! | what the exit code means, and how signals are handled    | `process.rs`             |
 //! | how a run advances, frame by frame                       | `run_loop.rs`            |
 //! | what its cache states about it                           | `recording.rs`           |
+//! | how runs of a plan are executed                          | `runs/`                  |
 //! | how a run is resumed                                     | `resumed_run.rs`         |
 //! | what a run reports at its end                            | `summary.rs`             |
 //! | when that report is a failure or a warning               | `warnings.rs`            |
@@ -27,6 +28,7 @@ mod recording;
 mod resumed_run;
 mod run_loop;
 mod run_statistics;
+mod runs;
 mod summary;
 mod warnings;
 

@@ -71,6 +71,8 @@ pub fn command() -> Result<Vec<OsString>> {
 static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 static IS_LISTENING: AtomicBool = AtomicBool::new(false);
 static HAS_OPEN_FILES: AtomicBool = AtomicBool::new(false);
+/// More files are written after those that [`files_are_closed`] tells of.
+static HAS_MORE_FILES: AtomicBool = AtomicBool::new(false);
 
 /// Starts to listen for signals. SIGTERM, SIGHUP and SIGQUIT count as Ctrl-C, so that a render farm can end a run cleanly.
 pub fn listen_for_signals() -> Result<()> {
@@ -89,11 +91,27 @@ pub fn listen_for_signals() -> Result<()> {
 /// Asks the command to end, as a first Ctrl-C does.
 pub fn interrupt() {
     IS_INTERRUPTED.store(true, Ordering::SeqCst);
+    if !HAS_OPEN_FILES.load(Ordering::SeqCst) {
+        std::process::exit(INTERRUPTED.into());
+    }
 }
 
-/// All files are closed: from now on a single Ctrl-C ends the process.
+/// All files are closed: from now on a single Ctrl-C ends the process, unless more files are to be written.
 pub fn files_are_closed() {
+    HAS_OPEN_FILES.store(HAS_MORE_FILES.load(Ordering::SeqCst), Ordering::SeqCst);
+}
+
+/// A run has a result to write after its cache is closed. A signal in between must not lose it.
+pub fn more_files_follow() {
+    HAS_MORE_FILES.store(true, Ordering::SeqCst);
+}
+
+/// The command has no files that it must close: it ends at once when it is asked to, or has been already.
+pub fn end_at_once_when_asked() {
     HAS_OPEN_FILES.store(false, Ordering::SeqCst);
+    if is_interrupted() {
+        std::process::exit(INTERRUPTED.into());
+    }
 }
 
 /// Whether a signal has asked the command to end.
@@ -106,9 +124,20 @@ fn on_signal(handle: impl Fn() + Send + 'static) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use signal_hook::iterator::Signals;
 
-    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP, SIGQUIT])?;
+    // `nohup` starts a command with SIGHUP ignored, and it must stay so.
+    let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+    let mut signals = Signals::new([SIGINT, SIGTERM, SIGQUIT].into_iter().chain(hangup))?;
     let listener = std::thread::Builder::new().name("signals".to_owned());
     listener.spawn(move || signals.forever().for_each(|_| handle())).map(drop)
+}
+
+/// Whether the process was started with a signal ignored; unknown, and taken as no, where there is no `/proc`.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
 }
 
 #[cfg(not(unix))]

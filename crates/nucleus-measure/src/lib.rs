@@ -12,6 +12,7 @@
 //! | design experiments: prototype against solver                    | [`experiments`]     |
 //! | sheets, frame inputs and runs that those four share             | [`fixture`]         |
 //! | results kept between commands                                   | [`result_cache`]    |
+//! | numbers that pass between processes with all their bits         | [`bits`]            |
 //!
 //! **Invariant:** nothing here writes to the terminal, and no result depends on the number of runs that execute in
 //! parallel.
@@ -19,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 pub mod advice;
+pub mod bits;
 pub mod clock;
 pub mod experiments;
 pub mod extremes;

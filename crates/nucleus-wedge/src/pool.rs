@@ -22,6 +22,9 @@ use crate::result::{RunOutcome, RunResult};
 /// Exit code of a child whose run another process is at.
 pub const BUSY: i32 = 75;
 
+/// Exit code of a child that was asked to end.
+const INTERRUPTED: i32 = 130;
+
 /// Interval at which the request to stop is looked at.
 const POLL: Duration = Duration::from_millis(50);
 
@@ -179,6 +182,7 @@ impl Pool<'_> {
         let log = self.folder.log(&run.name);
         let (outcome, error) = match status.code() {
             None => (RunOutcome::Killed, format!("the process of the run was ended by the system: {status}")),
+            Some(INTERRUPTED) => (RunOutcome::Interrupted, "it was asked to end".to_owned()),
             Some(_) => {
                 let said = fs::read_to_string(&log).unwrap_or_default();
                 let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message");
@@ -229,4 +233,40 @@ pub fn when_parent_ends(closed: impl FnOnce() + Send + 'static) -> io::Result<()
         closed();
     };
     std::thread::Builder::new().name("parent".to_owned()).spawn(wait).map(drop)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use crate::plan::Plan;
+
+    /// The outcome of a run whose process is this script of a shell.
+    fn outcome(script: &str) -> RunOutcome {
+        let folder = tempfile::tempdir().unwrap();
+        let wedge = WedgeFolder::new(&folder.path().join("w")).unwrap();
+        let (name, arguments) = ("0000".to_owned(), vec!["run".to_owned()]);
+        let run = PlannedRun { run: 0, name, values: Vec::new(), seed: None, arguments };
+        let header = PlanHeader::new("a.ron".to_owned(), folder.path().to_owned(), Vec::new());
+        let plan = Plan { header, runs: vec![run] };
+        wedge.create(&plan).unwrap();
+        let command = ["sh", "-c", script].map(OsString::from);
+        let pool = Pool { command: &command, folder: &wedge, header: &plan.header, jobs: 1, options: &[] };
+        let mut results = Vec::new();
+        let mut take = |event| match event {
+            Event::Ended { result, .. } => results.push(result),
+            Event::Started { .. } | Event::Frame { .. } => {}
+        };
+        pool.run(&plan.runs, &|| false, &mut take).unwrap();
+        let result = results.pop().flatten().unwrap();
+        assert_eq!(wedge.result("0000").unwrap(), Some(result.clone()), "the result is in its file");
+        result.outcome
+    }
+
+    #[test]
+    fn a_process_without_a_result_is_named_by_how_it_ended() {
+        assert_eq!(outcome("echo no >&2; exit 2"), RunOutcome::Failed);
+        assert_eq!(outcome("kill -9 $$"), RunOutcome::Killed);
+        // Asked twice to end: there was no time for a result, and nothing is wrong with the run.
+        assert_eq!(outcome("exit 130"), RunOutcome::Interrupted);
+    }
 }

@@ -8,11 +8,14 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, Color, ColorChoice, ColorSpec, WriteColor};
 use nucleus_measure::extremes::{
-    Evaluation, Kind, Measurement, StressCase, TimeBudget, evaluate_all, failure_text, named, page, rows,
+    Baselines, Evaluation, Findings, Kind, Measurement, StressCase, TimeBudget, evaluate, evaluate_all,
+    failure_text, named, page, rows,
 };
 use serde_json::{Value, json};
 
+use crate::output::say;
 use crate::process::Outcome;
+use crate::runs::{PartOptions, part_report};
 use crate::{figures, options, output};
 
 /// Runs the stress tests: scenes with extreme values, meshes and motions, each with the conditions that it must meet.
@@ -39,6 +42,11 @@ pub struct Extremes {
     /// Rows to run in parallel; default: one per core.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
+    /// Run every row to its end and do not measure its cost.
+    #[arg(long)]
+    untimed: bool,
+    #[command(flatten)]
+    parts: PartOptions,
 }
 
 impl Extremes {
@@ -64,7 +72,12 @@ impl Extremes {
             outcomes.push(outcome);
             Ok(())
         };
-        evaluate_all(&rows, options::thread_count(self.jobs), TimeBudget::Long, &mut take)?;
+        if self.parts.is_planned() {
+            let Some(found) = self.planned(&rows)? else { return Ok(Outcome::Interrupted) };
+            found.into_iter().try_for_each(&mut take)?;
+        } else {
+            evaluate_all(&rows, options::thread_count(self.jobs), self.budget(), &mut take)?;
+        }
         if !self.json {
             output::report(&total(&outcomes));
         }
@@ -72,6 +85,35 @@ impl Extremes {
             fs::write(file, page(&outcomes)).with_context(|| format!("cannot write `{}`", file.display()))?;
         }
         Ok(if outcomes.iter().all(Evaluation::holds) { Outcome::Success } else { Outcome::Problem })
+    }
+
+    fn budget(&self) -> TimeBudget {
+        if self.untimed { TimeBudget::Untimed } else { TimeBudget::Long }
+    }
+
+    /// Evaluates the rows as runs of a plan. Their cost is measured only where they are alone on a machine.
+    fn planned(&self, rows: &[&'static StressCase]) -> Result<Option<Vec<Evaluation>>> {
+        let is_untimed = self.untimed || !self.parts.is_alone(self.jobs);
+        if is_untimed && !self.untimed {
+            say!("the cost of rows is not measured, because they share a machine; `--jobs 1` measures it");
+        }
+        let part = |row: &&StressCase| {
+            let untimed = is_untimed.then(|| "--untimed".to_owned());
+            let only = ["--only".to_owned(), row.name.to_owned()];
+            (row.name.to_owned(), only.into_iter().chain(untimed).collect())
+        };
+        let found = self.parts.execute::<Findings>("extremes", rows.iter().map(part).collect(), self.jobs)?;
+        let evaluation = |(row, found): (&&'static StressCase, Findings)| Evaluation::of(row, found);
+        Ok(found.map(|found| rows.iter().zip(found).map(evaluation).collect()))
+    }
+
+    /// Evaluates one row and returns its report, for the result of a run of a plan.
+    pub fn part(&self) -> Result<Value> {
+        let rows = self.rows()?;
+        let [row] = rows[..] else { bail!("a run of a plan evaluates one row, not {}", rows.len()) };
+        let evaluation = evaluate(row, &Baselines::default(), self.budget())?;
+        let failures: Vec<String> = evaluation.failures().map(failure_text).collect();
+        part_report(&evaluation.findings(), &failures)
     }
 
     /// The requested rows.

@@ -2,23 +2,29 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use nucleus_graph::scene::edit;
+use nucleus_graph::scene::{Scene, edit};
 use nucleus_measure::report::{self, Wish};
 use nucleus_measure::result_cache::{ResultCache, write_atomic};
 use nucleus_measure::trade::SweepOptions;
+use nucleus_measure::trade::run::Trajectory;
 use nucleus_measure::trade::{
-    Benchmark, Choice, Quantity, Reading, Request, Setting, SweepControl, SweepResult, TradeError, run_sweep,
+    Benchmark, Choice, Quantity, Reading, RemoteRun, Request, Setting, SweepControl, SweepResult, TradeError,
+    run_sweep,
 };
 
 use crate::options::{self, FrameRange};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::progress::SweepProgress;
+use crate::runs::PartOptions;
 use crate::{files, output, process, quality};
 
+mod elsewhere;
 mod page;
+
+use elsewhere::{Remote, RemoteSweep};
 
 /// Default length of the comparison, in seconds from the start.
 const DEFAULT_SECONDS: f64 = 2.0;
@@ -75,6 +81,11 @@ pub struct Trade {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    parts: PartOptions,
+    /// Do this run in this process.
+    #[arg(long, hide = true, value_name = "JSON", value_parser = elsewhere::remote)]
+    part: Option<Remote>,
 }
 
 /// Wanted errors of single quantities.
@@ -127,19 +138,14 @@ enum ResistanceModels {
 impl Trade {
     /// Runs the settings that are not stored yet, and reports the recommendation.
     pub fn run(self) -> Result<Outcome> {
-        let Some((mut scene, _, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
-            return Ok(Outcome::InvalidInput);
-        };
-        if self.frames.is_none() {
-            let frames = (DEFAULT_SECONDS * scene.time.fps).ceil() as i64;
-            scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
-        }
+        let Some((scene, text)) = self.scene()? else { return Ok(Outcome::InvalidInput) };
         let subject = match Benchmark::new(&scene) {
             Ok(subject) => subject,
             Err(error) => return problem(error),
         };
         let store = quality::store(&subject);
         if self.rerun {
+            self.refuse_old_plan()?;
             store.clear()?;
         }
         process::listen_for_signals()?;
@@ -154,8 +160,40 @@ impl Trade {
         }
     }
 
+    /// Does one run of a sweep, and returns its report for the result of a run of a plan.
+    pub fn part(&self) -> Result<serde_json::Value> {
+        let remote = self.part.as_ref().context("a run of a plan needs `--part`")?;
+        let (scene, _) = self.scene()?.context("the scene has errors; the log lists them")?;
+        remote.report(&Benchmark::new(&scene)?)
+    }
+
+    /// Refuses to do runs again whose results a folder holds already.
+    fn refuse_old_plan(&self) -> Result<()> {
+        let is_old = self.parts.is_planned() && self.parts.folder()?.exists();
+        ensure!(
+            !is_old,
+            "the folder of `--plan` has results of an earlier sweep: for `--rerun`, name another folder"
+        );
+        Ok(())
+    }
+
+    /// The scene with the frames to compare, and its text; `None` if it has errors, which are reported.
+    fn scene(&self) -> Result<Option<(Scene, String)>> {
+        let Some((mut scene, _, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
+            return Ok(None);
+        };
+        if self.frames.is_none() {
+            let frames = (DEFAULT_SECONDS * scene.time.fps).ceil() as i64;
+            scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
+        }
+        Ok(Some((scene, text)))
+    }
+
     fn run_sweep(&self, subject: &Benchmark, store: &ResultCache) -> Result<SweepResult, TradeError> {
         let mut progress = SweepProgress::new();
+        let remote = RemoteSweep { parts: &self.parts, jobs: self.jobs, scene: &self.scene, subject };
+        let mut elsewhere = |runs: &[RemoteRun], target: Option<&Trajectory>| remote.run(runs, target);
+        let is_planned = self.parts.is_planned();
         let found = run_sweep(
             subject,
             &self.wishes(),
@@ -164,6 +202,7 @@ impl Trade {
                 workers: options::thread_count(self.jobs),
                 progress: &mut |done| progress.show(done),
                 should_continue: &|| !process::is_interrupted(),
+                elsewhere: if is_planned { Some(&mut elsewhere) } else { None },
             },
         );
         progress.end();

@@ -11,6 +11,7 @@ use serde_json::json;
 
 use crate::output::say;
 use crate::process::Outcome;
+use crate::runs::{PartOptions, part_report};
 use crate::{options, output};
 
 /// Compares the solver with analytic solutions: bending and buckling strips, hanging sheets, friction, pendulums, drape.
@@ -33,6 +34,8 @@ pub struct Validate {
     /// Cases to run in parallel; default: one per core.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
+    #[command(flatten)]
+    parts: PartOptions,
 }
 
 /// A case and its findings.
@@ -48,7 +51,11 @@ impl Validate {
                 .try_for_each(|case| output::print(&format!("{:<18} {}\n", case.name, case.description)))?;
             return Ok(Outcome::Success);
         }
-        let results = self.run_all(&cases)?;
+        let results = match self.parts.is_planned() {
+            true => self.planned(&cases)?,
+            false => Some(self.run_all(&cases)?),
+        };
+        let Some(results) = results else { return Ok(Outcome::Interrupted) };
         if let Some(path) = &self.write {
             let text = page(&results)?;
             std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
@@ -59,6 +66,25 @@ impl Validate {
         }
         let right = results.iter().all(|(_, findings)| findings.iter().all(Comparison::holds));
         Ok(if right { Outcome::Success } else { Outcome::Problem })
+    }
+
+    /// Runs the cases as runs of a plan.
+    fn planned(&self, cases: &[Case]) -> Result<Option<Vec<CaseResult>>> {
+        let part = |case: &Case| (case.name.to_owned(), vec!["--only".to_owned(), case.name.to_owned()]);
+        let parts = cases.iter().map(part).collect();
+        let found = self.parts.execute::<Vec<Comparison>>("validate", parts, self.jobs)?;
+        Ok(found.map(|found| cases.iter().copied().zip(found).collect()))
+    }
+
+    /// Runs one case and returns its report, for the result of a run of a plan.
+    pub fn part(&self) -> Result<serde_json::Value> {
+        let cases = self.cases()?;
+        // Names of other cases may begin with the name of this one.
+        let exact = cases.iter().find(|case| self.only.iter().any(|name| name == case.name));
+        let case = exact.context("a run of a plan runs one case")?;
+        let found = case.run().with_context(|| format!("case `{}`", case.name))?;
+        let failures = found.iter().filter(|one| !one.holds()).map(|one| one.cells()[..4].join(" "));
+        part_report(&found, &failures.collect::<Vec<_>>())
     }
 
     fn cases(&self) -> Result<Vec<Case>> {

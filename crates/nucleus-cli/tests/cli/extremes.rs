@@ -67,3 +67,55 @@ fn a_former_option_name_works_with_a_note() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "note: `--threads` of `nucleus extremes` is now `--jobs`\n");
 }
+
+/// Everything of a row but its cost, which is not measured where rows run side by side.
+fn without_cost(output: &str) -> Vec<Value> {
+    let row = |line: &str| {
+        let mut row: Value = serde_json::from_str(line).unwrap();
+        let figures = row["figures"].as_array_mut().unwrap();
+        figures.retain(|figure| !figure["what"].as_str().unwrap().starts_with("cost "));
+        row
+    };
+    output.lines().map(row).collect()
+}
+
+#[test]
+fn rows_as_runs_of_a_plan_have_the_bits_of_rows_in_one_process() {
+    let folder = folder();
+    let rows = ["extremes", "--json", "--only", "gravity-0", "--only", "no-points", "--only", "mass-0"];
+    let one = nucleus(folder.path(), &rows);
+    let many = [&rows[..], &["--plan", "p", "--jobs", "2"]].concat();
+    let output = nucleus(folder.path(), &many);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cost of rows is not measured"), "{}", stderr(&output));
+    assert!(!stdout(&output).contains("cost per"), "{}", stdout(&output));
+    assert_eq!(without_cost(&stdout(&output)), without_cost(&stdout(&one)));
+    assert!(folder.path().join("p/wedge.html").is_file());
+    // A result that is lost is computed again, and only that one.
+    let modified = |run: &str| {
+        let path = folder.path().join(format!("p/results/{run}.json"));
+        fs::metadata(path).unwrap().modified().unwrap()
+    };
+    let before = [modified("0000"), modified("0002")];
+    fs::remove_file(folder.path().join("p/results/0001.json")).unwrap();
+    let again = nucleus(folder.path(), &many);
+    assert_eq!((stdout(&again), again.status.code()), (stdout(&output), Some(0)));
+    assert_eq!(before, [modified("0000"), modified("0002")]);
+    // Alone, a row is timed.
+    let alone = ["extremes", "--json", "--only", "gravity-0", "--plan", "alone", "--jobs", "1"];
+    assert!(stdout(&nucleus(folder.path(), &alone)).contains("cost per frame over baseline"));
+    // A plan of other rows, or a result of another solver, is refused.
+    let refusal = |arguments: &[&str]| {
+        let output = nucleus(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+        stderr(&output)
+    };
+    let said = refusal(&["extremes", "--only", "gravity-0", "--plan", "p"]);
+    assert!(said.contains("has other parts"), "{said}");
+    let path = folder.path().join("p/results/0000.json");
+    let mut result: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    result["report"]["solver"] = "0123456789abcdef".into();
+    fs::write(&path, result.to_string()).unwrap();
+    let said = refusal(&many);
+    assert!(said.contains("computed by another build"), "{said}");
+}

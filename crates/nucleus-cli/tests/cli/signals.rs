@@ -12,8 +12,12 @@ use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 
 /// A run of a million frames that has recorded at least four.
 fn long_run(folder: &Path) -> Child {
+    started(Command::new(env!("CARGO_BIN_EXE_nucleus")), folder)
+}
+
+/// The same as the child of a given command, to which the arguments are added.
+fn started(mut run: Command, folder: &Path) -> Child {
     scene(folder, 1_000_000, "");
-    let mut run = Command::new(env!("CARGO_BIN_EXE_nucleus"));
     run.args(["run", "drape.ron", "--threads", "1"]).current_dir(folder);
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let begin = Instant::now();
@@ -56,7 +60,11 @@ fn a_killed_run_leaves_an_unfinished_cache_that_plays() {
 
 #[test]
 fn an_interrupted_run_closes_its_cache_and_says_so() {
-    for name in ["INT", "TERM", "HUP", "QUIT"] {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap_or("0").trim();
+    // Below `nohup` a hangup is ignored, and stays so.
+    let keeps_hangup = u64::from_str_radix(ignored, 16).unwrap() & 1 == 0;
+    for name in ["INT", "TERM", "QUIT"].into_iter().chain(keeps_hangup.then_some("HUP")) {
         let folder = folder();
         let run = long_run(folder.path());
         signal(&run, name);
@@ -66,6 +74,27 @@ fn an_interrupted_run_closes_its_cache_and_says_so() {
         let info = nucleus(folder.path(), &["info", "drape.mcap", "--verify"]);
         assert_eq!(info.status.code(), Some(0), "{}", stdout(&info));
     }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_below_nohup_outlives_its_terminal() {
+    let folder = folder();
+    let mut command = Command::new("nohup");
+    command.arg(env!("CARGO_BIN_EXE_nucleus"));
+    let run = started(command, folder.path());
+    let frames = || {
+        let part = Playback::open(folder.path().join("drape.mcap.part"));
+        part.map_or(0, |cache| cache.time_samples().len())
+    };
+    signal(&run, "HUP");
+    let (begin, before) = (Instant::now(), frames());
+    while frames() < before + 20 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "the run has ended");
+        sleep(Duration::from_millis(5));
+    }
+    signal(&run, "TERM");
+    assert_eq!(run.wait_with_output().unwrap().status.code(), Some(130));
 }
 
 /// Writes a scene of eight frames, the sixth of which takes long enough to receive a signal.

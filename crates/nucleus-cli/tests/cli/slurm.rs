@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::net::TcpListener;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -44,6 +45,8 @@ impl Cluster {
         let quiet = |program: &Path| {
             let mut command = Command::new(program);
             command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+            // A process group of its own: what a daemon signals to its group does not reach the test.
+            command.process_group(0);
             command
         };
         let file = |option: &str, name: &str| format!("--{option}={}", folder.join(name).display());
@@ -144,7 +147,7 @@ fn a_wedge_on_slurm_resumes_lost_runs_and_collects_the_bytes_of_local_runs() {
     let jobs = fs::read_to_string(folder.path().join("farm/slurm/jobs.jsonl")).unwrap();
     assert_eq!(jobs.lines().count(), 2);
 
-    // One task is lost within its run.
+    // One task is lost within its run. Another one is asked to end twice, so that it has no time for a result.
     let first: serde_json::Value = serde_json::from_str(jobs.lines().next().unwrap()).unwrap();
     let frames = || {
         let part = Playback::open(folder.path().join("farm/runs/0000.mcap.part"));
@@ -153,6 +156,9 @@ fn a_wedge_on_slurm_resumes_lost_runs_and_collects_the_bytes_of_local_runs() {
     let has_ended = || folder.path().join("farm/results/0000.json").exists();
     wait_for("the first task does not start", || frames() > 20 || has_ended());
     cluster.call("scancel", &["--signal=KILL", "--full", &format!("{}_0", first["job"])]);
+    for _ in 0..2 {
+        cluster.call("scancel", &["--signal=TERM", "--full", &format!("{}_1", first["job"])]);
+    }
 
     // Another coordinator waits, submits the lost run again and collects.
     let wait =

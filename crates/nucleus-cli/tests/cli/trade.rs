@@ -252,3 +252,42 @@ fn a_scene_that_cannot_be_compared_exits_with_1_and_a_reason() {
         "the reference does not converge: with 2 and with 4",
     );
 }
+
+/// The points of a sweep without their times, which no two sweeps share, by setting.
+fn points(folder: &Path) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(folder.join("drape.trade.json")).unwrap();
+    let trade: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let mut points = trade["points"].as_array().unwrap().clone();
+    for point in &mut points {
+        point.as_object_mut().unwrap().retain(|name, _| name != "ms" && name != "on_frontier");
+    }
+    points.sort_by_key(|point| point["setting"].to_string());
+    points.push(trade["measure"].clone());
+    points.push(trade["apart"].clone());
+    points
+}
+
+#[test]
+fn a_sweep_as_runs_of_plans_has_the_bits_of_one_process() {
+    let (one, many) = (folder(), folder());
+    for folder in [&one, &many] {
+        scene(folder.path(), 24, "");
+    }
+    assert_eq!(nucleus(one.path(), &SMALL).status.code(), Some(0));
+    let planned = [&SMALL[..], &["--plan", "p", "--jobs", "2"]].concat();
+    let output = nucleus(many.path(), &planned);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("each runs alone"), "{}", stderr(&output));
+    assert_eq!(points(many.path()), points(one.path()));
+    let result = |stage: &str, run: u32| -> serde_json::Value {
+        let path = many.path().join(format!("p/{stage}/results/{run:04}.json"));
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let at_once = [result("references", 1), result("settings", 2)].map(|found| found["at_once"].clone());
+    assert_eq!(at_once, [2, 1]);
+    // The store has them too, so nothing is left to do.
+    let again = nucleus(many.path(), &SMALL);
+    assert_eq!((again.status.code(), stdout(&again)), (Some(0), stdout(&output)));
+    let rerun = nucleus(many.path(), &[&planned[..], &["--rerun"]].concat());
+    assert!(stderr(&rerun).contains("name another folder"), "{}", stderr(&rerun));
+}

@@ -2,7 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Output;
+use std::process::{Command, Output};
+use std::time::Instant;
 
 use nucleus_cache::Playback;
 
@@ -192,13 +193,50 @@ fn a_plan_of_another_scene_is_not_continued() {
     assert_eq!(wedge(folder.path(), &["--continue"]).status.code(), Some(0));
 }
 
+/// Virtual memory, of which the memory in use is a part.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_hundred_thousand_runs_are_planned_and_collected_in_two_hundred_megabytes() {
+    let folder = folder();
+    scene(folder.path(), 3, "");
+    let nucleus = env!("CARGO_BIN_EXE_nucleus");
+    let vary = "--vary cloth1.bendResistance=0..1/100000";
+    let script = format!(
+        "ulimit -v {}; '{nucleus}' wedge drape.ron {vary} --out w --plan && '{nucleus}' wedge --out w --collect",
+        200_000_000 / 1024
+    );
+    let mut shell = Command::new("sh");
+    let output = shell.args(["-c", &script]).current_dir(folder.path()).output().unwrap();
+    assert!(stdout(&output).contains("100000 runs: 100000 open"), "{}", stderr(&output));
+    let plan = fs::read(folder.path().join("w/plan.json")).unwrap();
+    assert_eq!(plan.iter().filter(|byte| **byte == b'\n').count(), 100_002);
+}
+
+#[test]
+#[ignore = "a measurement, for a quiet machine with two cores or more"]
+fn forty_small_runs_two_at_once_are_at_least_1_9_times_as_fast_as_one_by_one() {
+    let seconds = |jobs: &str| {
+        let folder = folder();
+        scene(folder.path(), 60, "");
+        let plan = ["wedge", "drape.ron", "--vary", "cloth1.damp=0..0.5/40", "--out", "w", "--plan"];
+        assert_eq!(nucleus(folder.path(), &plan).status.code(), Some(0));
+        let begin = Instant::now();
+        let output = nucleus(folder.path(), &["wedge", "--out", "w", "--run", "0..39", "--jobs", jobs]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        begin.elapsed().as_secs_f64()
+    };
+    // The better of two, because a quiet machine is seldom quite so.
+    let [one, two] = ["1", "2"].map(|jobs| seconds(jobs).min(seconds(jobs)));
+    assert!(one / two >= 1.9, "{one:.2} s, {two:.2} s: {:.2} times", one / two);
+}
+
 #[cfg(unix)]
 mod killed {
     //! A wedge that is killed at any moment is finished by `--continue`, with the bytes of one that was not.
 
-    use std::process::{Child, Command, Stdio};
+    use std::process::{Child, Stdio};
     use std::thread::sleep;
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
 
     use super::*;
 

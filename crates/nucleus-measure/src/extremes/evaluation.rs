@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use nucleus_core::InvalidInput;
 use nucleus_graph::checks::Check;
 use nucleus_graph::scene::Severity;
+use serde::{Deserialize, Serialize};
 
 use super::row::{Assertion, CostUnit, Expectation, Recovery, Runs, Side, StressCase};
 use super::scene::TestScene;
@@ -27,6 +28,8 @@ pub enum TimeBudget {
     Long,
     /// At most 2 s of processor time.
     Short,
+    /// To its end. Cost is not measured, because other runs share the machine.
+    Untimed,
 }
 
 impl TimeBudget {
@@ -34,6 +37,7 @@ impl TimeBudget {
         match self {
             Self::Long => 20.0,
             Self::Short => 2.0,
+            Self::Untimed => f64::INFINITY,
         }
     }
 }
@@ -42,7 +46,7 @@ impl TimeBudget {
 const RERUNS: usize = 3;
 
 /// Subject of a measurement: the columns of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// Whether it runs and stays finite.
     Runs,
@@ -61,17 +65,19 @@ pub enum Kind {
 }
 
 /// A figure and its bound.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// Its subject.
     pub kind: Kind,
     /// The figure, with its unit.
     pub what: String,
     /// Its value.
+    #[serde(with = "crate::bits")]
     pub value: f64,
     /// Side of the limit.
     pub side: Side,
     /// The limit.
+    #[serde(with = "crate::bits")]
     pub limit: f64,
 }
 
@@ -85,6 +91,17 @@ pub struct Evaluation {
     /// Bounds on the motion after the disturbance, from the checks of the scene.
     pub recovery: Option<Recovery>,
     /// Diagnostics of the scene, and counters of the solver.
+    pub reported: Vec<String>,
+}
+
+/// What a row has found, as another process reports it: an [`Evaluation`] without its row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Findings {
+    /// See [`Evaluation`] for this field and the following ones.
+    pub figures: Vec<Measurement>,
+    /// Bounds on the motion after the disturbance.
+    pub recovery: Option<Recovery>,
+    /// Diagnostics and counters.
     pub reported: Vec<String>,
 }
 
@@ -107,6 +124,18 @@ impl Measurement {
 }
 
 impl Evaluation {
+    /// The evaluation of a row from what another process has found.
+    pub fn of(stress_case: &StressCase, found: Findings) -> Self {
+        let Findings { figures, recovery, reported } = found;
+        Self { stress_case: *stress_case, figures, recovery, reported }
+    }
+
+    /// What the row has found.
+    pub fn findings(self) -> Findings {
+        let Self { figures, recovery, reported, .. } = self;
+        Findings { figures, recovery, reported }
+    }
+
     /// Whether all figures are within their limits.
     pub fn holds(&self) -> bool {
         self.figures.iter().all(Measurement::holds)
@@ -115,6 +144,11 @@ impl Evaluation {
     /// The same without the cost, which depends on the machine.
     pub fn holds_at_any_cost(&self) -> bool {
         self.figures.iter().filter(|figure| figure.kind != Kind::Cost).all(Measurement::holds)
+    }
+
+    /// Whether the row ran without its cost being measured.
+    pub fn is_untimed(&self) -> bool {
+        self.figure(Kind::Energy).is_some() && self.figure(Kind::Cost).is_none()
     }
 
     /// The first figure of a kind, if the row has one.
@@ -227,7 +261,7 @@ impl Evaluation {
         // A loaded machine only makes a run slower, so the fastest of several runs slightly above the limit counts.
         let is_far_above = cost(&timeline) > 2.0 * MAX_COST;
         for _ in 0..RERUNS {
-            if is_far_above || is_cheap(&timeline) || budget == TimeBudget::Short {
+            if is_far_above || is_cheap(&timeline) || budget != TimeBudget::Long {
                 break;
             }
             timeline.seconds = timeline.seconds.min(run().seconds);
@@ -238,7 +272,9 @@ impl Evaluation {
             self.checks(&timeline, &compiled.checks);
             self.assertions(&timeline, &baseline, runs.assertions);
         }
-        self.cost(cost(&timeline), runs.cost);
+        if budget != TimeBudget::Untimed {
+            self.cost(cost(&timeline), runs.cost);
+        }
         self.warnings(runs.warnings);
         self.counters(&timeline);
         if let Some(frame) = timeline.aborted_after {

@@ -21,7 +21,9 @@ mod rows;
 mod scene;
 mod timeline;
 
-pub use evaluation::{Baselines, Evaluation, Kind, Measurement, TimeBudget, evaluate, evaluate_all};
+pub use evaluation::{
+    Baselines, Evaluation, Findings, Kind, Measurement, TimeBudget, evaluate, evaluate_all,
+};
 pub use page::{failure_text, page};
 pub use row::{Assertion, CostUnit, Expectation, Recovery, Runs, Side, StressCase};
 pub use rows::{named, rows};

@@ -26,6 +26,10 @@ pub fn page(evaluations: &[Evaluation]) -> String {
     let holding = evaluations.len() - failing;
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{holding} of {} rows hold.", evaluations.len());
+    if evaluations.iter().any(Evaluation::is_untimed) {
+        let _ =
+            writeln!(text, "Cost was not measured, because rows shared a machine; `--jobs 1` measures it.");
+    }
     if failing > 0 {
         let _ = writeln!(text, "\n## Failures\n");
         for evaluation in evaluations.iter().filter(|evaluation| !evaluation.holds()) {

@@ -1,5 +1,7 @@
 //! A row of the table: a scene, its baseline, and bounds.
 
+use serde::{Deserialize, Serialize};
+
 use super::scene::TestScene;
 use super::timeline::Timeline;
 
@@ -65,18 +67,20 @@ pub enum CostUnit {
 }
 
 /// Bounds on the motion after the disturbance has ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Recovery {
     /// First frame of the bounds.
     pub from: i64,
     /// Root mean square speed in m/s.
+    #[serde(with = "crate::bits")]
     pub speed: f64,
     /// 99th percentile of strain.
+    #[serde(with = "crate::bits")]
     pub strain: f64,
 }
 
 /// Side of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     /// Upper limit.
     AtMost,

@@ -76,6 +76,9 @@ pub enum TradeError {
     /// Results cannot be saved.
     #[error(transparent)]
     Cache(#[from] ResultCacheError),
+    /// Runs in other processes did not end well.
+    #[error("{0}")]
+    Elsewhere(String),
 }
 
 /// A scene, and its facts before a run.

@@ -26,4 +26,4 @@ pub use error::{Component, ErrorMeasure, Quantity, Request};
 pub use plan::SweepOptions;
 pub use reference::References;
 pub use setting::{Reading, Setting};
-pub use sweep::{Progress, SweepControl, SweepResult, run_sweep};
+pub use sweep::{Elsewhere, Progress, RemoteRun, SweepControl, SweepResult, run_sweep};

@@ -6,6 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use nucleus_graph::compile::Program;
+use serde::{Deserialize, Serialize};
 
 use super::benchmark::{Benchmark, MAX_REFERENCE_UNCERTAINTY, TradeError};
 use super::curve::{Trade, is_resolved};
@@ -33,6 +34,19 @@ pub struct Progress {
     pub kept: usize,
 }
 
+/// A run that is done in another process: its setting, and its floating-point width in bits (64 for references).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RemoteRun {
+    /// The setting.
+    pub setting: Setting,
+    /// 32 or 64.
+    pub bits: u32,
+}
+
+/// Does runs in other processes, measured against the given trajectory, and returns them in their order.
+pub type Elsewhere<'a> =
+    dyn FnMut(&[RemoteRun], Option<&Trajectory>) -> Result<Vec<(Run, RunStates)>, TradeError> + 'a;
+
 /// Parallelism, progress and cancellation of a sweep.
 pub struct SweepControl<'a> {
     /// Concurrent runs, one thread each.
@@ -41,6 +55,8 @@ pub struct SweepControl<'a> {
     pub progress: &'a mut dyn FnMut(&Progress),
     /// Returns false to cancel.
     pub should_continue: &'a (dyn Fn() -> bool + Sync),
+    /// Does the runs in other processes; `None` does them on threads of this one.
+    pub elsewhere: Option<&'a mut Elsewhere<'a>>,
 }
 
 /// Result of a sweep.
@@ -109,6 +125,22 @@ pub fn run_sweep(
     let trade = Trade::new(benchmark, &runs, references.as_ref());
     trade.save(cache)?;
     Ok(SweepResult { trade, references, runs })
+}
+
+impl RemoteRun {
+    /// Does the run. Returns `None` if `should_continue` returns false.
+    pub fn run(
+        &self,
+        benchmark: &Benchmark,
+        program: &Program,
+        target: Option<&Trajectory>,
+        should_continue: &dyn Fn() -> bool,
+    ) -> Option<(Run, RunStates)> {
+        match self.bits {
+            64 => run_setting::<f64>(benchmark, &self.setting, program, target, should_continue),
+            _ => run_setting::<f32>(benchmark, &self.setting, program, target, should_continue),
+        }
+    }
 }
 
 /// Last frame of a run of a sweep: all objects in the order of the program, in scene units.
@@ -207,6 +239,11 @@ fn work_through(
     keep: &mut dyn FnMut(Run, RunStates) -> Result<(), TradeError>,
 ) -> Result<(), TradeError> {
     tasks.sort_by(|a, b| b.work.total_cmp(&a.work));
+    if let Some(elsewhere) = control.elsewhere.as_deref_mut().filter(|_| !tasks.is_empty()) {
+        let asked = tasks.iter().map(|task| RemoteRun { setting: task.setting, bits: task.bits });
+        let done = elsewhere(&asked.collect::<Vec<_>>(), target)?;
+        return done.into_iter().try_for_each(|(run, kept)| keep(run, kept));
+    }
     let (next, milli) = (AtomicUsize::new(0), AtomicU64::new(0));
     let (sender, receiver) = channel();
     let workers = control.workers.clamp(1, tasks.len().max(1));
@@ -253,10 +290,8 @@ fn worker(
             milli.fetch_add(each, Ordering::Relaxed);
             should_continue()
         };
-        let finished = match task.bits {
-            64 => run_setting::<f64>(benchmark, &task.setting, &task.program, target, &pulse),
-            _ => run_setting::<f32>(benchmark, &task.setting, &task.program, target, &pulse),
-        };
+        let one = RemoteRun { setting: task.setting, bits: task.bits };
+        let finished = one.run(benchmark, &task.program, target, &pulse);
         // The receiver is gone if results cannot be saved.
         let Some(finished) = finished else { return };
         if sender.send(finished).is_err() {

@@ -1,6 +1,7 @@
 //! A case of validation: its figures, and their references.
 
 use nucleus_core::BuildError;
+use serde::{Deserialize, Serialize};
 
 /// Double precision, so that the remaining error is that of the method.
 pub(super) type Fixture = crate::fixture::Fixture<f64>;
@@ -18,25 +19,27 @@ pub struct Case {
 }
 
 /// A computed figure and its reference.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The figure, with its unit.
     pub quantity: String,
     /// The reference, or the bound.
+    #[serde(with = "crate::bits")]
     pub exact: f64,
     /// The figure of the solver.
+    #[serde(with = "crate::bits")]
     pub found: f64,
     /// The tolerance.
     pub tolerance: Tolerance,
 }
 
 /// Tolerance of a figure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Tolerance {
     /// Maximum relative error.
-    Relative(f64),
+    Relative(#[serde(with = "crate::bits")] f64),
     /// Maximum absolute error, in the unit of the figure.
-    Absolute(f64),
+    Absolute(#[serde(with = "crate::bits")] f64),
     /// The reference is an upper bound.
     AtMost,
     /// The reference is a lower bound.

@@ -1,26 +1,22 @@
 //! `nucleus wedge`: many runs of a scene with different values, on this machine or on a farm.
 
-use std::ffi::OsString;
-
 use anyhow::{Result, anyhow, bail, ensure};
 use nucleus_graph::compile::Program;
 use nucleus_wedge::collect::{Collected, collect};
-use nucleus_wedge::{Plan, PlannedRun, Pool, WedgeFolder, parse_selection};
+use nucleus_wedge::{Plan, WedgeFolder, parse_selection};
 use serde_json::json;
 
 use crate::options::thread_count;
 use crate::output::say;
 use crate::process::Outcome;
-use crate::progress::WedgeProgress;
 use crate::recording::fingerprint;
+use crate::runs::{Place, execute};
 use crate::{files, output, process};
 
-mod farm;
 mod options;
 mod planning;
 mod task;
 
-use farm::Place;
 pub use options::Wedge;
 
 impl Wedge {
@@ -57,7 +53,7 @@ impl Wedge {
                     return Ok(Outcome::Success);
                 }
             }
-            _ => self.execute(&folder, &plan, &selected)?,
+            _ => execute(&folder, &plan, &selected, self.jobs(&plan), self.threads)?,
         }
         if process::is_interrupted() {
             say!("interrupted: `nucleus wedge --continue --out {}` finishes the runs", self.out.display());
@@ -112,24 +108,6 @@ impl Wedge {
                 Ok(Some(plan))
             }
         }
-    }
-
-    /// Executes runs in child processes.
-    fn execute(&self, folder: &WedgeFolder, plan: &Plan, selected: &[u32]) -> Result<()> {
-        if selected.is_empty() {
-            return Ok(());
-        }
-        process::listen_for_signals()?;
-        let runs: Vec<PlannedRun> = selected.iter().map(|run| plan.runs[*run as usize].clone()).collect();
-        let jobs = self.jobs(plan).min(runs.len());
-        let mut progress = WedgeProgress::new(&plan.runs, runs.len());
-        let options: [OsString; 2] = ["--threads".into(), self.threads.to_string().into()];
-        let command = process::command()?;
-        let pool = Pool { command: &command, folder, header: &plan.header, jobs, options: &options };
-        let result = pool.run(&runs, &process::is_interrupted, &mut |event| progress.show(&event));
-        progress.end();
-        process::files_are_closed();
-        Ok(result?)
     }
 
     /// Runs at once: as many as asked for, else as many as cores and memory allow.

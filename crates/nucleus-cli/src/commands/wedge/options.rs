@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use nucleus_wedge::Sampling;
 
-use super::farm::{FarmOptions, Place};
 use crate::options::{FrameRange, Record};
+use crate::runs::{FarmOptions, Place};
 
 /// Runs a scene many times with different values, several runs at once.
 ///

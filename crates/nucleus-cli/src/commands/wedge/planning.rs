@@ -64,7 +64,7 @@ fn rows(wedge: &Wedge, scene: &Scene) -> Result<(Vec<String>, Vec<Row>)> {
         let (columns, rows) = read_table(&text, &scene.graph).with_context(named)?;
         return Ok((columns, rows.into_iter().flat_map(seeds).collect()));
     }
-    let axes = wedge.vary.iter().map(|text| text.parse::<Axis>().with_context(|| format!("`--vary {text}`")));
+    let axes = wedge.vary.iter().map(|text| text.parse::<Axis>().context("`--vary`"));
     let mut design = Design {
         axes: axes.collect::<Result<_>>()?,
         samples: wedge.samples,

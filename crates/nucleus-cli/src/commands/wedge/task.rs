@@ -8,8 +8,11 @@ use clap::{Parser, Subcommand};
 use nucleus_wedge::{Plan, PlannedRun, RunOutcome, RunResult, WedgeFolder, machine, when_parent_ends};
 use serde_json::Value;
 
+use crate::commands::extremes::Extremes;
 use crate::commands::resume::{Resume, Resumed};
 use crate::commands::run::Run;
+use crate::commands::trade::Trade;
+use crate::commands::validate::Validate;
 use crate::output::say;
 use crate::process::{self, Outcome};
 use crate::run_loop::Finished;
@@ -25,7 +28,13 @@ struct Line {
 #[derive(Debug, Subcommand)]
 enum LineCommand {
     Run(Box<Run>),
+    Extremes(Box<Extremes>),
+    Trade(Box<Trade>),
+    Validate(Box<Validate>),
 }
+
+/// How a part of a command has ended.
+type Ended = (RunOutcome, Option<Value>, Option<String>);
 
 /// Does one run of a plan.
 pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result<Outcome> {
@@ -40,9 +49,11 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
         return Ok(Outcome::Success);
     }
     process::listen_for_signals()?;
+    process::more_files_follow();
     when_parent_ends(process::interrupt)?;
     let begin = Instant::now();
-    let (outcome, report, error) = ended(execute(folder, &planned, threads));
+    let (outcome, report, error) =
+        execute(folder, &planned, threads).unwrap_or_else(|error| failed(format!("{error:#}")));
     let result = RunResult {
         outcome,
         error,
@@ -59,12 +70,23 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
     })
 }
 
-/// How a run ended, its report, and why it failed.
-fn ended(finished: Result<Option<Finished>>) -> (RunOutcome, Option<Value>, Option<String>) {
+fn failed(why: String) -> Ended {
+    (RunOutcome::Failed, None, Some(why))
+}
+
+/// Does a part of another command, which leaves nothing to resume.
+fn part(find: impl FnOnce() -> Result<Value>) -> Result<Ended> {
+    process::end_at_once_when_asked();
+    let report = find()?;
+    let is_clean = report["summary"]["checks"].as_array().is_none_or(Vec::is_empty);
+    Ok((if is_clean { RunOutcome::Success } else { RunOutcome::Problem }, Some(report), None))
+}
+
+/// How a run of a scene ended, its report, and why it failed.
+fn ended(finished: Option<Finished>) -> Ended {
     match finished {
-        Err(error) => (RunOutcome::Failed, None, Some(format!("{error:#}"))),
-        Ok(None) => (RunOutcome::Failed, None, Some("the scene has errors; the log lists them".to_owned())),
-        Ok(Some(Finished { outcome, report, .. })) => {
+        None => failed("the scene has errors; the log lists them".to_owned()),
+        Some(Finished { outcome, report, .. }) => {
             // A run that could not write its cache lacks frames, unlike one that ran to its end with a problem.
             let lost = report["summary"]["error"].as_str().map(str::to_owned);
             let outcome = match outcome {
@@ -79,12 +101,15 @@ fn ended(finished: Result<Option<Finished>>) -> (RunOutcome, Option<Value>, Opti
 }
 
 /// Executes the command of a run.
-fn execute(folder: &WedgeFolder, planned: &PlannedRun, threads: u16) -> Result<Option<Finished>> {
+fn execute(folder: &WedgeFolder, planned: &PlannedRun, threads: u16) -> Result<Ended> {
     let words = std::iter::once("nucleus").chain(planned.arguments.iter().map(String::as_str));
     let parsed = Line::try_parse_from(words)
         .map_err(|error| anyhow!("the plan has arguments that `nucleus` does not take: {error}"))?;
     match parsed.command {
-        LineCommand::Run(run) => simulate(folder, planned, *run, threads),
+        LineCommand::Run(run) => simulate(folder, planned, *run, threads).map(ended),
+        LineCommand::Extremes(extremes) => part(|| extremes.part()),
+        LineCommand::Trade(trade) => part(|| trade.part()),
+        LineCommand::Validate(validate) => part(|| validate.part()),
     }
 }
 

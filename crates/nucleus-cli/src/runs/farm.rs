@@ -64,6 +64,23 @@ pub struct FarmOptions {
 }
 
 impl FarmOptions {
+    /// Default options, with further ones of `sbatch`.
+    pub fn of(sbatch: Vec<String>, poll: f64) -> Self {
+        Self {
+            account: None,
+            partition: None,
+            time: None,
+            task_memory: None,
+            runs_per_task: 1,
+            most_tasks: None,
+            sbatch,
+            program: None,
+            retries: 3,
+            detach: false,
+            poll,
+        }
+    }
+
     /// Submits the open runs and waits until all have ended. Returns early with `--detach`, and after Ctrl-C.
     pub fn execute(&self, folder: &WedgeFolder, plan: &Plan, threads: u16) -> Result<()> {
         let mut slurm = Slurm::new(folder)?;
