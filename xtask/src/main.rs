@@ -10,6 +10,7 @@
 //! | exports read by other tools                           | [`mod@interop`] |
 //! | mutated Maya scenes                                   | [`fuzz`]        |
 //! | pages with measured figures                           | [`book`]        |
+//! | the Python package and its tests                      | [`python`]      |
 //! | parser of `ARCHITECTURE.md`                           | [`map`]         |
 //! | files of the repository                               | [`files`]       |
 
@@ -27,6 +28,7 @@ mod fuzz;
 mod interop;
 mod map;
 mod meshes;
+mod python;
 mod readme;
 mod tidy;
 

@@ -1,0 +1,101 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import nucleus
+
+
+def test_a_run_has_the_bytes_of_the_command(folder):
+    seen = []
+    run = nucleus.run("drape.ron", frames=5, set={"cloth1.bendResistance": 2}, out="a.mcap", on_frame=seen.append)
+    assert run.ok and run.checks[0]["passed"] and [one["frame"] for one in run.frames] == [2, 3, 4, 5]
+    assert seen == run.frames
+    command = [sys.executable, "-m", "nucleus", "run", "drape.ron", "--frames", "5", "-o", "b.mcap"]
+    subprocess.run([*command, "--set", "cloth1.bendResistance=2"], check=True)
+    assert (folder / "a.mcap").read_bytes() == (folder / "b.mcap").read_bytes()
+
+
+def test_a_cache_gives_positions_in_scene_units(folder):
+    cache = nucleus.run("drape.ron", frames=5, velocities=True, record="strain").open()
+    assert (cache.units, cache.frames, cache.fps) == ("cm", [1, 2, 3, 4, 5], 24)
+    assert cache.objects == {"cloth1": {"kind": "cloth", "points": 49}, "rigid1": {"kind": "collider", "points": 382}}
+    start, end = cache.positions("cloth1", frame=1), cache.positions("cloth1")
+    assert (start.shape, start.dtype) == ((49, 3), np.float32)
+    assert np.allclose(start[:, 1], 25) and end[:, 1].max() < 25
+    # A free fall of four frames: g t^2 / 2 in centimetres, before the ball is reached.
+    assert cache.velocities("cloth1", 2)[:, 1].mean() == pytest.approx(-980 / 24, rel=0.05)
+    assert cache.strain("cloth1").shape == (49,)
+    counts, corners = cache.faces("cloth1")
+    assert (len(counts), corners.max()) == (36, 48)
+    assert [report["frame"] for report in cache.reports] == [2, 3, 4, 5]
+    with pytest.raises(KeyError, match="it has 1 to 5"):
+        cache.positions("cloth1", frame=9)
+    with pytest.raises(KeyError, match="`cloth1`, `rigid1`"):
+        cache.positions("cloth2")
+    with pytest.raises(OSError, match="none.mcap"):
+        nucleus.open("none.mcap")
+
+
+def test_mistakes_are_exceptions(folder):
+    with pytest.raises(nucleus.RunError, match="did you mean `bendResistance`"):
+        nucleus.run("drape.ron", set={"cloth1.bendResistence": 2})
+    text = (folder / "drape.ron").read_text()
+    (folder / "bad.ron").write_text(text.replace("nRigid", "nRigd"))
+    with pytest.raises(nucleus.SceneError, match="bad.ron:9:"):
+        nucleus.run("bad.ron")
+    nucleus.run("drape.ron", frames=2)
+    with pytest.raises(nucleus.RunError, match="exists"):
+        nucleus.run("drape.ron", frames=2)
+    (folder / "strict.ron").write_text(text.replace("[finite]", "[restsBy(frame: 3, speed: 0)]"))
+    run = nucleus.run("strict.ron", frames=4)
+    assert not run.ok and "restsBy" in run.problems[0]
+
+
+def test_a_scene_in_memory_is_run_and_leaves_no_file(folder):
+    scene = nucleus.Scene.read("drape.ron")
+    scene["cloth1"]["friction"] = 0.7
+    one = nucleus.run(scene, frames=3, out="one.mcap")
+    assert "friction: 0.7" in one.open().scene
+    nucleus.run(scene, frames=3, out="two.mcap")
+    assert (folder / "one.mcap").read_bytes() == (folder / "two.mcap").read_bytes()
+    assert sorted(path.name for path in folder.glob("*.ron")) == ["drape.ron"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_an_interrupt_closes_the_cache_and_ends_a_step_loop(folder):
+    text = (folder / "drape.ron").read_text().replace("end: 8", "end: 1000000")
+    (folder / "long.ron").write_text(text)
+    loop = "import nucleus\nprint('go', flush=True)\n"
+    programs = {
+        "run": loop + "nucleus.run('long.ron', record='frames')",
+        "step": loop + "for _ in nucleus.Simulation('long.ron', threads=1): pass",
+    }
+    for name, program in programs.items():
+        child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        child.stdout.readline()
+        begin = time.monotonic()
+        while name == "run" and not (folder / "long.mcap.part").exists():
+            assert time.monotonic() - begin < 60
+            time.sleep(0.01)
+        time.sleep(1)
+        child.send_signal(signal.SIGINT)
+        _, said = child.communicate(timeout=60)
+        assert b"KeyboardInterrupt" in said, said
+    assert nucleus.open("long.mcap").is_intact
+
+
+def test_a_wedge_is_a_list_of_results(folder):
+    vary = {"cloth1.bendResistance": [0.1, 10], "nucleus1.windSpeed": "0..5/2"}
+    runs = nucleus.wedge("drape.ron", vary, out="w", frames=3, jobs=2)
+    assert [run.outcome for run in runs] == ["success"] * 4
+    assert runs[3].values == {"cloth1.bendResistance": "10", "nucleus1.windSpeed": "5"}
+    by_hand = nucleus.run("drape.ron", frames=3, set={"cloth1.bendResistance": 10, "nucleus1.windSpeed": 5})
+    assert np.array_equal(runs[3].open().positions("cloth1"), by_hand.open().positions("cloth1"))
+    with pytest.raises(nucleus.RunError, match="holds a plan already"):
+        nucleus.wedge("drape.ron", vary, out="w")
+    assert len(nucleus.wedge(out="w", resume=True)) == 4
