@@ -73,6 +73,8 @@ pub struct RunInfo {
     pub contacts: bool,
     /// Whether the strain at each cloth point is recorded. It can also be computed from positions and rest meshes.
     pub strain: bool,
+    /// Whether particles have looks of their own, which are then recorded: radius, opacity and colours.
+    pub looks: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
     /// Particle radius of each particle object, by object name, in scene units.
@@ -105,6 +107,7 @@ impl Default for RunInfo {
             velocities: false,
             contacts: false,
             strain: false,
+            looks: false,
             ground: None,
             radii: BTreeMap::new(),
             cameras: Vec::new(),

@@ -103,6 +103,7 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         ground: plane
             .map(|plane| Plane { origin: (plane.origin * units).into(), normal: plane.normal.into() }),
         radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
+        looks: program.has_looks(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         ..RunInfo::default()
     })

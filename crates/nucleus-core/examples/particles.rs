@@ -34,7 +34,7 @@ fn time(count: usize) -> f64 {
         Vec3::new(x - 1.0, y + 0.6, z - 1.0)
     };
     let surface = Surface { positions: (0..count).map(place).collect(), faces: Faces::default() };
-    let particles = Some(Particles { capacity: count, lifespans: Vec::new() });
+    let particles = Some(Particles { capacity: count, ..Particles::default() });
     let mut builder = ModelBuilder::new();
     let cloth = Cloth { particles, ..Cloth::new(surface, Mass::PerPoint(1e-3), ClothLists::NONE) };
     builder.cloth(cloth).expect("valid particles");

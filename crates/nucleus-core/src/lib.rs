@@ -101,6 +101,9 @@ pub use input::links::{
     ConstraintFrame, ExcludedSide, Exclusion, Falloff, Link, LinkForce, LinkMethod, LinkSide,
 };
 pub use input::object_fields::{PointField, WindField};
+pub use input::particles::{
+    CollisionEvent, ParticleChange, ParticleFacts, ParticleRamp, RampInput, RampTarget, unit_random,
+};
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
@@ -108,7 +111,8 @@ pub use model::builder::{Cloth, ClothLists, Collider, LinkOrder, Mass, ModelBuil
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
 pub use output::{
-    ContactState, ParticleAge, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+    ContactState, ParticleAge, ParticleLook, PassCost, Stage, StateView, StepObserver, StepReport,
+    SubstepIndex,
 };
 pub use schedule::resistance::{
     BENDING_PER_RESISTANCE, PhysicalStiffness, STIFFNESS_PER_RESISTANCE, classic_stiffness,

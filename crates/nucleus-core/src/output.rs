@@ -52,6 +52,19 @@ pub struct ParticleAge {
     pub lifespan: f64,
 }
 
+/// The looks of a particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParticleLook {
+    /// Factor on the radius of the object.
+    pub radius: f32,
+    /// 0 is invisible, 1 opaque.
+    pub opacity: f32,
+    /// Red, green and blue from 0 to 1; `None` where the object has no colours of its own.
+    pub color: Option<[f32; 3]>,
+    /// Light that it gives off: red, green and blue.
+    pub incandescence: [f32; 3],
+}
+
 /// Read access to the state between substeps. Points are in the order of their mesh.
 pub trait StateView {
     /// Replaces `out` by the positions of a cloth in world space, in units of which `units_per_metre` make a metre.
@@ -67,6 +80,12 @@ pub trait StateView {
     /// Replaces `out` by the particles of an object in the order of their positions; none where particles are not born
     /// and do not die.
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+        let _ = cloth;
+        out.clear();
+    }
+    /// Replaces `out` by the looks of the particles of an object in the order of their positions; none where they all look
+    /// the same.
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
         let _ = cloth;
         out.clear();
     }

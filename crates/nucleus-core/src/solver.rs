@@ -16,10 +16,12 @@ use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::{ClothModel, ColliderModel, Model};
-use crate::output::{ContactState, ParticleAge, StateView, StepObserver};
+use crate::output::{ContactState, ParticleAge, ParticleLook, StateView, StepObserver};
 use crate::output::{PassCost, StepReport};
 use crate::parallel::thread_pool::ThreadPool;
+use crate::particles::looks::looks;
 use crate::particles::population::Population;
+
 use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
 use crate::state::kinematics::update_anchors;
@@ -243,6 +245,15 @@ impl<R: CompiledReal> StateView for Solver<R> {
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
         out.clear();
         out.extend(self.state.population_of(cloth.index()).into_iter().flat_map(Population::ages));
+    }
+
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
+        out.clear();
+        let population = self.state.population_of(cloth.index());
+        if let Some(population) = population.filter(|population| population.has_looks()) {
+            let first = self.model.cloths[cloth.index()].blocks.rows().start as usize;
+            out.extend(looks(population, &self.state, first));
+        }
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

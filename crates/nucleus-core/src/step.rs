@@ -40,8 +40,9 @@ use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
-use crate::particles::lifecycle::age_particles;
+use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
+use crate::particles::slowing::slow_particles;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
 use crate::schedule::{Direction, Pass, Schedule, TimeStep};
@@ -93,6 +94,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     solver.state.move_anchors();
     solver.state.carry_air(frame);
     solver.state.populations.iter_mut().for_each(Population::begin_frame);
+    begin_particles(solver, frame);
     for pin in &frame.pins {
         let cloth = &solver.model.cloths[pin.cloth.index()];
         if pin.point.index() >= cloth.points().len() {
@@ -190,6 +192,7 @@ fn end_substep<R: CompiledReal>(
     let substep_length = schedule.h * f64::from(schedule.steps);
     age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+    slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let end = f64::from(substep) / f64::from(schedule.substeps);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);

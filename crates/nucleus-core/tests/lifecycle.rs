@@ -16,7 +16,7 @@ const CLASSIC: ResistanceModel = ResistanceModel::Classic;
 fn room(capacity: usize, first: &[Vec3], lifespans: &[f64], mass: f64) -> Cloth {
     let surface = Surface { positions: first.to_vec(), faces: Default::default() };
     let lists = ClothLists { air: true, self_collision: true, ..ClothLists::NONE };
-    let particles = Some(Particles { capacity, lifespans: lifespans.to_vec() });
+    let particles = Some(Particles { capacity, lifespans: lifespans.to_vec(), ..Particles::default() });
     Cloth { particles, ..Cloth::new(surface, Mass::PerPoint(mass), lists) }
 }
 

@@ -5,8 +5,9 @@ use std::cell::RefCell;
 use nalgebra::Vector3;
 use nucleus_audit::CollisionMesh;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, Pin, PointId, Reader, Real,
-    RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
+    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, ParticleLook, Pin, PointId, Reader,
+    Real, RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum,
+    verify_checksum,
 };
 
 use crate::audit::{Audit, Audited, Closeness, GroundPlanes, collision_rules};
@@ -167,6 +168,7 @@ impl<R: Real> Simulation<R> {
         let solver = &run.solver;
         let position = |cloth, point: PointId| solver.point(cloth, point.index());
         let mut input = interval.input(&mut run.attachments, &position);
+        input.particle_changes = interval.particle_changes(solver);
         change(&run.solver, &mut input);
         let first_cloth = self.program.nuclei()[call.nucleus].cloths().start;
         let span = [observers.done, observers.done + call.substeps];
@@ -291,6 +293,10 @@ impl<R: Real> StateView for Simulation<R> {
 
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         self.combined().contacts(out);
+    }
+
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
+        self.combined().looks(cloth, out);
     }
 
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {

@@ -20,6 +20,7 @@ fn main() -> Result<(), ViewError> {
             positions: &draped,
             rest: Some(&rest),
             radius: None,
+            looks: None,
         },
         Object {
             name: "ball",
@@ -28,6 +29,7 @@ fn main() -> Result<(), ViewError> {
             positions: &ball.1,
             rest: None,
             radius: None,
+            looks: None,
         },
         Object {
             name: "cube",
@@ -36,6 +38,7 @@ fn main() -> Result<(), ViewError> {
             positions: &cube.1,
             rest: None,
             radius: None,
+            looks: None,
         },
     ];
     let plain = Style::default();

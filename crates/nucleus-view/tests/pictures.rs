@@ -27,7 +27,7 @@ fn one_face() -> Faces {
 }
 
 fn object<'a>(kind: Kind, faces: &'a Faces, positions: &'a [[f32; 3]]) -> Object<'a> {
-    Object { name: "thing", kind, faces, positions, rest: None, radius: None }
+    Object { name: "thing", kind, faces, positions, rest: None, radius: None, looks: None }
 }
 
 fn brightness(pixel: [u8; 3]) -> u32 {
@@ -62,7 +62,7 @@ proptest! {
         full_scale in extreme(),
     ) {
         let faces: Faces = faces.iter().map(Vec::as_slice).collect();
-        let object = Object { name: "extreme", kind, faces: &faces, positions: &positions, rest: Some(&rest), radius: None };
+        let object = Object { name: "extreme", kind, faces: &faces, positions: &positions, rest: Some(&rest), radius: None, looks: None };
         let style = Style { colouring: Colouring::Strain { full_scale }, wireframe: true, ground, ..small() };
         for camera in [
             Camera { eye, target, field_of_view, ..Camera::default() },

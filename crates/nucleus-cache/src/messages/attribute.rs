@@ -1,8 +1,9 @@
 //! Bytes of per-point attributes: the messages on `/<object>/contacts` and `/<object>/strain`, little-endian; and the
 //! computation of strain.
 
-use nucleus_core::ContactState;
+use nucleus_core::{ContactState, ParticleLook};
 
+use crate::messages::byte_shuffle::{shuffle, unshuffle};
 use crate::messages::points::{HEAD, Stamp};
 use crate::run::{ObjectInfo, RunInfo};
 
@@ -39,14 +40,27 @@ largest size among the edges of faces at the point, length over rest length less
     width: 4,
 };
 
+pub(crate) const LOOKS: Attribute = Attribute {
+    topic: "looks",
+    encoding: "nucleus.looks.v1",
+    schema: "\
+Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then eight f32
+for each particle, as four planes of 8 count bytes: plane k holds byte k of every f32 (0 is the lowest). They are a factor on
+the radius; opacity; red, green and blue from 0 to 1, of which red is below 0 where the object has no colours of its own; and
+red, green and blue of the light it gives off.
+",
+    width: 32,
+};
+
 /// All attributes.
-pub(crate) const ALL: [&Attribute; 2] = [&CONTACTS, &STRAIN];
+pub(crate) const ALL: [&Attribute; 3] = [&CONTACTS, &STRAIN, &LOOKS];
 
 impl Attribute {
     /// Whether a run records it.
     pub fn is_recorded(&self, run: &RunInfo) -> bool {
         (self.encoding == CONTACTS.encoding && run.contacts)
             || (self.encoding == STRAIN.encoding && run.strain)
+            || (self.encoding == LOOKS.encoding && run.looks)
     }
 
     /// The bytes of the values in a message; `None` when its time stamp or its number of points differs. Without a
@@ -78,6 +92,29 @@ pub(crate) fn read_contacts(bytes: &[u8]) -> Option<Vec<ContactState>> {
         known.into_iter().find(|&contact| contact as u8 == byte)
     };
     bytes.iter().map(contact).collect()
+}
+
+/// Appends the looks of particles.
+pub(crate) fn write_looks(looks: &[ParticleLook], out: &mut Vec<u8>) {
+    let numbers = |look: &ParticleLook| {
+        let ([red, green, blue], [a, b, c]) = (look.color.unwrap_or([-1.0; 3]), look.incandescence);
+        [look.radius, look.opacity, red, green, blue, a, b, c]
+    };
+    let numbers: Vec<f32> = looks.iter().flat_map(numbers).collect();
+    shuffle(&numbers, out);
+}
+
+/// The looks of particles from their bytes.
+pub(crate) fn read_looks(bytes: &[u8]) -> Vec<ParticleLook> {
+    let mut numbers = vec![0.0f32; bytes.len() / 4];
+    unshuffle(bytes, &mut numbers);
+    let look = |&[radius, opacity, red, green, blue, a, b, c]: &[f32; 8]| ParticleLook {
+        radius,
+        opacity,
+        color: (red >= 0.0).then_some([red, green, blue]),
+        incandescence: [a, b, c],
+    };
+    numbers.as_chunks::<8>().0.iter().map(look).collect()
 }
 
 /// The edges of a mesh, each once, with their rest lengths.

@@ -7,7 +7,7 @@ use mcap::records::Metadata;
 
 use crate::camera;
 use crate::error::OpenError;
-use crate::messages::attribute::{CONTACTS, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo};
 use crate::texture_coordinates;
 
@@ -54,6 +54,9 @@ impl RunInfo {
         );
         let also = [(CONTACTS.topic, self.contacts), (STRAIN.topic, self.strain)];
         run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
+        if self.looks {
+            run.insert(LOOKS.topic.to_owned(), true.to_string());
+        }
         if !self.cameras.is_empty() {
             run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
         }
@@ -122,6 +125,7 @@ impl RunInfo {
             velocities: run.parse("velocities")?,
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
+            looks: run.flag(LOOKS.topic),
             ground: run.ground()?,
             radii: run.radii()?,
             cameras,

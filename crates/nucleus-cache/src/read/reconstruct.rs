@@ -62,7 +62,9 @@ impl<R: Read + Seek> Playback<R> {
             self.file_index.channels.values().any(|channel| channel.message_encoding == attribute.encoding)
         };
         let (contacts, strain) = (has(&attribute::CONTACTS), has(&attribute::STRAIN));
-        let known = RunInfo { velocities, contacts, strain, version: String::new(), ..RunInfo::default() };
+        let looks = has(&attribute::LOOKS);
+        let known =
+            RunInfo { velocities, contacts, strain, looks, version: String::new(), ..RunInfo::default() };
         Ok(of_stamps(&stamps, known).map(|run| metadata::with_cameras(run, &self.file_index.metadata)))
     }
 
@@ -98,7 +100,9 @@ impl<R: Read + Seek> Playback<R> {
             self.objects[place] = object;
         }
         if std::mem::take(&mut self.corruption.run) {
-            let RunInfo { start, end, frames_per_second, detail, velocities, contacts, strain, .. } = found;
+            let RunInfo {
+                start, end, frames_per_second, detail, velocities, contacts, strain, looks, ..
+            } = found;
             let run = RunInfo {
                 start,
                 end,
@@ -107,6 +111,7 @@ impl<R: Read + Seek> Playback<R> {
                 velocities,
                 contacts,
                 strain,
+                looks,
                 checkpoint: 0,
                 ..run.clone()
             };

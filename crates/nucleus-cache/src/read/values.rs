@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_core::ContactState;
+use nucleus_core::{ContactState, ParticleLook};
 use serde_json::Value;
 
 use crate::error::ReadError;
@@ -67,6 +67,14 @@ impl<R: Read + Seek> Playback<R> {
         let mut strain = vec![0.0; planes.len() / 4];
         unshuffle(planes, &mut strain);
         Ok(Some(strain))
+    }
+
+    /// The looks of the particles of an object at a time sample; `None` where they all look the same.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn looks(&mut self, object: usize, sample: usize) -> Result<Option<Vec<ParticleLook>>, ReadError> {
+        Ok(self.attribute(object, sample, &attribute::LOOKS)?.map(attribute::read_looks))
     }
 
     /// The bytes of an attribute of an object at a time sample.

@@ -6,7 +6,7 @@ use std::io::{Seek, Write};
 use nucleus_core::{ClothId, ContactState, Faces, StateView, StepObserver, SubstepIndex};
 
 use crate::error::RecordError;
-use crate::messages::attribute::{RestEdges, write_contacts};
+use crate::messages::attribute::{RestEdges, write_contacts, write_looks};
 use crate::messages::byte_shuffle::shuffle;
 use crate::messages::points::{self, Stamp};
 use crate::messages::topology;
@@ -123,6 +123,7 @@ impl<W: Write + Seek> Recorder<W> {
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
                 self.record_attributes(k, id, points, &stamp)?;
+                self.record_looks(k, id, &stamp, state)?;
             }
         }
         self.time_samples += 1;
@@ -151,6 +152,25 @@ impl<W: Write + Seek> Recorder<W> {
             self.writer.send(stamp, *channel, &self.message)?;
         }
         Ok(())
+    }
+
+    /// Writes the looks of particles.
+    fn record_looks(
+        &mut self,
+        track: usize,
+        cloth: ClothId,
+        stamp: &Stamp,
+        state: &dyn StateView,
+    ) -> Result<(), RecordError> {
+        let Some(channel) = self.tracks[track].looks else { return Ok(()) };
+        let mut looks = Vec::new();
+        state.looks(cloth, &mut looks);
+        if looks.is_empty() {
+            return Ok(());
+        }
+        points::write_head(stamp, looks.len(), 0, false, &mut self.message);
+        write_looks(&looks, &mut self.message);
+        self.writer.send(stamp, channel, &self.message)
     }
 
     fn change_mesh(

@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
-use crate::messages::attribute::{CONTACTS, RestEdges, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, RestEdges, STRAIN};
 use crate::messages::points::{self, Stamp};
 use crate::messages::{checkpoint, topology};
 use crate::run::{ObjectInfo, ObjectKind, RunInfo, Source};
@@ -77,6 +77,8 @@ pub(crate) struct Track {
     pub contacts: Option<u16>,
     /// Channel of strain and the rest edges, if recorded.
     pub strain: Option<(u16, RestEdges)>,
+    /// Channel of the looks of particles, if recorded.
+    pub looks: Option<u16>,
     /// Whether it has moved since it was last recorded.
     pub has_moved: bool,
 }
@@ -292,6 +294,10 @@ impl<W: Write + Seek> Recorder<W> {
                 )),
                 false => None,
             };
+            let looks = match is_cloth && self.run.looks && object.kind == ObjectKind::Particles {
+                true => Some(self.channel(&schemas, &name, LOOKS.topic, LOOKS.encoding)?),
+                false => None,
+            };
             self.tracks.push(Track {
                 name,
                 source: *source,
@@ -302,6 +308,7 @@ impl<W: Write + Seek> Recorder<W> {
                 points,
                 contacts,
                 strain,
+                looks,
                 has_moved: false,
             });
         }

@@ -3,6 +3,7 @@
 
 use crate::contact::response::ADHESION_RANGE;
 use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane};
+use crate::input::particles::{ParticleRamp, RampTarget};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::model::builder::Cloth;
@@ -280,8 +281,9 @@ impl<R: Real> MaterialMaps<R> {
 
     /// The maps of all cloths, over `places` rows.
     pub fn new(cloths: &[Cloth], models: &[ClothModel<R>], places: usize) -> Self {
-        let column = |of: fn(&VertexMaps) -> &Vec<f64>| {
-            if cloths.iter().all(|cloth| of(&cloth.vertex_maps).is_empty()) {
+        let column = |of: fn(&VertexMaps) -> &Vec<f64>, ramp: RampTarget| {
+            if cloths.iter().all(|cloth| of(&cloth.vertex_maps).is_empty() && ramp_of(cloth, ramp).is_none())
+            {
                 return Vec::new();
             }
             let mut column = vec![R::ONE; places];
@@ -292,16 +294,24 @@ impl<R: Real> MaterialMaps<R> {
             }
             column
         };
-        let largest = |map: &Vec<f64>| map.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        let largest = |cloth: &Cloth| match ramp_of(cloth, RampTarget::Radius) {
+            Some(ramp) => ramp.max_factor(),
+            None => cloth.vertex_maps.thickness.iter().copied().reduce(f64::max).unwrap_or(1.0),
+        };
         Self {
-            thickness: column(|factors| &factors.thickness),
-            friction: column(|factors| &factors.friction),
-            stickiness: column(|factors| &factors.stickiness),
-            bounce: column(|factors| &factors.bounce),
-            strength: column(|factors| &factors.collide_strength),
-            max_thickness_factor: cloths.iter().map(|cloth| largest(&cloth.vertex_maps.thickness)).collect(),
+            thickness: column(|factors| &factors.thickness, RampTarget::Radius),
+            friction: column(|factors| &factors.friction, RampTarget::Friction),
+            stickiness: column(|factors| &factors.stickiness, RampTarget::Stickiness),
+            bounce: column(|factors| &factors.bounce, RampTarget::Bounce),
+            strength: column(|factors| &factors.collide_strength, RampTarget::CollideStrength),
+            max_thickness_factor: cloths.iter().map(largest).collect(),
         }
     }
+}
+
+/// The ramp of an attribute of particles, if they have one.
+fn ramp_of(cloth: &Cloth, target: RampTarget) -> Option<&ParticleRamp> {
+    cloth.particles.as_ref()?.ramps.iter().find(|ramp| ramp.target == target)
 }
 
 /// The factor at a contact, interpolated over the element; 1 without a map or points.

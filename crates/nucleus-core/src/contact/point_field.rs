@@ -14,6 +14,7 @@ use crate::input::frame::FrameInput;
 use crate::input::object_fields::PointField;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
+use crate::particles::population::Population;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -22,16 +23,18 @@ type Point = Vector3<f64>;
 struct Sources {
     field: PointField,
     points: Vec<Point>,
+    /// Factors by source; empty where they are 1.
+    factors: Vec<f32>,
     bvh: Bvh,
     origin: Point,
 }
 
 impl Sources {
-    fn new(field: PointField, points: Vec<Point>) -> Self {
+    fn new(field: PointField, points: Vec<Point>, factors: &[f32]) -> Self {
         let origin = points.first().copied().unwrap_or_default();
         let mut bvh = Bvh::new(&points);
         bvh.refit(|at| Aabb::of(std::iter::once(points[at] - origin)));
-        Self { field, points, bvh, origin }
+        Self { field, points, factors: factors.to_vec(), bvh, origin }
     }
 
     /// The sum over all sources but `own` of the falloff along the direction away from each.
@@ -44,7 +47,8 @@ impl Sources {
             let distance = from.norm();
             if Some(at as usize) != own && distance > 0.0 && distance < reach {
                 let share = (distance - self.field.radius) / self.field.distance;
-                sum += from * (falloff_at(&self.field.falloff, share) / distance);
+                let factor = self.factors.get(at as usize).map_or(1.0, |&factor| f64::from(factor));
+                sum += from * (factor * falloff_at(&self.field.falloff, share) / distance);
             }
         });
         sum
@@ -63,13 +67,14 @@ pub fn apply_point_fields<R: Real>(
     for (placed, settings) in colliders.iter().zip(&frame.colliders) {
         let Some(field) = settings.point_field.filter(PointField::is_on) else { continue };
         let points = (0..placed.start.len() as u32).map(|point| placed.point(point, time)).collect();
-        let sources = Sources::new(field, points);
+        let sources = Sources::new(field, points, &[]);
         model.cloths.iter().for_each(|cloth| accelerate(cloth, state, &sources, length));
     }
     for at in 0..model.cloths.len() {
         let Some(field) = frame.cloths[at].point_field.filter(PointField::is_on) else { continue };
         let rows = model.cloths[at].points();
-        let sources = Sources::new(field, rows.map(|row| state.position(row).into()).collect());
+        let factors = state.population_of(at).map_or(&[][..], Population::field_factors);
+        let sources = Sources::new(field, rows.map(|row| state.position(row).into()).collect(), factors);
         if field.self_attract != 0.0 {
             attract(&model.cloths[at], state, &sources, length);
         }
@@ -95,7 +100,9 @@ fn attract<R: Real>(cloth: &ClothModel<R>, state: &mut State<R>, sources: &Sourc
     let count = rows.len().max(1) as f64;
     let mean = rows.clone().map(|row| state.inverse_mass[row as usize].to_f64()).sum::<f64>() / count;
     for (own, row) in rows.enumerate() {
-        let push = sources.push(sources.points[own], Some(own));
+        // The product of both factors is the same for both sides.
+        let factor = sources.factors.get(own).map_or(1.0, |&factor| f64::from(factor));
+        let push = sources.push(sources.points[own], Some(own)) * factor;
         let share = state.inverse_mass[row as usize].to_f64() / mean;
         kick(state, row, push * (-sources.field.self_attract * length * share));
     }

@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 
 use crate::input::fields::Field;
 use crate::input::links::{ConstraintFrame, Exclusion};
+use crate::input::particles::ParticleChange;
 use crate::input::{ClothId, PointId};
 
 mod cloth;
@@ -85,6 +86,8 @@ pub struct FrameInput {
     pub exclusions: Vec<Arc<Exclusion>>,
     /// The particles that are born in this frame, in the order of their times.
     pub births: Vec<Birth>,
+    /// Changes of living particles at the start of the frame.
+    pub particle_changes: Vec<ParticleChange>,
     /// Force fields.
     pub fields: Vec<Field>,
     /// Evaluates fields in each substep, not once per frame.
@@ -113,6 +116,7 @@ impl Default for FrameInput {
             constraints: Vec::new(),
             exclusions: Vec::new(),
             births: Vec::new(),
+            particle_changes: Vec::new(),
             fields: Vec::new(),
             fields_per_substep: false,
         }

@@ -15,6 +15,7 @@ pub mod fields;
 pub mod frame;
 pub mod links;
 pub mod object_fields;
+pub mod particles;
 pub mod validation;
 
 /// A cloth of a model, counted in the order in which the builder received them.

@@ -287,6 +287,7 @@ fn settings_of(frame: &FrameInput) -> FrameInput {
         constraints: Vec::new(),
         exclusions: Vec::new(),
         births: Vec::new(),
+        particle_changes: Vec::new(),
         fields: Vec::new(),
         ..*frame
     }
@@ -332,6 +333,8 @@ fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.rest_length_scale, default.rest_length_scale),
         (&mut cloth.stretch_damp, default.stretch_damp),
         (&mut cloth.damp, default.damp),
+        (&mut cloth.conserve, default.conserve),
+        (&mut cloth.overlap_pruning, default.overlap_pruning),
         (&mut cloth.drag, default.drag),
         (&mut cloth.tangential_drag, default.tangential_drag),
         (&mut cloth.lift, default.lift),

@@ -5,6 +5,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use crate::input::particles::{CollisionEvent, ParticleRamp};
 use crate::input::validation::is_in_range;
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::model::build_error::BuildError;
@@ -127,12 +128,30 @@ pub struct Particles {
     pub capacity: usize,
     /// Ages in seconds at which the first particles die, one per point; empty for never.
     pub lifespans: Vec<f64>,
+    /// Ages of the first particles in seconds, one per point; empty for zero.
+    pub ages: Vec<f64>,
+    /// Numbers of the first particles, one per point; empty to count them from 0.
+    pub ids: Vec<u64>,
+    /// Radius in metres that ramps read.
+    pub radius: f64,
+    /// Factors on attributes of each particle, one per attribute at most.
+    pub ramps: Vec<ParticleRamp>,
+    /// What happens when particles collide.
+    pub events: Vec<CollisionEvent>,
 }
 
 /// Without the room, which says how far a run goes and nothing about its objects.
 impl fmt::Debug for Particles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Particles").field("lifespans", &self.lifespans).finish_non_exhaustive()
+        let Self { capacity: _, lifespans, ages, ids, radius, ramps, events } = self;
+        f.debug_struct("Particles")
+            .field("lifespans", lifespans)
+            .field("ages", ages)
+            .field("ids", ids)
+            .field("radius", radius)
+            .field("ramps", ramps)
+            .field("events", events)
+            .finish_non_exhaustive()
     }
 }
 
@@ -305,7 +324,14 @@ fn check_particles(surface: &Surface, particles: &Particles) -> Result<(), Build
     if lifespans > 0 && lifespans != points {
         return Err(BuildError::StartCount { what: "lifespans", given: lifespans, points });
     }
-    if !surface.faces.is_empty()
+    for (given, what) in [(particles.ages.len(), "ages"), (particles.ids.len(), "numbers")] {
+        if given > 0 && given != points {
+            return Err(BuildError::StartCount { what, given, points });
+        }
+    }
+    if !particles.ramps.iter().all(ParticleRamp::is_valid)
+        || particles.ages.iter().any(|age| !age.is_finite())
+        || !surface.faces.is_empty()
         || particles.lifespans.iter().any(|lifespan| lifespan.is_nan() || *lifespan < 0.0)
     {
         return Err(BuildError::BadParticles);

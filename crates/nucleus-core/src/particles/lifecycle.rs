@@ -12,13 +12,16 @@ use crate::input::validation::is_in_range;
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::parallel::thread_pool::ThreadPool;
-use crate::particles::population::close_up;
+use crate::particles::events::{Spawn, collision_events};
+use crate::particles::population::{Population, close_up};
+use crate::particles::pruning::Crowd;
+use crate::particles::ramps::apply_ramps;
 use crate::schedule::Schedule;
 use crate::solver::Solver;
 use crate::state::State;
 
-/// Removes the particles that have died in a substep, then adds those that were born in it. The substep is counted
-/// from 1.
+/// Removes the particles that have died in a substep, then adds those that were born in it, and those of collisions. The
+/// substep is counted from 1.
 pub fn age_particles<R: Real>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
@@ -28,15 +31,92 @@ pub fn age_particles<R: Real>(
 ) {
     let is_last = substep == schedule.substeps;
     let end = if is_last { 1.0 } else { f64::from(substep) / f64::from(schedule.substeps) };
+    if solver.state.populations.is_empty() {
+        return;
+    }
+    let length = frame.duration / f64::from(schedule.substeps);
+    for index in 0..solver.state.populations.len() {
+        accelerate(solver, index, length);
+        solver.state.populations[index].advance(length);
+    }
+    let spawned = collision_events(solver);
     for index in 0..solver.state.populations.len() {
         let population = &mut solver.state.populations[index];
-        population.advance(frame.duration / f64::from(schedule.substeps));
         let (cloth, before) = (population.cloth(), population.len());
         if let Some(kept) = population.remove_dead() {
             counters.deaths += (before - kept.len()) as u64;
             remove_rows(solver, cloth, &kept);
         }
         add_births(solver, index, frame, [schedule.h, end], counters);
+        add_spawned(solver, index, &spawned, counters);
+    }
+    apply_ramps(solver);
+}
+
+/// Applies what a frame changes about living particles, and evaluates ramps.
+pub fn begin_particles<R: Real>(solver: &mut Solver<R>, frame: &FrameInput) {
+    if solver.state.populations.is_empty() {
+        return;
+    }
+    for change in &frame.particle_changes {
+        let State { populations, velocity, .. } = &mut solver.state;
+        let of_cloth = |population: &&mut Population| population.cloth() == change.cloth.index();
+        let Some(population) = populations.iter_mut().find(of_cloth) else { continue };
+        if change.place >= population.len() {
+            continue;
+        }
+        if let Some(lifespan) = change.lifespan.filter(|lifespan| !lifespan.is_nan()) {
+            population.set_lifespan(change.place, lifespan);
+        }
+        let row = solver.model.cloths[change.cloth.index()].blocks.rows().start as usize + change.place;
+        if let Some(given) = change.velocity.filter(is_in_range) {
+            velocity[row] = Row4::new(given.into(), R::ZERO);
+        }
+    }
+    apply_ramps(solver);
+}
+
+/// Measures the acceleration of particles over a substep of `length` seconds, where a ramp reads it.
+fn accelerate<R: Real>(solver: &mut Solver<R>, index: usize, length: f64) {
+    let State { populations, velocity, .. } = &mut solver.state;
+    let population = &mut populations[index];
+    if !population.reads_acceleration() {
+        return;
+    }
+    let first = solver.model.cloths[population.cloth()].blocks.rows().start as usize;
+    (0..population.len())
+        .for_each(|at| population.accelerate(at, velocity[first + at].xyz().map(R::to_f64), length));
+}
+
+/// Adds the particles of collision events to an object.
+fn add_spawned<R: Real>(
+    solver: &mut Solver<R>,
+    index: usize,
+    spawned: &[Spawn],
+    counters: &mut ContactCounters,
+) {
+    let Solver { model, state, contact, .. } = solver;
+    let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
+    let object = &mut model.cloths[cloth];
+    let (first, row_of) = (object.points().end, object.blocks.rows().start);
+    for spawn in spawned.iter().filter(|spawn| spawn.cloth == cloth) {
+        let population = &mut state.populations[index];
+        if population.is_full() {
+            counters.births_refused += 1;
+            continue;
+        }
+        counters.births += 1;
+        if population.add(spawn.age, spawn.lifespan, spawn.velocity.into()) {
+            let row = row_of + population.len() as u32 - 1;
+            set_row(state, row as usize, spawn.position, spawn.velocity, mass);
+        } else {
+            counters.deaths += 1;
+        }
+    }
+    let last = row_of + state.populations[index].len() as u32;
+    if last > first {
+        object.resize(state.populations[index].len());
+        begin_contact_of(state, contact, cloth, first..last);
     }
 }
 
@@ -54,6 +134,9 @@ fn add_births<R: Real>(
     let object = &mut model.cloths[cloth];
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
     let flight = Flight::new(frame, &frame.cloths[cloth], [mass, object.point_mass], h);
+    let living = object.points();
+    let mut crowd = crowd_of(&frame.cloths[cloth])
+        .map(|distance| Crowd::new(distance, living.map(|row| state.position(row).into())));
     for birth in births {
         let age = (end - birth.time) * frame.duration;
         let (position, velocity) = flight.after(birth, age);
@@ -62,9 +145,15 @@ fn add_births<R: Real>(
             counters.births_refused += 1;
             continue;
         }
+        if crowd.as_ref().is_some_and(|crowd| crowd.overlaps(position)) {
+            continue;
+        }
         counters.births += 1;
-        match population.add(age, birth.lifespan) {
+        match population.add(age, birth.lifespan, velocity.into()) {
             true => {
+                if let Some(crowd) = &mut crowd {
+                    crowd.add(position);
+                }
                 let row = row_of + population.len() as u32 - 1;
                 set_row(state, row as usize, position, velocity, mass);
             }
@@ -81,6 +170,12 @@ fn add_births<R: Real>(
             update_fields_of((cloth, first..last), state, frame, interval, pool);
         }
     }
+}
+
+/// The distance in metres that new particles keep from others; `None` where they may overlap.
+fn crowd_of(cloth: &ClothFrame) -> Option<f64> {
+    let distance = 2.0 * cloth.self_collision.thickness * cloth.overlap_pruning;
+    (distance > 0.0 && distance.is_finite()).then_some(distance)
 }
 
 /// Puts a particle into a row.
@@ -149,7 +244,8 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
     contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
 }
 
-/// Drops the contacts of an object whose rows have moved: they are searched anew.
+/// Follows the rows of an object that have moved. Contacts with colliders are searched anew; those among cloths keep their
+/// friction anchors.
 fn renumber_contacts<R: Real>(
     contact: &mut ContactSystem<R>,
     cloth: usize,
@@ -157,7 +253,8 @@ fn renumber_contacts<R: Real>(
     kept: &[u32],
     pool: &ThreadPool,
 ) {
-    before.clone().for_each(|row| contact.invalidate_bounds(row as usize));
+    let bounds = contact.bounds_violated.get_mut(before.start as usize..before.end as usize);
+    bounds.unwrap_or_default().fill(true);
     contact.active_windows[cloth] = [0.0; 2];
     let number = |row: u32| kept.binary_search(&(row - before.start)).ok().map(|at| before.start + at as u32);
     for list in contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
@@ -165,7 +262,7 @@ fn renumber_contacts<R: Real>(
         list.depenetration.renumber(number);
     }
     if let Some(contacts) = &mut contact.cloth_contacts {
-        contacts.forget(before, pool);
+        contacts.close_up(before, kept, pool);
     }
 }
 

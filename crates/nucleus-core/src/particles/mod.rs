@@ -12,6 +12,16 @@
 //! |---|---|
 //! | ages, lifespans and numbers | [`population`] |
 //! | births and deaths in the solver's columns | [`lifecycle`] |
+//! | attributes that differ by particle | [`ramps`] |
+//! | what an observer draws of them | [`looks`] |
+//! | what happens at collisions | [`events`] |
+//! | `conserve` and `damp` | [`slowing`] |
+//! | new particles that would overlap others | [`pruning`] |
 
+pub mod events;
 pub mod lifecycle;
+pub mod looks;
 pub mod population;
+pub mod pruning;
+pub mod ramps;
+pub mod slowing;

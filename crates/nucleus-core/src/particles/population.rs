@@ -2,6 +2,7 @@
 
 use crate::bytes::checkpoint_struct;
 use crate::input::frame::Birth;
+use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
 use crate::model::builder::{Cloth, Mass, point_masses};
 use crate::output::ParticleAge;
 
@@ -18,8 +19,20 @@ pub struct Population {
     born: Vec<f64>,
     /// Age of death in seconds; infinite for never.
     lifespan: Vec<f64>,
-    /// In kilograms.
+    /// In kilograms, without the ramp.
     mass: Vec<f64>,
+    /// Velocity at the end of the last substep in m/s, and the change of it in that substep in m/s²; empty where no ramp
+    /// reads the acceleration.
+    last_velocity: Vec<[f64; 3]>,
+    acceleration: Vec<f64>,
+    /// Whether each particle touched anything at the end of the last substep, and how often it has collided; empty without
+    /// collision events.
+    touches: Vec<bool>,
+    collisions: Vec<u32>,
+    /// Factors by particle on the point field, the viscosity and the surface tension; empty without a ramp.
+    field_factors: Vec<f32>,
+    viscosity_factors: Vec<f32>,
+    tension_factors: Vec<f32>,
     /// The number of the next particle.
     next_id: u64,
     /// Time since the start in seconds.
@@ -30,25 +43,35 @@ pub struct Population {
     considered: usize,
     /// In kilograms: the mass of particles at birth.
     birth_mass: f64,
+    /// Radius of the object in metres, which its ramp scales.
+    radius: f64,
+    /// Factors on attributes of each particle; that of the radius is the first.
+    ramps: Vec<ParticleRamp>,
+    /// What happens at collisions.
+    events: Vec<CollisionEvent>,
 }
 
 checkpoint_struct!([] Population {
     columns: [],
-    values: [id, born, lifespan, mass, next_id, now],
+    values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, next_id, now],
     parts: [],
-    rebuilt: [cloth, capacity, next_death, considered, birth_mass],
+    rebuilt: [
+        cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, field_factors, viscosity_factors,
+        tension_factors
+    ],
 });
 
 impl Population {
     /// Bytes of its columns.
     pub fn bytes(&self) -> usize {
-        let [id, born, lifespan, mass] = [
-            size_of_val(&self.id[..]),
-            size_of_val(&self.born[..]),
-            size_of_val(&self.lifespan[..]),
-            size_of_val(&self.mass[..]),
-        ];
-        id + born + lifespan + mass
+        let numbers = [&self.born, &self.lifespan, &self.mass, &self.acceleration];
+        let factors = [&self.field_factors, &self.viscosity_factors, &self.tension_factors];
+        size_of_val(&self.id[..])
+            + numbers.map(|column| size_of_val(&column[..])).iter().sum::<usize>()
+            + factors.map(|column| size_of_val(&column[..])).iter().sum::<usize>()
+            + size_of_val(&self.last_velocity[..])
+            + size_of_val(&self.touches[..])
+            + size_of_val(&self.collisions[..])
     }
 
     /// The particles of a cloth at the start; `None` where none are born or die.
@@ -59,17 +82,35 @@ impl Population {
         let mut population = Self {
             cloth: index,
             capacity: particles.capacity,
-            id: (0..points as u64).collect(),
-            born: vec![0.0; points],
+            id: match particles.ids.is_empty() {
+                true => (0..points as u64).collect(),
+                false => particles.ids.clone(),
+            },
+            born: particles.ages.iter().map(|age| -age).collect(),
             lifespan: particles.lifespans.clone(),
             mass: point_masses(cloth),
-            next_id: points as u64,
+            last_velocity: Vec::new(),
+            acceleration: Vec::new(),
+            touches: Vec::new(),
+            collisions: Vec::new(),
+            field_factors: Vec::new(),
+            viscosity_factors: Vec::new(),
+            tension_factors: Vec::new(),
+            next_id: particles.ids.iter().map(|id| id.saturating_add(1)).max().unwrap_or(points as u64),
             now: 0.0,
             next_death: f64::INFINITY,
             considered: 0,
             birth_mass: mass,
+            radius: particles.radius,
+            ramps: particles.ramps.clone(),
+            events: particles.events.clone(),
         };
+        population.born.resize(points, 0.0);
         population.lifespan.resize(points, f64::INFINITY);
+        population.ramps.sort_by_key(|ramp| ramp.target != RampTarget::Radius);
+        let velocity =
+            |at: usize| cloth.start.velocities.get(at).map_or([0.0; 3], |&velocity| velocity.into());
+        (0..points).for_each(|at| population.begin_columns(velocity(at)));
         population.find_next_death();
         Some(population)
     }
@@ -99,6 +140,114 @@ impl Population {
         self.birth_mass
     }
 
+    /// The factors on attributes of each particle.
+    pub fn ramps(&self) -> &[ParticleRamp] {
+        &self.ramps
+    }
+
+    /// Whether its particles differ in their looks.
+    pub fn has_looks(&self) -> bool {
+        self.ramps.iter().any(|ramp| ramp.target == RampTarget::Radius || ramp.target.is_look())
+    }
+
+    /// What happens at collisions.
+    pub fn events(&self) -> &[CollisionEvent] {
+        &self.events
+    }
+
+    /// What ramps read of a particle with this speed in m/s.
+    pub fn facts(&self, at: usize, speed: f64) -> ParticleFacts {
+        let facts = ParticleFacts {
+            id: self.id[at],
+            age: self.now - self.born[at],
+            lifespan: self.lifespan[at],
+            speed,
+            acceleration: self.acceleration.get(at).copied().unwrap_or(0.0),
+            radius: self.radius,
+        };
+        let scaled = self.ramps.first().filter(|ramp| ramp.target == RampTarget::Radius);
+        ParticleFacts { radius: self.radius * scaled.map_or(1.0, |ramp| ramp.factor(&facts)), ..facts }
+    }
+
+    /// Factors by particle on its point field; empty where they are 1.
+    pub fn field_factors(&self) -> &[f32] {
+        &self.field_factors
+    }
+
+    /// Factors by particle on viscosity and on surface tension; empty where they are 1.
+    pub fn liquid_factors(&self) -> [&[f32]; 2] {
+        [&self.viscosity_factors, &self.tension_factors]
+    }
+
+    /// Sets the factor of a particle on an attribute that is read from here.
+    pub fn set_factor(&mut self, target: RampTarget, at: usize, factor: f64) {
+        let column = match target {
+            RampTarget::PointField => &mut self.field_factors,
+            RampTarget::Viscosity => &mut self.viscosity_factors,
+            RampTarget::SurfaceTension => &mut self.tension_factors,
+            _ => return,
+        };
+        column[at] = factor as f32;
+    }
+
+    /// Takes up the velocity of a particle at the end of a substep of this many seconds, where a ramp reads the
+    /// acceleration.
+    pub fn accelerate(&mut self, at: usize, velocity: [f64; 3], seconds: f64) {
+        let Some(last) = self.last_velocity.get_mut(at) else { return };
+        let change: [f64; 3] = std::array::from_fn(|axis| velocity[axis] - last[axis]);
+        let square = change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
+        self.acceleration[at] = square.sqrt() / seconds;
+        *last = velocity;
+    }
+
+    /// Whether a ramp reads the acceleration.
+    pub fn reads_acceleration(&self) -> bool {
+        self.ramps.iter().any(|ramp| ramp.input == RampInput::Acceleration)
+    }
+
+    /// Notices whether a particle touches anything. Returns the number of the collision if one begins.
+    pub fn notice(&mut self, at: usize, touches: bool) -> Option<u32> {
+        let before = std::mem::replace(&mut self.touches[at], touches);
+        if before || !touches {
+            return None;
+        }
+        self.collisions[at] = self.collisions[at].saturating_add(1);
+        Some(self.collisions[at])
+    }
+
+    /// Lets a particle die at the next occasion.
+    pub fn kill(&mut self, at: usize) {
+        self.lifespan[at] = 0.0;
+        self.next_death = f64::NEG_INFINITY;
+    }
+
+    /// Changes the lifespan of a particle, in seconds.
+    pub fn set_lifespan(&mut self, at: usize, lifespan: f64) {
+        self.lifespan[at] = lifespan;
+        self.next_death = self.next_death.min(self.born[at] + lifespan);
+    }
+
+    /// Begins the columns of a particle that only some objects have.
+    fn begin_columns(&mut self, velocity: [f64; 3]) {
+        if self.reads_acceleration() {
+            self.last_velocity.push(velocity);
+            self.acceleration.push(0.0);
+        }
+        if !self.events.is_empty() {
+            self.touches.push(false);
+            self.collisions.push(0);
+        }
+        for (target, column) in [
+            (RampTarget::PointField, &mut self.field_factors),
+            (RampTarget::Viscosity, &mut self.viscosity_factors),
+            (RampTarget::SurfaceTension, &mut self.tension_factors),
+        ] {
+            if self.ramps.iter().any(|ramp| ramp.target == target) {
+                column.push(1.0);
+            }
+        }
+    }
+
     /// Number, age and lifespan of each particle.
     pub fn ages(&self) -> impl Iterator<Item = ParticleAge> + '_ {
         let columns = self.id.iter().zip(&self.born).zip(&self.lifespan);
@@ -123,7 +272,7 @@ impl Population {
     }
 
     /// Adds a particle of this age. Returns false, with the particle counted, where it has died already.
-    pub fn add(&mut self, age: f64, lifespan: f64) -> bool {
+    pub fn add(&mut self, age: f64, lifespan: f64, velocity: [f64; 3]) -> bool {
         let id = self.next_id;
         self.next_id += 1;
         if age >= lifespan {
@@ -134,6 +283,7 @@ impl Population {
         self.born.push(born);
         self.lifespan.push(lifespan);
         self.mass.push(self.birth_mass);
+        self.begin_columns(velocity);
         self.next_death = self.next_death.min(born + lifespan);
         true
     }
@@ -149,6 +299,13 @@ impl Population {
         keep(&mut self.born, &kept);
         keep(&mut self.lifespan, &kept);
         keep(&mut self.mass, &kept);
+        keep(&mut self.last_velocity, &kept);
+        keep(&mut self.acceleration, &kept);
+        keep(&mut self.touches, &kept);
+        keep(&mut self.collisions, &kept);
+        keep(&mut self.field_factors, &kept);
+        keep(&mut self.viscosity_factors, &kept);
+        keep(&mut self.tension_factors, &kept);
         self.find_next_death();
         Some(kept)
     }
@@ -156,7 +313,20 @@ impl Population {
     /// Takes up columns that were restored; `None` where they are no population of this object.
     pub fn restored(&mut self) -> Option<()> {
         let lengths = [self.born.len(), self.lifespan.len(), self.mass.len()];
+        let accelerated = if self.reads_acceleration() { self.len() } else { 0 };
+        let colliding = if self.events.is_empty() { 0 } else { self.len() };
+        for (target, column) in [
+            (RampTarget::PointField, &mut self.field_factors),
+            (RampTarget::Viscosity, &mut self.viscosity_factors),
+            (RampTarget::SurfaceTension, &mut self.tension_factors),
+        ] {
+            let is_read = self.ramps.iter().any(|ramp| ramp.target == target);
+            column.clear();
+            column.resize(if is_read { self.id.len() } else { 0 }, 1.0);
+        }
         let is_valid = lengths.iter().all(|&length| length == self.len())
+            && [self.last_velocity.len(), self.acceleration.len()] == [accelerated; 2]
+            && [self.touches.len(), self.collisions.len()] == [colliding; 2]
             && self.len() <= self.capacity
             && self.mass.iter().all(|&mass| mass > 0.0);
         self.find_next_death();

@@ -14,6 +14,8 @@ use crate::integrate::local_wind::feels_wind;
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::output::PassCost;
+use crate::particles::population::Population;
+use crate::particles::slowing::kept_share;
 use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
 
@@ -61,6 +63,15 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         rows: frame.fields.iter().map(of_field).sum(),
         sweeps: if frame.fields_per_substep { f64::from(schedule.substeps) } else { 1.0 },
     });
+    let slowed = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
+        cloth.boundary.triangles.is_empty() && kept_share(settings, 1.0, 1.0) < 1.0
+    };
+    let slowed = solver.model.cloths.iter().zip(&frame.cloths).filter(slowed);
+    let slowed: usize = slowed.map(|(cloth, _)| cloth.points().len()).sum();
+    passes.push(PassCost { name: "slowing", rows: slowed, sweeps: f64::from(schedule.substeps) });
+    let of_ramps = |population: &Population| population.len() * population.ramps().len();
+    let ramps = solver.state.populations.iter().map(of_ramps).sum();
+    passes.push(PassCost { name: "ramps", rows: ramps, sweeps: f64::from(schedule.substeps) });
     let factors: usize = solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>()
         + solver.contact.material_maps.len();
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });

@@ -20,7 +20,7 @@ pub mod dyn_base {
         DYN_BASE = "dynBase", inherits Some(&TRANSFORM), hides [];
         "Connections" {
             /// The owner.
-            OWNER: Plugged = plug("owner", "ow", Data::Message);
+            OWNER: Plugged = plug("owner", "ow", Data::Message).elsewhere("fields stand for themselves: none comes from the points of another object");
         }
         "Nucleus (open)" {
             /// The object that it acts on or emits into.
@@ -32,13 +32,13 @@ pub mod dyn_base {
             /// Out of use in Maya.
             SUBSET_ID: i64 = int("subsetId", "sid", -1).unused();
             /// Whether its position has an effect.
-            POSITIONAL: bool = toggle("positional", "psl", false).output();
+            POSITIONAL: bool = toggle("positional", "psl", false).output().elsewhere("fields stand for themselves: none comes from the points of another object");
             /// Centroid of the owner's points.
-            OWNER_CENTROID: [f64; 3] = vector("ownerCentroid", "ocd", [0.0, 0.0, 0.0], ["ocx", "ocy", "ocz"]);
+            OWNER_CENTROID: [f64; 3] = vector("ownerCentroid", "ocd", [0.0, 0.0, 0.0], ["ocx", "ocy", "ocz"]).elsewhere("fields stand for themselves: none comes from the points of another object");
             /// Positions of its owner's points.
-            OWNER_POS_DATA: Vec<[f64; 3]> = vectors("ownerPosData", "opd");
+            OWNER_POS_DATA: Vec<[f64; 3]> = vectors("ownerPosData", "opd").elsewhere("fields stand for themselves: none comes from the points of another object");
             /// Velocities of its owner's points.
-            OWNER_VEL_DATA: Vec<[f64; 3]> = vectors("ownerVelData", "ovd");
+            OWNER_VEL_DATA: Vec<[f64; 3]> = vectors("ownerVelData", "ovd").elsewhere("fields stand for themselves: none comes from the points of another object");
         }
     }
 }
@@ -58,17 +58,17 @@ pub mod field {
             /// Range of the field, if `useMaxDistance` is on.
             MAX_DISTANCE: f64 = float("maxDistance", "max", 0.0).solved("nucleus_core::fields::reach");
             /// Acts from each of the owner's points, not from their centroid.
-            APPLY_PER_VERTEX: bool = toggle("applyPerVertex", "apv", false);
+            APPLY_PER_VERTEX: bool = toggle("applyPerVertex", "apv", false).elsewhere("fields stand for themselves: none comes from the points of another object");
             /// Whether `maxDistance` limits the range.
             USE_MAX_DISTANCE: bool = toggle("useMaxDistance", "umd", false).solved("nucleus_core::fields::reach");
             /// Their positions.
-            INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp");
+            INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Their velocities.
-            INPUT_VELOCITIES: Vec<[f64; 3]> = vectors("inputVelocities", "inv");
+            INPUT_VELOCITIES: Vec<[f64; 3]> = vectors("inputVelocities", "inv").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Their masses.
-            INPUT_MASS: Vec<f64> = floats("inputMass", "inm");
+            INPUT_MASS: Vec<f64> = floats("inputMass", "inm").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Length of the time step.
-            DELTA_TIME: f64 = float("deltaTime", "dt", 0.0);
+            DELTA_TIME: f64 = float("deltaTime", "dt", 0.0).elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Shape of the volume that it acts in.
             VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "None"), (1, "Cube"), (2, "Sphere"), (3, "Cylinder"), (4, "Cone"), (5, "Torus")]).solved("nucleus_core::fields::reach");
             /// Acts outside the volume instead.
@@ -84,15 +84,15 @@ pub mod field {
         }
         "Connections" {
             /// Particles that it acts on.
-            INPUT_DATA: Plugged = plug("inputData", "ind", Data::FieldData).multi();
+            INPUT_DATA: Plugged = plug("inputData", "ind", Data::FieldData).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Forces that it adds to.
-            INPUT_FORCE: Plugged = plug("inputForce", "inf", Data::Vectors).multi();
+            INPUT_FORCE: Plugged = plug("inputForce", "inf", Data::Vectors).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Force on each particle.
-            OUTPUT_FORCE: Plugged = plug("outputForce", "of", Data::Vectors).multi().output();
+            OUTPUT_FORCE: Plugged = plug("outputForce", "of", Data::Vectors).multi().output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Settings per particle of the objects that it acts on.
-            INPUT_PP_DATA: Plugged = plug("inputPPData", "ppda", Data::FieldSettings).multi();
+            INPUT_PP_DATA: Plugged = plug("inputPPData", "ppda", Data::FieldSettings).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
             /// Settings per particle of the owner.
-            OWNER_PP_DATA: Plugged = plug("ownerPPData", "oppd", Data::FieldSettings);
+            OWNER_PP_DATA: Plugged = plug("ownerPPData", "oppd", Data::FieldSettings).elsewhere("fields stand for themselves: none comes from the points of another object");
         }
     }
 }
@@ -134,7 +134,7 @@ pub mod turbulence_field {
             /// Amplitude of each octave relative to the one before.
             NOISE_RATIO: f64 = float("noiseRatio", "nsrt", 0.707).solved("nucleus_core::fields::turbulence");
             /// Interpolation of the noise.
-            INTERPOLATION_TYPE: Choice = choice("interpolationType", "intr", 0, &[(0, "Linear"), (1, "Quadratic")]);
+            INTERPOLATION_TYPE: Choice = choice("interpolationType", "intr", 0, &[(0, "Linear"), (1, "Quadratic")]).elsewhere("the noise is always smooth");
         }
     }
 }
@@ -172,7 +172,7 @@ pub mod drag_field {
             /// Reduces the drag on objects that move slowly.
             SPEED_ATTENUATION: f64 = float("speedAttenuation", "spa", 0.0);
             /// Time of the evaluation; driven by `time1.outTime`.
-            CURRENT_TIME: f64 = float("currentTime", "cti", 0.0);
+            CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).elsewhere("the clock of the nucleus counts");
         }
     }
 }
@@ -212,7 +212,7 @@ pub mod radial_field {
         RADIAL_FIELD = "radialField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Falloff at the maximum distance: 0 is gradual, 1 is abrupt.
-            RADIAL_TYPE: f64 = float("radialType", "typ", 0.0);
+            RADIAL_TYPE: f64 = float("radialType", "typ", 0.0).solved("nucleus_graph::compile::fields");
         }
     }
 }
@@ -242,7 +242,7 @@ pub mod volume_axis_field {
         VOLUME_AXIS_FIELD = "volumeAxisField", inherits Some(&FIELD), hides [];
         "Field" {
             /// Strongest at the edge of the volume instead of its centre.
-            INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false);
+            INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false).solved("nucleus_graph::compile::fields");
             /// Speed away from the centre.
             AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).solved("nucleus_core::fields::volume_axis");
             /// Speed away from the axis.
@@ -256,7 +256,7 @@ pub mod volume_axis_field {
             /// Direction of `directionalSpeed`.
             DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::volume_axis");
             /// Whether Maya draws arrows.
-            DISPLAY_SPEED: bool = toggle("displaySpeed", "dss", true);
+            DISPLAY_SPEED: bool = toggle("displaySpeed", "dss", true).elsewhere("only Maya's viewport draws it");
             /// Strength of a turbulence that varies with time.
             TURBULENCE: f64 = float("turbulence", "trb", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Speed of the turbulence.
@@ -266,9 +266,9 @@ pub mod volume_axis_field {
             /// Offset of the turbulence.
             TURBULENCE_OFFSET: [f64; 3] = vector("turbulenceOffset", "to", [0.0, 0.0, 0.0], ["tox", "toy", "toz"]).solved("nucleus_core::fields::volume_axis");
             /// Strength of a second turbulence of higher frequency.
-            DETAIL_TURBULENCE: f64 = float("detailTurbulence", "dtr", 0.0);
+            DETAIL_TURBULENCE: f64 = float("detailTurbulence", "dtr", 0.0).solved("nucleus_graph::compile::fields");
             /// The time of the turbulence.
-            TIME: f64 = float("time", "tim", 0.0);
+            TIME: f64 = float("time", "tim", 0.0).elsewhere("the clock of the nucleus counts");
         }
     }
 }
@@ -284,7 +284,7 @@ pub mod newton_field {
             /// Minimum distance at which it acts.
             MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).solved("nucleus_core::fields::newton");
             /// Masses of the owner's points.
-            OWNER_MASS_DATA: Vec<f64> = floats("ownerMassData", "omd");
+            OWNER_MASS_DATA: Vec<f64> = floats("ownerMassData", "omd").elsewhere("fields stand for themselves: none comes from the points of another object");
         }
     }
 }

@@ -149,15 +149,15 @@ node_table! {
     }
     "Caching" {
         /// Positions from a cache.
-        POSITIONS: Plugged = plug("positions", "poss", Data::Vectors);
+        POSITIONS: Plugged = plug("positions", "poss", Data::Vectors).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Velocities from a cache.
-        VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors);
+        VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Solver state from a cache.
-        INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle);
+        INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Reads the state from a cache instead of solving.
-        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false);
+        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// All data from a particle cache.
-        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle);
+        CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
     }
     "Collision Properties Maps" {
         /// Texture of the map of thickness.
@@ -221,20 +221,20 @@ node_table! {
     }
     "Connections" {
         /// Its solved state.
-        NEXT_STATE: Plugged = plug("nextState", "nxst", Data::State).sink();
+        NEXT_STATE: Plugged = plug("nextState", "nxst", Data::State).sink().solved("nucleus_graph::graph");
         /// Its current state.
-        CURRENT_STATE: Plugged = plug("currentState", "cust", Data::State).output();
+        CURRENT_STATE: Plugged = plug("currentState", "cust", Data::State).output().solved("nucleus_graph::graph");
         /// Its initial state.
-        START_STATE: Plugged = plug("startState", "stst", Data::State).output();
+        START_STATE: Plugged = plug("startState", "stst", Data::State).output().solved("nucleus_graph::graph");
         /// Its index in its nucleus.
-        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output();
+        NUCLEUS_ID: Plugged = plug("nucleusId", "nuid", Data::ObjectId).output().solved("nucleus_graph::graph");
     }
     "Internal" {
         /// Whether the object is solved (cloth, particles) or animated (colliders). Set when the node is created.
-        ACTIVE: bool = toggle("active", "actv", true).hidden();
+        ACTIVE: bool = toggle("active", "actv", true).hidden().elsewhere("the type of a node says whether it is solved");
         /// Time of the previous evaluation.
-        LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden();
+        LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden().elsewhere("Maya's evaluation keeps its state in it");
         /// Outputs positions in the space of its own transform.
-        LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden();
+        LOCAL_SPACE_OUTPUT: bool = toggle("localSpaceOutput", "lsou", false).hidden().elsewhere("positions are always in world space");
     }
 }

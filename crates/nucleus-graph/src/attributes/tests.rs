@@ -127,6 +127,15 @@ fn every_row_of_cloth_and_its_solver_has_an_effect_or_says_why_not() {
     }
 }
 
+#[test]
+fn every_row_of_particles_and_emitters_has_an_effect_or_says_why_not() {
+    for node_type in [&n_particle::N_PARTICLE, &point_emitter::POINT_EMITTER] {
+        let idle = node_type.attributes().into_iter().filter(|row| row.effect == Effect::NotYet);
+        let own = idle.filter(|row| !transform::TRANSFORM.attributes().contains(row));
+        assert_eq!(own.map(|row| row.name).collect::<Vec<_>>(), Vec::<&str>::new(), "{}", node_type.name);
+    }
+}
+
 /// Names, short names, defaults and ranges of a few attributes as Maya has them.
 #[test]
 fn rows_have_mayas_names_defaults_and_ranges() {

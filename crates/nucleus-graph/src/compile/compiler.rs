@@ -32,6 +32,8 @@ pub(super) struct Compiler<'a> {
     pub(super) mass: f64,
     /// Lower and upper corner of the bounding box of all objects at the start frame, in scene units.
     pub(super) bounds: Option<[Vector3<f64>; 2]>,
+    /// The objects of particles, each with its node.
+    pub(super) particle_ids: Vec<(NodeId, ClothId)>,
 }
 
 /// A compiled nucleus.
@@ -80,6 +82,7 @@ impl<'a> Compiler<'a> {
             objects: Vec::new(),
             mass: 0.0,
             bounds: None,
+            particle_ids: Vec::new(),
         }
     }
 

@@ -58,7 +58,7 @@ impl EvaluationInterval<'_> {
         };
         Field {
             kind: node.kind(self.graph.node(source.node).node_type(), travel / seconds, metre),
-            reach: node.reach(metre),
+            reach: node.reach(self.graph.node(source.node).node_type(), metre),
             targets: source.targets.iter().map(|&(cloth, node)| (cloth, weight(node))).collect(),
         }
     }
@@ -147,6 +147,8 @@ impl FieldNode<'_> {
         let scale = self.number(&field::MAGNITUDE) * metre;
         let force = |key: &Key<f64>| self.number(key) * scale;
         let turned = |v: Vector3<f64>| unit(self.placement.linear * v);
+        // Detail is a second octave of the noise.
+        let detail = self.number(&volume_axis_field::DETAIL_TURBULENCE);
         let time = self.number(&volume_axis_field::TURBULENCE_SPEED) * self.to.frame() / 24.0;
         VolumeAxis {
             from_center: force(&volume_axis_field::AWAY_FROM_CENTER),
@@ -160,24 +162,35 @@ impl FieldNode<'_> {
             noise: Noise {
                 frequency: self.vector(&volume_axis_field::TURBULENCE_FREQUENCY) / metre,
                 phase: self.vector(&volume_axis_field::TURBULENCE_OFFSET) + Vector3::new(0.0, time, 0.0),
-                octaves: 0,
-                ratio: 0.0,
+                octaves: u32::from(detail != 0.0),
+                ratio: detail,
             },
         }
     }
 
-    fn reach(&self, metre: f64) -> Reach {
+    fn reach(&self, node_type: &'static NodeType, metre: f64) -> Reach {
         let bounded = self.to.get(self.id, &field::USE_MAX_DISTANCE);
         let distance = self.number(&field::MAX_DISTANCE).max(0.0) * metre;
         let curve = self.to.get(self.id, &field::FALLOFF_CURVE);
-        let at = |k: usize| match curve.is_empty() {
-            true => 1.0,
-            false => ramp_at(&curve, k as f64 / (Reach::SAMPLES - 1) as f64),
+        let is_radial = node_type.is_a(&radial_field::RADIAL_FIELD);
+        // A radial field of type 0 fades out towards its largest distance, one of type 1 stops there.
+        let fading = match is_radial && bounded {
+            true => 1.0 - self.number(&radial_field::RADIAL_TYPE).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        let attenuation = self.number(&field::ATTENUATION).max(0.0);
+        let is_axis = node_type.is_a(&volume_axis_field::VOLUME_AXIS_FIELD);
+        // An inverted field is strongest at its largest distance: its falloff is a part of the curve.
+        let is_inverted = is_axis && bounded && self.to.get(self.id, &volume_axis_field::INVERT_ATTENUATION);
+        let at = |k: usize| {
+            let share = k as f64 / (Reach::SAMPLES - 1) as f64;
+            let faded = if is_inverted { share.powf(attenuation) } else { 1.0 - fading * share };
+            if curve.is_empty() { faded } else { faded * ramp_at(&curve, share) }
         };
         Reach {
             center: self.placement.offset * metre,
             unit: metre,
-            attenuation: self.number(&field::ATTENUATION).max(0.0),
+            attenuation: if is_inverted { 0.0 } else { attenuation },
             max_distance: if bounded { distance } else { f64::INFINITY },
             falloff: std::array::from_fn(at),
             volume: self.volume(metre),

@@ -83,6 +83,7 @@ impl EvaluationInterval<'_> {
             fields: self.fields(duration),
             fields_per_substep: to.get(nucleus, &nucleus::FIELDS_PER_SUBSTEP),
             births: self.births(&mut attachments.emitters, duration),
+            particle_changes: Vec::new(),
         }
     }
 
@@ -189,6 +190,8 @@ impl EvaluationInterval<'_> {
                 ..self.wind_field(node)
             },
             liquid: None,
+            conserve: 1.0,
+            overlap_pruning: 0.0,
         }
     }
 

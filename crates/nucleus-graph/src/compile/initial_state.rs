@@ -21,6 +21,7 @@ use crate::paint::read_vectors;
 
 use super::compiler::Compiler;
 use super::emission::emitter_nodes;
+use super::particle_ramps::is_event_target;
 
 /// An object with its mesh at the start frame, in world space; lengths in scene units. Particles are their own mesh.
 pub(super) struct PlacedObject {
@@ -106,7 +107,9 @@ impl Compiler<'_> {
             }
         };
         let filled = self.filled_positions(node, vectors.len())?;
-        if vectors.is_empty() && filled.is_empty() && emitter_nodes(&self.scene.graph, node).is_empty() {
+        let graph = &self.scene.graph;
+        let is_filled = !emitter_nodes(graph, node).is_empty() || is_event_target(graph, node);
+        if vectors.is_empty() && filled.is_empty() && !is_filled {
             let message = format!("`{name}` has no particles, and does nothing");
             let warning = self.findings.warning(&self.scene.source.place(name), message);
             warning.help(

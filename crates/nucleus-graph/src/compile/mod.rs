@@ -43,6 +43,8 @@ mod geometry;
 mod initial_state;
 mod map_values;
 mod objects;
+mod particle_expressions;
+mod particle_ramps;
 mod particles;
 mod perturbation;
 mod program;

@@ -27,7 +27,10 @@ impl Compiler<'_> {
         for placed in self.placed_meshes(cloths) {
             self.cloth(placed);
         }
-        for placed in self.placed_particles(particles) {
+        let placed = self.placed_particles(particles);
+        let first = self.program.model.cloths().len() as u32;
+        self.particle_ids = placed.iter().zip(first..).map(|(placed, at)| (placed.id, ClothId(at))).collect();
+        for placed in placed {
             self.particles(placed);
         }
         let passive = self.members(&nucleus::INPUT_PASSIVE, &[&n_rigid::N_RIGID]);

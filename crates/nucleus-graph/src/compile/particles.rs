@@ -13,6 +13,7 @@ use crate::memory::{Cost, Size};
 use super::compiler::Compiler;
 use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
+use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
 use super::sources::{ClothSource, Emitter, MapScales};
 
@@ -26,6 +27,7 @@ impl Compiler<'_> {
     pub(super) fn particles(&mut self, PlacedObject { id, surface, .. }: PlacedObject) -> Option<()> {
         self.check_inputs(id, &[particle::CURRENT_TIME.row.name, n_base::NEXT_STATE.row.name]);
         let points = surface.positions.len();
+        let places = surface.positions.clone();
         let surface = self.program.units.surface(surface);
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
         let velocities = self.start_vectors(id, id, points, velocities)?;
@@ -39,14 +41,28 @@ impl Compiler<'_> {
         let mass = self.start.get(id, &n_particle::POINT_MASS);
         let start = Start { velocities, ..Start::default() };
         let emitters = self.emitters(id, ClothId(self.program.model.cloths().len() as u32));
-        let particles = self.births_and_deaths(id, points, &emitters)?;
+        let particles = self.births_and_deaths(id, &places, &emitters)?;
         let varies = particles.is_some();
-        let vertex_maps = VertexMaps::default();
+        let masses = self.particle_numbers(id, &particle::MASS0, &places)?;
+        if let Some(bad) = masses.iter().find(|kilograms| **kilograms <= 0.0) {
+            let name = self.scene.graph.node(id).name();
+            let message = format!("`mass0` of `{name}` must be above 0, but is {bad}");
+            self.findings.error(&self.place(id, &particle::MASS0.row), message).help("in kilograms");
+            return None;
+        }
+        let vertex_maps = VertexMaps {
+            mass: masses.iter().map(|kilograms| kilograms / mass).collect(),
+            ..VertexMaps::default()
+        };
         let cloth = Cloth { surface, mass: Mass::PerPoint(mass), lists, vertex_maps, start, particles };
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
-                self.add_object(id, kind, points, Faces::default(), mass * points as f64);
+                let kilograms = match masses.is_empty() {
+                    true => mass * points as f64,
+                    false => masses.iter().sum(),
+                };
+                self.add_object(id, kind, points, Faces::default(), kilograms);
                 let radius = self.start.get(id, &n_particle::RADIUS);
                 if let Some(object) = self.objects.last_mut() {
                     (object.radius, object.varies) = (Some(radius), varies);
@@ -71,18 +87,32 @@ impl Compiler<'_> {
         Some(())
     }
 
-    /// Room for particles that are born and die, where there are any; `None` after an error, which is reported.
+    /// What particles need that are born, die or differ from each other, where there are any; `None` after an error, which
+    /// is reported.
     fn births_and_deaths(
         &mut self,
         id: NodeId,
-        points: usize,
+        places: &[Vector3<f64>],
         emitters: &[Emitter],
     ) -> Option<Option<Particles>> {
+        let points = places.len();
+        self.check_expressions(id)?;
+        let ramps = self.particle_ramps(id);
+        let events = self.collision_events(id)?;
+        let numbers = self.particle_numbers(id, &particle::PARTICLE_ID0, places)?;
+        let ages = self.particle_numbers(id, &particle::AGE0, places)?;
+        let listed = self.particle_numbers(id, &n_particle::LIFESPAN_PP, places)?;
+        let runs = self.has_runtime_expression(id);
         let graph = &self.scene.graph;
-        if emitters.is_empty() && !dies(graph, id) {
+        let is_target = is_event_target(graph, id);
+        let varies = dies(graph, id) || !ramps.is_empty() || !events.is_empty() || is_target || runs;
+        if emitters.is_empty() && !varies && numbers.is_empty() && ages.is_empty() {
             return Some(None);
         }
-        let room = self.room_for_particles(id, points, emitters);
+        let mut room = self.room_for_particles(id, points, emitters);
+        if is_target && self.start.get(id, &particle::MAX_COUNT) < 0 {
+            room = room.saturating_add(EVENT_ROOM);
+        }
         let claimed = self.geometry.budget.claim(Cost::CLOTH.of(Size { points: room, corners: 0 }));
         if let Err(refused) = claimed {
             if refused.is_first {
@@ -95,8 +125,22 @@ impl Compiler<'_> {
             return None;
         }
         let seed = self.start.get(id, &particle::GENERAL_SEED) as u64;
-        let lifespans = Lifespan::new(id, &self.start).of_first(points, seed);
-        Some(Some(Particles { capacity: room as usize, lifespans }))
+        let lifespan = Lifespan::new(id, &self.start);
+        let lifespans = match lifespan.is_listed() {
+            true => listed.into_iter().map(|seconds| seconds.max(0.0)).collect(),
+            false => lifespan.of_first(points, seed),
+        };
+        let radius = self.program.units.length(self.start.get(id, &n_particle::RADIUS));
+        let ids = numbers.iter().map(|number| number.max(0.0) as u64).collect();
+        Some(Some(Particles {
+            capacity: (room as usize).max(1),
+            lifespans,
+            ages,
+            ids,
+            radius,
+            ramps,
+            events,
+        }))
     }
 }
 
@@ -160,6 +204,9 @@ impl EvaluationInterval<'_> {
             },
             point_field: self.point_field(node, radius),
             liquid: self.liquid(node),
+            conserve: number(&particle::CONSERVE),
+            damp: number(&n_particle::DAMP),
+            overlap_pruning: number(&n_particle::EMISSION_OVERLAP_PRUNING),
             ..ClothFrame::default()
         }
     }

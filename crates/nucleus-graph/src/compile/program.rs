@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use nucleus_core::{ClothId, ColliderId, Faces, ModelBuilder};
+use nucleus_core::{Cloth, ClothId, ColliderId, Faces, ModelBuilder, RampTarget};
 
 use crate::attributes::{ElementKind, FromValue, Key};
 use crate::checks::Check;
@@ -122,6 +122,16 @@ impl Program {
     /// The nuclei in the order of their names; usually one.
     pub fn nuclei(&self) -> &[NucleusProgram] {
         &self.data.nuclei
+    }
+
+    /// Whether any particles differ in their looks.
+    pub fn has_looks(&self) -> bool {
+        let ramps = |cloth: &Cloth| {
+            cloth.particles.as_ref().is_some_and(|particles| {
+                particles.ramps.iter().any(|ramp| ramp.target.is_look() || ramp.target == RampTarget::Radius)
+            })
+        };
+        self.nuclei().iter().any(|nucleus| nucleus.model.cloths().iter().any(ramps))
     }
 
     /// All objects: cloths, then colliders, each in the order of their ids.

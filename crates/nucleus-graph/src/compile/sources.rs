@@ -89,6 +89,8 @@ pub(super) struct EmittingMesh {
     pub(super) mesh: NodeId,
     pub(super) shape: AnimatedMesh,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Factors on the rate by point; empty where they are 1.
+    pub(super) rate: Vec<f64>,
 }
 
 /// The state of an emitter from frame to frame.

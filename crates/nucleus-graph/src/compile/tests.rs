@@ -232,6 +232,8 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
             falloff: std::array::from_fn(|k| 1.0 - k as f64 / 16.0),
         }),
         liquid: None,
+        conserve: 1.0,
+        overlap_pruning: 0.0,
         wind_field: WindField {
             shadow_distance: 33.0,
             shadow_diffusion: 0.34,

@@ -116,12 +116,12 @@ fn soft_ranges_may_be_exceeded() {
 // EVIDENCE: N3.1-10  a setting that is not supported gives a warning, also if it is inherited
 #[test]
 fn a_setting_without_effect_yet_is_a_warning_at_its_place() {
-    let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", playFromCache: true)"#);
+    let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", cacheUsage: cacheSimulation)"#);
     let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
     let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
     assert_eq!(warning.severity, Severity::Warning);
-    assert_eq!(warning.message, "`playFromCache` of `c` has no effect yet");
-    assert_eq!(&text[warning.span.clone()], "playFromCache");
+    assert_eq!(warning.message, "`cacheUsage` of `c` has no effect yet");
+    assert_eq!(&text[warning.span.clone()], "cacheUsage");
     let inherited = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", lifespanRandom: 1)"#);
     let (_, warnings) = read_scene_text(&inherited, Path::new("test.ron")).expect("a valid scene");
     assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect on such a node");

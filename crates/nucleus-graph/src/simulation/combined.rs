@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, ParticleAge, Stage, StateView, StepObserver, StepReport, SubstepIndex,
+    ClothId, ColliderId, ContactState, ParticleAge, ParticleLook, Stage, StateView, StepObserver, StepReport,
+    SubstepIndex,
 };
 
 use crate::compile::{NucleusProgram, Program};
@@ -54,6 +55,11 @@ impl StateView for CombinedState<'_> {
             out.resize(nucleus.cloths().start as usize, Vec::new());
             out.append(&mut own);
         }
+    }
+
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
+        let (part, id, _) = self.cloth(cloth);
+        part.looks(id, out);
     }
 
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use nucleus_core::Elements;
+use nucleus_core::{Birth, Elements, RampInput, RampTarget};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
@@ -140,9 +140,13 @@ fn settings_without_effect_on_particles_give_a_warning() {
     let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
-    for name in ["damp: 1", "parallelSPH: true", "opacity: 0.5", "stickinessRandomize: 1"] {
+    for name in ["parallelSPH: true", "computeRotation: true", "meshMethod: \"Quad Mesh\"", "inputAttract: 1"]
+    {
         let messages = of(&format!("position: [(0, 0, 0)], {name}"));
-        assert!(messages.len() == 1 && messages[0].ends_with("has no effect yet"), "{name}: {messages:?}");
+        assert!(messages.len() == 1 && messages[0].contains("has no effect: "), "{name}: {messages:?}");
+    }
+    for name in ["damp: 1", "conserve: 0.5", "opacity: 0.5", "stickinessRandomize: 1"] {
+        assert_eq!(of(&format!("position: [(0, 0, 0)], {name}")), Vec::<String>::new(), "{name}");
     }
     for name in ["thickness: 1", "startPositions: [(0, 0, 0)]", "restLengthScale: 2"] {
         let messages = of(&format!("position: [(0, 0, 0)], {name}"));
@@ -176,4 +180,214 @@ fn particles_that_ignore_gravity_stay_and_pinned_particles_are_held() {
         "h": dynamicConstraint(components: ["q.vtx[0]"])"#;
     let held = places(&program(&of_nodes(nodes, "")), 5);
     assert!(held[0] == [0.0; 3] && held[1][1] < -0.1, "{held:?}");
+}
+
+#[test]
+fn ramps_and_lists_make_particles_differ() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(position: [(0, 0, 0), (9, 0, 0), (0, 9, 0)], radius: 2,
+        radiusScale: [(0, 0.5), (1, 1)], radiusScaleInput: "Speed", radiusScaleInputMax: 10, massScaleRandomize: 0.25,
+        mass0: expression("1 + x"), particleId0: [4, 5, 9], age0: [0, 0.5, 1], lifespanMode: "lifespanPP only",
+        lifespanPP: [1, 2, 3], colorInput: age, color: [(0, (1, 0, 0)), (1, (0, 0, 1))])"#;
+    let program = program(&of_nodes(nodes, ""));
+    let cloth = &program.model().cloths()[0];
+    assert_eq!(cloth.point_masses(), [1.0, 10.0, 1.0]);
+    let own = cloth.particles.as_ref().expect("they differ");
+    assert_eq!((&own.ids[..], &own.ages[..]), (&[4, 5, 9][..], &[0.0, 0.5, 1.0][..]));
+    assert_eq!((&own.lifespans[..], own.radius), (&[1.0, 2.0, 3.0][..], 0.02));
+    let ramp = |target| own.ramps.iter().find(|ramp| ramp.target == target).expect("a ramp");
+    let radius = ramp(RampTarget::Radius);
+    assert_eq!((radius.input, radius.input_max, radius.samples[64]), (RampInput::Speed, 0.1, 0.75));
+    let mass = ramp(RampTarget::Mass);
+    assert_eq!((mass.input, &mass.samples[..], mass.randomize), (RampInput::Off, &[1.0][..], 0.25));
+    let blue = ramp(RampTarget::Color(2));
+    assert_eq!((blue.input, blue.samples[0], blue.samples[128]), (RampInput::Age, 0.0, 1.0));
+    assert_eq!(own.ramps.len(), 5);
+}
+
+#[test]
+fn particles_without_ramps_have_no_columns_for_them() {
+    let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)], radiusScaleInput: "Age")"#;
+    assert!(program(&of_nodes(nodes, "")).model().cloths()[0].particles.is_none());
+}
+
+#[test]
+fn collision_events_are_lists_with_a_number_per_event() {
+    let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 1, 0)], eventCount: [1, 0], eventEmit: [5, 0],
+        eventDie: [0, 1], eventProbability: [1, 0.5], eventParticles: "r"),
+        "r": nParticle(lifespanMode: constant, lifespan: 2)"#;
+    let program = program(&of_nodes(nodes, ""));
+    let cloths = program.model().cloths();
+    let events = cloths.iter().find_map(|cloth| {
+        cloth.particles.as_ref().map(|own| own.events.clone()).filter(|events| !events.is_empty())
+    });
+    let events = events.expect("events");
+    let target = cloths[events[0].target.index()].particles.as_ref().expect("room for what is emitted");
+    assert!(target.capacity >= 10_000 && target.events.is_empty());
+    assert_eq!(
+        (events[0].count, events[0].emit, events[0].die, events[0].lifespan),
+        (1, 5, false, [2.0, 0.0])
+    );
+    assert_eq!((events[1].count, events[1].die, events[1].probability), (0, true, 0.5));
+}
+
+#[test]
+fn bad_ramps_lists_and_events_are_errors_that_name_them() {
+    let errors = |fields: &str| {
+        let nodes = format!(r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0), (1, 0, 0)], {fields})"#);
+        let (scene, _) =
+            read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
+        let found = compile(&scene).expect_err("it is refused");
+        found.into_iter().map(|found| found.message).collect::<Vec<_>>()
+    };
+    assert_eq!(errors("mass0: [1]"), ["`mass0` of `q` has 1 values for 2 particles"]);
+    assert_eq!(errors("mass0: [1, 0]"), ["`mass0` of `q` must be above 0, but is 0"]);
+    assert_eq!(
+        errors(r#"age0: expression("1 / x")"#),
+        ["`age0` of `q` is not a finite number at particle 0"]
+    );
+    assert_eq!(
+        errors(r#"radiusScale: [(0, -1), (1, 1)], radiusScaleInput: age"#),
+        ["`radiusScale` of `q` must be between 0 and 1000000, but is -1 somewhere"]
+    );
+    assert_eq!(errors("eventEmit: [1, 2], eventDie: [1]"), ["`eventDie` of `q` has 1 values for 2 events"]);
+    assert_eq!(
+        errors("eventEmit: [1e9]"),
+        ["`eventEmit` of `q` must be between 0 and 65535, but is 1000000000"]
+    );
+    assert_eq!(
+        errors(r#"eventEmit: [1], eventParticles: "p""#),
+        ["there are no particles `p` in this nucleus to emit into"]
+    );
+}
+
+/// Births of the first frame, in scene units.
+fn births(emitter: &str) -> Vec<Birth> {
+    let nodes = format!(r#""n": nucleus(), "q": nParticle(), "e": pointEmitter(target: "q", {emitter})"#);
+    program(&of_nodes(&nodes, "")).first_input().births
+}
+
+#[test]
+fn a_curve_emits_evenly_along_its_length_and_across_it() {
+    let born = births(
+        "emitterType: curve, curvePoints: [(0, 0, 0), (3, 0, 0), (3, 1, 0)], rate: 2400, normalSpeed: 3",
+    );
+    // 2400 per unit of length and second, 4 units, 1/24 s.
+    assert_eq!(born.len(), 400);
+    let mut on_first = 0;
+    for birth in &born {
+        let (place, fast) = (birth.position, birth.velocity);
+        let is_first = place.y == 0.0;
+        on_first += usize::from(is_first);
+        let across = if is_first { fast.x } else { fast.y };
+        assert!(place.z == 0.0 && (is_first || place.x == 3.0), "{place}");
+        assert!(across.abs() < 1e-9 && (fast.norm() - 3.0).abs() < 1e-9, "{fast}");
+    }
+    // Three quarters of the length, give or take three standard deviations of a binomial.
+    assert!((274..=326).contains(&on_first), "{on_first}");
+}
+
+#[test]
+fn a_curve_without_length_is_an_error_that_names_the_fix() {
+    let nodes = r#""n": nucleus(), "q": nParticle(), "e": pointEmitter(target: "q", emitterType: curve)"#;
+    let (scene, _) = read_scene_text(&of_nodes(nodes, ""), Path::new("test.ron")).expect("it can be read");
+    let found = compile(&scene).expect_err("it is refused");
+    let message = "`e` emits from a curve, and its `curvePoints` have no length";
+    assert!(found.iter().any(|found| found.message == message), "{found:?}");
+}
+
+#[test]
+fn the_rate_follows_the_speed_of_the_emitter() {
+    let still = births("emitterType: omni, rate: 24, scaleRateBySpeed: true");
+    let moving = births(
+        "emitterType: omni, rate: 24, scaleRateBySpeed: true, translate: keys([(1, (0, 0, 0)), (11, (10, 0, 0))])",
+    );
+    // One unit a frame is 24 units a second.
+    assert_eq!([still.len(), moving.len()], [0, 24]);
+}
+
+#[test]
+fn a_rate_map_emits_where_the_texture_is_white_or_dark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().expect("a header").write_image_data(&[0, 255]).expect("pixels");
+    fs::write(folder.path().join("rate.png"), bytes).expect("written");
+    let mean = |dark: bool| {
+        let nodes = format!(
+            r#""n": nucleus(), "q": nParticle(), "p": polyPlane(width: 2, height: 2, subdivisions: (16, 1)),
+            "e": pointEmitter(target: "q", emitterType: surface, parent: "p", rate: 6000, enableTextureRate: true,
+            emitFromDark: {dark}, rateMap: texture("rate.png"))"#
+        );
+        let (scene, _) =
+            read_scene_text(&of_nodes(&nodes, ""), &folder.path().join("scene.ron")).expect("it can be read");
+        let program = compile(&scene).unwrap_or_else(|found| panic!("{found:?}"));
+        let born = program.first_input().births;
+        // Half of the thousand, give or take four standard deviations.
+        assert!((437..=563).contains(&born.len()), "{}", born.len());
+        born.iter().map(|birth| birth.position.x).sum::<f64>() / born.len() as f64
+    };
+    // Pixel centres are at a quarter and at three quarters, and the texture repeats: the rate is 1/2 at both ends. The
+    // integral of x over it is 1/4 of that of 1.
+    for (dark, middle) in [(false, 0.25), (true, -0.25)] {
+        assert!((mean(dark) - middle).abs() < 0.1, "{dark}: {} for {middle}", mean(dark));
+    }
+}
+
+#[test]
+fn a_cycle_of_one_frame_repeats_the_random_numbers_in_each() {
+    let run = |cycle: &str| {
+        let nodes = format!(
+            r#""n": nucleus(gravity: 0), "q": nParticle(drag: 0, collide: false, selfCollide: false),
+            "e": pointEmitter(target: "q", emitterType: volume, rate: 240, speed: 0 {cycle})"#
+        );
+        let mut all = places(&program(&of_nodes(&nodes, "")), 2);
+        let late = all.split_off(10);
+        (all, late)
+    };
+    let (first, second) = run(r#", cycleEmission: "Frame (timeRandom on)""#);
+    assert_eq!((first.len(), &first), (10, &second));
+    let (first, second) = run("");
+    assert_ne!(first, second);
+}
+
+#[test]
+fn expressions_set_velocities_and_lifespans_at_birth_and_in_each_frame() {
+    let born = |expression: &str| {
+        let nodes = format!(
+            r#""n": nucleus(spaceScale: 0.01), "q": nParticle(creationExpression: "{expression}"),
+            "e": pointEmitter(target: "q", emitterType: omni, rate: 240, speed: 0)"#
+        );
+        program(&of_nodes(&nodes, "")).first_input().births
+    };
+    let all = born("vy = 100 + 50 * rand; lifespan = 2 + id; x = 7");
+    assert_eq!(all.len(), 10);
+    for (k, birth) in all.iter().enumerate() {
+        assert_eq!((birth.position.x, birth.lifespan), (0.07, 2.0 + k as f64));
+        assert!((1.0..1.5).contains(&birth.velocity.y), "{birth:?}");
+    }
+    assert!(all[0].velocity.y != all[1].velocity.y);
+    // A result that is not a finite number changes nothing.
+    assert!(born("vy = 1 / 0; lifespan = 0 / 0").iter().all(|birth| birth.velocity.norm() == 0.0));
+    let nodes = r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0, 0, 0), (5, 0, 0)], drag: 0,
+        runtimeExpression: "vy = 24 * (1 + id); lifespan = id == 1 && time > 0.05 ? 0 : 99")"#;
+    let program = program(&of_nodes(nodes, ""));
+    let moved = places(&program, 1);
+    assert!((moved[0][1] - 1.0).abs() < 1e-5 && (moved[1][1] - 2.0).abs() < 1e-5, "{moved:?}");
+    // In the third frame, which begins 2/24 s after the start, the second one dies.
+    assert_eq!([places(&program, 2).len(), places(&program, 3).len()], [2, 1]);
+}
+
+#[test]
+fn a_mistake_in_an_expression_is_an_error_that_names_it() {
+    let error = |text: &str| {
+        let nodes =
+            format!(r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)], runtimeExpression: "{text}")"#);
+        let (scene, _) =
+            read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
+        compile(&scene).expect_err("it is refused")[0].message.clone()
+    };
+    assert_eq!(error("x = 1"), "`runtimeExpression` of `q`: `x` cannot be assigned");
+    assert_eq!(error("vx = speed"), "`runtimeExpression` of `q`: there is no `speed` in an expression");
+    assert_eq!(error("vx"), "`runtimeExpression` of `q`: `vx` is no statement");
 }

@@ -112,6 +112,8 @@ struct SurfacePoint {
     colour: Vec3,
     /// Visible fraction of the sky.
     sky: f32,
+    /// Light that it gives off.
+    glow: Vec3,
 }
 
 impl Shader<'_> {
@@ -157,7 +159,7 @@ impl Shader<'_> {
         // Fibres scatter light at grazing angles: the sheen of woven cloth.
         let grazing = 1.0 - cosine;
         let sheen = grazing * grazing * grazing * (0.25 + 0.75 * key) * point.sky;
-        colour + (point.colour * 0.5 + Vec3::repeat(0.05)) * sheen * 0.5
+        colour + (point.colour * 0.5 + Vec3::repeat(0.05)) * sheen * 0.5 + point.glow
     }
 
     fn surface_point(&self, fragment: &Fragment, position: &Vec3, ray: &Vec3) -> SurfacePoint {
@@ -184,6 +186,7 @@ impl Shader<'_> {
             normal: normal * [1.0, -1.0][side],
             colour: colour * tone,
             sky: a.sky[side] * wa + b.sky[side] * wb + c.sky[side] * wc,
+            glow: Vec3::zeros(),
         }
     }
 
@@ -209,7 +212,8 @@ impl Shader<'_> {
         let view = self.view;
         let normal = view.right * across + view.up * upward - view.forward * toward;
         let first_sphere = self.mesh.triangles.len();
-        let colour = self.mesh.spheres[fragment.primitive as usize - first_sphere].colour;
-        SurfacePoint { position: *position, normal, colour, sky: 0.5 + 0.5 * normal.y }
+        let sphere = &self.mesh.spheres[fragment.primitive as usize - first_sphere];
+        let sky = 0.5 + 0.5 * normal.y;
+        SurfacePoint { position: *position, normal, colour: sphere.colour, sky, glow: sphere.glow }
     }
 }

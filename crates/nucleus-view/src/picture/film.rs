@@ -4,6 +4,7 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::{CameraView, ObjectKind, Playback};
+use nucleus_core::ParticleLook;
 
 use super::animation::AnimationWriter;
 use super::camera::Camera;
@@ -95,8 +96,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If the index is out of range, or the frame is damaged.
     pub fn bounds(&mut self, moment: usize) -> Result<Bounds, ViewError> {
-        let positions = positions(self.cache, moment)?;
-        Ok(Bounds::to_frame(&objects(self.cache, moment, &positions)?))
+        let states = states(self.cache, moment)?;
+        Ok(Bounds::to_frame(&objects(self.cache, moment, &states)?))
     }
 
     /// The frame of a picture.
@@ -150,8 +151,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If the index is out of range, or the frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
-        let (positions, camera) = (positions(self.cache, moment)?, self.camera_at(moment));
-        Ok(draw(&objects(self.cache, moment, &positions)?, &camera, &self.style))
+        let (states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
+        Ok(draw(&objects(self.cache, moment, &states)?, &camera, &self.style))
     }
 
     /// Writes all pictures as one animated PNG that plays in real time.
@@ -181,8 +182,8 @@ struct Survey {
 fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<Survey, ViewError> {
     let [mut framed, mut stage, mut all] = [Bounds::default(); 3];
     for moment in moments {
-        let positions = positions(cache, *moment)?;
-        let objects = objects(cache, *moment, &positions)?;
+        let states = states(cache, *moment)?;
+        let objects = objects(cache, *moment, &states)?;
         framed.merge(&Bounds::to_frame(&objects));
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include(object.positions));
@@ -194,27 +195,33 @@ fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Positions of every object at a recorded time.
-fn positions<R: Read + Seek>(
-    cache: &mut Playback<R>,
-    moment: usize,
-) -> Result<Vec<Vec<[f32; 3]>>, ViewError> {
-    let objects = 0..cache.objects().len();
-    let read = |object| cache.positions(object, moment).map_err(|source| ViewError::Read { source });
-    objects.map(read).collect()
+/// An object at a recorded time.
+struct ObjectState {
+    positions: Vec<[f32; 3]>,
+    looks: Option<Vec<ParticleLook>>,
 }
 
 /// Every object at a recorded time.
+fn states<R: Read + Seek>(cache: &mut Playback<R>, moment: usize) -> Result<Vec<ObjectState>, ViewError> {
+    let objects = 0..cache.objects().len();
+    let read = |object| {
+        let positions = cache.positions(object, moment)?;
+        Ok(ObjectState { positions, looks: cache.looks(object, moment)? })
+    };
+    objects.map(read).collect::<Result<_, _>>().map_err(|source| ViewError::Read { source })
+}
+
+/// Every object at a recorded time, to draw.
 fn objects<'a, R: Read + Seek>(
     cache: &'a mut Playback<R>,
     moment: usize,
-    positions: &'a [Vec<[f32; 3]>],
+    states: &'a [ObjectState],
 ) -> Result<Vec<Object<'a>>, ViewError> {
     let radii = cache.run().radii.clone();
     let objects = cache.objects_at(moment).map_err(|source| ViewError::Read { source })?;
-    let objects = objects.into_iter().zip(positions);
+    let objects = objects.into_iter().zip(states);
     Ok(objects
-        .map(|(object, positions)| Object {
+        .map(|(object, state)| Object {
             name: &object.name,
             kind: match object.kind {
                 ObjectKind::Cloth => Kind::Cloth,
@@ -222,7 +229,8 @@ fn objects<'a, R: Read + Seek>(
                 ObjectKind::Particles => Kind::Particles,
             },
             faces: &object.faces,
-            positions,
+            positions: &state.positions,
+            looks: state.looks.as_deref(),
             rest: Some(&object.rest),
             radius: radii.get(&object.name).map(|radius| *radius as f32),
         })

@@ -1,5 +1,7 @@
 //! All objects as one mesh of triangles and spheres, with normals and colours.
 
+use nucleus_core::ParticleLook;
+
 use super::camera::View;
 use super::scene::{Colouring, Kind, Object, Style, Vec3, is_drawable, unit};
 use super::strain;
@@ -29,6 +31,10 @@ pub(super) struct Sphere {
     /// In scene units.
     pub radius: f32,
     pub colour: Vec3,
+    /// Linear colour of the light it gives off.
+    pub glow: Vec3,
+    /// 0 is invisible, 1 opaque.
+    pub opacity: f32,
 }
 
 /// Radius of particles that have none, relative to the half extent of the view.
@@ -117,8 +123,18 @@ impl Mesh {
 
     fn add_particles(&mut self, object: &Object, colour: Vec3, default_radius: f32) {
         let radius = object.radius.filter(|radius| *radius > 0.0).unwrap_or(default_radius);
-        let drawable = object.positions.iter().filter(|point| is_drawable(point));
-        self.spheres.extend(drawable.map(|point| Sphere { centre: Vec3::from(*point), radius, colour }));
+        let looks = object.looks.filter(|looks| looks.len() == object.positions.len());
+        let plain = ParticleLook { radius: 1.0, opacity: 1.0, color: None, incandescence: [0.0; 3] };
+        for (at, point) in object.positions.iter().enumerate().filter(|(_, point)| is_drawable(point)) {
+            let look = looks.map_or(plain, |looks| looks[at]);
+            self.spheres.push(Sphere {
+                centre: Vec3::from(*point),
+                radius: radius * look.radius,
+                colour: look.color.map_or(colour, Vec3::from),
+                glow: Vec3::from(look.incandescence),
+                opacity: look.opacity,
+            });
+        }
     }
 
     fn add_fan(&mut self, corners: usize, vertex: impl Fn(usize) -> u32) {

@@ -1,6 +1,6 @@
 //! The contents of a picture: objects, the bounding boxes around them, and the style in which they are drawn.
 
-use nucleus_core::Faces;
+use nucleus_core::{Faces, ParticleLook};
 
 /// A 3-vector: a point or direction in scene units, or a linear colour.
 pub(super) type Vec3 = nalgebra::Vector3<f32>;
@@ -20,6 +20,8 @@ pub struct Object<'a> {
     pub rest: Option<&'a [[f32; 3]]>,
     /// Radius of its particles, in scene units; without it they are drawn just large enough to see.
     pub radius: Option<f32>,
+    /// The looks of its particles, as many as `positions`; without them all look the same.
+    pub looks: Option<&'a [ParticleLook]>,
 }
 
 /// Kinds of objects, which are drawn differently.
@@ -229,7 +231,7 @@ mod tests {
     }
 
     fn object<'a>(kind: Kind, faces: &'a Faces, positions: &'a [[f32; 3]]) -> Object<'a> {
-        Object { name: "", kind, faces, positions, rest: None, radius: None }
+        Object { name: "", kind, faces, positions, rest: None, radius: None, looks: None }
     }
 
     #[test]

@@ -179,6 +179,7 @@ mod tests {
             positions: &positions,
             rest: None,
             radius: None,
+            looks: None,
         };
         let camera =
             Camera { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0, ..Camera::default() };

@@ -30,7 +30,13 @@ pub(super) fn draw(mesh: &Mesh, view: &View) -> Vec<Fragment> {
     }
     for (index, sphere) in mesh.spheres.iter().enumerate() {
         let primitive = (mesh.triangles.len() + index) as u32;
-        draw_sphere(&mut fragments, primitive, view.to_view_space(&sphere.centre), sphere.radius, view);
+        let disc = Disc {
+            primitive,
+            centre: view.to_view_space(&sphere.centre),
+            radius: sphere.radius,
+            opacity: sphere.opacity,
+        };
+        draw_sphere(&mut fragments, &disc, view);
     }
     fragments
 }
@@ -100,8 +106,26 @@ fn draw_clipped(
     });
 }
 
-/// Draws a sphere, its centre in view space, as a disc with the depth of its front.
-fn draw_sphere(fragments: &mut [Fragment], primitive: u32, centre: Vec3, radius: f32, view: &View) {
+/// A sphere, its centre in view space.
+struct Disc {
+    primitive: u32,
+    centre: Vec3,
+    radius: f32,
+    opacity: f32,
+}
+
+/// Whether a sphere of this opacity covers a sample: at random, the same for the same sample and sphere, so that the share of
+/// covered samples is the opacity and nothing has to be sorted (stochastic transparency: Enderton et al. 2010).
+fn covers(opacity: f32, primitive: u32, cell: u32) -> bool {
+    let mut x = primitive.wrapping_mul(0x9e37_79b9) ^ cell.wrapping_mul(0x85eb_ca6b);
+    x = (x ^ x >> 16).wrapping_mul(0x7feb_352d);
+    x = (x ^ x >> 15).wrapping_mul(0x846c_a68b);
+    opacity >= 1.0 || ((x ^ x >> 16) >> 8) as f32 / (1 << 24) as f32 <= opacity && opacity > 0.0
+}
+
+/// Draws a sphere as a disc with the depth of its front.
+fn draw_sphere(fragments: &mut [Fragment], disc: &Disc, view: &View) {
+    let Disc { primitive, centre, radius, opacity } = *disc;
     let [x, y] = view.project(&centre);
     let disc_radius = view.scale / centre.z * radius;
     if centre.z < radius * 2.0 || !(x + y + disc_radius).is_finite() {
@@ -116,8 +140,9 @@ fn draw_sphere(fragments: &mut [Fragment], primitive: u32, centre: Vec3, radius:
             let local = [(column as f32 + 0.5 - x) / disc_radius, (y - row as f32 - 0.5) / disc_radius];
             let height = 1.0 - local[0] * local[0] - local[1] * local[1];
             let inverse_depth = 1.0 / (centre.z - radius * height.max(0.0).sqrt());
-            let fragment = &mut fragments[(row * view.size[0] + column) as usize];
-            if height >= 0.0 && inverse_depth > fragment.inverse_depth {
+            let cell = row * view.size[0] + column;
+            let fragment = &mut fragments[cell as usize];
+            if height >= 0.0 && inverse_depth > fragment.inverse_depth && covers(opacity, primitive, cell) {
                 *fragment = Fragment { inverse_depth, primitive, local };
             }
         }

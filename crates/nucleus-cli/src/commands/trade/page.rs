@@ -116,6 +116,7 @@ fn objects<'a>(subject: &'a Benchmark, rest: &'a State, state: &'a State) -> Vec
             positions,
             rest: Some(rest),
             radius: object.radius.map(|radius| radius as f32),
+            looks: None,
         })
         .collect()
 }

@@ -34,6 +34,7 @@ use crate::input::frame::{FrameInput, Liquid};
 use crate::math::Real;
 use crate::model::Model;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::particles::population::Population;
 use crate::schedule::StepInterval;
 use crate::state::State;
 
@@ -66,6 +67,8 @@ pub struct LiquidSolver {
     positions: Vec<[f32; 3]>,
     velocities: Vec<[f32; 3]>,
     loads: Vec<Load>,
+    /// Factors on viscosity and on surface tension, in the sorted order; empty where they are 1.
+    factors: [Vec<f32>; 2],
     density_error: f64,
 }
 
@@ -244,9 +247,15 @@ impl LiquidSolver {
 
     /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
-        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, .. } = self;
+        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, factors, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
         let order = neighbours.grid.order();
+        let by_particle = state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
+        for (factors, by_particle) in factors.iter_mut().zip(by_particle) {
+            factors.clear();
+            let known = order.iter().filter(|_| !by_particle.is_empty());
+            factors.extend(known.map(|&particle| by_particle[particle as usize]));
+        }
         let per_metre = 1.0 / settings.spacing;
         let squared = per_metre * per_metre;
         let is_viscous = settings.viscosity > 0.0;
@@ -256,7 +265,8 @@ impl LiquidSolver {
                 let velocity = state.velocity[(first + particle) as usize].xyz();
                 velocity.map(|x| (x.to_f64() * per_metre) as f32)
             }));
-            viscosity.solve(neighbours, velocities, (settings.viscosity * h * squared) as f32, pool);
+            let rate = (settings.viscosity * h * squared) as f32;
+            viscosity.solve(neighbours, velocities, (&factors[0], rate), pool);
         }
         let tension = (settings.surface_tension * squared * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
@@ -271,7 +281,8 @@ impl LiquidSolver {
             }
             if tension > 0.0 {
                 let chunk = at / CHUNK as usize;
-                let pulled = surface_tension::acceleration(neighbours, chunk, at % CHUNK as usize);
+                let pulled =
+                    surface_tension::acceleration(neighbours, chunk, at % CHUNK as usize, &factors[1]);
                 (0..3).for_each(|axis| moved[axis] += pull * pulled[axis]);
             }
             let now = neighbours.sums[at][0] - 1.0;

@@ -9,6 +9,7 @@ use std::f32::consts::PI;
 
 use super::kernel::REACH;
 use super::neighbours::{Neighbours, chunk_range};
+use super::viscosity::pair_factor;
 
 /// The integral of q⁴ times [`cohesion`] over the reach.
 const FOURTH_MOMENT: f32 = 1.5273;
@@ -26,15 +27,16 @@ pub fn strength(tension: f32) -> f32 {
     8.0 * tension / (PI * FOURTH_MOMENT)
 }
 
-/// The acceleration of a particle, for a strength of one. The particle is the `k`th of a chunk.
-pub fn acceleration(neighbours: &Neighbours, chunk: usize, k: usize) -> [f32; 3] {
+/// The acceleration of a particle, for a strength of one. The particle is the `k`th of a chunk. The factors are by particle,
+/// and empty where they are 1.
+pub fn acceleration(neighbours: &Neighbours, chunk: usize, k: usize, factors: &[f32]) -> [f32; 3] {
     let at = chunk_range(chunk, neighbours.len()).start as usize + k;
     let (place, mut sum) = (neighbours.positions[at], [0.0f32; 3]);
     for pair in neighbours.of(chunk, k) {
         let other = neighbours.positions[pair.other as usize];
         let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
         let distance = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
-        let pull = -cohesion(distance) / distance.max(1e-3);
+        let pull = -cohesion(distance) / distance.max(1e-3) * pair_factor(factors, [at, pair.other as usize]);
         (0..3).for_each(|axis| sum[axis] += pull * apart[axis]);
     }
     sum

@@ -30,8 +30,15 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
-    /// Solves for the change of velocity. `rate` is the viscosity times the time step, in squared rest distances.
-    pub fn solve(&mut self, neighbours: &Neighbours, velocity: &[[f32; 3]], rate: f32, pool: &ThreadPool) {
+    /// Solves for the change of velocity. The rate is the viscosity times the time step, in squared rest distances; its
+    /// factors are by particle, and empty where they are 1.
+    pub fn solve(
+        &mut self,
+        neighbours: &Neighbours,
+        velocity: &[[f32; 3]],
+        rate: (&[f32], f32),
+        pool: &ThreadPool,
+    ) {
         let count = velocity.len();
         for column in [&mut self.change, &mut self.residual, &mut self.direction, &mut self.product] {
             column.clear();
@@ -64,7 +71,13 @@ impl Viscosity {
 }
 
 /// `out` = (1 + rate L) x, with the Laplacian L of the neighbours.
-fn multiply(neighbours: &Neighbours, x: &[[f32; 3]], rate: f32, out: &mut [[f32; 3]], pool: &ThreadPool) {
+fn multiply(
+    neighbours: &Neighbours,
+    x: &[[f32; 3]],
+    (factors, rate): (&[f32], f32),
+    out: &mut [[f32; 3]],
+    pool: &ThreadPool,
+) {
     let count = x.len();
     let out = DisjointSlice::new(out);
     pool.parallel_for(count.div_ceil(CHUNK as usize), |chunk| {
@@ -82,12 +95,18 @@ fn multiply(neighbours: &Neighbours, x: &[[f32; 3]], rate: f32, out: &mut [[f32;
                 let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
                 // The gradient is W' times the direction: divided by the distance, it is along `apart` squared.
                 let weight = -2.0 * (a * apart[0] + b * apart[1] + c * apart[2]) / square.max(1e-4);
+                let weight = weight * pair_factor(factors, [at, pair.other as usize]);
                 let velocity = x[pair.other as usize];
                 (0..3).for_each(|axis| sum[axis] += weight * (own[axis] - velocity[axis]));
             }
             *out = std::array::from_fn(|axis| own[axis] + rate * sum[axis]);
         }
     });
+}
+
+/// The mean of the factors of two particles, so that both feel the same force.
+pub fn pair_factor(factors: &[f32], [a, b]: [usize; 2]) -> f32 {
+    if factors.is_empty() { 1.0 } else { (factors[a] + factors[b]) * 0.5 }
 }
 
 fn add(column: &mut [[f32; 3]], other: &[[f32; 3]], factor: f32) {

@@ -103,6 +103,11 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         incremental.clear();
     }
 
+    /// Renumbers the rows of points; disables contacts of a point without a number.
+    pub fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>) {
+        self.iter_mut().for_each(|contact| contact.renumber(number));
+    }
+
     /// Adds contacts that a search found.
     pub fn add(&mut self, more: &[ClothContact<R, N, M>]) {
         let [of_points, of_cloth] = &mut self.pending;

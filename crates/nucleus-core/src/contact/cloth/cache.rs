@@ -102,6 +102,15 @@ impl<R: Real> ContactCache<R> {
         });
     }
 
+    /// Renumbers the rows of points; contacts of a point without a number are removed. The batches are assigned anew by
+    /// the next update.
+    pub(super) fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>) {
+        self.point_face.renumber(number);
+        self.edge_edge.renumber(number);
+        self.point_edge.renumber(number);
+        self.point_point.renumber(number);
+    }
+
     /// The number of contacts.
     pub fn len(&self) -> u64 {
         let lists = [self.point_face.iter().count(), self.edge_edge.iter().count()];

@@ -252,6 +252,17 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         self.params.rest_limited
     }
 
+    /// Renumbers the rows of its points, or disables it where one has no number.
+    pub fn renumber(&mut self, number: impl Fn(u32) -> Option<u32>) {
+        match (self.ours.map(&number), self.theirs.map(&number)) {
+            (ours, theirs) if ours.iter().chain(&theirs).all(Option::is_some) => {
+                self.ours = ours.map(Option::unwrap_or_default);
+                self.theirs = theirs.map(Option::unwrap_or_default);
+            }
+            _ => self.disable(),
+        }
+    }
+
     /// Disables the contact.
     pub fn disable(&mut self) {
         // No gap is below this thickness, and no material has this index.

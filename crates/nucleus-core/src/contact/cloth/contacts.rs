@@ -14,6 +14,7 @@ use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::particles::population::close_up;
 
 /// All contact among cloths; empty where a scene has none.
 pub struct ClothContacts<R> {
@@ -57,15 +58,26 @@ impl<R: Real> ClothContacts<R> {
         }
     }
 
-    /// Drops what is known of points whose rows have got other particles, or none: they are searched anew.
-    pub fn forget(&mut self, points: Range<u32>, pool: &ThreadPool) {
+    /// Follows the particles of an object whose rows are closed up; `kept` are the places of those that remain, which
+    /// ascend. Their contacts keep normals and friction anchors.
+    pub fn close_up(&mut self, points: Range<u32>, kept: &[u32], pool: &ThreadPool) {
         self.interval[1] = self.interval[0];
-        let Self { elements, cache, buffers, bounds_violated, interval_start, .. } = self;
+        let Self { elements, cache, buffers, bounds_violated, interval_start, trajectories, .. } = self;
         buffers.bounds.forget(points.clone());
         let rows = points.start as usize..points.end as usize;
-        interval_start[rows.clone()].fill(Row4::ZERO);
-        bounds_violated[rows].fill(true);
-        cache.update(&[], bounds_violated, RefreshKind::Full, (&elements.block, elements.blocks), pool);
+        close_up(&mut interval_start[rows.clone()], kept);
+        close_up(&mut trajectories.origin[rows.clone()], kept);
+        close_up(&mut trajectories.travel[rows.clone()], kept);
+        close_up(&mut bounds_violated[rows.clone()], kept);
+        let dead = rows.start + kept.len()..rows.end;
+        interval_start[dead.clone()].fill(Row4::ZERO);
+        bounds_violated[dead].fill(true);
+        cache.renumber(&|row| match points.contains(&row) {
+            true => kept.binary_search(&(row - points.start)).ok().map(|at| points.start + at as u32),
+            false => Some(row),
+        });
+        let none_violated = vec![false; bounds_violated.len()];
+        cache.update(&[], &none_violated, RefreshKind::Full, (&elements.block, elements.blocks), pool);
     }
 
     /// Whether any two cloths can collide in this frame.

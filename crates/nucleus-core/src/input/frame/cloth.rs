@@ -87,6 +87,11 @@ pub struct ClothFrame {
     pub wind_field: WindField,
     /// Attributes of a liquid; `None` if its points are balls.
     pub liquid: Option<Liquid>,
+    /// Share of the velocity that particles keep from the start of a frame to its end.
+    pub conserve: f64,
+    /// New particles nearer to others of the object than this share of their contact distance are left out; 0 keeps all
+    /// (`emissionOverlapPruning`).
+    pub overlap_pruning: f64,
 }
 
 impl ClothFrame {
@@ -129,6 +134,8 @@ impl ClothFrame {
         point_field: None,
         wind_field: WindField::OFF,
         liquid: None,
+        conserve: 1.0,
+        overlap_pruning: 0.0,
     };
 }
 

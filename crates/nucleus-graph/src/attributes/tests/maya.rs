@@ -113,7 +113,7 @@ fn every_attribute_has_mayas_type() {
         assert!(row.multi || !multi, "{}", fact.label());
         let fits = match fact.kind {
             // Most lists of single values can only be connected, element by element.
-            _ if multi && matches!(row.kind, Kind::Plug(_)) => true,
+            _ if multi && matches!(row.kind, Kind::Plug(_) | Kind::Floats) => true,
             "int" if multi && row.kind == Kind::Ints => true,
             "bool" => row.kind == Kind::Bool,
             "int" | "short" => row.kind == Kind::Int,

@@ -9,6 +9,7 @@ use super::random::Random;
 const FOREVER: Choice = Choice(0);
 const CONSTANT: Choice = Choice(1);
 const RANDOM_RANGE: Choice = Choice(2);
+const LISTED: Choice = Choice(3);
 
 /// The lifespans of particles that are born in an interval.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +18,8 @@ pub(in crate::compile) struct Lifespan {
     middle: f64,
     /// Width of the range about it, in seconds.
     range: f64,
+    /// Whether `lifespanPP` holds that of each initial particle.
+    is_listed: bool,
 }
 
 impl Lifespan {
@@ -24,10 +27,22 @@ impl Lifespan {
     pub(in crate::compile) fn new(particles: NodeId, moment: &EvalContext) -> Self {
         let middle = moment.get(particles, &particle::LIFESPAN);
         match moment.get(particles, &particle::LIFESPAN_MODE) {
-            CONSTANT => Self { middle, range: 0.0 },
-            RANDOM_RANGE => Self { middle, range: moment.get(particles, &particle::LIFESPAN_RANDOM) },
-            _ => Self { middle: f64::INFINITY, range: 0.0 },
+            CONSTANT => Self { middle, range: 0.0, is_listed: false },
+            RANDOM_RANGE => {
+                Self { middle, range: moment.get(particles, &particle::LIFESPAN_RANDOM), is_listed: false }
+            }
+            mode => Self { middle: f64::INFINITY, range: 0.0, is_listed: mode == LISTED },
         }
+    }
+
+    /// Whether `lifespanPP` holds that of each initial particle.
+    pub(in crate::compile) fn is_listed(&self) -> bool {
+        self.is_listed
+    }
+
+    /// The mean in seconds, and the width of the range about it.
+    pub(in crate::compile) fn range(&self) -> [f64; 2] {
+        [self.middle, self.range]
     }
 
     /// The lifespan of one particle in seconds, at least 0.
@@ -55,7 +70,7 @@ pub(in crate::compile) fn dies(graph: &Graph, particles: NodeId) -> bool {
 /// The longest lifespan over some frames, in seconds.
 pub(super) fn longest(graph: &Graph, particles: NodeId, [first, last]: [i64; 2]) -> f64 {
     let at = |frame: i64| {
-        let Lifespan { middle, range } = Lifespan::new(particles, &graph.at(frame as f64));
+        let Lifespan { middle, range, .. } = Lifespan::new(particles, &graph.at(frame as f64));
         middle + range.abs() / 2.0
     };
     if graph.changes(particles, &particle::LIFESPAN)

@@ -9,10 +9,12 @@
 //! | the times of birth, and the room for particles   | [`Emitter`]   |
 //! | where and how fast, by type of emitter           | `shapes.rs`   |
 //! | emission from the surface of a mesh              | `surface.rs`  |
+//! | emission from a curve                            | `curve.rs`    |
 //! | the start of a particle                          | `start.rs`    |
 //! | lifespans                                        | `lifespan.rs` |
 //! | random numbers                                   | `random.rs`   |
 
+mod curve;
 mod lifespan;
 mod random;
 mod shapes;
@@ -30,6 +32,7 @@ use super::compiler::Compiler;
 use super::program::EvaluationInterval;
 use super::sources::{Emitter, EmitterState, EmittingMesh};
 
+use curve::CurveShape;
 pub(super) use lifespan::{Lifespan, dies};
 use random::Random;
 use shapes::{Launch, PointShape, VolumeShape};
@@ -39,6 +42,8 @@ const DIRECTIONAL: Choice = Choice(0);
 const OMNI: Choice = Choice(1);
 const SURFACE: Choice = Choice(2);
 const CURVE: Choice = Choice(3);
+/// `cycleEmission`: never.
+const NO_CYCLE: Choice = Choice(0);
 
 impl Compiler<'_> {
     /// The emitters of an object of particles, in the order of their connections.
@@ -57,18 +62,9 @@ impl Compiler<'_> {
 
     /// The mesh that an emitter emits from, if its type needs one; `None` after an error, which is reported.
     fn emitting_mesh(&mut self, emitter: NodeId) -> Option<Option<EmittingMesh>> {
-        let node = self.scene.graph.node(emitter);
-        let place = self.scene.source.place(&format!("{}.emitterType", node.name()));
         match self.start.get(emitter, &point_emitter::EMITTER_TYPE) {
             SURFACE => self.emitting_surface(emitter).map(Some),
-            CURVE => {
-                let message = format!("`{}` emits from a curve, and scenes have no curves yet", node.name());
-                let error = self.findings.error(&place, message);
-                error.help(
-                    "emit from a thin mesh with `emitterType: Surface`, or move an omni emitter along keys",
-                );
-                None
-            }
+            CURVE => self.emitting_curve(emitter).map(|()| None),
             _ => Some(None),
         }
     }
@@ -84,7 +80,11 @@ impl Compiler<'_> {
         let mut counts: Vec<f64> = Vec::new();
         for frame in first..last {
             let [from, to] = [frame, frame + 1].map(|frame| graph.at(frame as f64));
-            let rates = emitters.iter().map(|emitter| emitter.rate(&from).max(emitter.rate(&to)));
+            let largest = |emitter: &Emitter| {
+                let [a, b] = emitter.rates([&from, &to], 1.0 / time.fps);
+                a.max(b)
+            };
+            let rates = emitters.iter().map(largest);
             counts.push(rates.sum::<f64>() / time.fps);
             sum += counts[counts.len() - 1];
             window += counts[counts.len() - 1];
@@ -119,12 +119,36 @@ impl Emitter {
         let rate = moment.get(self.node, &point_emitter::RATE).max(0.0);
         let detail = moment.get(self.particles, &particle::LEVEL_OF_DETAIL).clamp(0.0, 1.0);
         let size = match &self.mesh {
-            Some(mesh) if moment.get(self.node, &point_emitter::SCALE_RATE_BY_OBJECT_SIZE) => {
-                mesh.area(moment)
+            _ if !moment.get(self.node, &point_emitter::SCALE_RATE_BY_OBJECT_SIZE) => 1.0,
+            Some(mesh) => mesh.area(moment),
+            None if moment.get(self.node, &point_emitter::EMITTER_TYPE) == CURVE => {
+                curve::length(&curve::curve_of(self.node, moment))
             }
-            _ => 1.0,
+            None => 1.0,
         };
         rate * detail * size
+    }
+
+    /// Particles per second at both ends of an interval of so many seconds.
+    fn rates(&self, ends: [&EvalContext; 2], seconds: f64) -> [f64; 2] {
+        let scaled = ends[1].get(self.node, &point_emitter::SCALE_RATE_BY_SPEED);
+        let speed = match scaled {
+            true => {
+                let [from, to] = ends.map(|moment| moment.placement(self.node).offset);
+                (to - from).norm() / seconds
+            }
+            false => 1.0,
+        };
+        ends.map(|moment| self.rate(moment) * speed)
+    }
+
+    /// Whether the random numbers begin anew in an interval.
+    fn cycles(&self, interval: &EvaluationInterval<'_>) -> bool {
+        let to = &interval.to;
+        let frames = to.get(self.node, &point_emitter::CYCLE_INTERVAL).max(1) as f64;
+        let cycle =
+            |moment: &EvalContext| ((moment.frame() - interval.nucleus.start() as f64) / frames).floor();
+        to.get(self.node, &point_emitter::CYCLE_EMISSION) != NO_CYCLE && cycle(&interval.from) != cycle(to)
     }
 
     /// Where new particles come from in an interval.
@@ -132,11 +156,11 @@ impl Emitter {
         let (from, to) = (&interval.from, &interval.to);
         match to.get(self.node, &point_emitter::EMITTER_TYPE) {
             kind @ (DIRECTIONAL | OMNI) => Launch::Point(PointShape::new(self.node, kind == OMNI, to)),
-            SURFACE | CURVE if self.mesh.is_some() => match self.mesh.as_ref() {
+            SURFACE => match self.mesh.as_ref() {
                 Some(mesh) => Launch::Surface(mesh.patches(self.node, [from, to])),
                 None => Launch::Nothing,
             },
-            SURFACE | CURVE => Launch::Nothing,
+            CURVE => Launch::Curve(CurveShape::new(self.node, [from, to])),
             _ => Launch::Volume(VolumeShape::new(self.node, to)),
         }
     }
@@ -155,7 +179,10 @@ impl EvaluationInterval<'_> {
     }
 
     fn emit(&self, emitter: &Emitter, state: &mut EmitterState, seconds: f64, births: &mut Vec<Birth>) {
-        let rates = [&self.from, &self.to].map(|moment| emitter.rate(moment) * seconds);
+        let rates = emitter.rates([&self.from, &self.to], seconds).map(|rate| rate * seconds);
+        if emitter.cycles(self) {
+            state.emitted = 0;
+        }
         let total = state.remainder + (rates[0] + rates[1]) / 2.0;
         if total.is_nan() || total < 1.0 {
             state.remainder = if total.is_finite() { total } else { 0.0 };
@@ -170,11 +197,13 @@ impl EvaluationInterval<'_> {
         let lifespan = Lifespan::new(emitter.particles, &self.to);
         // An object has no room for more.
         let room = self.nucleus.room_of(emitter.cloth);
+        let earlier = births.len();
         for k in 0..(count as u64).min(room) {
             let time = time_of(k as f64 + 1.0 - remainder, rates);
             let random = Random::new([flight.seed, emitter.place, first + k]);
             births.extend(flight.birth(emitter.cloth, time, &launch, random, &lifespan));
         }
+        self.create(emitter.particles, first, &mut births[earlier..]);
     }
 
     /// What all particles of an emitter share in the interval.

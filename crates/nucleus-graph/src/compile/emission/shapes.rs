@@ -1,4 +1,4 @@
-//! Where particles come from, and how fast: a point, a volume, or the surface of a mesh. Lengths in scene units.
+//! Where particles come from, and how fast: a point, a volume, a curve, or the surface of a mesh. Lengths in scene units.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -6,6 +6,7 @@ use crate::animation::{Affine, sin_cos_degrees};
 use crate::attributes::{Choice, point_emitter};
 use crate::graph::{EvalContext, NodeId};
 
+use super::curve::CurveShape;
 use super::random::Random;
 use super::start::{Speed, Start, turned_to};
 use super::surface::Patches;
@@ -20,6 +21,8 @@ pub(super) enum Launch {
     Volume(VolumeShape),
     /// The surface of a mesh.
     Surface(Patches),
+    /// A curve.
+    Curve(CurveShape),
     /// Nowhere.
     Nothing,
 }
@@ -52,6 +55,7 @@ impl Launch {
                 Some(at(ends(place + shape.offset), Vec3::zeros(), velocity))
             }
             Self::Surface(patches) => patches.draw(time, seconds, random),
+            Self::Curve(curve) => curve.draw(time, seconds, random),
             Self::Nothing => None,
         }
     }

@@ -58,18 +58,28 @@ impl Expression {
     /// # Errors
     /// The first mistake with its place; see [`ExpressionError`].
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
-        Ok(Self { ops: parser::parse(text)? })
+        Ok(Self { ops: parser::parse(text, &[])? })
+    }
+
+    /// Parses an expression over variables of these names, in place of those of a point.
+    pub(super) fn parse_over(text: &str, names: &[&str]) -> Result<Self, ExpressionError> {
+        Ok(Self { ops: parser::parse(text, names)? })
     }
 
     /// The value at a point.
     pub fn at(&self, point: &Point) -> f64 {
+        self.evaluate(|variable| point.value(variable))
+    }
+
+    /// The value for values of its variables.
+    pub(super) fn evaluate(&self, value: impl Fn(Variable) -> f64) -> f64 {
         let mut stack = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             // The parser guarantees enough operands on the stack.
             let mut pop = || stack.pop().unwrap_or(f64::NAN);
             let value = match *op {
                 Op::Number(number) => number,
-                Op::Variable(variable) => point.value(variable),
+                Op::Variable(variable) => value(variable),
                 Op::One(f) => f(pop()),
                 Op::Two(f) => {
                     let b = pop();

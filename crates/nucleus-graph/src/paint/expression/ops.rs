@@ -11,6 +11,8 @@ pub enum Variable {
     Index,
     /// `n`: the number of points.
     Count,
+    /// A variable of statements, by its place among their names.
+    Own(usize),
 }
 
 /// The values of the variables at a point.
@@ -33,6 +35,7 @@ impl Point {
             Variable::Uv(part) => self.uv[part],
             Variable::Index => self.index as f64,
             Variable::Count => self.count as f64,
+            Variable::Own(_) => f64::NAN,
         }
     }
 }

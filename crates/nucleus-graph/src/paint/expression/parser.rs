@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::lexer::{ExpressionError, Token, tokens};
-use super::ops::{FUNCTIONS, NAMES, Op};
+use super::ops::{FUNCTIONS, NAMES, Op, Variable};
 use crate::diagnostic::nearest;
 
 /// Limit on nesting: deeper brackets are a mistake, and recursion needs stack.
@@ -32,9 +32,9 @@ fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-/// Parses an expression into stack operations.
-pub(super) fn parse(text: &str) -> Result<Vec<Op>, ExpressionError> {
-    let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0, ops: Vec::new() };
+/// Parses an expression into stack operations. `own` are names of variables in place of those of a point, if there are any.
+pub(super) fn parse(text: &str, own: &[&str]) -> Result<Vec<Op>, ExpressionError> {
+    let mut parser = Parser { tokens: tokens(text)?, own, at: 0, depth: 0, ops: Vec::new() };
     parser.choice()?;
     match parser.token() {
         Token::End => Ok(parser.ops),
@@ -44,6 +44,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<Op>, ExpressionError> {
 
 struct Parser<'a> {
     tokens: Vec<(Token<'a>, Range<usize>)>,
+    own: &'a [&'a str],
     at: usize,
     depth: usize,
     ops: Vec<Op>,
@@ -160,15 +161,25 @@ impl<'a> Parser<'a> {
     }
 
     fn name(&mut self, name: &str, span: Range<usize>) -> Result<(), ExpressionError> {
-        if let Some((_, op, _)) = NAMES.iter().find(|(known, ..)| *known == name) {
+        let is_own = !self.own.is_empty();
+        if let Some(at) = self.own.iter().position(|known| *known == name) {
+            self.ops.push(Op::Variable(Variable::Own(at)));
+            return Ok(());
+        }
+        let is_known = |op: &Op| !is_own || matches!(op, Op::Number(_));
+        if let Some((_, op, _)) = NAMES.iter().find(|(known, op, _)| *known == name && is_known(op)) {
             self.ops.push(*op);
             return Ok(());
         }
         let mut error = ExpressionError::new(format!("there is no `{name}` in an expression"), span);
         let is_function = FUNCTIONS.iter().any(|(known, ..)| *known == name);
-        let names: Vec<&str> = NAMES.iter().map(|(name, ..)| *name).collect();
+        let names: Vec<&str> = match is_own {
+            true => self.own.to_vec(),
+            false => NAMES.iter().map(|(name, ..)| *name).collect(),
+        };
         error.help = Some(match is_function {
             true => format!("`{name}` is a function: write `{name}(...)`"),
+            false if is_own => format!("a particle has {}", names.join(", ")),
             false => format!("a point has {}", names.join(", ")),
         });
         Err(error)

@@ -1,0 +1,116 @@
+//! Collision events: particles that emit, split or die when they collide (Maya's `event` command).
+//!
+//! A particle collides when it touches anything at the end of a substep and touched nothing at the end of the substep
+//! before, so a particle that rests or slides has collided once.
+
+use nalgebra::Vector3;
+
+use crate::contact::contact_state::list_contact_states;
+use crate::input::particles::unit_random;
+use crate::math::Real;
+use crate::output::ContactState;
+use crate::particles::population::Population;
+use crate::solver::Solver;
+
+/// A particle that an event adds.
+#[derive(Debug, Clone, Copy)]
+pub struct Spawn {
+    /// Its object, by the index of its cloth.
+    pub cloth: usize,
+    /// In metres.
+    pub position: Vector3<f64>,
+    /// In m/s.
+    pub velocity: Vector3<f64>,
+    /// In seconds.
+    pub age: f64,
+    /// In seconds.
+    pub lifespan: f64,
+}
+
+/// Random draws of one collision.
+struct Draws {
+    key: [u64; 2],
+}
+
+impl Draws {
+    fn next(&mut self) -> f64 {
+        self.key[1] = self.key[1].wrapping_add(1);
+        unit_random(self.key)
+    }
+
+    /// `most`, or a number from 1 to it.
+    fn count(&mut self, most: u32, random: bool) -> u32 {
+        if random && most > 0 { 1 + (self.next() * f64::from(most)) as u32 } else { most }
+    }
+
+    /// A direction within a share of 90° about another, evenly spread over the sphere.
+    fn about(&mut self, axis: Vector3<f64>, spread: f64) -> Vector3<f64> {
+        let Some(axis) = axis.try_normalize(0.0) else { return axis };
+        let cos = 1.0 - self.next() * (1.0 - libm::cos(spread.clamp(0.0, 1.0) * std::f64::consts::FRAC_PI_2));
+        let around = self.next() * std::f64::consts::TAU;
+        let aside = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+        let x = aside.cross(&axis).normalize();
+        let y = axis.cross(&x);
+        axis * cos + (x * libm::cos(around) + y * libm::sin(around)) * (1.0 - cos * cos).max(0.0).sqrt()
+    }
+}
+
+/// Finds the collisions of a substep, marks particles that die of them, and lists the new particles.
+pub fn collision_events<R: Real>(solver: &mut Solver<R>) -> Vec<Spawn> {
+    let mut spawned = Vec::new();
+    if solver.state.populations.iter().all(|population| population.events().is_empty()) {
+        return spawned;
+    }
+    let mut states = Vec::new();
+    list_contact_states(&solver.model, &solver.state, &solver.contact, &mut states);
+    let mut populations = std::mem::take(&mut solver.state.populations);
+    for population in populations.iter_mut().filter(|population| !population.events().is_empty()) {
+        let (cloth, first) =
+            (population.cloth(), solver.model.cloths[population.cloth()].blocks.rows().start);
+        for at in 0..population.len() {
+            let touches = states[cloth].get(at).is_some_and(|&state| state != ContactState::Free);
+            let Some(collision) = population.notice(at, touches) else { continue };
+            let row = first + at as u32;
+            let place = Vector3::from(solver.state.position(row));
+            let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
+            happen(population, at, collision, [place, velocity], &mut spawned);
+        }
+    }
+    solver.state.populations = populations;
+    spawned
+}
+
+/// Everything that happens at one collision of one particle.
+fn happen(
+    population: &mut Population,
+    at: usize,
+    collision: u32,
+    [place, velocity]: [Vector3<f64>; 2],
+    spawned: &mut Vec<Spawn>,
+) {
+    let cloth = population.cloth();
+    let facts = population.facts(at, 0.0);
+    let mut dies = false;
+    for (k, event) in (0u64..).zip(population.events()) {
+        let mut draws = Draws { key: [facts.id ^ (k + 1) << 48, u64::from(collision) << 32] };
+        if (event.count != 0 && event.count != collision) || draws.next() >= event.probability {
+            continue;
+        }
+        dies |= event.die;
+        let emitted = draws.count(event.emit, event.random);
+        let parts = draws.count(event.split, event.random).saturating_sub(1);
+        for part in 0..emitted + parts {
+            let direction = draws.about(velocity, event.spread);
+            let lifespan = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);
+            let (cloth, age, lifespan) = match part < emitted {
+                true => (event.target.index(), 0.0, lifespan),
+                false => (cloth, facts.age, facts.lifespan),
+            };
+            let velocity = direction * velocity.norm();
+            spawned.push(Spawn { cloth, position: place, velocity, age, lifespan });
+        }
+    }
+    if dies {
+        population.kill(at);
+    }
+}

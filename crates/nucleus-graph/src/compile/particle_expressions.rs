@@ -1,0 +1,141 @@
+//! Expressions per particle: statements that run when a particle is born, and at the start of each frame.
+//!
+//! They have no loops, read the particle alone and write its velocity, its lifespan and, at birth, its place. A result that is
+//! not a finite number changes nothing.
+
+use nalgebra::Vector3;
+use nucleus_core::{Birth, ClothId, ParticleAge, ParticleChange, StateView, unit_random};
+
+use crate::attributes::{Key, n_particle, particle};
+use crate::graph::NodeId;
+use crate::paint::Statements;
+
+use super::compiler::Compiler;
+use super::program::EvaluationInterval;
+
+/// The variables: those that may be assigned at birth come first, of them those at run time.
+pub(super) const NAMES: [&str; 13] =
+    ["vx", "vy", "vz", "lifespan", "x", "y", "z", "age", "id", "time", "rand", "rand2", "rand3"];
+/// How many of them may be assigned at run time, and at birth.
+const WRITABLE: [usize; 2] = [4, 7];
+
+impl Compiler<'_> {
+    /// Checks the expressions of an object; `None` after an error, which is reported.
+    pub(super) fn check_expressions(&mut self, node: NodeId) -> Option<()> {
+        for (key, writable) in
+            [(&n_particle::RUNTIME_EXPRESSION, WRITABLE[0]), (&n_particle::CREATION_EXPRESSION, WRITABLE[1])]
+        {
+            let Err(error) = Statements::parse(&self.start.get(node, key), &NAMES, writable) else {
+                continue;
+            };
+            let name = self.scene.graph.node(node).name();
+            let message = format!("`{}` of `{name}`: {}", key.row.name, error.message);
+            let place = self.place(node, &key.row);
+            let found = self.findings.error(&place, message);
+            if let Some(help) = error.help {
+                found.help(help);
+            }
+            return None;
+        }
+        Some(())
+    }
+
+    /// Whether expressions of an object run in each frame.
+    pub(super) fn has_runtime_expression(&self, node: NodeId) -> bool {
+        !self.start.get(node, &n_particle::RUNTIME_EXPRESSION).is_empty()
+    }
+}
+
+/// Random numbers of a particle in a frame; the seed is that of the object.
+fn randoms(id: u64, frame: f64, seed: u64) -> [f64; 3] {
+    [0, 1, 2].map(|k| unit_random([id, frame.to_bits() ^ (seed << 2 | k)]))
+}
+
+impl EvaluationInterval<'_> {
+    /// The statements of an object, if it has any. They were checked when the scene was compiled.
+    fn statements(&self, node: NodeId, key: &Key<String>, writable: usize) -> Option<Statements> {
+        let text = self.to.get(node, key);
+        if text.is_empty() { None } else { Statements::parse(&text, &NAMES, writable).ok() }
+    }
+
+    /// Runs the expression at birth for the births of an object; `first` is the number of the first among all of its
+    /// emitter.
+    pub(super) fn create(&self, node: NodeId, first: u64, births: &mut [Birth]) {
+        let Some(statements) = self.statements(node, &n_particle::CREATION_EXPRESSION, WRITABLE[1]) else {
+            return;
+        };
+        let seed = self.to.get(node, &particle::SEED) as u64;
+        for (birth, id) in births.iter_mut().zip(first..) {
+            let frame = self.from.frame() + (self.to.frame() - self.from.frame()) * birth.time;
+            let mut values =
+                self.values([birth.velocity, birth.position], birth.lifespan, (0.0, id, frame), seed);
+            statements.run(&mut values);
+            let [velocity, place] = [0, 4].map(|at| self.in_metres(&values[at..at + 3]));
+            birth.velocity = velocity.unwrap_or(birth.velocity);
+            birth.position = place.unwrap_or(birth.position);
+            birth.lifespan = Some(values[3]).filter(|x| *x >= 0.0).unwrap_or(birth.lifespan);
+        }
+    }
+
+    /// What expressions at run time change about living particles.
+    pub(crate) fn particle_changes(&self, view: &dyn StateView) -> Vec<ParticleChange> {
+        let mut changes = Vec::new();
+        for (cloth, source) in (0..).map(ClothId).zip(&self.nucleus.cloths) {
+            if !source.is_particles {
+                continue;
+            }
+            let statements = self.statements(source.node, &n_particle::RUNTIME_EXPRESSION, WRITABLE[0]);
+            if let Some(statements) = statements {
+                self.run_on(&statements, (cloth, source.node), view, &mut changes);
+            }
+        }
+        changes
+    }
+
+    fn run_on(
+        &self,
+        statements: &Statements,
+        (cloth, node): (ClothId, NodeId),
+        view: &dyn StateView,
+        changes: &mut Vec<ParticleChange>,
+    ) {
+        let (mut ages, mut fast, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        view.ages(cloth, &mut ages);
+        view.velocities(cloth, 1.0, &mut fast);
+        view.positions(cloth, 1.0, &mut places);
+        let seed = self.to.get(node, &particle::SEED) as u64;
+        for (place, &ParticleAge { id, age, lifespan }) in ages.iter().enumerate() {
+            let motion = [fast[place], places[place]].map(|v| Vector3::from(v.map(f64::from)));
+            let before = self.values(motion, lifespan, (age, id, self.from.frame()), seed);
+            let mut values = before;
+            statements.run(&mut values);
+            let velocity = (values[..3] != before[..3]).then(|| self.in_metres(&values[..3])).flatten();
+            let lifespan = Some(values[3]).filter(|x| *x != before[3] && !x.is_nan());
+            if velocity.is_some() || lifespan.is_some() {
+                changes.push(ParticleChange { cloth, place, velocity, lifespan });
+            }
+        }
+    }
+
+    /// The values of the variables, in scene units.
+    fn values(
+        &self,
+        motion: [Vector3<f64>; 2],
+        lifespan: f64,
+        (age, id, frame): (f64, u64, f64),
+        seed: u64,
+    ) -> [f64; NAMES.len()] {
+        let [v, x] = motion.map(|v| v * self.nucleus.units.per_metre());
+        let [a, b, c] = randoms(id, frame, seed);
+        let frames = self.to.frame() - self.from.frame();
+        let per_frame = if frames > 0.0 { self.seconds / frames } else { 0.0 };
+        let time = (frame - self.nucleus.start() as f64) * per_frame;
+        [v.x, v.y, v.z, lifespan, x.x, x.y, x.z, age, id as f64, time, a, b, c]
+    }
+
+    /// Three values in metres; `None` where one is not a finite number.
+    fn in_metres(&self, values: &[f64]) -> Option<Vector3<f64>> {
+        let vector = Vector3::new(values[0], values[1], values[2]);
+        vector.iter().all(|x| x.is_finite()).then(|| self.nucleus.units.point(vector))
+    }
+}
