@@ -113,6 +113,7 @@ mod tests {
             positions: &positions,
             rest: Some(&rest),
             radius: None,
+            looks: None,
         };
         let strain = of_points(&object).unwrap();
         assert_eq!(strain[0], 1.0);
