@@ -46,7 +46,7 @@ node_table! {
         /// Whether it ties things to its own transform or to each other.
         CONSTRAINT_RELATION: Choice = choice("constraintRelation", "crr", 1, &[(0, "Object to Constraint"), (1, "Object to Object")]).solved("nucleus_graph::compile::constraints");
         /// Whether Maya draws the links.
-        DISPLAY_CONNECTIONS: bool = toggle("displayConnections", "dcn", true);
+        DISPLAY_CONNECTIONS: bool = toggle("displayConnections", "dcn", true).elsewhere("only Maya's viewport draws it");
     }
     "Connection" {
         /// How the elements to join are paired.
@@ -70,11 +70,11 @@ node_table! {
         /// Strength along the surface.
         TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 10.0).soft(0.0, 200.0).solved("nucleus_core::constraints::link::surface");
         /// Joined edges also resist folding about each other.
-        BEND: bool = toggle("bend", "bnd", false);
-        /// How strongly they resist.
-        BEND_STRENGTH: f64 = float("bendStrength", "bns", 20.0).soft(0.0, 200.0);
-        /// At which angle they let go.
-        BEND_BREAK_ANGLE: f64 = float("bendBreakAngle", "bba", 360.0).soft(0.0, 360.0).unit("degrees");
+        BEND: bool = toggle("bend", "bnd", false).solved("nucleus_core::constraints::link::fold");
+        /// How strongly they resist: a bending stiffness, or a count of iterations, like `bendResistance` of a cloth.
+        BEND_STRENGTH: f64 = float("bendStrength", "bns", 20.0).soft(0.0, 200.0).solved("nucleus_core::constraints::link::fold");
+        /// At which angle from the start they let go; 180 and more never.
+        BEND_BREAK_ANGLE: f64 = float("bendBreakAngle", "bba", 360.0).soft(0.0, 360.0).unit("degrees").solved("nucleus_core::constraints::link::fold");
         /// How much it takes to come loose: 1 never does, 0 at once, 0.5 at 100 N per metre of edge, or 100 N per point.
         GLUE_STRENGTH: f64 = float("glueStrength", "gls", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link::glue");
         /// Factor on the load at which it comes loose.
@@ -128,13 +128,13 @@ node_table! {
     }
     "Connections" {
         /// The time it is evaluated for; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden();
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden().elsewhere("the frame that is evaluated counts");
         /// Its members.
-        COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi();
+        COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi().solved("nucleus_graph::compile::constraints");
         /// The constraint at the start.
-        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output();
+        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output().elsewhere("`evalCurrent` stands for both");
         /// The constraint as it is now.
-        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output();
+        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output().solved("nucleus_graph::compile::constraints");
     }
     "Internal" {
         /// Takes part in the simulation at all.

@@ -31,15 +31,15 @@ node_table! {
     }
     "Connections" {
         /// The object it is a part of.
-        OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId);
+        OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId).solved("nucleus_graph::compile::constraints");
         /// The part, for a constraint.
-        OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output();
+        OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output().solved("nucleus_graph::compile::constraints");
         /// A mesh to take elements from.
-        SURFACE: Plugged = plug("surface", "srf", Data::Mesh);
+        SURFACE: Plugged = plug("surface", "srf", Data::Mesh).elsewhere("elements are those of the object at `objectId`");
     }
     "Internal" {
         /// Number of the set that elements come from.
-        COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden();
+        COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden().elsewhere("`componentIndices` and `select` name the elements of a set");
     }
     "Component Maps" {
         /// Texture that varies strength.

@@ -25,7 +25,7 @@ pub mod transform {
             /// The order of the three rotations.
             ROTATE_ORDER: Choice = choice("rotateOrder", "ro", 0, &[(0, "xyz"), (1, "yzx"), (2, "zxy"), (3, "xzy"), (4, "yxz"), (5, "zyx")]).solved("nucleus_graph::animation").fixed();
             /// Whether Maya draws it.
-            VISIBILITY: bool = toggle("visibility", "v", true);
+            VISIBILITY: bool = toggle("visibility", "v", true).elsewhere("only Maya's viewport draws it");
         }
         "Nucleus (open)" {
             /// The parent transform.
