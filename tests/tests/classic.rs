@@ -1,7 +1,7 @@
 //! The effects on whole cloths with the Classic resistance model, where a resistance is a count.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, StateView};
+use nucleus_core::ClothId;
 use nucleus_graph::Simulation;
 use nucleus_tests::gallery::program_of;
 

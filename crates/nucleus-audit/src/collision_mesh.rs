@@ -184,6 +184,12 @@ impl CollisionMesh {
 pub struct CollisionFilter {
     ignored: Vec<[usize; 2]>,
     kinematic: Vec<bool>,
+    /// By point: the point that stands for all that are welded together; empty without welds.
+    clusters: Vec<u32>,
+    /// By point: the exclusions that have it on their first and on their second side, as bits; empty without exclusions.
+    sides: Vec<[u64; 2]>,
+    /// The exclusions with everything, and the ground plane, on a side.
+    everything: [u64; 2],
 }
 
 impl CollisionFilter {
@@ -209,6 +215,50 @@ impl CollisionFilter {
         self.kinematic[point] = true;
     }
 
+    /// Joins two points: elements that have one each are neighbours, as if they shared a point.
+    pub fn weld(&mut self, points: usize, a: usize, b: usize) {
+        if self.clusters.len() < points {
+            self.clusters.extend(self.clusters.len() as u32..points as u32);
+        }
+        let [a, b] = [self.clusters[a], self.clusters[b]];
+        let (kept, lost) = (a.min(b), a.max(b));
+        if kept != lost {
+            self.clusters.iter_mut().filter(|cluster| **cluster == lost).for_each(|cluster| *cluster = kept);
+        }
+    }
+
+    /// Puts points on a side (0 or 1) of an exclusion, by its number below 64: elements with all points on one side are not
+    /// tested with those on the other.
+    pub fn exclude(&mut self, points: usize, of_side: impl Iterator<Item = usize>, number: u32, side: usize) {
+        self.sides.resize(self.sides.len().max(points), self.everything);
+        of_side.for_each(|point| self.sides[point][side] |= 1 << number);
+    }
+
+    /// Puts all points and the ground planes on a side of an exclusion.
+    pub fn exclude_everything(&mut self, points: usize, number: u32, side: usize) {
+        self.sides.resize(self.sides.len().max(points), self.everything);
+        self.everything[side] |= 1 << number;
+        self.sides.iter_mut().for_each(|sides| sides[side] |= 1 << number);
+    }
+
+    /// Whether a point is not tested with the ground plane.
+    pub(crate) fn is_free_of_ground(&self, point: usize) -> bool {
+        self.is_kinematic(point) || self.sides.get(point).is_some_and(|sides| meet(*sides, self.everything))
+    }
+
+    /// The exclusions that have all of these points on a side.
+    fn sides_of(&self, points: &[u32]) -> [u64; 2] {
+        let both = |all: [u64; 2], own: [u64; 2]| [all[0] & own[0], all[1] & own[1]];
+        points.iter().fold([u64::MAX; 2], |all, &point| both(all, self.sides[point as usize]))
+    }
+
+    fn excludes(&self, a: &[u32], b: &[u32]) -> bool {
+        let cluster = |point: &u32| self.clusters[*point as usize];
+        let are_joined = || a.iter().any(|p| b.iter().any(|q| cluster(p) == cluster(q)));
+        !self.clusters.is_empty() && are_joined()
+            || !self.sides.is_empty() && meet(self.sides_of(a), self.sides_of(b))
+    }
+
     /// Whether a point is kinematic.
     pub(crate) fn is_kinematic(&self, point: usize) -> bool {
         self.kinematic.get(point).copied().unwrap_or(false)
@@ -230,7 +280,7 @@ impl CollisionFilter {
         let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
         let is_kinematic = |point: &u32| self.is_kinematic(*point as usize);
         let are_kinematic = a.iter().all(is_kinematic) && b.iter().all(is_kinematic);
-        !(are_kinematic || self.ignored.contains(&pair))
+        !(are_kinematic || self.ignored.contains(&pair) || self.excludes(a, b))
     }
 
     /// The elements of bodies with at least one tested pair.
@@ -245,4 +295,8 @@ impl CollisionFilter {
         let is_concerned = |(_, points): &(u32, &[u32; N])| active_elements[mesh.body_of(points[0])];
         (0..).zip(elements).filter(is_concerned).map(|(index, _)| index).collect()
     }
+}
+/// Whether one is on the first side of an exclusion and the other on its second.
+fn meet(a: [u64; 2], b: [u64; 2]) -> bool {
+    (a[0] & b[1]) | (a[1] & b[0]) != 0
 }

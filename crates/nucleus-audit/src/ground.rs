@@ -73,7 +73,7 @@ impl Ground {
             // A NaN height keeps the previous side.
             let is_above = if height.is_nan() { self.above[point] } else { height >= depth };
             let was_above = std::mem::replace(&mut self.above[point], is_above);
-            if was_above && !is_above && !filter.is_kinematic(point) {
+            if was_above && !is_above && !filter.is_free_of_ground(point) {
                 passed.push(point as u32);
             }
         }

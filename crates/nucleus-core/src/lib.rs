@@ -88,6 +88,7 @@ mod step;
 pub use nalgebra;
 
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
+pub use constraints::link::fold::fold_link;
 pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
 pub use contact::pair_filter::MAX_EXCLUSIONS;
@@ -98,7 +99,7 @@ pub use input::frame::{
     SelfCollision, Stiffness,
 };
 pub use input::links::{
-    ConstraintFrame, ExcludedSide, Exclusion, Falloff, Link, LinkForce, LinkMethod, LinkSide,
+    ConstraintFrame, ExcludedSide, Exclusion, Falloff, Fold, Link, LinkForce, LinkMethod, LinkSide,
 };
 pub use input::object_fields::{PointField, WindField};
 pub use input::particles::{

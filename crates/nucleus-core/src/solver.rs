@@ -109,6 +109,11 @@ impl<R: CompiledReal> Solver<R> {
         R::passes(self, frame)
     }
 
+    /// The pairs of points that the whole welds of a constraint join, by the index of the constraint.
+    pub fn welds(&self, constraint: usize) -> Vec<[(ClothId, PointId); 2]> {
+        self.links.welds(constraint)
+    }
+
     /// Bytes of the columns of points and the lists of rows, without those of contact.
     pub fn memory(&self) -> usize {
         R::memory(self)

@@ -203,7 +203,8 @@ fn end_substep<R: CompiledReal>(
     let end = f64::from(substep) / f64::from(schedule.substeps);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
-    let has_broken = break_links(links, frame, substep_length);
+    let scene = (&*model, &contact.collider_states[..]);
+    let has_broken = break_links(links, scene, state, frame, [end, substep_length]);
     update_pair_filter(contact, model, links, frame, has_broken);
     solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
 }

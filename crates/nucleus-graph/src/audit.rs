@@ -9,7 +9,7 @@ use nucleus_core::{self as core, Stage, StateView, StepObserver};
 
 use crate::compile::{Object, ObjectKind};
 
-pub(crate) use scope::{GroundPlanes, collision_rules};
+pub(crate) use scope::{AuditScope, GroundPlanes, collision_rules};
 
 mod scope;
 

@@ -10,7 +10,7 @@ use nucleus_audit::{Body, CollisionMesh, intersections};
 use nucleus_core::{ClothFrame, ClothId, Faces, FrameInput, Surface};
 
 use crate::attributes::nucleus;
-use crate::audit::collision_rules;
+use crate::audit::{AuditScope, collision_rules};
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
 use crate::diagnostic::Findings;
 use crate::scene::{Diagnostic, Scene};
@@ -147,7 +147,7 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
     let world = CollisionMesh::new(objects.iter().map(body).collect());
     let positions: Vec<Vector3<f64>> =
         objects.iter().flat_map(|object| start(program, object.kind)).copied().collect();
-    let filter = collision_rules(program, program.time().start, &[], &world);
+    let filter = collision_rules(program, program.time().start, &AuditScope::default(), &world);
     let mut pairs: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for found in intersections(&world, &filter, &positions) {
         let edge = world.body_of(world.edges()[found.edge.0 as usize][0]);

@@ -1,16 +1,17 @@
 //! The loop over frames: evaluates the animation and calls the solvers.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use nucleus_audit::CollisionMesh;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, ParticleLook, Pin, PointId, Reader,
-    Real, RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum,
-    verify_checksum,
+    ClothId, ColliderId, ContactState, Encode, ExcludedSide, Exclusion, FrameInput, Link, LinkMethod,
+    ParticleAge, ParticleLook, Pin, PointId, Reader, Real, RestoreError, Solver, StateView, StepObserver,
+    StepReport, SubstepIndex, add_checksum, verify_checksum,
 };
 
-use crate::audit::{Audit, Audited, Closeness, GroundPlanes, collision_rules};
+use crate::audit::{Audit, AuditScope, Audited, Closeness, GroundPlanes, collision_rules};
 use crate::checks::FrameReport;
 use crate::compile::{Object, Program};
 
@@ -46,8 +47,8 @@ impl<R: Real> Simulation<R> {
 
     /// Audits the run from the current frame on.
     pub fn begin_audit(&mut self, closeness: Closeness) {
-        let pins = self.next_pins();
-        let rules = |world: &CollisionMesh| collision_rules(&self.program, self.next_frame(), &pins, world);
+        let scope = self.next_scope();
+        let rules = |world: &CollisionMesh| collision_rules(&self.program, self.next_frame(), &scope, world);
         self.audit = Some(Audit::new(self.objects(), closeness, self.state(), rules));
     }
 
@@ -56,17 +57,40 @@ impl<R: Real> Simulation<R> {
         self.audit.as_ref()
     }
 
-    /// The pins of the next frame, by the ids of the program.
-    pub(crate) fn next_pins(&self) -> Vec<Pin> {
+    /// What the input of the next frame says about pairs that cannot collide, by the ids of the program.
+    pub(crate) fn next_scope(&self) -> AuditScope {
         let to = self.next_frame() as f64;
-        let pins_of = |(k, run): (usize, &NucleusRun<R>)| {
+        let mut scope = AuditScope::default();
+        for (k, run) in self.runs.iter().enumerate() {
             let position = |cloth, point: PointId| run.solver.point(cloth, point.index());
             let interval = self.program.interval(k, [run.evaluated, to], to - run.evaluated, run.was_skipped);
-            let pins = interval.input(&mut run.attachments.clone(), &position).pins;
-            let first = self.program.nuclei()[k].cloths().start;
-            pins.into_iter().map(move |pin| Pin { cloth: ClothId(first + pin.cloth.0), ..pin })
-        };
-        self.runs.iter().enumerate().flat_map(pins_of).collect()
+            let input = interval.input(&mut run.attachments.clone(), &position);
+            let nucleus = &self.program.nuclei()[k];
+            let cloth = |own: ClothId| ClothId(nucleus.cloths().start + own.0);
+            let collider = |own: ColliderId| ColliderId(nucleus.colliders().start + own.0);
+            scope.pins.extend(input.pins.into_iter().map(|pin| Pin { cloth: cloth(pin.cloth), ..pin }));
+            for (at, constraint) in input.constraints.iter().enumerate() {
+                let welds = match &constraint.formed {
+                    Some(links) if constraint.method == LinkMethod::Weld => {
+                        links.iter().filter_map(Link::points).collect()
+                    }
+                    Some(_) => Vec::new(),
+                    None => run.solver.welds(at),
+                };
+                scope.welds.extend(welds.iter().map(|weld| weld.map(|(own, point)| (cloth(own), point))));
+            }
+            let side = |side: &ExcludedSide| match side {
+                ExcludedSide::Everything => ExcludedSide::Everything,
+                ExcludedSide::Points(of_cloths, of_colliders) => ExcludedSide::Points(
+                    of_cloths.iter().map(|&(own, point)| (cloth(own), point)).collect(),
+                    of_colliders.iter().map(|&(own, point)| (collider(own), point)).collect(),
+                ),
+            };
+            let exclusion =
+                |own: &Arc<Exclusion>| Exclusion { sides: [side(&own.sides[0]), side(&own.sides[1])] };
+            scope.exclusions.extend(input.exclusions.iter().map(exclusion));
+        }
+        scope
     }
 
     /// Solves the next frame and calls `watch` with the state after each substep. The last frame of the scene is no limit.
@@ -89,8 +113,8 @@ impl<R: Real> Simulation<R> {
             let report = self.solve(frame, change, watch, &RefCell::default());
             return FrameReport { frame, report, passed_through: None };
         };
-        let pins = self.next_pins();
-        audit.begin_frame(frame, |world| collision_rules(&self.program, frame, &pins, world));
+        let scope = self.next_scope();
+        audit.begin_frame(frame, |world| collision_rules(&self.program, frame, &scope, world));
         let before = audit.account().found();
         let planes = RefCell::new(audit.take_planes());
         let report = self.solve(frame, change, &mut Audited::new(&mut audit, &planes, watch), &planes);

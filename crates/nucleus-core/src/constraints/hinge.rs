@@ -150,7 +150,7 @@ fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32)
 }
 
 /// The weights of Bergou et al. 2006, from cotangents of the angles at the edge; `None` where an angle is degenerate.
-fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
+pub(super) fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
     let cotangent = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&v) / u.cross(&v).norm();
     let edge = x1 - x0;
     let at_0 = [cotangent(edge, x2 - x0), cotangent(edge, x3 - x0)];

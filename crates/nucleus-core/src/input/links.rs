@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::bytes::{Encode, Reader, encode_struct};
+use crate::bytes::{Encode, Reader};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// One end of a link.
@@ -65,6 +65,26 @@ pub struct Link {
     pub weight: [f64; 2],
     /// Length of the edge that it stands for in metres, or 1 for single points: the load that breaks it is per length.
     pub length: f64,
+    /// Whether it resists folding instead of holding a distance.
+    pub fold: Option<Fold>,
+}
+
+/// A link that resists folding: its sides are the two faces at joined edges, their weights those of a hinge, and its rest
+/// length is that of the hinge's bending vector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fold {
+    /// Length of the bending vector when the hinge is folded shut.
+    pub max_length: f64,
+    /// The links of the constraint that join the edges, by their index: it lets go with any of them. An index without a
+    /// link is none.
+    pub holds: [u32; 2],
+}
+
+impl Fold {
+    /// Sine of half the angle between the faces, at a length of the bending vector.
+    pub fn half_sine(&self, length: f64) -> f64 {
+        if self.max_length > 0.0 { (length / self.max_length).clamp(0.0, 1.0) } else { 0.0 }
+    }
 }
 
 impl Link {
@@ -79,7 +99,17 @@ impl Link {
             glue: 1.0,
             weight: [1.0; 2],
             length: 1.0,
+            fold: None,
         }
+    }
+
+    /// The two points that it joins, where both sides are single points of cloth.
+    pub fn points(&self) -> Option<[(ClothId, PointId); 2]> {
+        let point = |side: &LinkSide| match *side {
+            LinkSide::Cloth { cloth, points, weights: [1.0, 0.0, 0.0] } => Some((cloth, points[0])),
+            _ => None,
+        };
+        Some([point(&self.sides[0])?, point(&self.sides[1])?])
     }
 }
 
@@ -137,8 +167,13 @@ pub struct ConstraintFrame {
     pub strength: f64,
     /// The same along surfaces.
     pub tangent_strength: f64,
-    /// Factor on rest lengths.
-    pub rest_scale: f64,
+    /// Factor on rest lengths at the start and at the end of the frame.
+    pub rest_scale: [f64; 2],
+    /// `bendStrength` of folds: evaluations in 1/24 s (Classic) or a bending stiffness like that of `bendResistance`
+    /// (Physical).
+    pub bend_strength: f64,
+    /// Sine of half the angle, from rest, beyond which a fold lets go; 1 for never.
+    pub break_half_sine: f64,
     /// Evaluations in 1/24 s, at least and at most.
     pub iterations: [f64; 2],
     /// `glueStrength`: 0 breaks at once, 1 never. Its [`breaking_load`](crate::breaking_load) is in newtons per metre of
@@ -176,7 +211,9 @@ impl Default for ConstraintFrame {
             method: LinkMethod::Spring,
             strength: 20.0,
             tangent_strength: 10.0,
-            rest_scale: 1.0,
+            rest_scale: [1.0; 2],
+            bend_strength: 0.0,
+            break_half_sine: 1.0,
             iterations: [0.0, 5000.0],
             glue_strength: 1.0,
             glue_scale: 1.0,
@@ -197,7 +234,14 @@ impl Default for ConstraintFrame {
 impl ConstraintFrame {
     /// Whether its links pull at all.
     pub fn pulls(&self) -> bool {
-        self.method == LinkMethod::Weld || self.strength > 0.0 || self.tangent_strength > 0.0
+        let strengths = [self.strength, self.tangent_strength, self.bend_strength];
+        self.method == LinkMethod::Weld || strengths.iter().any(|strength| *strength > 0.0)
+    }
+
+    /// The factor on rest lengths at a time of the frame.
+    pub fn rest_scale_at(&self, time: f64) -> f64 {
+        let [start, end] = self.rest_scale;
+        start + (end - start) * time
     }
 }
 
@@ -250,7 +294,23 @@ impl Encode for LinkSide {
     }
 }
 
-encode_struct!([] Link {
-    sides: [LinkSide; 2], rest: f64, on_surface: bool, strength: f64, tangent_strength: f64, glue: f64,
-    weight: [f64; 2], length: f64,
-});
+/// Sides, rest length and surface; strengths; weights, length, and the fold, whose length is negative where there is none.
+type PackedLink = (([LinkSide; 2], (f64, bool)), ([f64; 3], ([f64; 3], (f64, [u32; 2]))));
+
+impl Encode for Link {
+    const SIZE: usize = <PackedLink as Encode>::SIZE;
+    fn encode(&self, out: &mut Vec<u8>) {
+        let Self { sides, rest, on_surface, strength, tangent_strength, glue, weight, length, fold } = *self;
+        let fold = fold.map_or((-1.0, [0; 2]), |Fold { max_length, holds }| (max_length, holds));
+        let numbers = ([strength, tangent_strength, glue], ([weight[0], weight[1], length], fold));
+        let packed: PackedLink = ((sides, (rest, on_surface)), numbers);
+        packed.encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        let ((sides, (rest, on_surface)), numbers) = PackedLink::decode(from)?;
+        let ([strength, tangent_strength, glue], ([a, b, length], (max_length, holds))) = numbers;
+        let fold = (max_length >= 0.0).then_some(Fold { max_length, holds });
+        let weight = [a, b];
+        Some(Self { sides, rest, on_surface, strength, tangent_strength, glue, weight, length, fold })
+    }
+}

@@ -376,7 +376,8 @@ fn sanitize_constraint(constraint: &mut ConstraintFrame, last: &impl LastPositio
     let mut replaced = sanitize_numbers([
         (&mut constraint.strength, 0.0),
         (&mut constraint.tangent_strength, 0.0),
-        (&mut constraint.rest_scale, 1.0),
+        (&mut constraint.bend_strength, 0.0),
+        (&mut constraint.break_half_sine, 1.0),
         (&mut constraint.friction, 0.0),
         (&mut constraint.damp, 0.0),
         (&mut constraint.motion_drag, 0.0),
@@ -384,7 +385,8 @@ fn sanitize_constraint(constraint: &mut ConstraintFrame, last: &impl LastPositio
         (&mut constraint.glue_scale, 1.0),
     ]);
     let [least, most] = &mut constraint.iterations;
-    replaced |= sanitize_numbers([(least, 0.0), (most, MAX_COORDINATE)]);
+    let [start, end] = &mut constraint.rest_scale;
+    replaced |= sanitize_numbers([(least, 0.0), (most, MAX_COORDINATE), (start, 1.0), (end, 1.0)]);
     if constraint.keep_off.is_some_and(|distance| !distance.is_finite()) {
         constraint.keep_off = None;
         replaced = true;

@@ -6,7 +6,7 @@ use crate::constraints::stretch::LinkStrength;
 use crate::input::frame::{COUNT_PERIOD, FrameInput, ResistanceModel};
 use crate::input::links::LinkMethod;
 use crate::math::Real;
-use crate::schedule::resistance::{STIFFNESS_PER_RESISTANCE, Share, share};
+use crate::schedule::resistance::{BENDING_PER_RESISTANCE, STIFFNESS_PER_RESISTANCE, Share, share};
 
 /// One pass over the links of a constraint in a time step of `h` seconds, and the number of such passes.
 pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<R>, u32) {
@@ -19,27 +19,30 @@ pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<
         if is_weld { Share { sweeps: own.sweeps.max(1), strength: 1.0 } } else { own }
     };
     let sweeps = match is_classic {
-        true => counts(constraint.strength.max(constraint.tangent_strength)).sweeps,
+        true => {
+            counts(constraint.strength.max(constraint.tangent_strength).max(constraint.bend_strength)).sweeps
+        }
         false => share(least, h).sweeps,
     };
     let sweeps = sweeps.max(1);
-    let side = |strength: f64| match (is_classic, is_weld) {
-        (_, true) => (1.0, 0.0),
+    let soft = |strength: f64, unit: f64| match is_classic {
         // Fewer evaluations than passes are weaker ones.
-        (true, _) => ((strength * h / COUNT_PERIOD / f64::from(sweeps)).min(1.0), 0.0),
-        (false, _) if strength > 0.0 => (1.0, 1.0 / (strength * STIFFNESS_PER_RESISTANCE * h * h)),
-        (false, _) => (0.0, 0.0),
+        true => ((strength * h / COUNT_PERIOD / f64::from(sweeps)).min(1.0), 0.0),
+        false if strength > 0.0 => (1.0, 1.0 / (strength * unit * h * h)),
+        false => (0.0, 0.0),
     };
-    let strength = |(share, compliance): (f64, f64)| {
-        let pulls_only = constraint.method == LinkMethod::RubberBand;
+    let side = |strength: f64| if is_weld { (1.0, 0.0) } else { soft(strength, STIFFNESS_PER_RESISTANCE) };
+    let strength = |(share, compliance): (f64, f64), pulls_only: bool| {
         let both = |x: f64| R::from_f64(x.min(1e30));
         LinkStrength {
             share: Sides { above: both(share), below: if pulls_only { R::ZERO } else { both(share) } },
             compliance: Sides { above: both(compliance), below: both(compliance) },
-            rest_scale: R::from_f64(constraint.rest_scale),
+            rest_scale: R::ONE,
         }
     };
+    let pulls_only = constraint.method == LinkMethod::RubberBand;
     let [normal, tangent] =
-        [constraint.strength, constraint.tangent_strength].map(|strength_of| strength(side(strength_of)));
-    (LinkSweep { constraint: at, normal, tangent }, sweeps)
+        [constraint.strength, constraint.tangent_strength].map(|own| strength(side(own), pulls_only));
+    let bend = strength(soft(constraint.bend_strength, BENDING_PER_RESISTANCE), false);
+    (LinkSweep { constraint: at, normal, tangent, bend }, sweeps)
 }

@@ -1,6 +1,8 @@
 //! Meshes and frames that several tests share.
 #![allow(dead_code)] // each test binary uses its own part
 
+pub mod links;
+
 use nalgebra::Vector3;
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Faces, FrameInput,

@@ -46,7 +46,7 @@ node_table! {
         /// Whether components are linked to the constraint's transform or to each other.
         CONSTRAINT_RELATION: Choice = choice("constraintRelation", "crr", 1, &[(0, "Object to Constraint"), (1, "Object to Object")]).solved("nucleus_graph::compile::constraints");
         /// Whether Maya draws the links.
-        DISPLAY_CONNECTIONS: bool = toggle("displayConnections", "dcn", true);
+        DISPLAY_CONNECTIONS: bool = toggle("displayConnections", "dcn", true).elsewhere("only Maya's viewport draws it");
     }
     "Connection" {
         /// Method by which elements are paired.
@@ -70,11 +70,11 @@ node_table! {
         /// Strength along the surface, tangential to the link.
         TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 10.0).soft(0.0, 200.0).solved("nucleus_core::constraints::link::surface");
         /// Whether linked edges also resist bending about each other.
-        BEND: bool = toggle("bend", "bnd", false);
+        BEND: bool = toggle("bend", "bnd", false).solved("nucleus_core::constraints::link::fold");
         /// Strength of that resistance.
-        BEND_STRENGTH: f64 = float("bendStrength", "bns", 20.0).soft(0.0, 200.0);
+        BEND_STRENGTH: f64 = float("bendStrength", "bns", 20.0).soft(0.0, 200.0).solved("nucleus_core::constraints::link::fold");
         /// Angle at which it breaks.
-        BEND_BREAK_ANGLE: f64 = float("bendBreakAngle", "bba", 360.0).soft(0.0, 360.0).unit("degrees");
+        BEND_BREAK_ANGLE: f64 = float("bendBreakAngle", "bba", 360.0).soft(0.0, 360.0).unit("degrees").solved("nucleus_core::constraints::link::fold");
         /// Load at which links break: 0 at once, 0.5 at 100 N per metre of edge or 100 N per point, 1 never.
         GLUE_STRENGTH: f64 = float("glueStrength", "gls", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link::glue");
         /// Factor on the load at which links break.
@@ -128,13 +128,13 @@ node_table! {
     }
     "Connections" {
         /// Time of the evaluation; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden();
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden().elsewhere("the frame that is evaluated counts");
         /// Its members.
-        COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi();
+        COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi().solved("nucleus_graph::compile::constraints");
         /// Its initial state.
-        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output();
+        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output().elsewhere("`evalCurrent` stands for both");
         /// Its current state.
-        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output();
+        EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output().solved("nucleus_graph::compile::constraints");
     }
     "Internal" {
         /// Includes the constraint in the simulation.

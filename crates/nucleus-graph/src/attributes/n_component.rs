@@ -31,15 +31,15 @@ node_table! {
     }
     "Connections" {
         /// The object of the component.
-        OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId);
+        OBJECT_ID: Plugged = plug("objectId", "obid", Data::ObjectId).solved("nucleus_graph::compile::constraints");
         /// The component, as the input of a constraint.
-        OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output();
+        OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output().solved("nucleus_graph::compile::constraints");
         /// A mesh that elements are taken from.
-        SURFACE: Plugged = plug("surface", "srf", Data::Mesh);
+        SURFACE: Plugged = plug("surface", "srf", Data::Mesh).elsewhere("elements are those of the object at `objectId`");
     }
     "Internal" {
         /// Number of the set that elements come from.
-        COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden();
+        COMPONENT_GROUP_ID: i64 = int("componentGroupId", "cid", 0).hidden().elsewhere("`componentIndices` and `select` name the elements of a set");
     }
     "Component Maps" {
         /// Texture of the map of strength.

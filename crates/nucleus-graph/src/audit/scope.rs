@@ -1,7 +1,7 @@
 //! Scope of an audit in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
 
 use nucleus_audit::{CollisionFilter, CollisionMesh, Plane};
-use nucleus_core::{ClothFrame, ClothId, FrameInput, Pin};
+use nucleus_core::{ClothFrame, ClothId, ExcludedSide, Exclusion, FrameInput, MAX_EXCLUSIONS, Pin, PointId};
 
 use crate::attributes::{n_base, nucleus};
 use crate::compile::{Object, ObjectKind, Program};
@@ -77,12 +77,62 @@ impl GroundPlanes {
     }
 }
 
+/// What the input of a frame says about pairs that cannot collide, by the ids of the program.
+#[derive(Debug, Default)]
+pub(crate) struct AuditScope {
+    /// Points whose motion is prescribed.
+    pub(crate) pins: Vec<Pin>,
+    /// Points that are welded to each other.
+    pub(crate) welds: Vec<[(ClothId, PointId); 2]>,
+    /// What does not collide.
+    pub(crate) exclusions: Vec<Exclusion>,
+}
+
+/// The points of an object of the program in the audit.
+struct Located<'a> {
+    program: &'a Program,
+    world: &'a CollisionMesh,
+}
+
+impl Located<'_> {
+    fn point(&self, kind: ObjectKind, point: PointId) -> Option<usize> {
+        let body = self.program.objects().iter().position(|object| object.kind == kind)?;
+        self.world.points_of(body).nth(point.index())
+    }
+
+    fn points(&self, side: &ExcludedSide) -> Option<Vec<usize>> {
+        let ExcludedSide::Points(cloths, colliders) = side else { return None };
+        let of_cloths = cloths.iter().map(|&(cloth, point)| (ObjectKind::Cloth(cloth), point));
+        let of_colliders = colliders.iter().map(|&(collider, point)| (ObjectKind::Collider(collider), point));
+        Some(of_cloths.chain(of_colliders).filter_map(|(kind, point)| self.point(kind, point)).collect())
+    }
+}
+
+/// Adds welds and exclusions of a frame to the rules.
+fn add_constraints(rules: &mut CollisionFilter, scope: &AuditScope, located: &Located<'_>) {
+    let count = located.world.points();
+    for weld in &scope.welds {
+        let [a, b] = weld.map(|(cloth, point)| located.point(ObjectKind::Cloth(cloth), point));
+        if let (Some(a), Some(b)) = (a, b) {
+            rules.weld(count, a, b);
+        }
+    }
+    for (number, exclusion) in (0..MAX_EXCLUSIONS as u32).zip(&scope.exclusions) {
+        for (side, members) in exclusion.sides.iter().enumerate() {
+            match located.points(members) {
+                Some(points) => rules.exclude(count, points.into_iter(), number, side),
+                None => rules.exclude_everything(count, number, side),
+            }
+        }
+    }
+}
+
 /// The rules of the frame that ends at `frame`, over all objects in their order. Colliders and pinned points follow the
 /// animation, so the solver cannot keep them apart from each other.
 pub(crate) fn collision_rules(
     program: &Program,
     frame: i64,
-    pins: &[Pin],
+    scope: &AuditScope,
     world: &CollisionMesh,
 ) -> CollisionFilter {
     let mut rules = CollisionFilter::default();
@@ -98,11 +148,12 @@ pub(crate) fn collision_rules(
             world.points_of(a).for_each(|point| rules.set_kinematic(point));
         }
     }
-    for pin in pins {
+    for pin in &scope.pins {
         let is_pinned = |object: &Object| object.kind == ObjectKind::Cloth(pin.cloth);
         let cloth = objects.iter().position(is_pinned).map(|cloth| world.points_of(cloth));
         cloth.into_iter().for_each(|points| rules.set_kinematic(points.start + pin.point.index()));
     }
+    add_constraints(&mut rules, scope, &Located { program, world });
     rules
 }
 

@@ -49,7 +49,7 @@ impl StateView for Level<'_> {
 fn found(nodes: &str, closeness: Closeness, heights: &[f64]) -> AuditCounts {
     let program = program(nodes);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &[], world);
+    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &AuditScope::default(), world);
     let mut audit = Audit::new(run.objects(), closeness, run.state(), rules);
     for (frame, &height) in (2..).zip(heights) {
         audit.begin_frame(frame, rules);
@@ -78,7 +78,7 @@ fn a_sheet_that_ends_inside_a_ball_is_found_in_states_and_in_motions() {
 fn states_within_a_substep_are_audited() {
     let program = program(SHEET_AND_BALL);
     let run = Simulation::<f64>::new(&program, 1);
-    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &[], world);
+    let rules = |world: &CollisionMesh| collision_rules(&program, 2, &AuditScope::default(), world);
     let mut audit = Audit::new(run.objects(), Closeness::Steps, run.state(), rules);
     audit.begin_frame(2, rules);
     let level = |height: f64| Level { start: run.state(), height };
@@ -103,7 +103,7 @@ fn objects_that_do_not_collide_and_pinned_points_are_not_audited() {
     let program = program(&held);
     let mut run = Simulation::<f64>::new(&program, 1);
     run.begin_audit(Closeness::Steps);
-    let pins = run.next_pins();
+    let scope = run.next_scope();
     let world = CollisionMesh::new(vec![
         Body { points: 49, ..Body::default() },
         Body { points: 86, ..Body::default() },
@@ -111,7 +111,7 @@ fn objects_that_do_not_collide_and_pinned_points_are_not_audited() {
     let mut all = CollisionFilter::default();
     (0..135).for_each(|point| all.set_kinematic(point));
     all.ignore(1, 1); // as Maya makes an nRigid
-    assert_eq!(collision_rules(&program, 2, &pins, &world), all);
+    assert_eq!(collision_rules(&program, 2, &scope, &world), all);
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn cloths_in_distant_collision_layers_are_not_audited() {
         );
         let program = program(&nodes);
         let world = CollisionMesh::new(vec![Body::default(), Body::default()]);
-        collision_rules(&program, 2, &[], &world) == CollisionFilter::default()
+        collision_rules(&program, 2, &AuditScope::default(), &world) == CollisionFilter::default()
     };
     assert!(two(0.0) && two(3.9) && !two(4.0), "the range is 4 unless it is set");
 }
@@ -182,4 +182,23 @@ fn a_ground_plane_moves_linearly_in_each_span_from_the_end_of_the_span_before() 
     put(&mut planes, 4.0, [0.5, 1.0]);
     assert_eq!([0.5, 0.75, 1.0].map(|share| at(&planes, share)), [2.0, 3.0, 4.0].map(level));
     assert_eq!(planes.of(ClothId(1), 1.0), None, "there is one cloth");
+}
+
+#[test]
+fn excluded_pairs_and_welded_points_are_not_audited() {
+    let audited = |constraint: &str| {
+        let nodes = format!(
+            r#""other": polyPlane(width: 2, height: 2, translate: (0, 1, 0)),
+               "c": nCloth(inputMesh: "sheet"), "d": nCloth(inputMesh: "other") {constraint}"#
+        );
+        let program = program(&nodes);
+        let run = Simulation::<f64>::new(&program, 1);
+        let scope = run.next_scope();
+        (scope.welds.len(), scope.exclusions.len())
+    };
+    assert_eq!(audited(""), (0, 0));
+    let excluded = r#", "k": dynamicConstraint(type: collisionExclusion, components: ["c", "d"])"#;
+    assert_eq!(audited(excluded), (0, 1));
+    let welded = r#", "k": dynamicConstraint(type: pointToPoint, constraintMethod: weld, components: ["c.vtx[0:2]", "d.vtx[0:2]"])"#;
+    assert_eq!(audited(welded), (3, 0));
 }

@@ -124,11 +124,22 @@ fn constraints_that_cannot_join_their_members_are_refused() {
             r#"type: collisionExclusion, components: ["c"]"#,
             "`h` has one member, and this kind joins two: `c`",
         ),
+        (r#"constraintRelation: objectToObject, components: ["c"]"#, "`h` joins a component to itself: `c`"),
     ] {
         let (found, help) = error(&format!(r#"{SHEET}{collider}"h": dynamicConstraint({constraint})"#));
         assert_eq!(found, message);
         assert!(help.is_some(), "{message}");
     }
+}
+
+#[test]
+fn members_under_another_nucleus_are_refused() {
+    let nodes = r#""n1": nucleus(), "n2": nucleus(), "p": polyPlane(), "q": polyPlane(),
+        "a": nCloth(inputMesh: "p", nucleus: "n1"), "b": nCloth(inputMesh: "q", nucleus: "n2"),
+        "s": dynamicConstraint(type: pointToPoint, components: ["a", "b"], nucleus: "n1")"#;
+    let (message, help) = error(nodes);
+    assert_eq!(message, "`s` joins `b`, which `n1` does not solve");
+    assert!(help.is_some_and(|help| help.contains("the same nucleus")));
 }
 
 /// Two sheets side by side, a gap of 0.1 between their borders.
@@ -209,11 +220,12 @@ proptest! {
         method in prop::sample::select(vec!["weld", "spring", "rubberBand"]),
         connection in 0..3,
         glue in prop::sample::select(vec![0.0, 0.1, 1.0]),
+        bend: bool,
     ) {
         let nodes = format!(r#"{PAIR}"box": polyCube(translate: (0, -1, 0)), "r": nRigid(inputMesh: "box"),
             "q": nParticle(position: [(0, 1, 0), (0.3, 1, 0)]),
             "s": dynamicConstraint(type: {kind}, components: ["{first}", "{second}"], constraintMethod: {method},
-                connectionMethod: {connection}, maxDistance: 0.6, glueStrength: {glue})"#);
+                connectionMethod: {connection}, maxDistance: 0.6, glueStrength: {glue}, bend: {bend}, bendBreakAngle: 40)"#);
         let (scene, _) = read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
         if let Ok(program) = compile(&scene) {
             for name in ["a", "b", "q"] {
@@ -221,4 +233,44 @@ proptest! {
             }
         }
     }
+}
+
+/// The folds among the links of the first frame.
+fn folds(nodes: &str) -> usize {
+    let program = program(&of_nodes(nodes, ""));
+    let constraints = program.first_input().constraints.clone();
+    let links = constraints.iter().flat_map(|constraint| constraint.formed.iter().flatten());
+    links.filter(|link| link.fold.is_some()).count()
+}
+
+// EVIDENCE: N2.3-5  edges that are joined hinge, and resist folding where `bend` says so
+#[test]
+fn joined_edges_resist_folding_only_with_bend() {
+    let seam = |more: &str| {
+        format!(
+            r#"{PAIR}"s": dynamicConstraint(type: weldBorders, components: ["a.e[border]", "b.e[border]"],
+            maxDistance: 0.2, connectWithinComponent: false {more})"#
+        )
+    };
+    assert_eq!(folds(&seam("")), 0);
+    // Two pairs of edges, with the corners of quads behind either end.
+    assert_eq!(folds(&seam(", bend: true")), 4);
+    let edges = r#""s": dynamicConstraint(type: pointToPoint, components: ["a.e[border]", "b.e[border]"],
+        connectionMethod: withinMaxDistance, maxDistance: 0.2, bend: true)"#;
+    assert!(folds(&format!("{PAIR}{edges}")) >= 4);
+}
+
+#[test]
+fn a_tearable_surface_keeps_the_bend_resistance_of_stiff_cloth_as_maya_creates_it() {
+    let sheet = |bend: f64, more: &str| {
+        format!(
+            r#""n": nucleus(), "p": polyPlane(subdivisions: (2, 2)),
+            "c": nCloth(inputMesh: "p", selfCollide: false, bendResistance: {bend}),
+            "t": dynamicConstraint(type: tearableSurface, components: ["c"] {more})"#
+        )
+    };
+    assert_eq!(folds(&sheet(0.1, "")), 0);
+    assert_eq!(folds(&sheet(0.5, "")), 8, "four inner edges of quads");
+    assert_eq!(folds(&sheet(0.5, ", bend: false")), 0);
+    assert_eq!(folds(&sheet(0.1, ", bend: true")), 8);
 }

@@ -6,12 +6,14 @@
 
 use nalgebra::Vector3;
 
+use crate::contact::collider::ColliderState;
 use crate::input::frame::FrameInput;
 use crate::input::links::{ConstraintFrame, Link};
 use crate::math::Real;
+use crate::model::Model;
+use crate::state::State;
 
-use super::lists::{CombinedList, ConstraintLinks, Links};
-use super::rows::NO_LINK;
+use super::lists::{ConstraintLinks, Links};
 
 /// Load in N/m that breaks half-strong glue (`glueStrength` 0.5).
 pub const LOAD_OF_HALF: f64 = 100.0;
@@ -24,68 +26,55 @@ pub fn breaking_load(glue_strength: f64) -> f64 {
     }
 }
 
-impl<R: Real, const N: usize> CombinedList<R, N> {
-    /// Calls `each` with every link and the impulse that it carried in N·s, and starts anew.
-    fn take_impulses(&mut self, mut each: impl FnMut(u32, Vector3<f64>)) {
-        for (group, impulse) in self.rows.groups().iter().zip(&mut self.impulses) {
-            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
-                each(group.link[lane], Vector3::from([0, 1, 2].map(|axis| impulse[axis][lane].to_f64())));
-            }
-            *impulse = [[R::ZERO; 4]; 3];
-        }
-    }
-
-    /// Takes broken links out of the sweeps.
-    fn release(&mut self, broken: &[bool]) {
-        for group in self.rows.groups_mut() {
-            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
-                if broken[group.link[lane] as usize] {
-                    group.factor[lane] = R::ZERO;
-                }
-            }
-        }
-    }
-}
-
 impl<R: Real> ConstraintLinks<R> {
-    /// Breaks all links whose load in a substep of `length` seconds was above theirs. Whether there were any.
-    fn break_links(&mut self, settings: &ConstraintFrame, length: f64) -> bool {
-        let Self { links, broken, one, two, three, four, five, six, surface, .. } = self;
-        let mut any = false;
+    /// Breaks the links whose load in a substep of `length` seconds was above theirs; of the welds round a point, those
+    /// along which it tears. Whether there were any.
+    fn break_links(&mut self, settings: &ConstraintFrame, state: &State<R>, length: f64) -> bool {
+        let Self { links, broken, pairs, nodes, combined, surface, .. } = self;
+        let limit =
+            |link: &Link| breaking_load(settings.glue_strength * link.glue) * settings.glue_scale * length;
+        let mut loads = vec![Vector3::zeros(); if pairs.rows.len() > 0 { links.len() } else { 0 }];
+        pairs.loads.take(pairs.rows.groups().iter().map(|group| &group.link), |at, impulse| {
+            loads[at as usize] = impulse;
+        });
+        let whole = |at: u32| {
+            let link = &links[at as usize];
+            (!broken[at as usize]).then(|| [link.length, limit(link) * link.length])
+        };
+        let torn = nodes.tears(|at| loads[at as usize], whole, |row| Vector3::from(state.position(row)));
+        let mut any = !torn.is_empty();
+        torn.into_iter().for_each(|at| broken[at as usize] = true);
         let mut judge = |at: u32, impulse: Vector3<f64>| {
             let (link, broken): (&Link, &mut bool) = (&links[at as usize], &mut broken[at as usize]);
-            let limit = breaking_load(settings.glue_strength * link.glue) * settings.glue_scale;
-            if !*broken && impulse.norm() > limit * link.length * length {
+            if !*broken && impulse.norm() > limit(link) * link.length {
                 (*broken, any) = (true, true);
             }
         };
-        one.take_impulses(&mut judge);
-        two.take_impulses(&mut judge);
-        three.take_impulses(&mut judge);
-        four.take_impulses(&mut judge);
-        five.take_impulses(&mut judge);
-        six.take_impulses(&mut judge);
+        combined.take_impulses(&mut judge);
         for row in surface {
             judge(row.link, std::mem::take(&mut row.impulse));
         }
         if any {
-            one.release(broken);
-            two.release(broken);
-            three.release(broken);
-            four.release(broken);
-            five.release(broken);
-            six.release(broken);
+            pairs.release(broken);
+            combined.release(broken);
         }
         any
     }
 }
 
-/// Breaks links at the end of a substep of `length` seconds. Whether any broke.
-pub fn break_links<R: Real>(links: &mut Links<R>, frame: &FrameInput, length: f64) -> bool {
-    let pairs = links.constraints.iter_mut().zip(&frame.constraints);
+/// Breaks links and folds at the end of a substep of `length` seconds, at `time` as a share of the frame. Whether any
+/// broke.
+pub fn break_links<R: Real>(
+    links: &mut Links<R>,
+    scene: (&Model<R>, &[ColliderState]),
+    state: &State<R>,
+    frame: &FrameInput,
+    [time, length]: [f64; 2],
+) -> bool {
     let mut any = false;
-    for (own, settings) in pairs.filter(|(_, settings)| settings.can_break) {
-        any |= own.break_links(settings, length);
+    for (own, settings) in links.constraints.iter_mut().zip(&frame.constraints) {
+        any |= settings.can_break && own.break_links(settings, state, length);
+        any |= own.has_folds() && own.break_folds(scene, state, settings, time);
     }
     any
 }

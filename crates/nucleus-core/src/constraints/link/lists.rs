@@ -4,16 +4,20 @@ use crate::bytes::{Checkpoint, Encode, Reader, encode_struct};
 use crate::constraints::strength_map::Uniform;
 use crate::constraints::stretch::{self, LinkGroup, LinkRow};
 use crate::input::links::{Link, LinkSide};
+use crate::input::{ClothId, PointId};
 use crate::math::{Real, Row4};
-use crate::model::rows::{AllBlocks, Partition, RowBatch, RowList};
+use crate::model::rows::{AllBlocks, Partition, RowList};
 use crate::model::{ClothModel, ColliderModel};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::state::State;
 
-use super::ends::{Ends, Prescribed, vector};
-use super::rows::{self, CombinedGroup, CombinedRow, LinkPass, NO_LINK, VectorGroup};
+use super::batches::for_batches;
+use super::combined::{CombinedLists, LinkFrame};
+use super::ends::Ends;
+use super::pairs::PairList;
+use super::rows::LinkPass;
 use super::sizes::ModelSizes;
+use super::tear::Nodes;
 use super::topology::{SurfaceRow, Topology};
 
 /// The cloths and colliders of a scene.
@@ -36,13 +40,15 @@ pub struct ConstraintLinks<R> {
     pub(super) glue_strength: f64,
     pub(super) layout: Layout,
     /// Pairs of single points, all of the same strength.
-    pairs: RowList<LinkGroup<R>>,
-    pub(super) one: CombinedList<R, 1>,
-    pub(super) two: CombinedList<R, 2>,
-    pub(super) three: CombinedList<R, 3>,
-    pub(super) four: CombinedList<R, 4>,
-    pub(super) five: CombinedList<R, 5>,
-    pub(super) six: CombinedList<R, 6>,
+    plain: RowList<LinkGroup<R>>,
+    /// Other pairs of single points.
+    pub(super) pairs: PairList<R>,
+    /// Where the welds among these tear; empty where nothing can break.
+    pub(super) nodes: Nodes,
+    /// All other links between places.
+    pub(super) combined: CombinedLists<R>,
+    /// Links that resist folding.
+    pub(super) folds: CombinedLists<R>,
     /// Links on surfaces.
     pub(super) surface: Vec<SurfaceRow>,
     pub(super) topology: Topology,
@@ -54,90 +60,11 @@ pub(super) struct Layout {
     pub(super) can_break: bool,
     pub(super) is_physical: bool,
     pub(super) is_weld: bool,
+    /// Whether their strength depends on their length.
+    pub(super) drops_off: bool,
 }
 
-encode_struct!([] Layout { can_break: bool, is_physical: bool, is_weld: bool });
-
-/// Links of `N` free points.
-pub(super) struct CombinedList<R, const N: usize> {
-    pub(super) rows: RowList<CombinedGroup<R, N>>,
-    /// Impulses since the start of the substep, one entry per lane group; empty where nothing can break.
-    pub(super) impulses: Vec<VectorGroup<R>>,
-}
-
-impl<R, const N: usize> Default for CombinedList<R, N> {
-    fn default() -> Self {
-        Self { rows: RowList::default(), impulses: Vec::new() }
-    }
-}
-
-impl<R: Real, const N: usize> CombinedList<R, N> {
-    fn new(all: &[(u32, Ends)], links: &[Link], layout: Layout, blocks: &AllBlocks) -> Self {
-        let row = |(at, ends): &(u32, Ends)| CombinedRow {
-            points: std::array::from_fn(|k| ends.rows[k]),
-            weights: std::array::from_fn(|k| R::from_f64(ends.weights[k])),
-            push: std::array::from_fn(|k| R::from_f64(ends.push[k])),
-            rest: R::from_f64(links[*at as usize].rest),
-            link: *at,
-        };
-        let rows: Vec<CombinedRow<R, N>> = all.iter().filter(|(_, ends)| ends.count == N).map(row).collect();
-        let rows = RowList::new(&rows, blocks);
-        let loads = if layout.can_break { rows.groups().len() } else { 0 };
-        Self { impulses: vec![[[R::ZERO; 4]; 3]; loads], rows }
-    }
-
-    fn sweep(
-        &mut self,
-        points: DisjointSlice<'_, Row4<R>>,
-        pass: &LinkPass<R>,
-        blocks: usize,
-        pool: &ThreadPool,
-    ) {
-        let Self { rows, impulses } = self;
-        if rows.len() == 0 {
-            return;
-        }
-        let has_loads = !impulses.is_empty();
-        let loads = DisjointSlice::new(impulses);
-        for_batches(rows, blocks, pool, |batch| {
-            let (groups, first) = (rows.batch(batch), rows.first_group(batch) as u32);
-            // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point; batches share no
-            // group.
-            #[allow(unsafe_code)]
-            unsafe {
-                let loads = if has_loads { loads.run(first..first + groups.len() as u32) } else { &mut [] };
-                rows::relax(points, groups, loads, pass);
-            }
-        });
-    }
-
-    /// Updates all that depends on the anchors, on prescribed places and on the strength of the frame.
-    fn begin_frame(&mut self, frame: &LinkFrame<'_, R>, links: &[Link], factors: &[f64]) {
-        for group in self.rows.groups_mut() {
-            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
-                let at = group.link[lane] as usize;
-                let [start, end] = [0.0, 1.0].map(|time| frame.prescribed.vector(&links[at], time));
-                for axis in 0..3 {
-                    let of = |k: usize| {
-                        group.weights[k][lane].to_f64()
-                            * frame.state.anchor[group.points[k][lane] as usize][axis]
-                    };
-                    let anchors: f64 = (0..N).map(of).sum();
-                    group.span[axis][lane] = R::from_f64(anchors + start[axis]);
-                    group.travel[axis][lane] = R::from_f64(end[axis] - start[axis]);
-                }
-                group.factor[lane] = R::from_f64(factors[at]);
-            }
-        }
-    }
-}
-
-/// What a frame gives to the rows of a constraint.
-pub(super) struct LinkFrame<'a, R> {
-    pub(super) prescribed: Prescribed<'a>,
-    pub(super) state: &'a State<R>,
-    pub(super) cloths: &'a [ClothModel<R>],
-}
+encode_struct!([] Layout { can_break: bool, is_physical: bool, is_weld: bool, drops_off: bool });
 
 impl<R: Real> ConstraintLinks<R> {
     pub(super) fn empty(layout: Layout) -> Self {
@@ -146,13 +73,11 @@ impl<R: Real> ConstraintLinks<R> {
             broken: Vec::new(),
             glue_strength: 1.0,
             layout,
-            pairs: RowList::default(),
-            one: CombinedList::default(),
-            two: CombinedList::default(),
-            three: CombinedList::default(),
-            four: CombinedList::default(),
-            five: CombinedList::default(),
-            six: CombinedList::default(),
+            plain: RowList::default(),
+            pairs: PairList::default(),
+            nodes: Nodes::default(),
+            combined: CombinedLists::default(),
+            folds: CombinedLists::default(),
             surface: Vec::new(),
             topology: Topology::default(),
         }
@@ -166,26 +91,32 @@ impl<R: Real> ConstraintLinks<R> {
         blocks: &AllBlocks,
     ) -> Self {
         let mut own = Self { broken: vec![false; links.len()], ..Self::empty(layout) };
-        let (mut pairs, mut combined) = (Vec::new(), Vec::new());
+        let (mut plain, mut pairs) = (Vec::new(), Vec::new());
+        let (mut combined, mut folds) = (Vec::new(), Vec::new());
         for (at, link) in (0..).zip(&links) {
             let ends = Ends::new(link, cloths);
             if link.on_surface {
                 own.surface.push(SurfaceRow::new(at, ends));
-            } else if is_plain_pair(link, &ends, layout) {
+            } else if link.fold.is_some() {
+                folds.push((at, ends));
+            } else if is_plain(link, &ends, layout) {
                 let rest_length = R::from_f64(link.rest);
                 let ends = [ends.rows[0], ends.rows[1]];
-                pairs.push(LinkRow { ends, rest_length, slenderness: R::from_f64(1.0 / link.strength) });
+                let slenderness = R::from_f64(if layout.is_weld { 1.0 } else { 1.0 / link.strength });
+                plain.push(LinkRow { ends, rest_length, slenderness });
+            } else if is_pair(link, &ends) {
+                pairs.push((at, ends));
             } else if ends.count > 0 {
                 combined.push((at, ends));
             }
         }
-        own.pairs = RowList::new(&pairs, blocks);
-        own.one = CombinedList::new(&combined, &links, layout, blocks);
-        own.two = CombinedList::new(&combined, &links, layout, blocks);
-        own.three = CombinedList::new(&combined, &links, layout, blocks);
-        own.four = CombinedList::new(&combined, &links, layout, blocks);
-        own.five = CombinedList::new(&combined, &links, layout, blocks);
-        own.six = CombinedList::new(&combined, &links, layout, blocks);
+        own.plain = RowList::new(&plain, blocks);
+        own.pairs = PairList::new(&pairs, &links, layout.can_break, blocks);
+        if layout.can_break {
+            own.nodes = Nodes::new(&pairs, layout.is_weld);
+        }
+        own.combined = CombinedLists::new(&combined, &links, layout.can_break, blocks);
+        own.folds = CombinedLists::new(&folds, &links, false, blocks);
         own.topology = Topology::new(&links, cloths, colliders);
         own.links = links;
         own
@@ -193,53 +124,61 @@ impl<R: Real> ConstraintLinks<R> {
 
     /// The number of rows.
     pub fn rows(&self) -> usize {
-        let combined = [self.one.rows.len(), self.two.rows.len(), self.three.rows.len()];
-        let more = [self.four.rows.len(), self.five.rows.len(), self.six.rows.len()];
-        self.pairs.len() + self.surface.len() + combined.iter().chain(&more).sum::<usize>()
+        self.plain.len() + self.surface.len() + self.rows_with_factors()
+    }
+
+    /// The links that join places and are whole.
+    pub(super) fn joining(&self) -> impl Iterator<Item = &Link> {
+        let all = self.links.iter().zip(&self.broken);
+        all.filter(|(link, broken)| !**broken && link.fold.is_none()).map(|(link, _)| link)
+    }
+
+    /// Whether any of its links resist folding.
+    pub(super) fn has_folds(&self) -> bool {
+        self.folds.len() > 0
+    }
+
+    /// The number of rows whose strength has a factor in each frame.
+    fn rows_with_factors(&self) -> usize {
+        self.pairs.rows.len() + self.combined.len() + self.folds.len()
     }
 
     /// The strength factor of each link in a frame, 0 for broken ones.
     fn factors(&self, frame: &LinkFrame<'_, R>) -> Vec<f64> {
-        let dropoff = frame.prescribed.frame.dropoff;
-        let factor = |(at, link): (usize, &Link)| {
-            let along = dropoff.map_or(1.0, |dropoff| {
-                let ends = Ends::new(link, frame.cloths);
-                dropoff.at(vector(link, &ends, frame.state, frame.prescribed, 0.0).norm())
-            });
-            let strength = if self.layout.is_weld { 1.0 } else { link.strength * along };
-            if self.broken[at] { 0.0 } else { strength }
+        let factor = |(at, link): (usize, &Link)| match (self.broken[at], &link.fold) {
+            (true, _) => 0.0,
+            // Classic shares of the error do not grow with the angle.
+            (false, Some(fold)) if self.layout.is_physical => link.strength * frame.stiffening(fold, link),
+            (false, Some(_)) => link.strength,
+            _ if self.layout.is_weld => 1.0,
+            _ => link.strength * frame.drop(link),
         };
         self.links.iter().enumerate().map(factor).collect()
     }
 
     pub(super) fn begin_frame(&mut self, frame: &LinkFrame<'_, R>) {
-        self.pairs.groups_mut().iter_mut().for_each(|group| group.anchor(&frame.state.anchor));
-        let combined = self.rows() - self.pairs.len() - self.surface.len();
-        if combined > 0 {
+        self.plain.groups_mut().iter_mut().for_each(|group| group.anchor(&frame.state.anchor));
+        if self.rows_with_factors() > 0 {
             let factors = self.factors(frame);
-            let links = &self.links;
-            self.one.begin_frame(frame, links, &factors);
-            self.two.begin_frame(frame, links, &factors);
-            self.three.begin_frame(frame, links, &factors);
-            self.four.begin_frame(frame, links, &factors);
-            self.five.begin_frame(frame, links, &factors);
-            self.six.begin_frame(frame, links, &factors);
+            self.pairs.begin_frame(&frame.state.anchor, &factors, self.layout.is_physical);
+            self.combined.begin_frame(frame, &self.links, &factors);
+            self.folds.begin_frame(frame, &self.links, &factors);
         }
     }
 
-    /// One sweep over all links that are not on surfaces.
+    /// One sweep over all links that are not on surfaces, and one over those that resist folding.
     pub(super) fn sweep(
         &mut self,
         displacement: &mut [Row4<R>],
-        pass: &LinkPass<R>,
+        [pass, fold]: [&LinkPass<R>; 2],
         blocks: usize,
         pool: &ThreadPool,
     ) {
         let points = DisjointSlice::new(displacement);
-        let pairs = &self.pairs;
-        if pairs.len() > 0 {
-            for_batches(pairs, blocks, pool, |batch| {
-                let groups = pairs.batch(batch).iter().map(|group| (group, Uniform));
+        let plain = &self.plain;
+        if plain.len() > 0 {
+            for_batches(plain, blocks, pool, |batch| {
+                let groups = plain.batch(batch).iter().map(|group| (group, Uniform));
                 // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
                 #[allow(unsafe_code)]
                 unsafe {
@@ -247,28 +186,22 @@ impl<R: Real> ConstraintLinks<R> {
                 }
             });
         }
-        self.one.sweep(points, pass, blocks, pool);
-        self.two.sweep(points, pass, blocks, pool);
-        self.three.sweep(points, pass, blocks, pool);
-        self.four.sweep(points, pass, blocks, pool);
-        self.five.sweep(points, pass, blocks, pool);
-        self.six.sweep(points, pass, blocks, pool);
+        self.pairs.sweep(points, pass, blocks, pool);
+        self.combined.sweep(points, pass, blocks, pool);
+        self.folds.sweep(points, fold, blocks, pool);
     }
 }
 
-/// Does `work` on all batches of a list that spans several cloths.
-fn for_batches<G: Sync>(list: &RowList<G>, blocks: usize, pool: &ThreadPool, work: impl Fn(RowBatch) + Sync) {
-    pool.parallel_for(blocks, |block| work(RowBatch::Interior(block)));
-    for colour in 0..list.interface_colours() {
-        pool.parallel_for(list.interface_tasks(colour), |task| work(RowBatch::Interface(colour, task)));
-    }
-}
-
-/// Whether a link is a row of stretch: two single points that cannot break and push each other alike.
-fn is_plain_pair(link: &Link, ends: &Ends, layout: Layout) -> bool {
-    let has_strength = layout.is_weld || link.strength == 1.0 || layout.is_physical && link.strength > 0.0;
+/// Whether a link joins two single points that push each other alike.
+fn is_pair(link: &Link, ends: &Ends) -> bool {
     let is_pair = ends.count == 2 && ends.weights[..2] == [1.0, -1.0] && ends.push[..2] == [1.0, -1.0];
-    is_pair && link.sides.iter().all(LinkSide::is_free) && has_strength && !layout.can_break
+    is_pair && link.sides.iter().all(LinkSide::is_free)
+}
+
+/// Whether it is a row of stretch: a pair that cannot break, of a strength that does not change.
+fn is_plain(link: &Link, ends: &Ends, layout: Layout) -> bool {
+    let is_even = layout.is_weld || link.strength == 1.0 || layout.is_physical && link.strength > 0.0;
+    is_pair(link, ends) && is_even && !layout.can_break && (layout.is_weld || !layout.drops_off)
 }
 
 impl<R: Real> Links<R> {
@@ -278,6 +211,12 @@ impl<R: Real> Links<R> {
             constraints: Vec::new(),
             blocks: AllBlocks::new(cloths.iter().map(|cloth| cloth.blocks.clone())),
         }
+    }
+
+    /// The pairs of points that the whole welds of a constraint join.
+    pub fn welds(&self, constraint: usize) -> Vec<[(ClothId, PointId); 2]> {
+        let own = self.constraints.get(constraint).filter(|own| own.layout.is_weld);
+        own.into_iter().flat_map(ConstraintLinks::joining).filter_map(Link::points).collect()
     }
 
     /// The number of broken links.

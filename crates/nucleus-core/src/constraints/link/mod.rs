@@ -2,29 +2,36 @@
 //!
 //! A constraint has a list of [`Link`]s, formed by the caller. They are laid out by their number of free points, coloured
 //! across all cloths, and swept as one pass of the time step ([`Pass::Links`](crate::schedule::Pass::Links)) between the
-//! constraints of cloth and contact. Single points that are joined alike are rows of [`stretch`](super::stretch); all
-//! other links are combinations of one to six points.
+//! constraints of cloth and contact. Single points that are joined alike are rows of [`stretch`](super::stretch), other
+//! single points are such rows with a factor and a load, and all other links are combinations of one to six points.
+//! Joined edges may resist folding: the bending vector of a hinge is such a combination too.
 //!
 //! | You want to know… | Read |
 //! |---|---|
 //! | the projection of a link | [`rows`] |
 //! | which points a link has, and where prescribed sides are | [`ends`] |
-//! | the state of links, and their lists | [`lists`], [`sizes`] |
+//! | the state of links, and their lists | [`lists`], [`pairs`], [`combined`], [`batches`], [`sizes`] |
 //! | the start of a frame, and one pass | [`pass`], planned as [`sweep`](mod@sweep) |
 //! | links on surfaces, and sliding | [`surface`], [`topology`] |
-//! | broken links | [`glue`] |
+//! | broken links | [`glue`], [`tear`] |
+//! | edges that resist folding | [`fold`] |
 //! | forces, damping and drag along links | [`velocity`] |
 //! | which elements do not collide because they are joined | [`Links::clusters`](lists::Links::clusters) |
 //!
 //! Broken links and the places of sliding links are state and part of a checkpoint; rows are rebuilt from the links.
 
+pub mod batches;
+pub mod combined;
 pub mod ends;
+pub mod fold;
 pub mod glue;
 pub mod lists;
+pub mod pairs;
 pub mod pass;
 pub mod rows;
 pub mod sizes;
 pub mod surface;
 pub mod sweep;
+pub mod tear;
 pub mod topology;
 pub mod velocity;

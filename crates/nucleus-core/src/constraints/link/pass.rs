@@ -1,12 +1,14 @@
 //! The start of a frame for links, and one pass over the links of a constraint.
 
+use crate::constraints::link::combined::LinkFrame;
 use crate::constraints::link::ends::{Ends, Prescribed, vector};
-use crate::constraints::link::lists::{ConstraintLinks, Layout, LinkFrame, Links};
+use crate::constraints::link::lists::{ConstraintLinks, Layout, Links};
 use crate::constraints::link::rows::LinkPass;
 use crate::constraints::link::sweep::LinkSweep;
+use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;
 use crate::input::frame::{FrameInput, ResistanceModel};
-use crate::input::links::LinkMethod;
+use crate::input::links::{Link, LinkMethod};
 use crate::math::Real;
 use crate::model::Model;
 use crate::model::rows::Partition;
@@ -29,6 +31,7 @@ pub fn begin_links<R: Real>(
             can_break: settings.can_break,
             is_physical,
             is_weld: settings.method == LinkMethod::Weld,
+            drops_off: settings.dropoff.is_some(),
         };
         if links.constraints.len() == at {
             links.constraints.push(ConstraintLinks::empty(layout));
@@ -66,11 +69,12 @@ pub fn max_weld_gap<R: Real>(
         links.constraints.iter().zip(&frame.constraints).filter(|(own, _)| own.layout.is_weld)
     {
         let prescribed = Prescribed { colliders, frame: settings };
-        let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && !link.on_surface);
+        let holds = |link: &Link| !link.on_surface && link.fold.is_none();
+        let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && holds(link));
         for (link, _) in whole {
             let ends = Ends::new(link, &model.cloths);
             let length = vector(link, &ends, state, prescribed, 1.0).norm();
-            most = most.max((length - link.rest * settings.rest_scale).abs());
+            most = most.max((length - link.rest * settings.rest_scale[1]).abs());
         }
     }
     most
@@ -87,15 +91,17 @@ pub fn relax_links<R: Real>(
 ) {
     let Links { constraints, blocks } = links;
     let Some(own) = constraints.get_mut(sweep.constraint) else { return };
-    let pass = LinkPass {
-        strength: sweep.normal,
+    let settings = &frame.constraints[sweep.constraint];
+    let pass = |strength: LinkStrength<R>| LinkPass {
+        strength,
         is_physical: own.layout.is_physical,
         time: R::from_f64(time),
         per_step: R::from_f64(1.0 / h),
     };
-    own.sweep(&mut state.displacement, &pass, blocks.len(), pool);
+    let rest_scale = R::from_f64(settings.rest_scale_at(time));
+    let passes = [pass(LinkStrength { rest_scale, ..sweep.normal }), pass(sweep.bend)];
+    own.sweep(&mut state.displacement, [&passes[0], &passes[1]], blocks.len(), pool);
     if !own.surface.is_empty() {
-        let settings = &frame.constraints[sweep.constraint];
         let prescribed = Prescribed { colliders, frame: settings };
         own.relax_surface(sweep, settings, prescribed, (&model.cloths, &model.colliders), state, [time, h]);
     }

@@ -28,6 +28,7 @@ impl ModelSizes<'_> {
         };
         let numbers = [link.rest, link.strength, link.tangent_strength, link.glue, link.length];
         link.sides.iter().all(is_side)
+            && link.fold.is_none_or(|fold| fold.max_length.is_finite())
             && numbers.iter().chain(&link.weight).all(|number| number.is_finite())
             && !(link.on_surface && matches!(link.sides[1], LinkSide::Space(_)))
     }

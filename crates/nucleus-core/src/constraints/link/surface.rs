@@ -214,7 +214,7 @@ impl<R: Real> ConstraintLinks<R> {
             // A sliding point without a fixed side keeps the distance on the side where it is now.
             let side =
                 if frame.single_sided || !frame.slides { 1.0 } else { along.signum() * link.rest.signum() };
-            let rest = link.rest * side * frame.rest_scale;
+            let rest = link.rest * side * frame.rest_scale_at(time);
             let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
                 let sides = if c > 0.0 {
                     [strength.share.above, strength.compliance.above]

@@ -7,8 +7,10 @@ use crate::constraints::stretch::LinkStrength;
 pub struct LinkSweep<R> {
     /// The constraint, by its index.
     pub constraint: usize,
-    /// Along links, and along the normals of surfaces.
+    /// Along links, and along the normals of surfaces; without the factor on rest lengths, which changes in the frame.
     pub normal: LinkStrength<R>,
     /// Along surfaces.
     pub tangent: LinkStrength<R>,
+    /// Of folds.
+    pub bend: LinkStrength<R>,
 }

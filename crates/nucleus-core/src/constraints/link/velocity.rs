@@ -44,7 +44,7 @@ pub fn apply_link_forces<R: Real>(
     for (own, settings) in links.constraints.iter().zip(&frame.constraints) {
         let Some(force) = settings.force else { continue };
         let prescribed = Prescribed { colliders, frame: settings };
-        for link in own.links.iter().zip(&own.broken).filter(|(_, broken)| !**broken).map(|(link, _)| link) {
+        for link in own.joining() {
             let ends = Ends::new(link, &model.cloths);
             let mobility = ends.mobility(&state.displacement);
             let d = vector(link, &ends, state, prescribed, time);
@@ -71,7 +71,7 @@ pub fn damp_links<R: Real>(
             continue;
         }
         let prescribed = Prescribed { colliders, frame: settings };
-        for link in own.links.iter().zip(&own.broken).filter(|(_, broken)| !**broken).map(|(link, _)| link) {
+        for link in own.joining() {
             let ends = Ends::new(link, &model.cloths);
             let mobility = ends.mobility(&state.displacement);
             if mobility <= 0.0 {

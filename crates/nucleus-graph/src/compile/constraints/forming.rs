@@ -7,7 +7,7 @@ use crate::attributes::{ElementKind, RampPoint, dynamic_constraint as con};
 use crate::compile::soft_body::ramp_at;
 
 use super::kinds::{self, Values};
-use super::member::{Member, MemberObject, Places};
+use super::member::{ConstraintSource, Member, MemberObject, Places};
 use super::near::{Foot, Nearby, barycentric, distance, foot};
 
 type Point = Vector3<f64>;
@@ -24,11 +24,12 @@ const CONSTANT: i32 = 1;
 /// What forming links needs of a constraint.
 pub(super) struct Forming<'a> {
     pub(super) values: Values<'a>,
-    pub(super) members: &'a [Member],
+    pub(super) source: &'a ConstraintSource,
     pub(super) places: &'a Places,
-    pub(super) seams: &'a [(ClothId, [u32; 2], [u32; 2])],
     /// Metres per scene unit.
     pub(super) metres: f64,
+    /// Whether joined edges resist folding.
+    pub(super) bends: bool,
 }
 
 /// A place on an element of a member.
@@ -60,7 +61,7 @@ impl Forming<'_> {
             _ => self.pairs(),
         };
         let constant = self.values.choice(&con::REST_LENGTH_METHOD) == CONSTANT;
-        let rest = |link: &Link| match constant {
+        let rest = |link: &Link| match constant && link.fold.is_none() {
             true if link.rest < 0.0 => -1.0,
             true => 1.0,
             false => link.rest,
@@ -71,7 +72,9 @@ impl Forming<'_> {
     /// Links from every point to the constraint's own space, where `local` puts it.
     pub(super) fn to_space(&self, local: impl Fn(Point) -> Point) -> Vec<Link> {
         let mut links = Vec::new();
-        for member in self.members.iter().filter(|member| matches!(member.object, MemberObject::Cloth(_))) {
+        for member in
+            self.source.members.iter().filter(|member| matches!(member.object, MemberObject::Cloth(_)))
+        {
             for (point, element) in member.points() {
                 let at = self.places.point(member.object, point);
                 let side = member.side([point; 3], [1.0, 0.0, 0.0]);
@@ -93,7 +96,7 @@ impl Forming<'_> {
         let mut links = Vec::new();
         for [a, b] in self.joined_members() {
             for [x, y] in self.element_pairs(a, b) {
-                self.join((&self.members[a], x), (&self.members[b], y), &mut links);
+                self.join((&self.source.members[a], x), (&self.source.members[b], y), &mut links);
             }
         }
         links
@@ -101,7 +104,7 @@ impl Forming<'_> {
 
     /// The members that are joined, by their indices.
     fn joined_members(&self) -> Vec<[usize; 2]> {
-        let count = self.members.len();
+        let count = self.source.members.len();
         let mut joined: Vec<[usize; 2]> = match self.values.choice(&con::COMPONENT_RELATION) {
             ALL_TO_FIRST => (1..count).map(|k| [k, 0]).collect(),
             ALL_TO_ALL => (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect(),
@@ -116,7 +119,7 @@ impl Forming<'_> {
 
     /// The elements of two members that are joined, by `connectionMethod`, thinned out by `connectionDensity`.
     fn element_pairs(&self, a: usize, b: usize) -> Vec<[u32; 2]> {
-        let [from, to] = [a, b].map(|k| &self.members[k]);
+        let [from, to] = [a, b].map(|k| &self.source.members[k]);
         let pairs = match self.values.choice(&con::CONNECTION_METHOD) {
             IN_ORDER if a == b => self.in_order_within(from),
             IN_ORDER => {
@@ -256,6 +259,10 @@ impl Forming<'_> {
             let b = self.place(to, y, &on);
             links.push(self.link([(from, a), (to, b)], on_face.then(|| normal(&theirs, &on))));
         }
+        if self.bends && from.kind == ElementKind::Edge && to.kind == ElementKind::Edge {
+            let first = links.len() as u32 - 2;
+            links.extend(self.folds([(from, x), (to, y)], [first, first + 1]));
+        }
     }
 
     fn place(&self, member: &Member, element: u32, on: &Foot) -> Place {
@@ -282,7 +289,7 @@ impl Forming<'_> {
 
     /// Links from all points to the closest places of the first member, a surface.
     fn to_surface(&self) -> Vec<Link> {
-        let Some((surface, others)) = self.members.split_first() else { return Vec::new() };
+        let Some((surface, others)) = self.source.members.split_first() else { return Vec::new() };
         let faces = self.all_corners(surface);
         let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
         let mut links = Vec::new();
@@ -306,23 +313,28 @@ impl Forming<'_> {
 
     /// The welds of a tearable surface, each for half of its edge.
     fn seams(&self) -> Vec<Link> {
-        let glue = self.members.first().map_or(1.0, |member| member.factors(0)[2]);
+        let glue = self.source.members.first().map_or(1.0, |member| member.factors(0)[2]);
         let weld = |(cloth, points, edge): &(ClothId, [u32; 2], [u32; 2])| {
             let place = |point: u32| self.places.point(MemberObject::Cloth(*cloth), point);
             let sides = points.map(|point| LinkSide::point(*cloth, PointId(point)));
             Link { glue, length: (place(edge[0]) - place(edge[1])).norm() / 2.0, ..Link::new(sides, 0.0) }
         };
-        self.seams.iter().map(weld).collect()
+        let mut links: Vec<Link> = self.source.seams.iter().map(weld).collect();
+        if self.bends {
+            links.extend(self.folds_of_seams());
+        }
+        links
     }
 
     /// Links from the points of borders to the closest places of other borders, within `maxDistance`.
     fn borders(&self) -> Vec<Link> {
         let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
-        let within = self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || self.members.len() == 1;
+        let within = self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || self.source.members.len() == 1;
         let mut links = Vec::new();
         let mut joined = std::collections::BTreeSet::new();
-        for (a, from) in self.members.iter().enumerate() {
-            for (b, to) in self.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
+        let mut welds = std::collections::BTreeMap::new();
+        for (a, from) in self.source.members.iter().enumerate() {
+            for (b, to) in self.source.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
                 let edges = self.all_corners(to);
                 let nearby = Nearby::new(edges.iter().map(Vec::as_slice));
                 let along = (a == b).then(|| Chains::new(to, &edges));
@@ -348,9 +360,23 @@ impl Forming<'_> {
                     let from_place = Place { side: from.side([point; 3], [1.0, 0.0, 0.0]), at, element };
                     let to_place = self.place(to, edge, &on);
                     let link = self.link([(from, from_place), (to, to_place)], None);
+                    welds.insert((a, point), links.len() as u32);
                     links.push(Link { length: from.border_length(point, self.places), ..link });
                 }
             }
+        }
+        if self.bends {
+            let folds: Vec<Link> = self
+                .border_pairs(within, reach)
+                .into_iter()
+                .flat_map(|[a, b]| {
+                    let members = [a, b].map(|(member, edge)| (&self.source.members[member], edge));
+                    let ends = members[0].0.elements.face(a.1 as usize);
+                    let weld = |end: u32| welds.get(&(a.0, end)).copied().unwrap_or(u32::MAX);
+                    self.folds(members, [weld(ends[0]), weld(ends[ends.len() - 1])])
+                })
+                .collect();
+            links.extend(folds);
         }
         links
     }

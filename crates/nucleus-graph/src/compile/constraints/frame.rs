@@ -23,6 +23,34 @@ use super::member::{ConstraintSource, MemberObject, Part, Places};
 /// `restLengthMethod: constant`, `connectionUpdate: per frame`.
 const CONSTANT: i32 = 1;
 const PER_FRAME: i32 = 1;
+/// `bendBreakAngle` of a tearable surface that keeps the bend resistance of its cloth, in degrees.
+const TEARABLE_BREAK_ANGLE: f64 = 5.0;
+
+impl ConstraintSource {
+    /// Whether joined edges resist folding.
+    fn bends(&self, values: &Values<'_>) -> bool {
+        self.kept_bend.is_some() || values.toggle(&con::BEND)
+    }
+
+    fn bend_strength(&self, values: &Values<'_>) -> f64 {
+        let given = values.at.graph().is_given(self.node, &con::BEND_STRENGTH);
+        match self.kept_bend.filter(|_| !given) {
+            Some(resistance) => resistance,
+            None if self.bends(values) => values.number(&con::BEND_STRENGTH),
+            None => 0.0,
+        }
+    }
+
+    /// Sine of half the angle at which folds let go; 1 for never.
+    fn break_half_sine(&self, values: &Values<'_>) -> f64 {
+        let given = values.at.graph().is_given(self.node, &con::BEND_BREAK_ANGLE);
+        let angle = match self.kept_bend.is_some() && !given {
+            true => TEARABLE_BREAK_ANGLE,
+            false => values.number(&con::BEND_BREAK_ANGLE),
+        };
+        if angle >= 180.0 { 1.0 } else { (angle.max(0.0).to_radians() / 2.0).sin() }
+    }
+}
 
 impl NucleusProgram {
     /// Whether a restored state of constraints fits.
@@ -95,10 +123,15 @@ impl EvaluationInterval<'_> {
             },
             strength: strength(&con::STRENGTH),
             tangent_strength: strength(&con::TANGENT_STRENGTH),
-            rest_scale: match constant {
-                true => units.length(values.number(&con::REST_LENGTH)),
-                false => values.number(&con::REST_LENGTH_SCALE),
-            },
+            rest_scale: [&self.from, &self.to].map(|moment| {
+                let values = Values::new(moment, source.node);
+                match constant {
+                    true => units.length(values.number(&con::REST_LENGTH)),
+                    false => values.number(&con::REST_LENGTH_SCALE),
+                }
+            }),
+            bend_strength: if is_force { 0.0 } else { source.bend_strength(values) },
+            break_half_sine: source.break_half_sine(values),
             iterations: [&con::MIN_ITERATIONS, &con::MAX_ITERATIONS]
                 .map(|key| self.to.get(source.node, key).max(0) as f64),
             glue_strength: values.number(&con::GLUE_STRENGTH),
@@ -154,8 +187,8 @@ impl EvaluationInterval<'_> {
         let values = Values::new(&self.from, source.node);
         let places = self.places(source, position);
         let metres = self.nucleus.units.length(1.0);
-        let seams = &source.seams;
-        let forming = Forming { values, members: &source.members, places: &places, seams, metres };
+        let bends = source.bends(&values);
+        let forming = Forming { values, source, places: &places, metres, bends };
         let to_space = values.choice(&con::CONSTRAINT_RELATION) == 0;
         match source.part {
             Some(Part::ForceToOrigin) => forming.to_space(|_| Vector3::zeros()),

@@ -24,6 +24,10 @@ pub(crate) struct ConstraintSource {
     pub(crate) can_break: bool,
     /// Welds of a tearable surface: the cloth, two of its points and the ends of an edge that they are half of.
     pub(super) seams: Vec<(ClothId, [u32; 2], [u32; 2])>,
+    /// The edges of these welds: of both faces the ends of the edge, and the next corner behind each end.
+    pub(super) creases: Vec<(ClothId, [[u32; 4]; 2])>,
+    /// `bendResistance` of the cloth of a tearable surface that keeps it where it is whole.
+    pub(super) kept_bend: Option<f64>,
 }
 
 /// The role of the links of a source.
@@ -59,6 +63,8 @@ pub(crate) struct Member {
     pub(crate) kind: ElementKind,
     /// The points of each element.
     pub(crate) elements: Faces,
+    /// The next corners of a face behind the ends of each edge; none for an edge without a face. Empty for other elements.
+    pub(super) behind: Vec<Option<[u32; 2]>>,
     /// Factors of the component on strength, tangent strength, glue and weight.
     pub(super) scalars: [f64; 4],
     /// Maps by point on strength, glue and weight; empty where there are none.

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId};
 
-use crate::attributes::{Choice, ElementKind, dynamic_constraint as con, n_base, n_component, nucleus};
+use crate::attributes::{
+    Choice, ElementKind, dynamic_constraint as con, n_base, n_cloth, n_component, nucleus,
+};
 use crate::compile::compiler::Compiler;
 use crate::compile::map_values::{MapAttributes, MapOfCloth};
 use crate::compile::program::NamedSelection;
@@ -79,7 +81,9 @@ impl Compiler<'_> {
         let used = |key| values.ever(key, |value| value > 0.0);
         let drags = used(&con::DAMP) || used(&con::MOTION_DRAG);
         let forces = values.ever(&con::FORCE, |force| force != 0.0);
-        let pulls = used(&con::STRENGTH)
+        let bends = values.toggle(&con::BEND) && used(&con::BEND_STRENGTH);
+        let pulls = bends
+            || used(&con::STRENGTH)
             || used(&con::TANGENT_STRENGTH)
             || values.choice(&con::CONSTRAINT_METHOD) == 0
                 && values.kind != kinds::DISABLE_COLLISION
@@ -107,6 +111,8 @@ impl Compiler<'_> {
             exclusion: exclusion.take(),
             can_break,
             seams: self.seams_of(node),
+            creases: self.creases_of(node),
+            kept_bend: self.kept_bend(&values, &members),
         };
         parts.into_iter().map(source).collect()
     }
@@ -122,6 +128,31 @@ impl Compiler<'_> {
             .filter_map(|(cloth, source)| Some((cloth, source.tearing.as_ref()?)))
             .flat_map(of_cloth)
             .collect()
+    }
+
+    /// The edges of these welds.
+    fn creases_of(&self, node: NodeId) -> Vec<(ClothId, [[u32; 4]; 2])> {
+        let cloths = (0..).map(ClothId).zip(&self.program.cloths);
+        let tearing = cloths.filter_map(|(cloth, source)| Some((cloth, source.tearing.as_ref()?)));
+        let of_cloth = |(cloth, tearing): (ClothId, &Tearing)| {
+            let own = tearing.creases.iter().filter(|crease| crease.constraint == node);
+            own.map(|crease| (cloth, crease.sides)).collect::<Vec<_>>()
+        };
+        tearing.flat_map(of_cloth).collect()
+    }
+
+    /// Maya creates a tearable surface with `bend` where the cloth resists bending by more than this.
+    fn kept_bend(&self, values: &Values<'_>, members: &[Member]) -> Option<f64> {
+        const LEAST_BEND: f64 = 0.2;
+        let is_open = values.kind == kinds::TEARABLE && !self.scene.graph.is_given(values.node, &con::BEND);
+        let of_cloth = |member: &Member| match member.object {
+            MemberObject::Cloth(cloth) if self.program.cloths[cloth.index()].tearing.is_some() => {
+                self.start.get(self.program.cloths[cloth.index()].node, &n_cloth::BEND_RESISTANCE)
+            }
+            _ => 0.0,
+        };
+        let most = members.iter().map(of_cloth).fold(0.0, f64::max);
+        (is_open && most > LEAST_BEND).then_some(most)
     }
 
     /// Reports members that a constraint cannot join.
@@ -184,16 +215,33 @@ impl Compiler<'_> {
         let graph = &self.scene.graph;
         let surfaces = Values::new(&self.start, constraint).kind;
         let surfaces = matches!(surfaces, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
-        let mut members = Vec::new();
+        let (mut members, mut strangers) = (Vec::new(), Vec::new());
         for (_, plug) in graph.elements(constraint, &con::COMPONENT_IDS) {
             let Some(object) = graph.source(plug.node, &n_component::OBJECT_ID) else { continue };
-            let Some(target) = self.member_object(object) else { continue };
+            let Some(target) = self.member_object(object) else {
+                strangers.push(object);
+                continue;
+            };
             let is_surface = surfaces && members.is_empty();
             if let Some(member) = self.member([constraint, plug.node, object], target, is_surface) {
                 members.push(member);
             }
         }
+        strangers.into_iter().for_each(|object| self.refuse_stranger(constraint, object));
         members
+    }
+
+    /// Reports an object that another nucleus solves. One with errors of its own is not solved at all.
+    fn refuse_stranger(&mut self, constraint: NodeId, object: NodeId) {
+        if self.broken.contains(&object) || self.findings.errors() > 0 {
+            return;
+        }
+        let graph = &self.scene.graph;
+        let [name, object, own] = [constraint, object, self.program.node].map(|id| graph.node(id).name());
+        let place = self.scene.source.place(&format!("{name}.components"));
+        let message = format!("`{name}` joins `{object}`, which `{own}` does not solve");
+        let help = "a constraint and all of its members need the same nucleus: set `nucleus` of each";
+        self.findings.error(&place, message).help(help);
     }
 
     fn member_object(&self, object: NodeId) -> Option<MemberObject> {
@@ -278,7 +326,11 @@ impl Compiler<'_> {
             values
         });
         let name = self.scene.graph.node(object).name().to_owned();
-        Some(Member { object: target, kind, elements: all, scalars, maps, name })
+        let behind = match kind {
+            ElementKind::Edge => chosen.iter().map(|&at| elements.behind(at)).collect(),
+            _ => Vec::new(),
+        };
+        Some(Member { object: target, kind, elements: all, behind, scalars, maps, name })
     }
 }
 

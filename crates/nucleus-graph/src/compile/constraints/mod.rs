@@ -6,6 +6,7 @@
 //! | which objects and elements are members               | `members.rs`, `member.rs` |
 //! | which elements a component selects                     | `select.rs`  |
 //! | which elements are joined, and where                   | `forming.rs` |
+//! | joined edges that resist folding                      | `folding.rs` |
 //! | the closest places of elements                         | `near.rs`    |
 //! | meshes that are split where they can tear              | `tearing.rs`, `split_mesh.rs` |
 //! | the attributes of a frame; keyed `enable`              | `frame.rs`   |
@@ -13,6 +14,7 @@
 //! A transform constraint without any attribute of springs pins its points; see `attachments.rs`. Every other kind is
 //! links of the solver, exclusions of its contact, or both.
 
+mod folding;
 mod forming;
 mod frame;
 pub(super) mod kinds;

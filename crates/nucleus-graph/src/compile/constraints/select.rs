@@ -25,23 +25,27 @@ pub(super) struct Elements<'a> {
     pub(super) points: usize,
     /// Each edge once, in the order in which faces name them, with the number of its faces.
     edges: Vec<([u32; 2], u32)>,
+    /// The corners of its first face behind the ends of each edge.
+    behind: Vec<[u32; 2]>,
 }
 
 impl<'a> Elements<'a> {
     pub(super) fn new(faces: &'a Faces, points: usize) -> Self {
         let mut found: BTreeMap<[u32; 2], usize> = BTreeMap::new();
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
+        let mut behind = Vec::new();
         for face in faces.iter() {
             for (k, &a) in face.iter().enumerate() {
                 let b = face[(k + 1) % face.len()];
                 let at = *found.entry([a.min(b), a.max(b)]).or_insert(edges.len());
                 if at == edges.len() {
                     edges.push(([a, b], 0));
+                    behind.push([face[(k + face.len() - 1) % face.len()], face[(k + 2) % face.len()]]);
                 }
                 edges[at].1 += 1;
             }
         }
-        Self { faces, points, edges }
+        Self { faces, points, edges, behind }
     }
 
     pub(super) fn count(&self, kind: ElementKind) -> usize {
@@ -59,6 +63,12 @@ impl<'a> Elements<'a> {
             ElementKind::Edge => self.edges[at as usize].0.to_vec(),
             ElementKind::Face => self.faces.face(at as usize).to_vec(),
         }
+    }
+
+    /// The corners of a face behind the ends of an edge; `None` where they are the ends themselves.
+    pub(super) fn behind(&self, edge: u32) -> Option<[u32; 2]> {
+        let (ends, corners) = (self.edges[edge as usize].0, self.behind[edge as usize]);
+        (!corners.iter().any(|corner| ends.contains(corner))).then_some(corners)
     }
 
     /// The elements for which all points are selected.

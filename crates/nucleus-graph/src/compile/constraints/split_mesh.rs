@@ -22,6 +22,7 @@ pub(crate) struct Tearing {
     /// The faces of the split mesh.
     split: Faces,
     pub(super) seams: Vec<Seam>,
+    pub(super) creases: Vec<Crease>,
 }
 
 /// Two points that a weld joins: one end of an edge that can tear.
@@ -33,26 +34,42 @@ pub(super) struct Seam {
     pub(super) edge: [u32; 2],
 }
 
+/// The two faces of an edge that can tear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Crease {
+    pub(super) constraint: NodeId,
+    /// Of each face the ends of the edge, and the next corner behind each end.
+    pub(super) sides: [[u32; 4]; 2],
+}
+
 impl Tearing {
     /// Splits a mesh. `tears` gives the constraint that can tear an edge at one of its ends.
     pub(super) fn new(faces: &Faces, points: usize, tears: impl Fn([u32; 2], u32) -> Option<NodeId>) -> Self {
         // Corners of faces round a point stay together where an edge between them cannot tear.
         let corners = faces.corners();
         let mut parents: Vec<usize> = (0..corners.len()).collect();
-        let mut found: BTreeMap<[u32; 2], Vec<[usize; 2]>> = BTreeMap::new();
+        let mut found: BTreeMap<[u32; 2], Vec<[usize; 4]>> = BTreeMap::new();
         let mut first = 0;
         for face in faces.iter() {
             for k in 0..face.len() {
-                let next = (k + 1) % face.len();
-                let (a, b) = (face[k], face[next]);
-                let ends = if a < b { [first + k, first + next] } else { [first + next, first + k] };
+                let at = |step: usize| first + (k + step) % face.len();
+                let (a, b) = (face[k], face[(k + 1) % face.len()]);
+                let behind = [at(face.len() - 1), at(2)];
+                let ends = match a < b {
+                    true => [at(0), at(1), behind[0], behind[1]],
+                    false => [at(1), at(0), behind[1], behind[0]],
+                };
                 found.entry([a.min(b), a.max(b)]).or_default().push(ends);
             }
             first += face.len();
         }
         let mut torn: Vec<(NodeId, [u32; 2], [usize; 2])> = Vec::new();
+        let mut creased: Vec<(NodeId, [[usize; 4]; 2])> = Vec::new();
         for (edge, sides) in &found {
             for pair in sides.windows(2) {
+                if let Some(constraint) = edge.iter().find_map(|&end| tears(*edge, end)) {
+                    creased.push((constraint, [pair[0], pair[1]]));
+                }
                 for end in 0..2 {
                     let ours = [pair[0][end], pair[1][end]];
                     match tears(*edge, edge[end]) {
@@ -93,7 +110,13 @@ impl Tearing {
                 seams.push(Seam { constraint, points, edge });
             }
         }
-        Self { faces: faces.clone(), points, twins, split, seams }
+        let mut point = |corner: usize| own[root(&mut parents, corner)];
+        let crease = |(constraint, sides): (NodeId, [[usize; 4]; 2])| Crease {
+            constraint,
+            sides: sides.map(|side| side.map(&mut point)),
+        };
+        let creases = creased.into_iter().map(crease).collect();
+        Self { faces: faces.clone(), points, twins, split, seams, creases }
     }
 
     /// A column of points, with twins where their originals are.

@@ -1,0 +1,177 @@
+//! Links of two single points that can break, or whose strength varies: rows of [`stretch`](crate::constraints::stretch)
+//! with a factor each, and with their loads.
+
+use crate::constraints::strength_map::StrengthMap;
+use crate::constraints::stretch::{LinkGroup, LinkProjection, LinkRow};
+use crate::input::links::Link;
+use crate::math::{Lanes, Real, Row4};
+use crate::model::rows::{AllBlocks, Row, RowList};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+use super::batches::{Loads, for_batches};
+use super::ends::Ends;
+use super::rows::{LinkPass, NO_LINK, VectorGroup};
+
+/// Four pairs side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct PairGroup<R> {
+    /// Their points, spans and rest lengths.
+    pub(super) row: LinkGroup<R>,
+    /// Factors on share and compliance, by frame. A broken link has the share 0.
+    factor: Factors<R>,
+    /// The link of each lane, or [`NO_LINK`].
+    pub(super) link: [u32; 4],
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Factors<R> {
+    share: [R; 4],
+    compliance: [R; 4],
+}
+
+impl<R: Real> StrengthMap<R> for &Factors<R> {
+    #[inline(always)]
+    fn scale(self, _c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
+        (share * R::Lanes::from_array(self.share), compliance * R::Lanes::from_array(self.compliance))
+    }
+}
+
+/// A pair before it is laid out.
+#[derive(Debug, Clone, Copy)]
+struct PairRow<R> {
+    row: LinkRow<R>,
+    link: u32,
+}
+
+impl<R: Real> Row for PairRow<R> {
+    type Group = PairGroup<R>;
+    const POINTS: usize = 2;
+
+    fn point(&self, k: usize) -> u32 {
+        self.row.ends[k]
+    }
+
+    fn idle(padding_point: u32) -> Self {
+        Self { row: LinkRow::idle(padding_point), link: NO_LINK }
+    }
+
+    fn group(rows: [Self; 4]) -> PairGroup<R> {
+        let factor = Factors { share: [R::ZERO; 4], compliance: [R::ONE; 4] };
+        PairGroup { row: LinkRow::group(rows.map(|pair| pair.row)), factor, link: rows.map(|pair| pair.link) }
+    }
+}
+
+/// The pairs of a constraint.
+pub(super) struct PairList<R> {
+    pub(super) rows: RowList<PairGroup<R>>,
+    pub(super) loads: Loads<R>,
+}
+
+impl<R> Default for PairList<R> {
+    fn default() -> Self {
+        Self { rows: RowList::default(), loads: Loads::default() }
+    }
+}
+
+impl<R: Real> PairList<R> {
+    pub(super) fn new(all: &[(u32, Ends)], links: &[Link], can_break: bool, blocks: &AllBlocks) -> Self {
+        let row = |(at, ends): &(u32, Ends)| {
+            let rest_length = R::from_f64(links[*at as usize].rest);
+            let row = LinkRow { ends: [ends.rows[0], ends.rows[1]], rest_length, slenderness: R::ONE };
+            PairRow { row, link: *at }
+        };
+        let rows: Vec<PairRow<R>> = all.iter().map(row).collect();
+        let rows = RowList::new(&rows, blocks);
+        Self { loads: Loads::new(can_break, rows.groups().len()), rows }
+    }
+
+    /// Takes up anchors and the factors of the links on the strength.
+    pub(super) fn begin_frame(&mut self, anchors: &[[f64; 3]], factors: &[f64], is_physical: bool) {
+        for group in self.rows.groups_mut() {
+            group.row.anchor(anchors);
+            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
+                let factor = factors[group.link[lane] as usize];
+                let [share, softness] = match is_physical && factor > 0.0 {
+                    true => [1.0, 1.0 / factor],
+                    false => [factor, 1.0],
+                };
+                group.factor.share[lane] = R::from_f64(share);
+                group.factor.compliance[lane] = R::from_f64(softness.min(1e30));
+            }
+        }
+    }
+
+    pub(super) fn sweep(
+        &mut self,
+        points: DisjointSlice<'_, Row4<R>>,
+        pass: &LinkPass<R>,
+        blocks: usize,
+        pool: &ThreadPool,
+    ) {
+        let Self { rows, loads } = self;
+        if rows.len() == 0 {
+            return;
+        }
+        let loads = loads.share();
+        for_batches(rows, blocks, pool, |batch| {
+            // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point; batches share no
+            // group.
+            #[allow(unsafe_code)]
+            unsafe {
+                let groups = rows.batch(batch);
+                match loads.of(rows.first_group(batch), groups.len()) {
+                    Some(loads) => relax(points, groups.iter().zip(loads.iter_mut().map(Some)), pass),
+                    None => relax(points, groups.iter().map(|group| (group, None)), pass),
+                }
+            }
+        });
+    }
+
+    /// Takes broken links out of the sweeps.
+    pub(super) fn release(&mut self, broken: &[bool]) {
+        for group in self.rows.groups_mut() {
+            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
+                if broken[group.link[lane] as usize] {
+                    group.factor.share[lane] = R::ZERO;
+                }
+            }
+        }
+    }
+}
+
+/// Sweeps pairs once, and adds the impulses that pull their first points to those of their lane group.
+///
+/// # Safety
+/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
+#[allow(unsafe_code)]
+#[inline(always)]
+unsafe fn relax<'a, R: Real>(
+    points: DisjointSlice<'_, Row4<R>>,
+    groups: impl Iterator<Item = (&'a PairGroup<R>, Option<&'a mut VectorGroup<R>>)>,
+    pass: &LinkPass<R>,
+) {
+    let projection = LinkProjection::new(&pass.strength);
+    let per_step = R::Lanes::splat(pass.per_step);
+    for (group, load) in groups {
+        // SAFETY: the caller's promise.
+        let [a, b] = group.row.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
+        let push = projection.push(&group.row, &group.factor, [a, b]);
+        if let Some(load) = load {
+            let [x, y, z, _] = R::Lanes::transpose(push);
+            for (sum, own) in load.iter_mut().zip([x, y, z]) {
+                *sum = (R::Lanes::from_array(*sum) + own * per_step).to_array();
+            }
+        }
+        for lane in 0..4 {
+            let [end_a, end_b] = group.row.ends.map(|end| end[lane]);
+            let moved_a = a[lane] + a[lane].splat_last() * push[lane];
+            let moved_b = b[lane] - b[lane].splat_last() * push[lane];
+            // SAFETY: the caller's promise.
+            unsafe {
+                points.set(end_a, Row4(moved_a.to_array()));
+                points.set(end_b, Row4(moved_b.to_array()));
+            }
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Surfaces that tear: where a tear runs, on meshes of several kinds.
+
+mod scenes;
+
+use nucleus_core::{
+    Cloth, ClothId, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, LinkSide, Mass, ModelBuilder,
+    Solver, StateView, StepReport, Surface,
+};
+use scenes::links::{PHYSICAL, point, run, tied};
+use scenes::{LINKS, Vec3, pins};
+
+/// How the quads of a grid are cut into triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Cells {
+    Quads,
+    Rising,
+    Falling,
+    Crossed,
+}
+
+/// A tearable sheet of one metre by one, with a notch at the left at half its height, as in the compiled form of a tearable
+/// surface: every face has points of its own, and faces that share an edge are welded at both of its ends. Also the places
+/// of the welds' edges at rest.
+fn notched_sheet(cells: u32, kind: Cells) -> (Surface, Vec<Link>, Vec<[Vec3; 2]>) {
+    use std::collections::BTreeMap;
+    let side = cells + 1;
+    let at = |k: u32| Vec3::new(f64::from(k % side), f64::from(k / side), 0.0) / f64::from(cells);
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for k in (0..side * side).filter(|k| k % side < cells && k / side < cells) {
+        let [a, b, c, d] = [k, k + 1, k + side + 1, k + side];
+        let rises = match kind {
+            Cells::Crossed => (k % side + k / side) % 2 == 0,
+            _ => kind == Cells::Rising,
+        };
+        match kind {
+            Cells::Quads => faces.push(vec![a, b, c, d]),
+            _ if rises => faces.extend([vec![a, b, c], vec![a, c, d]]),
+            _ => faces.extend([vec![a, b, d], vec![b, c, d]]),
+        }
+    }
+    let mut surface = Surface::default();
+    let mut edges: BTreeMap<[u32; 2], Vec<[u32; 2]>> = BTreeMap::new();
+    for face in &faces {
+        let first = surface.positions.len() as u32;
+        let count = face.len() as u32;
+        surface.positions.extend(face.iter().map(|&k| at(k)));
+        surface.faces.push(&(first..first + count).collect::<Vec<u32>>());
+        for k in 0..count {
+            let [i, j] = [k, (k + 1) % count];
+            let [a, b] = [face[i as usize], face[j as usize]];
+            let ends = if a < b { [first + i, first + j] } else { [first + j, first + i] };
+            edges.entry([a.min(b), a.max(b)]).or_default().push(ends);
+        }
+    }
+    let (mut links, mut places) = (Vec::new(), Vec::new());
+    for ([a, b], sides) in edges.iter().filter(|(_, sides)| sides.len() == 2) {
+        let middle = (at(*a) + at(*b)) / 2.0;
+        let is_notch = middle.x < 0.3 && (at(*a).y - 0.5).abs() < 1e-9 && (at(*b).y - 0.5).abs() < 1e-9;
+        if is_notch {
+            continue;
+        }
+        for end in 0..2 {
+            let link = Link::new([point(0, sides[0][end]), point(0, sides[1][end])], 0.0);
+            links.push(Link { length: (at(*a) - at(*b)).norm() / 2.0, ..link });
+            places.push([at(*a), at(*b)]);
+        }
+    }
+    (surface, links, places)
+}
+
+/// Pulls the notched sheet apart, the upper edge along `pull` over one second: the places of broken edges, and how many
+/// frames it took.
+fn tear_apart(cells: u32, kind: Cells, pull: Vec3) -> (Vec<[Vec3; 2]>, u32, u64) {
+    let (surface, links, places) = notched_sheet(cells, kind);
+    let cloth = Cloth::new(
+        surface.clone(),
+        Mass::PerArea(0.2),
+        ClothLists { cross_links: true, damp: true, ..LINKS },
+    );
+    let mut builder = ModelBuilder::new();
+    builder.cloth(cloth).expect("a good mesh");
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let constraint = ConstraintFrame {
+        formed: Some(links.clone()),
+        method: LinkMethod::Weld,
+        can_break: true,
+        glue_strength: 0.8,
+        ..ConstraintFrame::default()
+    };
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(1, PHYSICAL, constraint) };
+    input.cloths[0].stretch_damp = 1.0;
+    input.cloths[0].damp = 1.0;
+    let held = |k: &usize| [0.0, 1.0].contains(&surface.positions[*k].y);
+    let held: Vec<usize> = (0..surface.positions.len()).filter(held).collect();
+    let mut broken = vec![false; links.len()];
+    let mut report = StepReport::default();
+    let mut frames = 0;
+    for k in 0..36 {
+        input.pins = pins(&surface, held.iter().copied());
+        for (pin, &at) in input.pins.iter_mut().zip(&held) {
+            let [start, end] = [k, k + 1].map(|k| {
+                if surface.positions[at].y > 0.5 { pull * (f64::from(k) / 24.0) } else { Vec3::zeros() }
+            });
+            (pin.start, pin.end) = (surface.positions[at] + start, surface.positions[at] + end);
+        }
+        report = run(&mut solver, &mut input, 1);
+        frames = k;
+        for (broken, link) in broken.iter_mut().zip(&links) {
+            let ends = link.sides.map(|side| match side {
+                LinkSide::Cloth { points, .. } => solver.point(ClothId(0), points[0].0 as usize),
+                _ => Vec3::zeros(),
+            });
+            *broken |= (ends[0] - ends[1]).norm() > 0.002;
+        }
+    }
+    let torn = places.iter().zip(&broken).filter(|(_, broken)| **broken).map(|(place, _)| *place).collect();
+    (torn, frames, report.broken_links)
+}
+
+#[test]
+#[ignore = "prints a measurement"]
+fn measure_tears() {
+    for (pull, name) in [(Vec3::y(), "across"), (Vec3::new(0.6, 0.8, 0.0), "askew")] {
+        for (cells, kind) in [
+            (10, Cells::Quads),
+            (10, Cells::Rising),
+            (10, Cells::Falling),
+            (10, Cells::Crossed),
+            (20, Cells::Quads),
+            (20, Cells::Rising),
+            (20, Cells::Falling),
+            (20, Cells::Crossed),
+        ] {
+            let (torn, _, broken) = tear_apart(cells, kind, pull);
+            // By edge, each end counted once.
+            let length: f64 = torn.iter().map(|[a, b]| (a - b).norm() / 2.0).sum();
+            let off = |[a, b]: &[Vec3; 2]| (((a + b) / 2.0).y - 0.5).abs() * (a - b).norm() / 2.0;
+            let mean = torn.iter().map(off).sum::<f64>() / length.max(1e-9);
+            let most =
+                torn.iter().map(|[a, b]| ((a + b) / 2.0).y - 0.5).fold(0.0, |m: f64, y| m.max(y.abs()));
+            println!(
+                "{name} {cells} {kind:?}: {broken} welds, length {length:.3} m (0.7 is straight), off {mean:.4} mean {most:.3} most"
+            );
+        }
+    }
+}
