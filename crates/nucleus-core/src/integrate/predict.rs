@@ -49,8 +49,7 @@ pub fn predict<R: Real>(
     for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
         let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
         let air = AirForces::new(frame, settings, cloth.point_mass, schedule.h);
-        let has_faces = cloth.triangles.iter().any(|triangles| !triangles.is_empty());
-        let air = air.map(|air| if has_faces { air } else { air.on_particles(frame.resistance) });
+        let air = air.map(|air| if cloth.has_faces { air } else { air.on_particles(frame.resistance) });
         let forces = ExternalForces {
             gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
             impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),

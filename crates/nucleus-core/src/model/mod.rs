@@ -69,6 +69,8 @@ pub struct ClothModel<R> {
     pub shape: ShapeModel,
     /// Whether links and bends can stay as they are deformed.
     pub plastic: bool,
+    /// Whether it has faces. Particles have none.
+    pub has_faces: bool,
     /// Factors on the attraction to the input mesh, by the user's points; empty where it is the same everywhere.
     pub attract: Vec<f64>,
     /// By block: the triangles with a point in it, for normals; empty where no air is felt.
@@ -119,6 +121,7 @@ impl<R: Real> ClothModel<R> {
             pressure: PressureModel::default(),
             shape: ShapeModel::default(),
             plastic: cloth.lists.plastic,
+            has_faces: !surface.faces.is_empty(),
             attract: cloth.vertex_maps.input_attract.clone(),
             triangles: Vec::new(),
             boundary: BoundaryElements::default(),

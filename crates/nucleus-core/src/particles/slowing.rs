@@ -15,7 +15,7 @@ pub fn slow_particles<R: Real>(
 ) {
     for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
         let kept = kept_share(settings, substep, frame.duration);
-        if kept >= 1.0 || !cloth.boundary.triangles.is_empty() {
+        if kept >= 1.0 || cloth.has_faces {
             continue;
         }
         let kept = R::from_f64(kept);

@@ -1,11 +1,9 @@
 //! Blend shapes: each target adds its difference from the base, times its weight.
 
 use crate::animation::Evaluator;
-use crate::mesh::{Built, Components, Poly};
+use crate::mesh::{Built, Components, InputMesh, Poly};
 use crate::omissions::Cause;
 use crate::scene::NodeId;
-
-use super::InputMesh;
 
 /// The item of a target that is reached at weight 1.
 const FULL: u32 = 6000;

@@ -10,9 +10,9 @@ mod blend_shape;
 mod skin_cluster;
 
 use crate::animation::Evaluator;
-use crate::mesh::{Built, Poly};
+use crate::mesh::{Built, InputMesh, Poly};
 use crate::omissions::Cause;
-use crate::scene::{NodeId, PlugRef};
+use crate::scene::NodeId;
 
 /// Whether a type of node deforms its input. Those that are not carried out pass it on.
 pub(crate) fn is_deformer(kind: &str) -> bool {
@@ -40,9 +40,6 @@ pub(crate) fn is_deformer(kind: &str) -> bool {
     ];
     ALL.contains(&kind)
 }
-
-/// Builds the mesh that flows from a plug, and notes what its history leaves out.
-pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut Built) -> Result<Poly, String> + 'a;
 
 /// The result of a deformer; `input` builds further meshes that it reads.
 pub(crate) fn deformed(

@@ -24,7 +24,10 @@ pub use obj::obj_text;
 pub use poly::{Built, Components, Poly};
 pub(crate) use primitives::own_primitive;
 
-use crate::scene::{MayaScene, NodeId};
+use crate::scene::{MayaScene, NodeId, PlugRef};
+
+/// Builds the mesh that flows from a plug, and notes what its history leaves out.
+pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut Built) -> Result<Poly, String> + 'a;
 
 /// Whether a creation node makes a Nucleus primitive, along the same axis unless that does not matter.
 pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {

@@ -14,8 +14,8 @@ use crate::omissions::{Cause, Omissions};
 use crate::scene::{ANY, MayaScene, NodeId};
 
 use super::kept::{Kept, KeptNodes, MARK_AUTOMATIC};
-use super::meshes::Plan;
 use super::options::BorrowedOptions;
+use super::plan::Plan;
 
 /// Carries the nodes of a Maya scene over into a graph.
 pub(crate) struct Importer<'s> {

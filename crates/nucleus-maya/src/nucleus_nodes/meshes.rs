@@ -1,41 +1,14 @@
 //! Meshes as Nucleus nodes: a primitive where it is one, else an OBJ file, or one for each frame.
 
-use nucleus_graph::attributes::{self, Attribute, NodeType, Value, mesh};
+use nucleus_graph::attributes::{self, Attribute, Value, mesh};
 use nucleus_graph::graph::{NodeId as OwnId, Setting};
 
 use crate::mesh::{Built, obj_text};
 use crate::omissions::Cause;
-use crate::scene::{MayaScene, NodeId};
+use crate::scene::NodeId;
 
 use super::importer::Importer;
-
-/// How a mesh is imported.
-pub(super) enum Plan {
-    /// A Nucleus primitive, by its creation node.
-    Primitive(NodeId, &'static NodeType),
-    /// The file that a Nucleus scene names.
-    File(String),
-    /// The text of an OBJ file that the artist gives.
-    Given(String),
-    /// The mesh at the first frame, which may change over time.
-    Built(Built),
-    /// It cannot be built, and why.
-    Missing(String),
-}
-
-impl Plan {
-    /// How many points the mesh has, as far as it is known.
-    pub(super) fn points(&self, scene: &MayaScene) -> Option<usize> {
-        match self {
-            Self::Primitive(source, _) => {
-                usize::try_from(crate::mesh::own_primitive(scene, *source)?.size().points).ok()
-            }
-            Self::Built(built) => Some(built.mesh.points.len()),
-            Self::Given(text) => Some(text.lines().filter(|line| line.starts_with("v ")).count()),
-            Self::File(_) | Self::Missing(_) => None,
-        }
-    }
-}
+use super::plan::Plan;
 
 impl Importer<'_> {
     /// Decides how a mesh is imported; `name` is that of our node.

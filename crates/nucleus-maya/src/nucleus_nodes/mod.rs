@@ -18,6 +18,7 @@ mod importer;
 mod kept;
 mod meshes;
 mod options;
+mod plan;
 mod transforms;
 mod wiring;
 

@@ -90,6 +90,10 @@ impl Forming<'_> {
         let all: Vec<MemberEdge> = (0..members.len())
             .flat_map(|member| (0..members[member].elements.len() as u32).map(move |edge| (member, edge)))
             .collect();
+        // Both ends of one are near the other: edges that only meet at a corner do not face each other.
+        let is_along = |edge: MemberEdge, other: MemberEdge| {
+            ends(edge).iter().all(|&end| distance(&[end, end], &ends(other)) <= reach)
+        };
         let mut pairs = Vec::new();
         for &edge in &all {
             let gap = |other: &MemberEdge| (middle(edge) - middle(*other)).norm();
@@ -98,7 +102,7 @@ impl Forming<'_> {
                     || within && other.0 == edge.0 && other.1 > edge.1 && !shares_point(edge, **other)
             });
             let nearest = others.min_by(|a, b| gap(*a).total_cmp(&gap(*b)));
-            if let Some(other) = nearest.filter(|other| distance(&ends(edge), &ends(**other)) <= reach) {
+            if let Some(other) = nearest.filter(|&&other| is_along(edge, other) || is_along(other, edge)) {
                 pairs.push([edge, *other]);
             }
         }

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use gltf::animation::Property;
+use gltf::json::validation::Checked;
 use gltf::mesh::Mode;
 use gltf::{Document, Gltf, Node, Primitive, Semantic, buffer};
 use nalgebra::{Matrix4, Vector3};
@@ -71,6 +72,12 @@ impl GltfFile {
     }
 
     fn read_tracks(&self) -> Result<Vec<(usize, Property, Track)>, Fault> {
+        // The crate does not validate which property a channel animates.
+        let animations = &self.document.as_json().animations;
+        let mut channels = animations.iter().take(1).flat_map(|animation| &animation.channels);
+        if channels.any(|channel| channel.target.path == Checked::Invalid) {
+            return Err("an animation changes an unknown property".into());
+        }
         let mut tracks = Vec::new();
         for channel in self.document.animations().take(1).flat_map(|animation| animation.channels()) {
             let sampler = channel.sampler();
