@@ -29,7 +29,7 @@ fn notched_sheet(cells: u32, kind: Cells) -> (Surface, Vec<Link>, Vec<[Vec3; 2]>
     for k in (0..side * side).filter(|k| k % side < cells && k / side < cells) {
         let [a, b, c, d] = [k, k + 1, k + side + 1, k + side];
         let rises = match kind {
-            Cells::Crossed => (k % side + k / side) % 2 == 0,
+            Cells::Crossed => (k % side + k / side).is_multiple_of(2),
             _ => kind == Cells::Rising,
         };
         match kind {

@@ -119,7 +119,7 @@ impl Reading<'_> {
         }
         let opened = self.open(&path)?;
         let mut mesh = self.report(opened.mesh(frame))?;
-        self.to_scene_units(&opened, |scale| mesh.surface.positions.iter_mut().for_each(|p| *p *= scale))?;
+        self.apply_scene_units(&opened, |scale| mesh.surface.positions.iter_mut().for_each(|p| *p *= scale))?;
         Some(mesh)
     }
 
@@ -130,7 +130,7 @@ impl Reading<'_> {
     }
 
     /// Passes the scale from units of the file to scene units, if the file states its unit.
-    fn to_scene_units(&mut self, file: &MeshFile, scale: impl FnOnce(f64)) -> Option<()> {
+    fn apply_scene_units(&mut self, file: &MeshFile, scale: impl FnOnce(f64)) -> Option<()> {
         let Some(metres) = file.metres_per_unit() else { return Some(()) };
         match metres_per_scene_unit(&self.scene.graph) {
             Some(scene) => scale(metres / scene),
@@ -162,7 +162,7 @@ impl Reading<'_> {
         }
         opened.merge_split_points(&mut mesh.surface, &mut frames);
         let uvs = mesh.uvs_of_points();
-        self.to_scene_units(&opened, |scale| {
+        self.apply_scene_units(&opened, |scale| {
             let all = frames.iter_mut().flatten().chain(&mut mesh.surface.positions);
             all.for_each(|point| *point *= scale);
         })?;

@@ -101,7 +101,7 @@ impl Forming<'_> {
                 other.0 > edge.0
                     || within && other.0 == edge.0 && other.1 > edge.1 && !shares_point(edge, **other)
             });
-            let nearest = others.min_by(|a, b| gap(*a).total_cmp(&gap(*b)));
+            let nearest = others.min_by(|a, b| gap(a).total_cmp(&gap(b)));
             if let Some(other) = nearest.filter(|&&other| is_along(edge, other) || is_along(other, edge)) {
                 pairs.push([edge, *other]);
             }
