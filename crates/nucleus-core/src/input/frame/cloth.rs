@@ -7,7 +7,7 @@ use crate::input::frame::material::{Bending, InputAttract, Liquid, Pressure, Sti
 use crate::input::object_fields::{PointField, WindField};
 
 /// The attributes of one cloth in one frame. A resistance counts evaluations in 1/24 s (Classic) or
-/// stands for a stiffness (Physical); see [`ResistanceModel`].
+/// stands for a stiffness (Physical); see [`ResistanceModel`](crate::input::frame::ResistanceModel).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClothFrame {
     /// Resistance of links longer than at rest.
