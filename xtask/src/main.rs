@@ -1,4 +1,4 @@
-//! Maintenance commands: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench`, `interop`, `fuzz` and `book`.
+//! Maintenance commands: `cargo xtask ci`, `evidence`, `tidy`, `meshes`, `bench`, `interop`, `fuzz`, `python` and `book`.
 //!
 //! | Question                                              | Module          |
 //! |-------------------------------------------------------|-----------------|
@@ -50,6 +50,8 @@ enum Task {
     Interop(interop::Options),
     /// Mutates Maya scenes and imports them; keeps the scenes that break the import.
     Fuzz(fuzz::Options),
+    /// Builds the wheel of the Python package and runs its tests, where `python3` exists
+    Python,
     /// Regenerates the pages of docs/ with measured figures; takes an hour or more.
     Book(book::Options),
 }
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Task::Bench(options) => bench::run(&options),
         Task::Interop(options) => interop::run(&root, &options),
         Task::Fuzz(options) => fuzz::run(&root, &options),
+        Task::Python => python::run(&root),
         Task::Book(options) => book::run(&root, &options),
     };
     match result {
