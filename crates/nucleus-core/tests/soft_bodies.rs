@@ -162,7 +162,7 @@ fn sealed_gas_keeps_its_law_however_hard_it_is_and_pushes_nothing_as_a_whole() {
         volume(&solver, &surface)
     };
     for bulk in [1e3, 1e5, 1e7] {
-        let mut solver = solver(surface.clone(), ClothLists { pressure: true, seals_holes: true, ..LINKS });
+        let mut solver = solver(surface.clone(), ClothLists { pressure: true, ..LINKS });
         let cloth = ClothFrame {
             stretch_resistance: 1.0,
             compression_resistance: 0.0,
@@ -198,7 +198,7 @@ fn an_open_balloon_is_driven_away_from_its_opening_and_empties() {
         .collect();
     let surface = Surface { faces: open.into_iter().collect::<Faces>(), ..whole.clone() };
     let run = |sealed: bool| {
-        let mut solver = solver(surface.clone(), ClothLists { pressure: true, seals_holes: sealed, ..LINKS });
+        let mut solver = solver(surface.clone(), ClothLists { pressure: true, ..LINKS });
         let gas = Pressure::Gas { start: 0.5, bulk: 5e3, pump: 0.0, tightness: 1.0, damping: 0.0, sealed };
         let cloth = ClothFrame { damp: 1.0, pressure: gas, ..ClothFrame::default() };
         let input = weightless(cloth);
@@ -379,11 +379,11 @@ fn a_bend_beyond_the_restitution_angle_stays_by_what_is_beyond() {
         yield_half_angle: limit / 2.0,
         ..Bending::DEFAULT
     };
-    for (start, expected) in [(0.25, 0.0), (1.0, 0.7)] {
+    for (start, expected) in [(0.25, 0.0), (1.0, 0.7), (2.0, 1.7), (-1.5, -1.2)] {
         let (mut solver, mesh) = started(0.0, start);
         settle(&mut solver, bending(set), &mesh, 160);
         let found = fold_of(&solver);
-        assert!((found - expected).abs() < 0.05, "bent to {start}: stays at {found}, expected {expected}");
+        assert!((found - expected).abs() < 0.02, "bent to {start}: stays at {found}, expected {expected}");
     }
 }
 

@@ -280,6 +280,21 @@ pub struct AngleMemory<R> {
     pub tracks_flips: bool,
 }
 
+/// The new rest of a hinge that is bent farther from rest than its limit: the bend less the limit. All are sines of half
+/// the angle, and the bend is above 1 past 180°. `None` within the limit.
+fn permanent(bend: f64, rest: f64, limit: f64) -> Option<f64> {
+    let cosine = (1.0 - limit * limit).max(0.0).sqrt();
+    let across = (1.0 - bend * bend).max(0.0).sqrt();
+    // sin(a ∓ b); past 180°, where there is no such angle, the chords are subtracted.
+    let [less, more] = match bend.abs() <= 1.0 {
+        true => [bend * cosine - across * limit, bend * cosine + across * limit],
+        false => [bend - limit, bend + limit],
+    };
+    // Within the half turn in which the sine grows.
+    let beyond = (bend > -cosine && less > rest).then_some(less);
+    beyond.or((bend < cosine && more < rest).then_some(more))
+}
+
 impl<R: Real> AngleMemory<R> {
     /// Whether there is anything to remember.
     pub fn is_on(&self) -> bool {
@@ -309,14 +324,12 @@ impl<R: Real> AngleMemory<R> {
                 self.follow(angle, lane, chord[lane], longest[lane]);
             }
             let yield_sine = map.map_or(self.yield_sine, |map| self.mapped_sine(map.below[lane]));
-            let most = longest[lane] * yield_sine;
             let chord = measured(angle.flipped[lane], chord[lane], longest[lane]);
             let rest = angle.rest[lane] * self.scale;
-            if yield_sine <= R::ONE && self.scale != R::ZERO {
-                if chord - rest > most {
-                    angle.rest[lane] = (chord - most) / self.scale;
-                } else if rest - chord > most {
-                    angle.rest[lane] = (chord + most) / self.scale;
+            if yield_sine <= R::ONE && self.scale != R::ZERO && longest[lane] > R::ZERO {
+                let [chord, rest] = [chord, rest].map(|x| (x / longest[lane]).to_f64());
+                if let Some(set) = permanent(chord, rest, yield_sine.to_f64()) {
+                    angle.rest[lane] = longest[lane] * R::from_f64(set) / self.scale;
                 }
             }
         }

@@ -53,7 +53,6 @@ pub struct PressureModel {
     holes: Vec<Hole>,
     /// By chamber: radius in metres of a sphere whose area is that of the chamber's faces at rest.
     radii: Vec<f64>,
-    sealed: bool,
     /// First of the chambers in the state.
     pub first: usize,
 }
@@ -82,7 +81,7 @@ struct Sums {
 
 impl PressureModel {
     /// Compiles the chambers of a mesh; `place` gives the solver's row of a point.
-    pub fn new(surface: &Surface, place: impl Fn(u32) -> u32 + Copy, blocks: &Blocks, sealed: bool) -> Self {
+    pub fn new(surface: &Surface, place: impl Fn(u32) -> u32 + Copy, blocks: &Blocks) -> Self {
         let parts = components(surface);
         let first = blocks.range(0).start;
         let mut chamber = vec![NO_CHAMBER; surface.positions.len()];
@@ -101,7 +100,7 @@ impl PressureModel {
         }
         let radii = areas.into_iter().map(|area| (area / (4.0 * std::f64::consts::PI)).sqrt()).collect();
         let triangles = triangles_by_block(surface, place, blocks);
-        Self { triangles, holes, radii, chamber, sealed, first: 0 }
+        Self { triangles, holes, radii, chamber, first: 0 }
     }
 
     /// Whether the cloth has any.
@@ -126,8 +125,8 @@ impl PressureModel {
 
     /// The chambers as they are when nothing has moved yet.
     pub fn start<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
-        self.find_areas(blocks, state, pool);
-        for (index, sums) in self.sums(blocks, state).into_iter().enumerate() {
+        self.find_areas(blocks, state, false, pool);
+        for (index, sums) in self.sums(blocks, state, false).into_iter().enumerate() {
             let volume = sums.volume / 3.0;
             state.chambers[self.first + index] = Chamber { start_volume: volume, volume, amount: -1.0 };
         }
@@ -141,8 +140,9 @@ impl PressureModel {
         frame: &PressureFrame<'_>,
         pool: &ThreadPool,
     ) {
-        self.find_areas(blocks, state, pool);
-        let sums = self.sums(blocks, state);
+        let sealed = matches!(frame.pressure, Pressure::Gas { sealed: true, .. });
+        self.find_areas(blocks, state, sealed, pool);
+        let sums = self.sums(blocks, state, sealed);
         let gases = &mut state.chambers[self.first..self.first + sums.len()];
         let step = |((sums, chamber), radius): ((&Sums, &mut Chamber), &f64)| {
             chamber.step(frame, sums, radius * frame.rest_scale)
@@ -163,8 +163,8 @@ impl PressureModel {
         });
     }
 
-    /// Sets ∂V/∂x of every point, caps of sealed holes with them.
-    fn find_areas<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
+    /// Sets ∂V/∂x of every point, with the caps of the holes if they are sealed.
+    fn find_areas<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, sealed: bool, pool: &ThreadPool) {
         let State { anchor, displacement, area, .. } = state;
         let position = |row: u32| at(anchor, displacement, row);
         let areas = DisjointSlice::new(area);
@@ -182,7 +182,7 @@ impl PressureModel {
                 }
             }
         });
-        for hole in self.holes.iter().filter(|_| self.sealed) {
+        for hole in self.holes.iter().filter(|_| sealed) {
             let corners: Vec<_> = hole.corners.iter().map(|&row| at(anchor, displacement, row)).collect();
             let shared = cap_area(&corners) / (3.0 * corners.len() as f64);
             for (k, &row) in hole.corners.iter().enumerate() {
@@ -192,7 +192,7 @@ impl PressureModel {
     }
 
     /// Sums over each chamber, point by point in a fixed order.
-    fn sums<R: Real>(&self, blocks: &Blocks, state: &State<R>) -> Vec<Sums> {
+    fn sums<R: Real>(&self, blocks: &Blocks, state: &State<R>, sealed: bool) -> Vec<Sums> {
         let mut sums = vec![Sums::default(); self.chambers()];
         let points = blocks.range(0).start..blocks.range(blocks.len() - 1).end;
         // Relative to a point of the cloth, so that a chamber far from the origin loses nothing.
@@ -205,7 +205,7 @@ impl PressureModel {
             sums.mobility += inverse_mass * a.norm_squared();
             sums.fastest = sums.fastest.max(inverse_mass * inverse_mass * a.norm_squared());
         }
-        for hole in self.holes.iter().filter(|_| !self.sealed) {
+        for hole in self.holes.iter().filter(|_| !sealed) {
             let corners: Vec<_> =
                 hole.corners.iter().map(|&row| Vector3::from(state.position(row)) - origin).collect();
             let velocities = hole.corners.iter().map(|&row| state.velocity[row as usize].xyz());

@@ -45,8 +45,6 @@ pub struct ClothLists {
     pub bend_angles: bool,
     /// Pressure is ever non-zero.
     pub pressure: bool,
-    /// Openings are closed for the pressure.
-    pub seals_holes: bool,
     /// Rigidity or deform resistance is ever non-zero.
     pub shape: bool,
     /// Unconnected parts of the mesh keep their shapes each on its own (`usePolygonShells`).
@@ -68,7 +66,6 @@ impl ClothLists {
         signed_bend: false,
         bend_angles: false,
         pressure: false,
-        seals_holes: false,
         shape: false,
         shells: false,
         plastic: false,
@@ -85,7 +82,6 @@ impl ClothLists {
         signed_bend: false,
         bend_angles: false,
         pressure: false,
-        seals_holes: false,
         shape: false,
         shells: false,
         plastic: false,
@@ -266,6 +262,11 @@ impl ModelBuilder {
     /// Sets the order in which the links of a cloth are corrected.
     pub fn set_link_order(&mut self, cloth: ClothId, order: LinkOrder) {
         self.link_orders[cloth.index()] = order;
+    }
+
+    /// The vertex maps of each collider.
+    pub fn collider_maps(&self) -> &[VertexMaps] {
+        &self.collider_maps
     }
 
     /// Sets the vertex maps of a collider, one factor per point in the mesh's order. Those of contact attributes and of

@@ -181,7 +181,7 @@ impl<R: Real> ClothModel<R> {
             }
         }
         if cloth.lists.pressure {
-            model.pressure = PressureModel::new(surface, place, &model.blocks, cloth.lists.seals_holes);
+            model.pressure = PressureModel::new(surface, place, &model.blocks);
         }
         if cloth.lists.shape {
             let masses = point_masses(cloth);

@@ -46,7 +46,7 @@ const REFERENCE_FACES: f64 = 100.0;
 pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLists {
     use n_cloth::{
         BEND_ANGLE_DROPOFF, BEND_ANGLE_SCALE, BEND_SOLVER, DEFORM_RESISTANCE, PRESSURE, PRESSURE_METHOD,
-        RESTITUTION_ANGLE, RESTITUTION_TENSION, RIGIDITY, SEAL_HOLES, USE_POLYGON_SHELLS,
+        RESTITUTION_ANGLE, RESTITUTION_TENSION, RIGIDITY, USE_POLYGON_SHELLS,
     };
     let node = graph.node(cloth);
     let used = |key: &Key<f64>| graph.is_ever_nonzero(cloth, key);
@@ -65,7 +65,6 @@ pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLis
                 || graph.changes(cloth, &BEND_SOLVER)
                 || node.get(&BEND_SOLVER) == FLIP_TRACKING),
         pressure,
-        seals_holes: by_volume && node.get(&SEAL_HOLES),
         shape,
         shells: shape && node.get(&USE_POLYGON_SHELLS),
         plastic: lists.stretch && below(&RESTITUTION_TENSION, NO_TENSION),

@@ -90,7 +90,7 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
     let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: true";
-    let soft = "bend_angles: false, pressure: false, seals_holes: false, shape: false, shells: false, plastic: false";
+    let soft = "bend_angles: false, pressure: false, shape: false, shells: false, plastic: false";
     assert_eq!(lists(nothing), format!("{off}, signed_bend: false, {soft}"));
     let on = "stretch: true, cross_links: true, shear: false, bend: true, air: true, damp: true, self_collision: true";
     assert_eq!(lists(""), format!("{on}, signed_bend: true, {soft}"));
@@ -112,9 +112,8 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
         ("bendAngleScale: 0.5", "bend_angles: true"),
         ("restitutionAngle: 90", "bend_angles: true"),
         ("bendSolver: flipTracking", "bend_angles: true"),
-        ("pressure: keys([(1, 0), (20, 1)])", "pressure: true, seals_holes: false"),
-        ("pressureMethod: volumeTrackingModel", "pressure: true, seals_holes: true"),
-        ("pressureMethod: volumeTrackingModel, sealHoles: false", "pressure: true, seals_holes: false"),
+        ("pressure: keys([(1, 0), (20, 1)])", "pressure: true"),
+        ("pressureMethod: volumeTrackingModel", "pressure: true"),
         ("rigidity: 1", "shape: true, shells: false"),
         ("deformResistance: 1, usePolygonShells: true", "shape: true, shells: true"),
         ("restitutionTension: 999", "plastic: true"),

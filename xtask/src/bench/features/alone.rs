@@ -52,7 +52,7 @@ pub const EFFECTS: [Effect; 17] = [
     }),
     ("parallel links", |sheet| sheet.order = LinkOrder::Parallel),
     ("pressure", |sheet| {
-        (sheet.cloth.lists.pressure, sheet.cloth.lists.seals_holes) = (true, true);
+        sheet.cloth.lists.pressure = true;
         sheet.settings().pressure = GAS;
     }),
     ("rigidity", |sheet| {
