@@ -184,6 +184,7 @@ impl CollisionMesh {
 pub struct CollisionFilter {
     ignored: Vec<[usize; 2]>,
     kinematic: Vec<bool>,
+    permeable: Vec<bool>,
     /// By point: the point that stands for all that are welded together; empty without welds.
     clusters: Vec<u32>,
     /// By point: the exclusions that have it on their first and on their second side, as bits; empty without exclusions.
@@ -215,6 +216,14 @@ impl CollisionFilter {
         self.kinematic[point] = true;
     }
 
+    /// Marks a point as permeable: elements that have it may pass through others, and are not tested.
+    pub fn set_permeable(&mut self, point: usize) {
+        if self.permeable.len() <= point {
+            self.permeable.resize(point + 1, false);
+        }
+        self.permeable[point] = true;
+    }
+
     /// Joins two points: elements that have one each are neighbours, as if they shared a point.
     pub fn weld(&mut self, points: usize, a: usize, b: usize) {
         if self.clusters.len() < points {
@@ -243,7 +252,9 @@ impl CollisionFilter {
 
     /// Whether a point is not tested with the ground plane.
     pub(crate) fn is_free_of_ground(&self, point: usize) -> bool {
-        self.is_kinematic(point) || self.sides.get(point).is_some_and(|sides| meet(*sides, self.everything))
+        self.is_kinematic(point)
+            || self.is_permeable(point)
+            || self.sides.get(point).is_some_and(|sides| meet(*sides, self.everything))
     }
 
     /// The exclusions that have all of these points on a side.
@@ -264,6 +275,10 @@ impl CollisionFilter {
         self.kinematic.get(point).copied().unwrap_or(false)
     }
 
+    fn is_permeable(&self, point: usize) -> bool {
+        self.permeable.get(point).copied().unwrap_or(false)
+    }
+
     /// Whether a pair of elements with these points is tested. Elements that share a point always touch there; their
     /// other neighbours show any further collision.
     pub(crate) fn apply<const A: usize, const B: usize>(
@@ -279,8 +294,9 @@ impl CollisionFilter {
         let bodies = [mesh.body_of(a[0]), mesh.body_of(b[0])];
         let pair = [bodies[0].min(bodies[1]), bodies[0].max(bodies[1])];
         let is_kinematic = |point: &u32| self.is_kinematic(*point as usize);
+        let are_permeable = a.iter().chain(b).any(|point| self.is_permeable(*point as usize));
         let are_kinematic = a.iter().all(is_kinematic) && b.iter().all(is_kinematic);
-        !(are_kinematic || self.ignored.contains(&pair) || self.excludes(a, b))
+        !(are_kinematic || are_permeable || self.ignored.contains(&pair) || self.excludes(a, b))
     }
 
     /// The elements of bodies with at least one tested pair.

@@ -147,7 +147,11 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
     let world = CollisionMesh::new(objects.iter().map(body).collect());
     let positions: Vec<Vector3<f64>> =
         objects.iter().flat_map(|object| start(program, object.kind)).copied().collect();
-    let filter = collision_rules(program, program.time().start, &AuditScope::default(), &world);
+    let mut scope = AuditScope::default();
+    for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
+        scope.add(nucleus, input, |_| Vec::new());
+    }
+    let filter = collision_rules(program, program.time().start, &scope, &world);
     let mut pairs: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for found in intersections(&world, &filter, &positions) {
         let edge = world.body_of(world.edges()[found.edge.0 as usize][0]);

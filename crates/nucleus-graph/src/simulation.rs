@@ -1,14 +1,12 @@
 //! The loop over frames: evaluates the animation and calls the solvers.
 
 use std::cell::RefCell;
-use std::sync::Arc;
 
 use nalgebra::Vector3;
 use nucleus_audit::CollisionMesh;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Encode, ExcludedSide, Exclusion, FrameInput, Link, LinkMethod,
-    ParticleAge, ParticleLook, Pin, PointId, Reader, Real, RestoreError, Solver, StateView, StepObserver,
-    StepReport, SubstepIndex, add_checksum, verify_checksum,
+    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, ParticleLook, PointId, Reader, Real,
+    RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
 };
 
 use crate::audit::{Audit, AuditScope, Audited, Closeness, GroundPlanes, collision_rules};
@@ -65,30 +63,7 @@ impl<R: Real> Simulation<R> {
             let position = |cloth, point: PointId| run.solver.point(cloth, point.index());
             let interval = self.program.interval(k, [run.evaluated, to], to - run.evaluated, run.was_skipped);
             let input = interval.input(&mut run.attachments.clone(), &position);
-            let nucleus = &self.program.nuclei()[k];
-            let cloth = |own: ClothId| ClothId(nucleus.cloths().start + own.0);
-            let collider = |own: ColliderId| ColliderId(nucleus.colliders().start + own.0);
-            scope.pins.extend(input.pins.into_iter().map(|pin| Pin { cloth: cloth(pin.cloth), ..pin }));
-            for (at, constraint) in input.constraints.iter().enumerate() {
-                let welds = match &constraint.formed {
-                    Some(links) if constraint.method == LinkMethod::Weld => {
-                        links.iter().filter_map(Link::points).collect()
-                    }
-                    Some(_) => Vec::new(),
-                    None => run.solver.welds(at),
-                };
-                scope.welds.extend(welds.iter().map(|weld| weld.map(|(own, point)| (cloth(own), point))));
-            }
-            let side = |side: &ExcludedSide| match side {
-                ExcludedSide::Everything => ExcludedSide::Everything,
-                ExcludedSide::Points(of_cloths, of_colliders) => ExcludedSide::Points(
-                    of_cloths.iter().map(|&(own, point)| (cloth(own), point)).collect(),
-                    of_colliders.iter().map(|&(own, point)| (collider(own), point)).collect(),
-                ),
-            };
-            let exclusion =
-                |own: &Arc<Exclusion>| Exclusion { sides: [side(&own.sides[0]), side(&own.sides[1])] };
-            scope.exclusions.extend(input.exclusions.iter().map(exclusion));
+            scope.add(&self.program.nuclei()[k], input, |constraint| run.solver.welds(constraint));
         }
         scope
     }

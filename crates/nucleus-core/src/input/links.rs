@@ -75,7 +75,7 @@ pub struct Link {
 pub struct Fold {
     /// Length of the bending vector when the hinge is folded shut.
     pub max_length: f64,
-    /// The links of the constraint that join the edges, by their index: it lets go with any of them. An index without a
+    /// The links of the constraint that join the edges, by their index: it breaks with any of them. An index without a
     /// link is none.
     pub holds: [u32; 2],
 }
@@ -172,7 +172,7 @@ pub struct ConstraintFrame {
     /// `bendStrength` of folds: evaluations in 1/24 s (Classic) or a bending stiffness like that of `bendResistance`
     /// (Physical).
     pub bend_strength: f64,
-    /// Sine of half the angle, from rest, beyond which a fold lets go; 1 for never.
+    /// Sine of half the angle, from rest, beyond which a fold breaks; 1 for never.
     pub break_half_sine: f64,
     /// Evaluations in 1/24 s, at least and at most.
     pub iterations: [f64; 2],

@@ -1,10 +1,15 @@
 //! Scope of an audit in a frame: the pairs of objects that the solver keeps apart, and the ground planes.
 
+use std::sync::Arc;
+
 use nucleus_audit::{CollisionFilter, CollisionMesh, Plane};
-use nucleus_core::{ClothFrame, ClothId, ExcludedSide, Exclusion, FrameInput, MAX_EXCLUSIONS, Pin, PointId};
+use nucleus_core::{
+    ClothFrame, ClothId, ColliderId, ExcludedSide, Exclusion, FrameInput, Link, LinkMethod, MAX_EXCLUSIONS,
+    Pin, PointId,
+};
 
 use crate::attributes::{n_base, nucleus};
-use crate::compile::{Object, ObjectKind, Program};
+use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
 use crate::graph::EvalContext;
 
 /// The ground planes of all nuclei.
@@ -84,8 +89,77 @@ pub(crate) struct AuditScope {
     pub(crate) pins: Vec<Pin>,
     /// Points that are welded to each other.
     pub(crate) welds: Vec<[(ClothId, PointId); 2]>,
+    /// Points of objects whose `collideStrength` is below 1: the solver lets their elements pass through others.
+    pub(crate) permeable: Vec<(ObjectKind, PermeablePoints)>,
     /// What does not collide.
     pub(crate) exclusions: Vec<Exclusion>,
+}
+
+impl AuditScope {
+    /// Adds what the input of a nucleus says. `kept` gives the welds of a constraint that is not formed anew.
+    pub(crate) fn add(
+        &mut self,
+        nucleus: &NucleusProgram,
+        input: FrameInput,
+        kept: impl Fn(usize) -> Vec<[(ClothId, PointId); 2]>,
+    ) {
+        let cloth = |own: ClothId| ClothId(nucleus.cloths().start + own.0);
+        let collider = |own: ColliderId| ColliderId(nucleus.colliders().start + own.0);
+        self.pins.extend(input.pins.into_iter().map(|pin| Pin { cloth: cloth(pin.cloth), ..pin }));
+        for (at, constraint) in input.constraints.iter().enumerate() {
+            let welds = match &constraint.formed {
+                Some(links) if constraint.method == LinkMethod::Weld => {
+                    links.iter().filter_map(Link::points).collect()
+                }
+                Some(_) => Vec::new(),
+                None => kept(at),
+            };
+            self.welds.extend(welds.iter().map(|weld| weld.map(|(own, point)| (cloth(own), point))));
+        }
+        let cloths = input.cloths.iter().map(|frame| frame.collide_strength);
+        for (own, (strength, built)) in (0..).zip(cloths.zip(nucleus.model().cloths())) {
+            let points = PermeablePoints::of(strength, &built.vertex_maps.collide_strength);
+            let object = ObjectKind::Cloth(cloth(ClothId(own)));
+            self.permeable.extend(points.map(|points| (object, points)));
+        }
+        let colliders = input.colliders.iter().map(|frame| frame.collide_strength);
+        for (own, (strength, maps)) in (0..).zip(colliders.zip(nucleus.model().collider_maps())) {
+            let points = PermeablePoints::of(strength, &maps.collide_strength);
+            let object = ObjectKind::Collider(collider(ColliderId(own)));
+            self.permeable.extend(points.map(|points| (object, points)));
+        }
+        let side = |side: &ExcludedSide| match side {
+            ExcludedSide::Everything => ExcludedSide::Everything,
+            ExcludedSide::Points(of_cloths, of_colliders) => ExcludedSide::Points(
+                of_cloths.iter().map(|&(own, point)| (cloth(own), point)).collect(),
+                of_colliders.iter().map(|&(own, point)| (collider(own), point)).collect(),
+            ),
+        };
+        let exclusion =
+            |own: &Arc<Exclusion>| Exclusion { sides: [side(&own.sides[0]), side(&own.sides[1])] };
+        self.exclusions.extend(input.exclusions.iter().map(exclusion));
+    }
+}
+
+/// Which points of an object have a `collideStrength` below 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum PermeablePoints {
+    /// All of them.
+    All,
+    /// Some, by their index.
+    Some(Vec<usize>),
+}
+
+impl PermeablePoints {
+    /// Of an object with this strength, and this vertex map on it; `None` without such points.
+    pub(crate) fn of(strength: f64, map: &[f64]) -> Option<Self> {
+        if strength < 1.0 {
+            return Some(Self::All);
+        }
+        let below = (0..).zip(map).filter(|(_, factor)| **factor < 1.0);
+        let points: Vec<usize> = below.map(|(point, _)| point).collect();
+        (!points.is_empty()).then_some(Self::Some(points))
+    }
 }
 
 /// The points of an object of the program in the audit.
@@ -115,6 +189,18 @@ fn add_constraints(rules: &mut CollisionFilter, scope: &AuditScope, located: &Lo
         let [a, b] = weld.map(|(cloth, point)| located.point(ObjectKind::Cloth(cloth), point));
         if let (Some(a), Some(b)) = (a, b) {
             rules.weld(count, a, b);
+        }
+    }
+    for (object, points) in &scope.permeable {
+        let Some(body) = located.program.objects().iter().position(|own| own.kind == *object) else {
+            continue;
+        };
+        let own = located.world.points_of(body);
+        match points {
+            PermeablePoints::All => own.for_each(|point| rules.set_permeable(point)),
+            PermeablePoints::Some(points) => {
+                points.iter().for_each(|point| rules.set_permeable(own.start + point));
+            }
         }
     }
     for (number, exclusion) in (0..MAX_EXCLUSIONS as u32).zip(&scope.exclusions) {

@@ -202,3 +202,40 @@ fn excluded_pairs_and_welded_points_are_not_audited() {
     let welded = r#", "k": dynamicConstraint(type: pointToPoint, constraintMethod: weld, components: ["c.vtx[0:2]", "d.vtx[0:2]"])"#;
     assert_eq!(audited(welded), (3, 0));
 }
+
+#[test]
+fn elements_with_a_partial_collide_strength_are_not_audited() {
+    // The sheet moves into the ball and out of it again.
+    let passed = |cloth: &str, ball: &str| {
+        let program = program(&format!(
+            r#""c": nCloth(inputMesh: "sheet", {cloth}), "r": nRigid(inputMesh: "ball", {ball})"#
+        ));
+        let run = Simulation::<f64>::new(&program, 1);
+        let scope = run.next_scope();
+        let rules = |world: &CollisionMesh| collision_rules(&program, 2, &scope, world);
+        let mut audit = Audit::new(run.objects(), Closeness::Steps, run.state(), rules);
+        audit.begin_frame(2, rules);
+        let moment = core::SubstepIndex { substep: 1, substeps: 1 };
+        audit.substep(moment, &Level { start: run.state(), height: 0.3 }, &GroundPlanes::default());
+        audit.account().found()
+    };
+    let all = passed("", "");
+    assert!(all > 0);
+    assert_eq!(passed("", "collideStrength: 0.5"), 0);
+    assert_eq!(passed("collideStrength: 0.5", ""), 0);
+    assert_eq!(passed("collideStrength: 2", "collideStrength: 1"), all);
+    let upper = passed("", r#"collideStrengthPerVertex: expression("x > 0 ? 0.5 : 1")"#);
+    assert!(0 < upper && upper < all, "half of the ball is audited: {upper} of {all}");
+}
+
+#[test]
+fn a_mesh_that_can_tear_does_not_intersect_itself_at_its_welds() {
+    let text = r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {
+        "n": nucleus(), "box": polyCube(subdivisions: (2, 2, 2)), "c": nCloth(inputMesh: "box"),
+        "rip": dynamicConstraint(constraintType: tearableSurface, components: ["c"]),
+    }, checks: [finite])"#;
+    let (scene, _) = read_scene_text(text, Path::new("test.ron")).expect("a valid scene");
+    let warnings = crate::first_frame_warnings(&scene, &compile(&scene).expect("a valid scene"));
+    let about_intersections = warnings.iter().find(|warning| warning.message.contains("intersection"));
+    assert_eq!(about_intersections, None);
+}

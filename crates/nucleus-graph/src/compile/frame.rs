@@ -35,8 +35,11 @@ impl Program {
 
     fn first_input_of(&self, nucleus: usize) -> FrameInput {
         let start = self.nuclei()[nucleus].start() as f64;
+        let model = self.nuclei()[nucleus].model();
+        let position =
+            |cloth, point: PointId| model.positions(cloth).get(point.index()).copied().unwrap_or_default();
         self.interval(nucleus, [start, start + 1.0], 1.0, false)
-            .input(&mut AttachmentState::default(), &|_, _| Vector3::zeros())
+            .input(&mut AttachmentState::default(), &position)
     }
 
     /// The ground plane of the first nucleus at each frame of the run; frames without one are left out.

@@ -13,7 +13,7 @@ use crate::state::State;
 
 use super::batches::{Loads, for_batches};
 use super::ends::{Ends, Prescribed, vector};
-use super::rows::{self, CombinedGroup, CombinedRow, LinkPass, NO_LINK};
+use super::rows::{self, CombinedGroup, CombinedRow, LinkPass, NO_LINK, broken_lanes};
 
 /// Links of one to six free points.
 pub(super) struct CombinedLists<R> {
@@ -190,10 +190,8 @@ impl<R: Real, const N: usize> CombinedList<R, N> {
 
     fn release(&mut self, broken: &[bool]) {
         for group in self.rows.groups_mut() {
-            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
-                if broken[group.link[lane] as usize] {
-                    group.factor[lane] = R::ZERO;
-                }
+            for lane in broken_lanes(group.link, broken) {
+                group.factor[lane] = R::ZERO;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Folds: joined edges that resist folding about each other (`bend`), and let go at an angle (`bendBreakAngle`).
+//! Folds: joined edges that resist folding about each other (`bend`), and break at an angle (`bendBreakAngle`).
 //!
 //! A fold is a link whose vector is the bending vector of a hinge between two faces (Bergou et al. 2006, see
 //! [`hinge`](crate::constraints::hinge)): the weights of its sides are those of the hinge, and the stiffness is that of a

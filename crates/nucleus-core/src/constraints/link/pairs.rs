@@ -11,7 +11,7 @@ use crate::parallel::thread_pool::ThreadPool;
 
 use super::batches::{Loads, for_batches};
 use super::ends::Ends;
-use super::rows::{LinkPass, NO_LINK, VectorGroup};
+use super::rows::{LinkPass, NO_LINK, VectorGroup, broken_lanes};
 
 /// Four pairs side by side.
 #[derive(Debug, Clone, Copy)]
@@ -131,10 +131,8 @@ impl<R: Real> PairList<R> {
     /// Takes broken links out of the sweeps.
     pub(super) fn release(&mut self, broken: &[bool]) {
         for group in self.rows.groups_mut() {
-            for lane in (0..4).filter(|&lane| group.link[lane] != NO_LINK) {
-                if broken[group.link[lane] as usize] {
-                    group.factor.share[lane] = R::ZERO;
-                }
+            for lane in broken_lanes(group.link, broken) {
+                group.factor.share[lane] = R::ZERO;
             }
         }
     }

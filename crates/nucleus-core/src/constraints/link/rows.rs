@@ -13,6 +13,11 @@ use crate::parallel::disjoint::DisjointSlice;
 /// No link: the lane is padding.
 pub const NO_LINK: u32 = u32::MAX;
 
+/// The lanes of a group whose links are broken.
+pub fn broken_lanes(links: [u32; 4], broken: &[bool]) -> impl Iterator<Item = usize> + use<'_> {
+    (0..4).filter(move |&lane| links[lane] != NO_LINK && broken[links[lane] as usize])
+}
+
 /// Four links of `N` free points side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct CombinedGroup<R, const N: usize> {

@@ -364,7 +364,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Whether the scene lets the two pass through each other, because collisions are carried out in part.
     #[cold]
     pub(super) fn may_interpenetrate(&self, step: &ColliderStep<'_, R>) -> bool {
-        let of_points = |map: &[R]| map.is_empty() || self.points.iter().any(|&p| map[p as usize] < R::ONE);
+        let of_points = |map: &[R]| !map.is_empty() && self.points.iter().any(|&p| map[p as usize] < R::ONE);
         let all = step.material.strength.iter().any(|&side| side < R::ONE);
         let there = || step.collider_maps.is_some_and(|maps| maps.are_partial(&self.collider_points));
         step.is_partial() && (all || of_points(&step.material_maps.strength) || there())

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::input::frame::cloth::ClothFrame;
 use crate::input::frame::contact::{ForceField, PushOut};
 use crate::input::object_fields::{PointField, WindField};
 
@@ -37,22 +38,24 @@ pub struct ColliderFrame {
 }
 
 impl Default for ColliderFrame {
-    /// Maya's defaults of an nRigid that does not move, except that `friction` and `thickness` are zero.
+    /// The contact attributes of [`ClothFrame::DEFAULT`], without friction or motion.
     fn default() -> Self {
+        let ClothFrame { collide, thickness, stickiness, bounce, collide_strength, .. } = ClothFrame::DEFAULT;
+        let ClothFrame { push_out, field, point_field, wind_field, .. } = ClothFrame::DEFAULT;
         Self {
             start: Vec::new(),
             end: Vec::new(),
-            collide: true,
-            thickness: 0.0,
+            collide,
+            thickness,
             friction: 0.0,
-            stickiness: 0.0,
-            bounce: 0.0,
-            collide_strength: 1.0,
-            push_out: PushOut::OFF,
+            stickiness,
+            bounce,
+            collide_strength,
+            push_out,
             trapped_check: true,
-            field: None,
-            point_field: None,
-            wind_field: WindField::OFF,
+            field,
+            point_field,
+            wind_field,
         }
     }
 }

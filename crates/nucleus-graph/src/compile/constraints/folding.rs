@@ -57,7 +57,7 @@ impl Forming<'_> {
         (0..count).filter_map(fold).collect::<Vec<_>>().into_iter()
     }
 
-    /// The folds of a tearable surface, which let go with the welds at their ends.
+    /// The folds of a tearable surface, which break with the welds at their ends.
     pub(super) fn folds_of_seams(&self) -> Vec<Link> {
         let source = self.source;
         let key = |cloth, points: [u32; 2]| (cloth, points[0].min(points[1]), points[0].max(points[1]));

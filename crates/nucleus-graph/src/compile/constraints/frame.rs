@@ -41,7 +41,7 @@ impl ConstraintSource {
         }
     }
 
-    /// Sine of half the angle at which folds let go; 1 for never.
+    /// Sine of half the angle at which folds break; 1 for never.
     fn break_half_sine(&self, values: &Values<'_>) -> f64 {
         let given = values.at.graph().is_given(self.node, &con::BEND_BREAK_ANGLE);
         let angle = match self.kept_bend.is_some() && !given {
