@@ -138,6 +138,19 @@ fn a_cache_opens_at_the_requested_frame() {
 }
 
 #[test]
+fn the_members_of_a_constraint_are_listed_and_drawn_when_chosen() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let player = serve(&written(folder.path(), Sample { selected: true, ..Sample::default() }), 0).unwrap();
+    let yellow = |shown: &Shown| shown.share(|[r, g, b]| *r > 170 && *g > 110 && *b < *g / 2 && *r > *g);
+    let listed = |shown: &Shown| shown.page.contains("33 points of flag");
+    let hidden = look_until(&player, chromium, "frame=1", listed);
+    let drawn = look_until(&player, chromium, "frame=1&select=hoist", |shown| yellow(shown) > 1e-4);
+    assert!(listed(&hidden) && hidden.page.contains("hoist"), "{}", hidden.page);
+    assert!(yellow(&hidden) < 1e-5 && yellow(&drawn) > 1e-4, "{} {}", yellow(&hidden), yellow(&drawn));
+}
+
+#[test]
 fn colouring_by_strain_replaces_the_colour_of_the_cloth() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -82,6 +82,46 @@ fn read_meaning(text: &str) -> Option<Result<Which, String>> {
     })
 }
 
+/// The values of a map that is given by a selection of points: `border; group(collar) ? 5 : 1`. Without values they are 1
+/// for the selected points and 0 for the others.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SelectedValues {
+    /// Points that are selected.
+    pub(crate) selections: Vec<Which>,
+    /// The value of selected points, and of others.
+    pub(crate) values: [f64; 2],
+}
+
+impl SelectedValues {
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        let (selections, values) = match top_level(text, '?').split_first() {
+            Some((selections, [])) => (*selections, [1.0, 0.0]),
+            Some((selections, [values])) => (*selections, Self::both(values)?),
+            _ => return Err(format!("`{text}` has more than one `?`")),
+        };
+        let selections = top_level(selections, ';');
+        let selections: Result<_, _> =
+            selections.iter().map(|part| read_which(ElementKind::Point, part.trim())).collect();
+        Ok(Self { selections: selections?, values })
+    }
+
+    fn both(text: &str) -> Result<[f64; 2], String> {
+        let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        let both = text.split_once(':').and_then(|(a, b)| Some([number(a)?, number(b)?]));
+        both.ok_or_else(|| format!("`{}` must be two numbers, like `5 : 1`", text.trim()))
+    }
+}
+
+/// The parts of a text between separators that are not in brackets.
+fn top_level(text: &str, separator: char) -> Vec<&str> {
+    let mut depth = 0_i32;
+    let at = |letter: char| {
+        depth += i32::from(letter == '(') - i32::from(letter == ')');
+        letter == separator && depth == 0
+    };
+    text.split(at).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -158,7 +158,10 @@ impl Kind {
             | (Self::Int, Value::Int(_))
             | (Self::Float | Self::Texture, Value::Float(_))
             | (Self::Texture, Value::Painting(Painting::Texture(_)))
-            | (Self::Floats, Value::Painting(Painting::File(_) | Painting::Expression(_)))
+            | (
+                Self::Floats,
+                Value::Painting(Painting::File(_) | Painting::Expression(_) | Painting::Selection(_)),
+            )
             | (Self::Vectors, Value::Painting(Painting::File(_)))
             | (Self::Vector(_), Value::Vector(_))
             | (Self::Text, Value::Text(_))

@@ -33,7 +33,7 @@ mod scene_nodes;
 mod value;
 
 pub use component::read_component;
-pub(crate) use component::read_which;
+pub(crate) use component::{SelectedValues, read_which};
 pub use fields::{
     air_field, drag_field, dyn_base, field, gravity_field, newton_field, radial_field, turbulence_field,
     uniform_field, volume_axis_field, vortex_field,

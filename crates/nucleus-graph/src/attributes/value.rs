@@ -43,6 +43,8 @@ pub enum Painting {
     Expression(String),
     /// An image: `texture("weights.png")`.
     Texture(String),
+    /// Selected points, and values for them and for the others: `selection("border ? 5 : 1")`.
+    Selection(String),
 }
 
 impl Painting {
@@ -52,6 +54,7 @@ impl Painting {
             Self::File(file) => ("file", file),
             Self::Expression(text) => ("expression", text),
             Self::Texture(file) => ("texture", file),
+            Self::Selection(text) => ("selection", text),
         }
     }
 }

@@ -1,11 +1,12 @@
-//! The values of one vertex map: from a list, a file, an expression or a texture.
+//! The values of one vertex map: from a list, a file, an expression, a selection or a texture.
 
-use crate::attributes::{Attribute, Choice, Key, Painting, Value};
+use crate::attributes::{Attribute, Choice, ElementKind, Key, Painting, SelectedValues, Value};
 use crate::graph::NodeId;
 use crate::memory;
 use crate::paint::{Expression, Point, Texture, read_numbers};
 
 use super::compiler::Compiler;
+use super::constraints::select::{Elements, Selected};
 
 /// `...MapType: none`.
 const NONE: Choice = Choice(0);
@@ -55,6 +56,7 @@ impl Compiler<'_> {
                 checked.and_then(|()| read_numbers(&path).map_err(|error| error.to_string()))
             }
             Value::Painting(Painting::Expression(text)) => self.evaluated(map_of, &text)?,
+            Value::Painting(Painting::Selection(text)) => self.selected_values(map_of, &text)?,
             Value::Painting(Painting::Texture(file)) => self.sampled(map_of, &file)?,
             _ => return None,
         };
@@ -129,6 +131,27 @@ impl Compiler<'_> {
             count: positions.len(),
         };
         Some(Ok(positions.iter().enumerate().map(|each| expression.at(&point(each))).collect()))
+    }
+
+    /// The values of a selection of points. The outer `None` means that the mesh is missing, which is reported.
+    fn selected_values(&mut self, map_of: &MapOfCloth, text: &str) -> Option<Result<Vec<f64>, String>> {
+        let SelectedValues { selections, values: [inside, outside] } = match SelectedValues::parse(text) {
+            Ok(parsed) => parsed,
+            Err(message) => return Some(Err(message)),
+        };
+        let surface = self.geometry.surface(self.scene, map_of.mesh, self.findings)?;
+        let (faces, count) = (surface.faces.clone(), surface.positions.len());
+        let elements = Elements::new(&faces, count);
+        let of = Selected { owner: map_of.cloth, object: map_of.cloth, mesh: map_of.mesh };
+        let mut values = vec![outside; count];
+        for which in &selections {
+            match self.chosen(&of, ElementKind::Point, which, &elements) {
+                Ok(points) if points.is_empty() => return Some(Err(format!("`{which}` selects no points"))),
+                Ok(points) => points.into_iter().for_each(|point| values[point as usize] = inside),
+                Err(message) => return Some(Err(format!("cannot select `{which}`: {message}"))),
+            }
+        }
+        Some(Ok(values))
     }
 
     /// A texture sampled at the texture coordinates of each point.

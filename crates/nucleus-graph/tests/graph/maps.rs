@@ -112,6 +112,44 @@ proptest! {
 }
 
 #[test]
+fn a_selection_gives_the_map_of_the_expression_that_says_the_same() {
+    let at = |values: &str| model(&mapped("bend", "bendResistance", 0.1, values));
+    for (selection, expression) in [
+        ("border ? 5 : 1", "abs(x) > 0.99 || abs(z) > 0.99 ? 5 : 1"),
+        ("corners", "abs(x) > 0.99 && abs(z) > 0.99 ? 1 : 0"),
+        (
+            "where(x > (z > 0 ? 0.4 : 0.6)); 3; 7:9 ? 2 : 0.5",
+            "x > 0.4 || i == 3 || i > 6 && i < 10 ? 2 : 0.5",
+        ),
+    ] {
+        let [selected, computed] =
+            [format!("selection({selection:?})"), format!("expression({expression:?})")];
+        assert_eq!(at(&selected), at(&computed), "{selection}");
+    }
+}
+
+#[test]
+fn a_selection_of_a_group_and_of_a_mask_weigh_their_points() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).expect("written");
+    let corners = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n";
+    let uvs = "vt 0.1 0.1\nvt 0.4 0.1\nvt 0.9 0.1\nvt 0.1 0.9\nvt 0.4 0.9\nvt 0.9 0.9\n";
+    let faces = "g left\nf 1/1 2/2 5/5 4/4\ng right\nf 2/2 3/3 6/6 5/5\n";
+    put("a.obj", format!("{corners}{uvs}{faces}").as_bytes());
+    put("half.png", &png(2, &[0, 255, 0, 255]));
+    let at = |values: &str| {
+        let nodes = format!(
+            r#""n": nucleus(), "m": mesh(file: "a.obj"), "c": nCloth(inputMesh: "m", bendPerVertex: {values})"#
+        );
+        let text = of_nodes(&nodes, "");
+        let (scene, _) = read_scene_text(&text, &folder.path().join("scene.ron")).expect("it reads");
+        format!("{:?}", compile(&scene).unwrap_or_else(|diagnostic| panic!("{diagnostic:?}")).model())
+    };
+    assert_eq!(at(r#"selection("group(left) ? 3 : 1")"#), at("[3, 3, 1, 3, 3, 1]"));
+    assert_eq!(at(r#"selection("mask(half.png) ? 3 : 1")"#), at("[1, 1, 3, 1, 1, 3]"));
+}
+
+#[test]
 fn every_map_changes_the_motion() {
     // Friction needs a contact; the core tests it with cloth that slides down slopes.
     for (attribute, map, default) in MAPS.into_iter().filter(|(_, map, _)| *map != "friction") {
@@ -334,6 +372,21 @@ fn a_mistake_in_a_map_is_reported_with_node_attribute_place_and_counts() {
             per_vertex("expression(\"i\")"),
             "the mass map of `c` makes point 0 weigh nothing".to_owned(),
             "expression(\"i\")",
+        ),
+        (
+            per_vertex("selection(\"borde ? 2 : 1\")"),
+            "`massPerVertex` of `c`: `borde` is not the number of a point; did you mean `border`?".to_owned(),
+            "\"borde ? 2 : 1\"",
+        ),
+        (
+            per_vertex("selection(\"border ? 2\")"),
+            "`massPerVertex` of `c`: `2` must be two numbers, like `5 : 1`".to_owned(),
+            "\"border ? 2\"",
+        ),
+        (
+            per_vertex("selection(\"where(x > 9) ? 2 : 1\")"),
+            "`where(x > 9)` selects no points".to_owned(),
+            "selection(\"where(x > 9) ? 2 : 1\")",
         ),
         (per_vertex("expression(1)"), "`massPerVertex` of `c` takes text in quotes, found a number".to_owned(), "1"),
         (

@@ -100,6 +100,7 @@ impl Importer<'_> {
         for (row, text) in painted {
             let painting = match text.split_once(':') {
                 Some(("file", file)) => Painting::File(file.to_owned()),
+                Some(("selection", text)) => Painting::Selection(text.to_owned()),
                 Some((_, expression)) => Painting::Expression(expression.to_owned()),
                 None => continue,
             };

@@ -7,7 +7,8 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_cache::{
-    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo, Source,
+    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Plane, Recorded, Recorder, RunInfo,
+    SelectedPoints, Source,
 };
 use nucleus_core::{
     ClothId, ColliderId, ContactState, Faces, StateView, StepObserver, StepReport, SubstepIndex,
@@ -36,10 +37,17 @@ pub struct Sample {
     pub camera: bool,
     /// In the middle of the run the flag loses the faces of its free half.
     pub torn: bool,
+    /// A constraint names the points of the hoist of the flag.
+    pub selected: bool,
     /// Height of a ground plane.
     pub plane: Option<f64>,
     /// The plane rises by this in each frame.
     pub rise: f64,
+}
+
+fn hoist() -> SelectedPoints {
+    let points = (0..SIDE).map(|row| row * SIDE).collect();
+    SelectedPoints { owner: "hoist".to_owned(), object: "flag".to_owned(), points }
 }
 
 /// Writes the run as a cache of the frames 1 to [`FRAMES`].
@@ -57,6 +65,7 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         scene_path: "scenes/sample.ron".into(),
         end: FRAMES,
         contacts: sample.contacts,
+        selections: if sample.selected { vec![hoist()] } else { Vec::new() },
         ground: sample.plane.map(plane),
         ground_motion: match sample.plane.filter(|_| sample.rise != 0.0) {
             Some(y) => (0..FRAMES).map(|frame| plane(y + sample.rise * f64::from(frame))).collect(),

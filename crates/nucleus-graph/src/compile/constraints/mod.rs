@@ -21,6 +21,6 @@ pub(super) mod kinds;
 pub(super) mod member;
 mod members;
 mod near;
-mod select;
+pub(super) mod select;
 pub(super) mod split_mesh;
 mod tearing;

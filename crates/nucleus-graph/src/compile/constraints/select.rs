@@ -20,7 +20,7 @@ const FACE: Choice = Choice(4);
 const OBJECT: Choice = Choice(6);
 
 /// The elements of a mesh that can be selected.
-pub(super) struct Elements<'a> {
+pub(in crate::compile) struct Elements<'a> {
     pub(super) faces: &'a Faces,
     pub(super) points: usize,
     /// Each edge once, in the order in which faces name them, with the number of its faces.
@@ -30,7 +30,7 @@ pub(super) struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    pub(super) fn new(faces: &'a Faces, points: usize) -> Self {
+    pub(in crate::compile) fn new(faces: &'a Faces, points: usize) -> Self {
         let mut found: BTreeMap<[u32; 2], usize> = BTreeMap::new();
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
         let mut behind = Vec::new();
@@ -110,11 +110,11 @@ impl<'a> Elements<'a> {
 }
 
 /// The mesh of a selection, for values per point and for messages.
-pub(super) struct Selected {
+pub(in crate::compile) struct Selected {
     /// The constraint, or another node that names the elements.
-    pub(super) owner: NodeId,
-    pub(super) object: NodeId,
-    pub(super) mesh: NodeId,
+    pub(in crate::compile) owner: NodeId,
+    pub(in crate::compile) object: NodeId,
+    pub(in crate::compile) mesh: NodeId,
 }
 
 impl Compiler<'_> {
@@ -181,7 +181,8 @@ impl Compiler<'_> {
         }
     }
 
-    fn chosen(
+    /// The elements of one selection, or why there are none.
+    pub(in crate::compile) fn chosen(
         &mut self,
         of: &Selected,
         kind: ElementKind,

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::attributes::{Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, Value as AttrValue};
+use crate::attributes::{
+    Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, SelectedValues, Value as AttrValue,
+};
 use crate::diagnostic::{Findings, listed};
 use crate::graph::{Channel, Setting};
 use crate::paint::Expression;
@@ -58,7 +60,7 @@ pub(super) fn read(
     Some(Setting::Fixed(value))
 }
 
-/// The source of a map: `file("...")`, `expression("...")` or `texture("...")`. `None` for other values, `Some(None)`
+/// The source of a map: `file("...")`, `expression("...")`, `selection("...")` or `texture("...")`. `None` for other values, `Some(None)`
 /// after a mistake.
 fn painting(
     label: &str,
@@ -70,6 +72,7 @@ fn painting(
     let make: fn(String) -> Painting = match (word.text.as_str(), row.kind) {
         ("file", Kind::Floats | Kind::Vectors) => Painting::File,
         ("expression", Kind::Floats) => Painting::Expression,
+        ("selection", Kind::Floats) => Painting::Selection,
         ("texture", Kind::Texture) => Painting::Texture,
         _ => return None,
     };
@@ -84,6 +87,12 @@ fn painting(
         let place = within_text(text, item, error.span);
         let diagnostic = findings.error(&place, format!("{label}: {}", error.message));
         diagnostic.help = error.help;
+        return Some(None);
+    }
+    if word.text == "selection"
+        && let Err(message) = SelectedValues::parse(text)
+    {
+        findings.error(&item.span, format!("{label}: {message}"));
         return Some(None);
     }
     Some(Some(make(text.to_owned())))

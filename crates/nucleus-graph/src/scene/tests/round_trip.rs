@@ -39,6 +39,8 @@ fn values(row: &'static Attribute) -> BoxedStrategy<Value> {
             list(0..4).prop_map(Value::Floats),
             any::<String>().prop_map(|file| Value::Painting(Painting::File(file))),
             "[1-9]( [-+*/] [xyzuvin]){0,3}".prop_map(|text| Value::Painting(Painting::Expression(text))),
+            "(border|corners|where\\(x > 0\\))( \\? [1-9] : [0-9])?"
+                .prop_map(|text| Value::Painting(Painting::Selection(text))),
         ]
         .boxed(),
         Kind::Vectors => prop_oneof![
