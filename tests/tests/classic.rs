@@ -49,6 +49,64 @@ fn pressure_inflates_a_ball_and_a_harder_gas_more() {
     assert!(size(&by_hand) > 1.02 * size(&slack), "{} {}", size(&by_hand), size(&slack));
 }
 
+// EVIDENCE: N1.2-7  half-rigid things keep their shape by counts too
+#[test]
+fn rigidity_and_deform_resistance_keep_the_shape_of_a_box() {
+    // Height of the lowest point of its top, 0.41 m if it keeps its shape.
+    let height = |fields: &str| {
+        let nodes = format!(
+            r#""p": polyCube(width: 0.4, height: 0.4, depth: 0.4, subdivisions: (4, 4, 4), translateY: 0.25),
+               "c": nCloth(inputMesh: "p", thickness: 0.01, bendResistance: 0, stretchResistance: 10, {fields})"#
+        );
+        let start = after("usePlane: true, subSteps: 6", &nodes, 0);
+        let points = after("usePlane: true, subSteps: 6", &nodes, 24);
+        let top = start.iter().zip(&points).filter(|(start, _)| start.y > 0.44);
+        top.map(|(_, now)| now.y).fold(f64::INFINITY, f64::min)
+    };
+    let [soft, rigid, deforming] = ["", "rigidity: 5", "deformResistance: 5"].map(height);
+    assert!(soft < 0.36, "without it the top sags: {soft}");
+    assert!((rigid - 0.41).abs() < 0.005 && (deforming - 0.41).abs() < 0.005, "{rigid} {deforming}");
+}
+
+/// A strip, held at its left end, whose right end is moved and then let go.
+fn strip(mesh: &str, fields: &str, [left, right]: [&str; 2], motion: &str) -> Vec<Vec3> {
+    let nodes = format!(
+        r#""p": polyPlane(width: 1, height: 0.2, {mesh}), "c": nCloth(inputMesh: "p", pointMass: 0.1,
+            bendResistance: 20, selfCollide: false, {fields}),
+           "left": dynamicConstraint(components: ["{left}"]),
+           "right": dynamicConstraint(components: ["{right}"], enable: keys([(1, true), (9, false)]), {motion})"#
+    );
+    after("gravity: 0, airDensity: 0, subSteps: 4", &nodes, 60)
+}
+
+// EVIDENCE: N1.2-7  in Classic too, links beyond the restitution tension stay longer, by what is beyond
+#[test]
+fn a_strip_pulled_beyond_its_restitution_tension_stays_longer_by_the_rest() {
+    let length = |fields: &str| {
+        let ends = ["c.where(x < -0.49)", "c.where(x > 0.49)"];
+        let pull = "translateX: keys([(1, 0), (7, 0.3)])";
+        let points = strip("subdivisions: (16, 2)", &format!("damp: 0.2, {fields}"), ends, pull);
+        points[17..34].windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>()
+    };
+    // Links of a resistance of 20 yield at a strain of 1 / 20: of 1.3 there remain 1.3 / 1.05.
+    let [elastic, plastic] = ["", "restitutionTension: 1"].map(length);
+    assert!((elastic - 1.0).abs() < 0.03, "{elastic}");
+    assert!((plastic - 1.3 / 1.05).abs() < 0.03, "{plastic}");
+}
+
+// EVIDENCE: N1.2-7  in Classic too, bends beyond the restitution angle stay, by what is beyond
+#[test]
+fn a_strip_bent_beyond_its_restitution_angle_stays_bent_by_the_rest() {
+    let bend = |fields: &str| {
+        let ends = ["c.where(x < 0.1)", "c.where(x > 0.4)"];
+        let turn = "rotateZ: keys([(1, 0), (7, 90)])";
+        let points = strip("subdivisions: (2, 1)", &format!("damp: 1, {fields}"), ends, turn);
+        points[2].y.atan2(points[2].x).to_degrees()
+    };
+    let [elastic, plastic] = ["", "restitutionAngle: 30"].map(bend);
+    assert!(elastic.abs() < 3.0 && (plastic - 60.0).abs() < 3.0, "{elastic}° {plastic}°");
+}
+
 #[test]
 fn attraction_follows_the_input_mesh_by_its_share_in_a_film_frame() {
     let away = |attract: &str| {
