@@ -24,7 +24,7 @@ use mesh::{Mesh, ring};
 type Entry = (&'static str, fn() -> Mesh);
 
 /// All meshes.
-const ALL: [Entry; 17] = [
+const ALL: [Entry; 18] = [
     ("beads", beads),
     ("tube", tube),
     ("reef_knot_left", knot::left),
@@ -39,6 +39,7 @@ const ALL: [Entry; 17] = [
     ("slinky_standing", soft::slinky_standing),
     ("aeroplane", soft::aeroplane),
     ("bridge", soft::bridge),
+    ("chain_link", soft::chain_link),
     ("disc", soft::disc),
     ("glass", vessels::glass),
     ("leaf", vessels::leaf),

@@ -1,5 +1,5 @@
 //! Meshes of soft bodies: a balloon with an open neck, the round bed of a trampoline, a slinky, a paper aeroplane, a
-//! rope bridge, and the specimen of a drape test.
+//! rope bridge, a link of a chain, and the specimen of a drape test.
 
 use super::mesh::{Mesh, ring};
 
@@ -76,6 +76,27 @@ pub fn aeroplane() -> Mesh {
         (-4..=4).map(point).collect()
     };
     Mesh::rows((0..7).map(row).collect(), false)
+}
+
+/// A link of a chain: a tube of radius 0.8 about two half circles of radius 3 with straight sides of 4 between them, in the
+/// xy plane.
+pub fn chain_link() -> Mesh {
+    const ALONG: usize = 24;
+    const ROUND: usize = 8;
+    let point = |k: usize| {
+        let turns = |part: f64| (std::f64::consts::TAU * part).sin_cos();
+        let (sin, cos) = turns(((k / ROUND) as f64 + 0.5) / ALONG as f64);
+        let (up, out) = turns((k % ROUND) as f64 / ROUND as f64);
+        let radius = 3.0 + 0.8 * out;
+        [radius * cos, radius * sin + 2.0_f64.copysign(sin), 0.8 * up]
+    };
+    let count = ALONG * ROUND;
+    let corner = |k: usize, j: usize| (k % ALONG) * ROUND + j % ROUND;
+    let face = |at: usize| {
+        let (k, j) = (at / ROUND, at % ROUND);
+        vec![corner(k, j), corner(k + 1, j), corner(k + 1, j + 1), corner(k, j + 1)]
+    };
+    Mesh { points: (0..count).map(point).collect(), faces: (0..count).map(face).collect() }
 }
 
 /// How far the last row of the aeroplane is bent up.
