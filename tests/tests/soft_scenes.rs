@@ -115,6 +115,16 @@ fn a_paper_aeroplane_glides_on_lift_and_falls_like_a_stone_without() {
     assert!(lost > 0.6 * stone, "{lost} m, a stone {stone} m");
 }
 
+// EVIDENCE: N1.2-4  a balloon that is let go flies by its jet until it is empty
+#[test]
+fn a_balloon_that_is_let_go_flies_by_its_jet_and_falls_when_it_is_empty() {
+    let frames = film(&changed("open_balloon", &[]), 71);
+    let height = |frame: usize| mean(&frames[frame - 2]).y;
+    let highest = (25..=72).map(height).fold(0.0, f64::max);
+    // The hand lets go in frame 25; by its own weight it only falls.
+    assert!(highest > height(24) + 0.5 && height(72) < 0.3, "{highest} m, then {} m", height(72));
+}
+
 /// The share of the annulus between pedestal and disc that a draped cloth covers, seen from above.
 fn drape_coefficient(rim: &[Vec3], middle: Vec3) -> f64 {
     let around = rim.iter().map(|p| p - middle).collect::<Vec<_>>();

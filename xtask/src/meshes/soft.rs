@@ -6,11 +6,11 @@ use super::mesh::{Mesh, ring};
 /// Points round a balloon and a trampoline.
 const AROUND: usize = 32;
 
-/// A sphere of 12 with a neck of radius 3 that is open below; its faces face outwards.
+/// A sphere of 12 with a neck of radius 1.6 that is open below; its faces face outwards.
 pub fn balloon() -> Mesh {
-    let neck = [(3.0, -20.0), (3.0, -17.0), (3.2, -14.0), (4.5, -11.4)];
-    let sphere = (1..10).map(|k| {
-        let turn = std::f64::consts::PI * (0.2 + 0.08 * f64::from(k));
+    let neck = [(1.6, -19.0), (1.6, -17.5), (1.7, -16.0), (2.0, -14.5), (2.8, -13.0)];
+    let sphere = (1..11).map(|k| {
+        let turn = std::f64::consts::PI * (0.05 + 0.086 * f64::from(k));
         (12.0 * turn.sin(), -12.0 * turn.cos())
     });
     let outline: Vec<_> = neck.into_iter().chain(sphere).collect();
