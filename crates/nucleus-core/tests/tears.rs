@@ -3,8 +3,8 @@
 mod scenes;
 
 use nucleus_core::{
-    Cloth, ClothId, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, LinkSide, Mass, ModelBuilder,
-    Solver, StateView, StepReport, Surface,
+    Cloth, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, Mass, ModelBuilder, Solver, StepReport,
+    Surface,
 };
 use scenes::links::{PHYSICAL, point, run, tied};
 use scenes::{LINKS, Vec3, pins};
@@ -92,7 +92,6 @@ fn tear_apart(cells: u32, kind: Cells, pull: Vec3) -> (Vec<[Vec3; 2]>, u32, u64)
     input.cloths[0].damp = 1.0;
     let held = |k: &usize| [0.0, 1.0].contains(&surface.positions[*k].y);
     let held: Vec<usize> = (0..surface.positions.len()).filter(held).collect();
-    let mut broken = vec![false; links.len()];
     let mut report = StepReport::default();
     let mut frames = 0;
     for k in 0..36 {
@@ -105,15 +104,10 @@ fn tear_apart(cells: u32, kind: Cells, pull: Vec3) -> (Vec<[Vec3; 2]>, u32, u64)
         }
         report = run(&mut solver, &mut input, 1);
         frames = k;
-        for (broken, link) in broken.iter_mut().zip(&links) {
-            let ends = link.sides.map(|side| match side {
-                LinkSide::Cloth { points, .. } => solver.point(ClothId(0), points[0].0 as usize),
-                _ => Vec3::zeros(),
-            });
-            *broken |= (ends[0] - ends[1]).norm() > 0.002;
-        }
     }
-    let torn = places.iter().zip(&broken).filter(|(_, broken)| **broken).map(|(place, _)| *place).collect();
+    let whole = solver.welds(0);
+    let is_torn = |link: &Link| link.points().is_some_and(|points| !whole.contains(&points));
+    let torn = places.iter().zip(&links).filter(|(_, link)| is_torn(link)).map(|(place, _)| *place).collect();
     (torn, frames, report.broken_links)
 }
 

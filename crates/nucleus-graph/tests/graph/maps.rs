@@ -118,7 +118,7 @@ fn a_selection_gives_the_map_of_the_expression_that_says_the_same() {
         ("border ? 5 : 1", "abs(x) > 0.99 || abs(z) > 0.99 ? 5 : 1"),
         ("corners", "abs(x) > 0.99 && abs(z) > 0.99 ? 1 : 0"),
         (
-            "where(x > (z > 0 ? 0.4 : 0.6)); 3; 7:9 ? 2 : 0.5",
+            "where(x > (z > 0 ? 0.4 : 0.3)); 3; 7:9 ? 2 : 0.5",
             "x > 0.4 || i == 3 || i > 6 && i < 10 ? 2 : 0.5",
         ),
     ] {
