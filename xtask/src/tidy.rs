@@ -24,7 +24,7 @@ const MACHINE_PATHS: [&str; 3] = [concat!("/wo", "rk/"), concat!("/ro", "ot/"), 
 
 /// Words of an older, private vocabulary, which must not come back; the field has terms for all of them. (In two halves, so
 /// that this file passes.)
-const RETIRED: [&str; 17] = [
+const RETIRED: [&str; 33] = [
     concat!("nou", "ght"),
     concat!("fore", "seen"),
     concat!("fore", "see"),
@@ -42,6 +42,22 @@ const RETIRED: [&str; 17] = [
     concat!("what ", "lies"),
     concat!("Uni", "verse"),
     concat!("Gri", "ps"),
+    concat!("MeetEach", "Other"),
+    concat!("By", "Parts"),
+    concat!("find_", "strays"),
+    concat!("begin_", "meeting"),
+    concat!("keep_", "start"),
+    concat!("follow_", "positions"),
+    concat!("let_", "go"),
+    concat!("hold_", "none"),
+    concat!("par", "ted"),
+    concat!("Ta", "lly"),
+    concat!("wit", "ness"),
+    concat!("salv", "age"),
+    concat!("whole_", "file"),
+    concat!("mov", "er"),
+    concat!("LE", "AP"),
+    concat!("Rem", "edy"),
 ];
 
 /// Prints all problems; fails if there are any.

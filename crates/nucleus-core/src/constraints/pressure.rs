@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 
 use crate::input::frame::Pressure;
 use crate::math::{Real, Row4};
-use crate::model::rows::{Blocks, triangles_by_block};
+use crate::model::blocks::{Blocks, triangles_by_block};
 use crate::model::surface::Surface;
 use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;

@@ -1,6 +1,7 @@
 //! Parallel loops over the rows of a list: interior rows block by block, then interface rows colour by colour.
 
-use crate::model::rows::{Blocks, RowBatch, RowList};
+use crate::model::blocks::Blocks;
+use crate::model::rows::{RowBatch, RowList};
 use crate::parallel::thread_pool::ThreadPool;
 
 /// Does `work` on all batches of a list once: interior rows, then interface rows.

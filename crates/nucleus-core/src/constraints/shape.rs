@@ -12,7 +12,7 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::math::Real;
-use crate::model::rows::Blocks;
+use crate::model::blocks::Blocks;
 use crate::model::surface::Surface;
 use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;

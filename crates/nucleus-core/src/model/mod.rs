@@ -12,9 +12,10 @@
 //! | polygon meshes | [`surface`] |
 //! | edges, cross links, seams, areas | `topology.rs` |
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
-//! | blocks, colours and lane groups of rows | `rows.rs` |
+//! | blocks of points; colours and lane groups of rows | `blocks.rs`, `rows.rs` |
 //! | vertex maps, as given and per row | [`vertex_maps`], `strength_maps.rs` |
 
+pub mod blocks;
 pub mod build_error;
 pub mod builder;
 pub mod link_order;
@@ -36,9 +37,10 @@ use crate::constraints::shape::ShapeModel;
 use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
 use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
+use crate::model::blocks::{Blocks, triangles_by_block};
 use crate::model::builder::{Cloth, Collider, LinkOrder, Mass, point_masses};
 use crate::model::order::Order;
-use crate::model::rows::{Blocks, RowList, triangles_by_block};
+use crate::model::rows::RowList;
 use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps};
 use crate::model::surface::Surface;
 use crate::model::topology::{Link, stretch_links};

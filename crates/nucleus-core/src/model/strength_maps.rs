@@ -9,7 +9,8 @@ use crate::constraints::stretch::LinkRow;
 use crate::math::Real;
 use crate::model::vertex_maps::{VertexMaps, mean, mean_share};
 
-use crate::model::rows::{Blocks, Row, RowList};
+use crate::model::blocks::Blocks;
+use crate::model::rows::{Row, RowList};
 
 /// The strength maps of the lists of a cloth; a list without a map is empty.
 #[derive(Debug, Clone)]

@@ -5,7 +5,8 @@ use crate::constraints::strength_map::StrengthMap;
 use crate::constraints::stretch::{LinkGroup, LinkProjection, LinkRow};
 use crate::input::links::Link;
 use crate::math::{Lanes, Real, Row4};
-use crate::model::rows::{AllBlocks, Row, RowList};
+use crate::model::blocks::AllBlocks;
+use crate::model::rows::{Row, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 

@@ -11,7 +11,7 @@ use crate::input::frame::{FrameInput, ResistanceModel};
 use crate::input::links::{Link, LinkMethod};
 use crate::math::Real;
 use crate::model::Model;
-use crate::model::rows::Partition;
+use crate::model::blocks::Partition;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 

@@ -11,7 +11,7 @@ use crate::contact::depenetration::Depenetration;
 use crate::contact::material::ContactMaterial;
 use crate::contact::time_step::{ColliderStep, ContactCounters};
 use crate::math::{Real, Row4};
-use crate::model::rows::Blocks;
+use crate::model::blocks::Blocks;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 

@@ -40,30 +40,30 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
         if least >= step.pushing_gap() {
-            if step.material.grips && Restitution::touches(gap, self.rest_gap(step, self.weights)) {
-                self.hold(step);
-            }
-            return Outcome::Separated;
+            return self.leave(step, gap);
         }
         if least < R::ZERO || !self.plane_is_valid(moved, step) {
             return self.resolve_exact(step, least);
         }
         let rest_gap = self.rest_gap(step, self.weights);
         if gap >= rest_gap * touching {
-            if step.material.grips && Restitution::touches(gap, rest_gap) {
-                self.hold(step);
-            }
-            return Outcome::Separated;
+            return self.leave(step, gap);
         }
         self.push(step, rest_gap, [self.gap_at_start(step), gap]);
         Outcome::Pushed
     }
 
-    /// Reverses sliding of a contact that touches without a push: constraint sweeps drag its points in between.
-    #[cold]
-    fn hold(&self, step: &ColliderStep<'_, R>) {
-        let gap = self.rest_gap(step, self.weights);
-        self.push(step, gap, [gap; 2]);
+    /// Leaves a contact that keeps its thickness where it is. If its material grips, its sliding is reversed while the two
+    /// touch: constraint sweeps drag its points in between.
+    #[inline]
+    fn leave(&self, step: &ColliderStep<'_, R>, gap: R) -> Outcome {
+        if step.material.grips {
+            let rest_gap = self.rest_gap(step, self.weights);
+            if Restitution::touches(gap, rest_gap) {
+                self.push(step, rest_gap, [rest_gap; 2]);
+            }
+        }
+        Outcome::Separated
     }
 
     /// Repeats the test with exact closest points, and sets the plane that belongs to them. `least` is the

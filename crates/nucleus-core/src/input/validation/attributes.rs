@@ -1,0 +1,161 @@
+//! Validation of attributes: every invalid number is replaced by its default.
+
+use nalgebra::Vector3;
+
+use crate::input::frame::{
+    ClothFrame, ColliderFrame, ForceField, FrameInput, Liquid, Pressure, ResistanceModel,
+};
+use crate::input::object_fields::{PointField, WindField};
+
+/// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
+/// volumes it spans are finite in `f32`.
+pub const MAX_COORDINATE: f64 = 1e12;
+
+/// Whether no component is NaN or beyond [`MAX_COORDINATE`].
+pub fn is_in_range(v: &Vector3<f64>) -> bool {
+    v.iter().all(|x| x.abs() <= MAX_COORDINATE)
+}
+
+/// Replaces invalid settings of the solver; whether there were any.
+pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
+    let mut replaced = sanitize_vectors([&mut frame.gravity, &mut frame.wind]);
+    replaced |= sanitize_numbers([
+        (&mut frame.air_density, 0.0),
+        (&mut frame.collision_iterations, 1.0),
+        (&mut frame.wind_noise, 0.0),
+    ]);
+    if let ResistanceModel::Physical { evaluations } = &mut frame.resistance {
+        replaced |= sanitize_numbers([(evaluations, 1.0)]);
+    }
+    if let Some(plane) = &mut frame.plane {
+        replaced |= sanitize_numbers([
+            (&mut plane.bounce, 0.0),
+            (&mut plane.friction, 0.0),
+            (&mut plane.stickiness, 0.0),
+        ]);
+        if !is_in_range(&plane.origin) || !is_in_range(&plane.normal) {
+            frame.plane = None;
+            replaced = true;
+        }
+    }
+    replaced
+}
+
+pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
+    let default = ClothFrame::default();
+    let vectors = sanitize_vectors([&mut cloth.local_force, &mut cloth.local_wind]);
+    let numbers = sanitize_numbers([
+        (&mut cloth.stretch_resistance, default.stretch_resistance),
+        (&mut cloth.compression_resistance, default.compression_resistance),
+        (&mut cloth.shear_resistance, default.shear_resistance),
+        (&mut cloth.bend_resistance, default.bend_resistance),
+        (&mut cloth.rest_length_scale, default.rest_length_scale),
+        (&mut cloth.stretch_damp, default.stretch_damp),
+        (&mut cloth.damp, default.damp),
+        (&mut cloth.conserve, default.conserve),
+        (&mut cloth.overlap_pruning, default.overlap_pruning),
+        (&mut cloth.drag, default.drag),
+        (&mut cloth.tangential_drag, default.tangential_drag),
+        (&mut cloth.lift, default.lift),
+        (&mut cloth.thickness, default.thickness),
+        (&mut cloth.friction, default.friction),
+        (&mut cloth.stickiness, default.stickiness),
+        (&mut cloth.bounce, default.bounce),
+        (&mut cloth.collide_strength, default.collide_strength),
+        (&mut cloth.push_out.share, default.push_out.share),
+        (&mut cloth.push_out.radius, default.push_out.radius),
+        (&mut cloth.crossover_push, default.crossover_push),
+        (&mut cloth.self_crossover_push, default.self_crossover_push),
+        (&mut cloth.bending.angle_scale, default.bending.angle_scale),
+        (&mut cloth.bending.angle_dropoff, default.bending.angle_dropoff),
+        (&mut cloth.rigidity, default.rigidity),
+        (&mut cloth.deform_resistance, default.deform_resistance),
+        (&mut cloth.input_attract.strength, 0.0),
+        (&mut cloth.input_attract.damp, 0.0),
+        (&mut cloth.input_attract.motion_drag, 0.0),
+    ]);
+    let fields = cloth.field.as_mut().is_some_and(sanitize_field)
+        | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
+        | sanitize_wind_field(&mut cloth.wind_field)
+        | sanitize_liquid(&mut cloth.liquid);
+    let bending = &mut cloth.bending;
+    let limits =
+        [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle].into_iter();
+    let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
+    vectors | numbers | yields | fields | sanitize_pressure(&mut cloth.pressure)
+}
+
+/// A liquid without a spacing is none.
+fn sanitize_liquid(liquid: &mut Option<Liquid>) -> bool {
+    let Some(settings) = liquid else { return false };
+    let replaced = sanitize_numbers([
+        (&mut settings.incompressibility, 1.0),
+        (&mut settings.viscosity, 0.0),
+        (&mut settings.surface_tension, 0.0),
+    ]);
+    let is_valid = settings.spacing > 0.0 && settings.spacing <= MAX_COORDINATE;
+    if !is_valid {
+        *liquid = None;
+    }
+    replaced | !is_valid
+}
+
+fn sanitize_pressure(pressure: &mut Pressure) -> bool {
+    match pressure {
+        Pressure::Off => false,
+        Pressure::Manual { pascals, damping } => sanitize_numbers([(pascals, 0.0), (damping, 0.0)]),
+        Pressure::Gas { start, bulk, pump, tightness, damping, .. } => {
+            sanitize_numbers([(start, 0.0), (bulk, 0.0), (pump, 0.0), (tightness, 1.0), (damping, 0.0)])
+        }
+    }
+}
+
+fn sanitize_field(field: &mut ForceField) -> bool {
+    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
+    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
+    replaced | sanitize_numbers([(&mut field.magnitude, 0.0), (&mut field.distance, 0.0)])
+}
+
+fn sanitize_point_field(field: &mut PointField) -> bool {
+    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
+    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
+    let PointField { magnitude, self_attract, radius, distance, .. } = field;
+    replaced | sanitize_numbers([(magnitude, 0.0), (self_attract, 0.0), (radius, 0.0), (distance, 0.0)])
+}
+
+fn sanitize_wind_field(field: &mut WindField) -> bool {
+    let WindField { shadow_distance, shadow_diffusion, push_distance, push_vorticity, .. } = field;
+    sanitize_numbers([
+        (shadow_distance, 0.0),
+        (shadow_diffusion, 0.0),
+        (push_distance, 0.0),
+        (push_vorticity, 0.0),
+    ])
+}
+
+pub(super) fn sanitize_collider_settings(collider: &mut ColliderFrame) -> bool {
+    let fields = collider.field.as_mut().is_some_and(sanitize_field)
+        | collider.point_field.as_mut().is_some_and(sanitize_point_field)
+        | sanitize_wind_field(&mut collider.wind_field);
+    fields
+        | sanitize_numbers([
+            (&mut collider.thickness, 0.0),
+            (&mut collider.friction, 0.0),
+            (&mut collider.stickiness, 0.0),
+            (&mut collider.bounce, 0.0),
+            (&mut collider.collide_strength, 1.0),
+            (&mut collider.push_out.share, 0.0),
+            (&mut collider.push_out.radius, 0.0),
+        ])
+}
+
+fn sanitize_vectors<const N: usize>(vectors: [&mut Vector3<f64>; N]) -> bool {
+    let bad = vectors.into_iter().filter(|vector| !is_in_range(vector));
+    bad.map(|vector| *vector = Vector3::zeros()).count() > 0
+}
+
+/// Replaces each invalid number by the default beside it; whether there were any.
+pub(super) fn sanitize_numbers<const N: usize>(numbers: [(&mut f64, f64); N]) -> bool {
+    let bad = numbers.into_iter().filter(|(number, _)| number.is_nan() || number.abs() > MAX_COORDINATE);
+    bad.map(|(number, default)| *number = default).count() > 0
+}
