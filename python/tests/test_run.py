@@ -51,9 +51,9 @@ def test_mistakes_are_exceptions(folder):
     nucleus.run("drape.ron", frames=2)
     with pytest.raises(nucleus.RunError, match="exists"):
         nucleus.run("drape.ron", frames=2)
-    (folder / "strict.ron").write_text(text.replace("[finite]", "[restsBy(frame: 3, speed: 0)]"))
+    (folder / "strict.ron").write_text(text.replace("[finite]", "[atRestBy(frame: 3, speed: 0)]"))
     run = nucleus.run("strict.ron", frames=4)
-    assert not run.ok and "restsBy" in run.problems[0]
+    assert not run.ok and "atRestBy" in run.problems[0]
 
 
 def test_a_scene_in_memory_is_run_and_leaves_no_file(folder):

@@ -90,7 +90,7 @@ struct Sample<'a> {
 const FRAME: &str = "frame";
 
 /// The check that requires an audit.
-const NO_CROSSING: &str = "noCrossing";
+const NO_SELF_INTERSECTION: &str = "noSelfIntersection";
 
 /// The check of unresolved pairs. A run without it fails at the first.
 pub const MAX_UNRESOLVED: &str = "maxUnresolved";
@@ -102,8 +102,14 @@ pub const MAX_INTERSECTIONS: &str = "maxIntersections";
 pub const MAX_STRETCH: &str = "maxStretch";
 
 /// Former names of checks, each with the name of today. A scene may use either; a former name is a warning.
-pub const RENAMED: &[(&str, &str)] =
-    &[("maxTrapped", MAX_DEPENETRATING), ("maxTangled", MAX_INTERSECTIONS), ("untangledBy", "separatedBy")];
+pub const RENAMED: &[(&str, &str)] = &[
+    ("maxTrapped", MAX_DEPENETRATING),
+    ("maxTangled", MAX_INTERSECTIONS),
+    ("noCrossing", NO_SELF_INTERSECTION),
+    ("restsBy", "atRestBy"),
+    ("separatedBy", "noIntersectionsAfter"),
+    ("untangledBy", "noIntersectionsAfter"),
+];
 
 static FORMS: [Form; 18] = [
     at_most(
@@ -131,7 +137,7 @@ static FORMS: [Form; 18] = [
         "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
     ).counting(),
     at_most(
-        NO_CROSSING,
+        NO_SELF_INTERSECTION,
         &[],
         |sample| sample.passed_through.map(|count| count as f64),
         "No frame ends with an intersection that the start state does not have: of cloth with itself, with other cloth, or with a collider. With `--audit`, nothing passes through between frames either.",
@@ -203,13 +209,13 @@ static FORMS: [Form; 18] = [
         "From this frame on the mean excess density of liquids is at most this share of their rest density.",
     ),
     at_most(
-        "separatedBy",
+        "noIntersectionsAfter",
         &["frame"],
         |sample| Some(sample.report.intersections as f64),
         "From this frame on no edge of cloth goes through a face of cloth.",
     ),
     at_most(
-        "restsBy",
+        "atRestBy",
         &["frame", "speed"],
         |sample| Some(sample.speed()),
         "From this frame on the root mean square speed is at most this, in m/s.",
@@ -269,7 +275,7 @@ impl Check {
 
     /// Whether it requires an audit.
     pub fn needs_audit(&self) -> bool {
-        self.form.name == NO_CROSSING
+        self.form.name == NO_SELF_INTERSECTION
     }
 
     /// Its bound and limit.
@@ -302,7 +308,7 @@ impl Check {
     }
 }
 
-/// The syntax of a scene: `noPenetration`, `maxStretch(0.02)`, `restsBy(frame: 100, speed: 0.01)`.
+/// The syntax of a scene: `noPenetration`, `maxStretch(0.02)`, `atRestBy(frame: 100, speed: 0.01)`.
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Form { name, parameters, .. } = self.form;
@@ -319,7 +325,7 @@ impl fmt::Display for Check {
 }
 
 impl Form {
-    /// As a scene writes it, with names for the arguments: `restsBy(frame: ..., speed: ...)`.
+    /// As a scene writes it, with names for the arguments: `atRestBy(frame: ..., speed: ...)`.
     pub fn usage(&self) -> String {
         match self.parameters {
             [] => self.name.to_owned(),

@@ -7,7 +7,7 @@ use crate::sample::{folder, nucleus, scene, stderr, stdout};
 #[test]
 fn checks_are_listed_with_their_arguments_and_former_names() {
     let said = stdout(&nucleus(folder().path(), &["checks"]));
-    for line in ["noPenetration  ", "maxStretch(strain)  ", "restsBy(frame: ..., speed: ...)  "] {
+    for line in ["noPenetration  ", "maxStretch(strain)  ", "atRestBy(frame: ..., speed: ...)  "] {
         assert!(said.contains(line), "{said}");
     }
     assert!(said.contains("`maxTrapped` is now `maxDepenetrating`"), "{said}");

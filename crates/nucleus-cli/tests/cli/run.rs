@@ -35,7 +35,7 @@ fn the_cache_holds_the_scene_it_was_made_from() {
 #[test]
 fn a_failed_check_exits_with_1_and_shows_its_figure() {
     let folder = folder();
-    scene(folder.path(), 5, "restsBy(frame: 3, speed: 0)");
+    scene(folder.path(), 5, "atRestBy(frame: 3, speed: 0)");
     let output = nucleus(folder.path(), &["run", "drape.ron"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stdout(&output).contains("FAILED with "), "{}", stdout(&output));
@@ -80,14 +80,14 @@ fn options_select_the_frames_and_the_recorded_times() {
 #[test]
 fn an_audit_says_that_nothing_passed_through_anything() {
     let folder = folder();
-    scene(folder.path(), 5, "noCrossing");
+    scene(folder.path(), 5, "noSelfIntersection");
     let output = nucleus(folder.path(), &["run", "drape.ron", "--audit"]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{said}{}", stderr(&output));
     assert!(said.contains("audit of 384 steps: nothing passed through anything\n"), "{said}");
-    assert!(said.contains("check noCrossing: passed"), "{said}");
+    assert!(said.contains("check noSelfIntersection: passed"), "{said}");
     let output = nucleus(folder.path(), &["run", "drape.ron", "--force"]);
-    assert!(stdout(&output).contains("check noCrossing: passed"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("check noSelfIntersection: passed"), "{}", stdout(&output));
     assert!(!stdout(&output).contains("audit of"), "`--audit` is not given");
 }
 

@@ -99,14 +99,14 @@ fn mistakes_are_refused_before_anything_is_written() {
 #[test]
 fn a_run_that_fails_is_named_and_the_others_go_on() {
     let folder = folder();
-    scene(folder.path(), 5, "restsBy(frame: 3, speed: 0)");
+    scene(folder.path(), 5, "atRestBy(frame: 3, speed: 0)");
     // Where a folder is in its way, the second run cannot write its cache.
     fs::create_dir_all(folder.path().join("w/runs/0001.mcap/x")).unwrap();
     let output = wedge(folder.path(), &[]);
     let said = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{said}{}", stderr(&output));
     assert!(said.contains("4 runs: 3 problem, 1 failed"), "{said}");
-    assert!(said.contains("run 0000: check restsBy(") && said.contains("run 0001: "), "{said}");
+    assert!(said.contains("run 0000: check atRestBy(") && said.contains("run 0001: "), "{said}");
     let page = fs::read_to_string(folder.path().join("w/wedge.html")).unwrap();
     assert!(page.contains("<li class=\"failed\"><a href=\"logs/0001.txt\">"), "{page}");
     // Only the failed run is done again.

@@ -16,7 +16,7 @@ fn program(nodes: &str) -> Program {
             "sheet": polyPlane(width: 2, height: 2, subdivisions: (6, 6), translate: (0, 1.5, 0)),
             "ball": polySphere(radius: 1, subdivisions: (12, 8)),
             {nodes}
-        }}, checks: [noCrossing])"#
+        }}, checks: [noSelfIntersection])"#
     );
     let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
     compile(&scene).expect("a valid scene")

@@ -59,22 +59,22 @@ fn nan_fails_and_remains_the_worst_figure() {
 fn rests_by_limits_the_root_mean_square_speed_from_its_frame_on() {
     // 4 J in 2 kg are 2 m/s.
     let moving = |kinetic_energy| StepReport { kinetic_energy, ..StepReport::default() };
-    let outcome = judge("restsBy", &[3.0, 2.0], &[moving(100.0), moving(4.0), moving(1.0)]);
+    let outcome = judge("atRestBy", &[3.0, 2.0], &[moving(100.0), moving(4.0), moving(1.0)]);
     assert_eq!((outcome.passed, outcome.worst), (true, Some((2.0, 3))));
-    assert!(!judge("restsBy", &[3.0, 1.9], &[moving(0.0), moving(4.0)]).passed);
+    assert!(!judge("atRestBy", &[3.0, 1.9], &[moving(0.0), moving(4.0)]).passed);
 }
 
 #[test]
 fn untangled_by_fails_for_intersections_from_its_frame_on() {
     let tangled = |tangled| StepReport { intersections: tangled, ..StepReport::default() };
-    assert!(judge("separatedBy", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
-    let outcome = judge("separatedBy", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
+    assert!(judge("noIntersectionsAfter", &[3.0], &[tangled(9), tangled(0), tangled(0)]).passed);
+    let outcome = judge("noIntersectionsAfter", &[3.0], &[tangled(9), tangled(1), tangled(0)]);
     assert_eq!((outcome.passed, outcome.worst), (false, Some((1.0, 3))));
 }
 
 #[test]
 fn a_check_that_applies_to_no_frame_fails() {
-    let outcome = judge("restsBy", &[100.0, 1.0], &[StepReport::default()]);
+    let outcome = judge("atRestBy", &[100.0, 1.0], &[StepReport::default()]);
     assert_eq!((outcome.passed, outcome.worst), (false, None));
 }
 

@@ -21,7 +21,7 @@ const SHEET: &str = r#"Scene(
         "rigid1": nRigid(inputMesh: "ball", friction: 0.4),
         "pin": dynamicConstraint(type: transform, components: ["cloth1.vtx[0]", "cloth1.vtx[3:4]"]),
     },
-    checks: [noPenetration, maxStretch(0.02), restsBy(frame: 20, speed: 0.5)],
+    checks: [noPenetration, maxStretch(0.02), atRestBy(frame: 20, speed: 0.5)],
 )
 "#;
 
@@ -43,7 +43,7 @@ fn everything_in_a_scene_is_read() {
     assert_eq!(scene.time, TimeSpan { start: 1, end: 24, fps: 24.0 });
     assert_eq!(scene.record, Record::Frames);
     let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
-    assert_eq!(checks, ["noPenetration", "maxStretch(0.02)", "restsBy(frame: 20, speed: 0.5)"]);
+    assert_eq!(checks, ["noPenetration", "maxStretch(0.02)", "atRestBy(frame: 20, speed: 0.5)"]);
     let node = |name| scene.graph.node(scene.graph.find(name).expect(name));
     assert_eq!(node("cloth1").get(&n_cloth::BEND_RESISTANCE), 0.4);
     assert_eq!(node("cloth1").get(&n_base::FRICTION), 0.3);

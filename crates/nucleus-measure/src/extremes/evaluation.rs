@@ -303,7 +303,7 @@ impl Evaluation {
         }
         for check in checks {
             let (what, value) = match check.form().name {
-                "finite" | "restsBy" | "settledStretch99" => continue,
+                "finite" | "atRestBy" | "settledStretch99" => continue,
                 "noPenetration" => {
                     let pairs = timeline.sum(|record| record.report.pairs_unresolved);
                     ("pairs unresolved".to_owned(), pairs as f64)
@@ -356,10 +356,10 @@ impl Evaluation {
     }
 }
 
-/// The bounds of `restsBy` and `settledStretch99`, which name the same frame.
+/// The bounds of `atRestBy` and `settledStretch99`, which name the same frame.
 fn recovery(checks: &[Check]) -> Option<Recovery> {
     let arguments = |name: &str| checks.iter().find(|check| check.form().name == name).map(Check::arguments);
-    match (arguments("restsBy")?, arguments("settledStretch99")?) {
+    match (arguments("atRestBy")?, arguments("settledStretch99")?) {
         (&[from, speed], &[_, strain]) => Some(Recovery { from: from as i64, speed, strain }),
         _ => None,
     }

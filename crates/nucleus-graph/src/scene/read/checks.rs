@@ -1,4 +1,4 @@
-//! `checks: [noPenetration, maxStretch(0.02), restsBy(frame: 100, speed: 0.01)]`.
+//! `checks: [noPenetration, maxStretch(0.02), atRestBy(frame: 100, speed: 0.01)]`.
 
 use crate::checks::{Check, Form, RENAMED, Values};
 use crate::diagnostic::{Findings, listed, nearest};

@@ -374,7 +374,7 @@ fn the_arguments_of_checks_are_checked() {
     };
     assert_eq!(reported(&with_checks("[maxStretch]"))[0].1, "`maxStretch` takes `strain`");
     assert_eq!(reported(&with_checks("[noPenetration(1)]"))[0].1, "`noPenetration` takes nothing");
-    assert_eq!(reported(&with_checks("[restsBy(frame: 3, sped: 1)]"))[0].1, "`restsBy` has no `sped`");
+    assert_eq!(reported(&with_checks("[atRestBy(frame: 3, sped: 1)]"))[0].1, "`atRestBy` has no `sped`");
     assert_eq!(
         reported(&with_checks("noPenetration"))[0].1,
         "`checks` takes a list, found the word `noPenetration`"
@@ -408,19 +408,22 @@ fn a_former_name_of_a_check_is_read_with_a_warning_that_gives_the_new_one() {
     let with_check = |check: &str| {
         format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
     };
-    for (former, current) in [
-        ("maxTrapped", "maxDepenetrating"),
-        ("maxTangled", "maxIntersections"),
-        ("untangledBy", "separatedBy"),
+    for (former, current, arguments) in [
+        ("maxTrapped", "maxDepenetrating", "(3)"),
+        ("maxTangled", "maxIntersections", "(3)"),
+        ("noCrossing", "noSelfIntersection", ""),
+        ("restsBy", "atRestBy", "(frame: 3, speed: 0.5)"),
+        ("separatedBy", "noIntersectionsAfter", "(3)"),
+        ("untangledBy", "noIntersectionsAfter", "(3)"),
     ] {
-        let text = with_check(&format!("{former}(3)"));
+        let text = with_check(&format!("{former}{arguments}"));
         let (read, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a former name is read");
-        assert_eq!(read.checks, scene(&with_check(&format!("{current}(3)"))).checks);
+        assert_eq!(read.checks, scene(&with_check(&format!("{current}{arguments}"))).checks);
         let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
         assert_eq!(warning.severity, Severity::Warning);
         assert_eq!(warning.message, format!("`{former}` is now called `{current}`"));
         assert_eq!(&text[warning.span.clone()], former);
         assert_eq!(warning.help, Some(format!("write `{current}` in its place")));
-        assert!(write_scene(&read).contains(&format!("checks: [{current}(3)]")));
+        assert!(write_scene(&read).contains(&format!("checks: [{current}{arguments}]")));
     }
 }

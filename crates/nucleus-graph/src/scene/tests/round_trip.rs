@@ -282,7 +282,7 @@ fn a_scene_is_written_as_a_person_would() {
             parent: "arm",
         ),
     },
-    checks: [noPenetration, restsBy(frame: 3, speed: 0.1)],
+    checks: [noPenetration, atRestBy(frame: 3, speed: 0.1)],
 )
 "#;
     let read = scene(text);
