@@ -5,6 +5,8 @@ use std::fs;
 use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+use std::thread;
 
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::atomic_file::AtomicFile;
@@ -105,16 +107,40 @@ pub fn is_exr(out: &Path) -> bool {
     out.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"))
 }
 
+/// Draws each picture, and passes it to `take` in another thread, which encodes it while the next one is drawn.
 fn each<R: Read + Seek>(
     film: &mut Film<R>,
     report: &mut dyn FnMut(f64),
-    mut take: impl FnMut(&Image, i32) -> Result<()>,
+    mut take: impl FnMut(&Image, i32) -> Result<()> + Send,
+) -> Result<()> {
+    let (pictures, drawn) = mpsc::sync_channel::<(Image, i32)>(1);
+    thread::scope(|scope| {
+        let taker = scope.spawn(move || drawn.iter().try_for_each(|(image, frame)| take(&image, frame)));
+        let sent = draw_all(film, report, |image, frame| pictures.send((image, frame)).is_ok());
+        drop(pictures);
+        let taken = taker.join().expect("a writer does not panic");
+        // Ctrl-C reaches ffmpeg too, whose end then is no error of its own.
+        if taken.is_err() && process::is_interrupted() {
+            bail!(Interrupted);
+        }
+        // A picture is refused after an error of `take`, which then is the cause.
+        taken.and(sent)
+    })
+}
+
+/// Draws all pictures until one is refused.
+fn draw_all<R: Read + Seek>(
+    film: &mut Film<R>,
+    report: &mut dyn FnMut(f64),
+    mut give: impl FnMut(Image, i32) -> bool,
 ) -> Result<()> {
     for place in 0..film.len() {
         if process::is_interrupted() {
             bail!(Interrupted);
         }
-        take(&film.picture(place)?, film.frame(place))?;
+        if !give(film.picture(place)?, film.frame(place)) {
+            break;
+        }
         report((place + 1) as f64 / film.len() as f64);
     }
     Ok(())

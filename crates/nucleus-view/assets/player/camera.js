@@ -81,6 +81,7 @@ export class Camera {
     this.yaw = 0.57;
     this.pitch = 0.44;
     this.size = 1; // diagonal of the framed box; limits the zoom
+    this.framed = null; // the box that fills the picture of any shape, until the camera is moved
     this.track = null; // the camera of the scene that is followed, if any
     this.frames = 0; // since the start of the run
     this.canvas = canvas;
@@ -130,11 +131,14 @@ export class Camera {
     this.target = add(eye, scale(forward, this.distance));
     this.yaw = Math.atan2(-forward[0], -forward[2]);
     this.pitch = Math.min(MAX_PITCH, Math.max(-MAX_PITCH, Math.asin(Math.min(1, Math.max(-1, -forward[1])))));
-    this.track = null;
+    this.track = this.framed = null;
     this.onChange();
   }
 
   orbitMatrices(aspect) {
+    if (this.framed && this.framed.aspect !== aspect) {
+      this.fit(aspect);
+    }
     const up = cross(this.toward, this.right);
     const near = Math.max(this.distance * 0.02, this.size * 1e-3);
     return {
@@ -143,12 +147,21 @@ export class Camera {
     };
   }
 
-  // Sets target and distance so that the box fills the picture.
+  // Sets target and distance so that the box fills the picture, also when the window changes its shape.
   frame({ low, high }, aspect) {
     this.track = null;
     this.target = scale(add(low, high), 0.5);
     this.size = Math.max(Math.hypot(...subtract(high, low)), 1e-6);
+    this.framed = { low, high };
+    this.fit(aspect);
+    this.onChange();
+  }
+
+  // Sets the distance at which the framed box fills a picture of this shape.
+  fit(aspect) {
+    const { low, high } = this.framed;
     const [right, up, toward] = [this.right, normalise(cross(this.toward, this.right)), this.toward];
+    this.framed.aspect = aspect;
     this.distance = this.size * 0.05;
     for (let corner = 0; corner < 8; corner += 1) {
       const at = [0, 1, 2].map((axis) => ((corner >> axis) & 1 ? high : low)[axis]);
@@ -156,21 +169,23 @@ export class Camera {
       const sides = [Math.abs(dot(offset, right)) / aspect, Math.abs(dot(offset, up))];
       this.distance = Math.max(this.distance, Math.max(...sides) / (TANGENT * FILLED) + dot(offset, toward));
     }
-    this.onChange();
   }
 
   orbit(dx, dy) {
+    this.framed = null;
     this.yaw -= dx * 0.008;
     this.pitch = Math.min(MAX_PITCH, Math.max(-MAX_PITCH, this.pitch + dy * 0.008));
   }
 
   pan(dx, dy) {
+    this.framed = null;
     const perPixel = (2 * TANGENT * this.distance) / this.canvas.clientHeight;
     const up = cross(this.toward, this.right);
     this.target = add(this.target, add(scale(this.right, -dx * perPixel), scale(up, dy * perPixel)));
   }
 
   zoom(steps) {
+    this.framed = null;
     const distance = this.distance * Math.exp(steps * 0.0012);
     this.distance = Math.min(this.size * 50, Math.max(this.size * 0.01, distance));
   }

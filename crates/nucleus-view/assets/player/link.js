@@ -82,7 +82,7 @@ function applyCamera(player, options) {
   const view = (options.get("view") ?? "").split(",").map(Number);
   if (view.length === 6 && view.every(Number.isFinite) && view[2] > 0) {
     const [yaw, pitch, distance, ...target] = view;
-    Object.assign(player.camera, { yaw, pitch, distance, target, track: null });
+    Object.assign(player.camera, { yaw, pitch, distance, target, track: null, framed: null });
     player.redraw();
   }
 }

@@ -14,13 +14,23 @@ use super::visibility::{self, Fragment};
 /// Points that are not finite are left out, and so are faces with such points or with points that do not exist. No input
 /// makes it fail.
 pub fn draw(objects: &[Object], camera: &Camera, style: &Style) -> Image {
+    draw_with(&mut Vec::new(), objects, camera, style)
+}
+
+/// Draws a picture with the visibility buffer of the one before.
+pub(super) fn draw_with(
+    fragments: &mut Vec<Fragment>,
+    objects: &[Object],
+    camera: &Camera,
+    style: &Style,
+) -> Image {
     let size = style.size.map(|side| side.clamp(1, Image::LARGEST_SIDE));
     let samples = style.samples.clamp(1, 8);
     let view = View::new(camera, size.map(|side| side * samples));
     let mut mesh = Mesh::gather(objects, style, &view);
     let light = Light::of(&mesh, &view);
     light.find_sky_visibility(&mut mesh);
-    let fragments = visibility::draw(&mesh, &view);
+    visibility::draw(&mesh, &view, fragments);
     let is_transparent = style.background == Background::Transparent;
     let floor = if is_transparent { None } else { floor_height(objects, style.ground) };
     let options = Options {
@@ -30,7 +40,7 @@ pub fn draw(objects: &[Object], camera: &Camera, style: &Style) -> Image {
         background: style.background,
         keeps_linear: style.keeps_linear,
     };
-    let mut image = shade(&mesh, &fragments, &view, &light, options);
+    let mut image = shade(&mesh, fragments, &view, &light, options);
     if let Colouring::Strain { full_scale } = style.colouring {
         strain::draw_legend(&mut image, full_scale);
     }
@@ -161,6 +171,10 @@ impl Shader<'_> {
         let n = self.samples;
         let at = |sample: u32| [column * n + sample % n, row * n + sample / n];
         let fragment = |[x, y]: [u32; 2]| &fragments[(y * self.view.size[0] + x) as usize];
+        if (0..n * n).all(|sample| fragment(at(sample)).inverse_depth == 0.0) {
+            let centre = (n - 1) / 2;
+            return self.floor_or_background([column * n + centre, row * n + centre]);
+        }
         let mut surfaces = Surfaces::new();
         for sample in 0..n * n {
             let place = at(sample);

@@ -8,9 +8,10 @@ use nucleus_core::ParticleLook;
 
 use super::animation::AnimationWriter;
 use super::camera::Camera;
-use super::draw::draw;
+use super::draw::draw_with;
 use super::image::Image;
 use super::scene::{Bounds, Ground, Kind, Object, Style};
+use super::visibility::Fragment;
 use crate::error::ViewError;
 
 /// A run as pictures with one camera and one floor, so that nothing moves but the objects.
@@ -39,6 +40,8 @@ pub struct Film<'a, R> {
     style: Style,
     /// Whether the floor is the ground plane, which may move.
     is_ground_plane: bool,
+    /// The visibility buffer of the last picture.
+    fragments: Vec<Fragment>,
 }
 
 impl<'a, R: Read + Seek> Film<'a, R> {
@@ -60,7 +63,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let ground = if is_ground_plane { floor } else { style.ground };
         let fps = cache.run().frames_per_second / every as f64;
         let style = Style { ground, ..style };
-        Ok(Self { cache, moments, fps, camera, scene_camera: None, stage, style, is_ground_plane })
+        let (scene_camera, fragments) = (None, Vec::new());
+        Ok(Self { cache, moments, fps, camera, scene_camera, stage, style, is_ground_plane, fragments })
     }
 
     /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
@@ -164,7 +168,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
         let style = Style { ground: self.ground_at(moment), ..self.style.clone() };
-        Ok(draw(&objects(self.cache, moment, &states)?, &camera, &style))
+        Ok(draw_with(&mut self.fragments, &objects(self.cache, moment, &states)?, &camera, &style))
     }
 
     /// Writes all pictures as one animated PNG that plays in real time.

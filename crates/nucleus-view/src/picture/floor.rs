@@ -1,7 +1,7 @@
 //! The floor: a horizontal plane with a grid, which receives shadows and fades into the background.
 
 use super::camera::View;
-use super::light::{Light, diffuse, smoothstep};
+use super::light::{Light, diffuse, on_all_cores, smoothstep};
 use super::scene::Vec3;
 
 /// Points along a side of the grid on which the visible fraction of the sky is sampled; it varies slowly between them.
@@ -31,9 +31,9 @@ impl Floor {
         let half_extent = view.half_extent() * 1.3;
         let centre = Vec3::new(view.target.x, height, view.target.z);
         let at = |cell: usize| (cell as f32 / (SIDE - 1) as f32 * 2.0 - 1.0) * half_extent;
-        let sky = (0..SIDE * SIDE)
-            .map(|k| light.sky_visibility(&(centre + Vec3::new(at(k % SIDE), 0.0, at(k / SIDE))), &Vec3::y()))
-            .collect();
+        let places: Vec<Vec3> =
+            (0..SIDE * SIDE).map(|k| centre + Vec3::new(at(k % SIDE), 0.0, at(k / SIDE))).collect();
+        let sky = on_all_cores(&places, |place| light.sky_visibility(place, &Vec3::y()));
         Self {
             height,
             centre,

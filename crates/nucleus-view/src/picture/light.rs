@@ -106,7 +106,7 @@ fn smoothed(mesh: &Mesh, sky: &[[f32; 2]]) -> Vec<[f32; 2]> {
 }
 
 /// The values of a function, in order; the items are divided among all cores.
-fn on_all_cores<T: Sync, U: Send>(items: &[T], value: impl Fn(&T) -> U + Sync) -> Vec<U> {
+pub(super) fn on_all_cores<T: Sync, U: Send>(items: &[T], value: impl Fn(&T) -> U + Sync) -> Vec<U> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let value = &value;
     thread::scope(|scope| {

@@ -18,15 +18,17 @@ pub(super) struct Fragment {
 
 const EMPTY: Fragment = Fragment { inverse_depth: 0.0, primitive: u32::MAX, local: [0.0; 2] };
 
-/// Draws a mesh into a visibility buffer, row by row from the top.
-pub(super) fn draw(mesh: &Mesh, view: &View) -> Vec<Fragment> {
-    let mut fragments = vec![EMPTY; view.size[0] as usize * view.size[1] as usize];
+/// Draws a mesh into a visibility buffer, row by row from the top. The buffer takes the size of the view; it is large, and a
+/// film uses one for all its pictures.
+pub(super) fn draw(mesh: &Mesh, view: &View, fragments: &mut Vec<Fragment>) {
+    fragments.clear();
+    fragments.resize(view.size[0] as usize * view.size[1] as usize, EMPTY);
     let vertices: Vec<Vec3> =
         mesh.vertices.iter().map(|vertex| view.to_view_space(&vertex.position)).collect();
     let mut budget = Budget::of(view.size);
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let corners = triangle.corners.map(|corner| vertices[corner as usize]);
-        draw_triangle(&mut fragments, index as u32, corners, view, &mut budget);
+        draw_triangle(fragments, index as u32, corners, view, &mut budget);
     }
     for (index, sphere) in mesh.spheres.iter().enumerate() {
         let primitive = (mesh.triangles.len() + index) as u32;
@@ -36,9 +38,8 @@ pub(super) fn draw(mesh: &Mesh, view: &View) -> Vec<Fragment> {
             radius: sphere.radius,
             opacity: sphere.opacity,
         };
-        draw_sphere(&mut fragments, &disc, view);
+        draw_sphere(fragments, &disc, view);
     }
-    fragments
 }
 
 /// Draws a triangle, given in view space; the part nearer than the near plane is clipped.
