@@ -99,3 +99,11 @@ def test_a_wedge_is_a_list_of_results(folder):
     with pytest.raises(nucleus.RunError, match="holds a plan already"):
         nucleus.wedge("drape.ron", vary, out="w")
     assert len(nucleus.wedge(out="w", resume=True)) == 4
+
+
+def test_a_wedge_with_a_mistake_is_refused_before_anything_is_written(folder):
+    with pytest.raises(nucleus.RunError, match="did you mean `bendResistance`"):
+        nucleus.wedge("drape.ron", {"cloth1.bendResistence": [1]}, out="w")
+    with pytest.raises(nucleus.RunError, match="thickness"):
+        nucleus.wedge("drape.ron", {"cloth1.thickness": [1, -1]}, out="w")
+    assert not (folder / "w").exists()

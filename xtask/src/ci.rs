@@ -7,7 +7,7 @@ use std::{env, fs, thread};
 
 use anyhow::{Context, bail, ensure};
 
-use crate::{files, readme, tidy};
+use crate::{files, python, readme, tidy};
 
 /// Minimum uptime of a server command of the README.
 const SERVES_FOR: Duration = Duration::from_secs(3);
@@ -32,6 +32,7 @@ pub fn run(root: &Path) -> anyhow::Result<()> {
     step("build", || cargo(root, &["build", "--release", "--package", "nucleus-cli"], &[]))?;
     step("readme, and with it all tests", || readme_commands(root))?;
     step("scenes", || scenes(root))?;
+    step("python", || python::run(root))?;
     println!("\nall fine after {:.1} s", start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! The Python package: a wheel, and its tests in an environment of its own below the target folder.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
 
@@ -12,9 +12,11 @@ const NEEDED: [&str; 7] = ["maturin>=1.9,<2", "numpy", "pytest", "matplotlib", "
 
 /// Builds the wheel with the programs that are built already, installs it, and runs the tests.
 pub fn run(root: &Path) -> anyhow::Result<()> {
-    let has_python = Command::new("python3").arg("--version").status().is_ok_and(|status| status.success());
-    if !has_python {
-        println!("there is no `python3` here; the Python package is not tested");
+    // Debian's `python3` comes without these modules.
+    let usable =
+        Command::new("python3").args(["-c", "import ensurepip, venv"]).stderr(Stdio::null()).status();
+    if !usable.is_ok_and(|status| status.success()) {
+        println!("there is no `python3` with `venv` here; the Python package is not tested");
         return Ok(());
     }
     let (target, package) = (files::target(root), root.join("python"));

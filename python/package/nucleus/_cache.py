@@ -16,7 +16,7 @@ from ._simulation import faces_of
 class Cache:
     """A cache of a run.
 
-    >>> cache = open_cache("hang.mcap")  # doctest: +SKIP
+    >>> cache = open_cache("tablecloth.mcap")  # doctest: +SKIP
     >>> cache.positions("cloth1", frame=10).shape  # doctest: +SKIP
     (441, 3)
     """

@@ -45,7 +45,7 @@ class Scene:
 
     ``scene["cloth1"]["bendResistance"] = 2`` changes one value and keeps comments and layout.
 
-    >>> scene = Scene.read("scenes/cloth/hang.ron")  # doctest: +SKIP
+    >>> scene = Scene.read("scenes/cloth/tablecloth.ron")  # doctest: +SKIP
     >>> scene["nucleus1"]["windSpeed"]  # doctest: +SKIP
     0.0
     """

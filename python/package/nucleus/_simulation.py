@@ -25,7 +25,7 @@ class Simulation:
 
     The interpreter lock is released while a frame is solved. Ctrl-C ends the frame that is being solved.
 
-    >>> simulation = Simulation("scenes/cloth/hang.ron")  # doctest: +SKIP
+    >>> simulation = Simulation("scenes/cloth/tablecloth.ron")  # doctest: +SKIP
     >>> for report in simulation:  # doctest: +SKIP
     ...     print(simulation.frame, simulation.positions("cloth1")[:, 1].min())
     """
