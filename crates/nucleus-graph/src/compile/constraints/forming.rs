@@ -9,6 +9,7 @@ use crate::compile::soft_body::ramp_at;
 use super::kinds::{self, Values};
 use super::member::{ConstraintSource, Member, MemberObject, Places};
 use super::near::{Foot, Nearby, barycentric, distance, foot};
+use super::sheet::Sheet;
 
 type Point = Vector3<f64>;
 
@@ -287,22 +288,27 @@ impl Forming<'_> {
         }
     }
 
-    /// Links from all points to the closest places of the first member, a surface.
+    /// Links from all points to the closest places of the first member, a surface. Where links slide, they go on from there
+    /// to the closest place of its sheet, as the solver does: the side of the surface is taken there.
     fn to_surface(&self) -> Vec<Link> {
         let Some((surface, others)) = self.source.members.split_first() else { return Vec::new() };
         let faces = self.all_corners(surface);
         let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
+        let sheet = (!surface.sheet.is_empty()).then(|| Sheet::new(surface, self.places));
         let mut links = Vec::new();
         for member in others {
             for (point, element) in member.points() {
                 let at = self.places.point(member.object, point);
                 let of = |face: u32| (foot(&faces[face as usize], at).place - at).norm();
                 let Some((_, face)) = nearby.nearest(at.x, of) else { continue };
-                let on = foot(&faces[face as usize], at);
-                let normal = normal(&faces[face as usize], &on);
+                let start = (surface.elements.face(face as usize), &faces[face as usize][..]);
+                let (points, polygon) =
+                    sheet.as_ref().and_then(|sheet| sheet.nearest(at, start)).unwrap_or(start);
+                let on = foot(polygon, at);
                 let from = Place { side: member.side([point; 3], [1.0, 0.0, 0.0]), at, element };
-                let to = self.place(surface, face, &on);
-                let mut link = self.link([(member, from), (surface, to)], Some(normal));
+                let side = surface.side(on.corners.map(|corner| points[corner]), on.weights);
+                let to = Place { side, at: on.place, element: face };
+                let mut link = self.link([(member, from), (surface, to)], Some(normal(polygon, &on)));
                 // Beside an edge the distance is not along the normal, but its side is.
                 link.rest = (at - on.place).norm() * if link.rest < 0.0 { -1.0 } else { 1.0 };
                 links.push(link);

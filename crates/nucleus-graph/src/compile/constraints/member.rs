@@ -65,6 +65,8 @@ pub(crate) struct Member {
     pub(crate) elements: Faces,
     /// The next corners of a face behind the ends of each edge; none for an edge without a face. Empty for other elements.
     pub(super) behind: Vec<Option<[u32; 2]>>,
+    /// All faces of the object, where links slide on more than the elements.
+    pub(super) sheet: Faces,
     /// Factors of the component on strength, tangent strength, glue and weight.
     pub(super) scalars: [f64; 4],
     /// Maps by point on strength, glue and weight; empty where there are none.

@@ -213,8 +213,8 @@ impl Compiler<'_> {
     /// The members of a constraint with their elements.
     pub(crate) fn members_of(&mut self, constraint: NodeId) -> Vec<Member> {
         let graph = &self.scene.graph;
-        let surfaces = Values::new(&self.start, constraint).kind;
-        let surfaces = matches!(surfaces, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
+        let kind = Values::new(&self.start, constraint).kind;
+        let surfaces = matches!(kind, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
         let (mut members, mut strangers) = (Vec::new(), Vec::new());
         for (_, plug) in graph.elements(constraint, &con::COMPONENT_IDS) {
             let Some(object) = graph.source(plug.node, &n_component::OBJECT_ID) else { continue };
@@ -223,7 +223,10 @@ impl Compiler<'_> {
                 continue;
             };
             let is_surface = surfaces && members.is_empty();
-            if let Some(member) = self.member([constraint, plug.node, object], target, is_surface) {
+            if let Some(mut member) = self.member([constraint, plug.node, object], target, is_surface) {
+                if is_surface && kind == kinds::SLIDE_ON_SURFACE {
+                    member.sheet = self.sheet_of(&member);
+                }
                 members.push(member);
             }
         }
@@ -248,6 +251,17 @@ impl Compiler<'_> {
         let cloth = self.cloth_of(object).map(MemberObject::Cloth);
         let collider = self.program.colliders.iter().position(|collider| collider.node == object);
         cloth.or(collider.map(|at| MemberObject::Collider(ColliderId(at as u32))))
+    }
+
+    /// The faces that links may slide on besides those of the member; empty where it has them all.
+    fn sheet_of(&self, member: &Member) -> Faces {
+        let faces = match member.object {
+            MemberObject::Cloth(cloth) => &self.program.model.cloths()[cloth.index()].surface.faces,
+            MemberObject::Collider(collider) => {
+                &self.program.model.colliders()[collider.index()].surface.faces
+            }
+        };
+        if faces.len() > member.elements.len() { faces.clone() } else { Faces::default() }
     }
 
     /// One member. A whole object that is the surface of a constraint stands for its faces.
@@ -330,7 +344,16 @@ impl Compiler<'_> {
             ElementKind::Edge => chosen.iter().map(|&at| elements.behind(at)).collect(),
             _ => Vec::new(),
         };
-        Some(Member { object: target, kind, elements: all, behind, scalars, maps, name })
+        Some(Member {
+            object: target,
+            kind,
+            elements: all,
+            behind,
+            sheet: Faces::default(),
+            scalars,
+            maps,
+            name,
+        })
     }
 }
 

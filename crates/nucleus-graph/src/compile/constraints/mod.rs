@@ -8,6 +8,7 @@
 //! | which elements are joined, and where                   | `forming.rs` |
 //! | joined edges that resist folding                      | `folding.rs` |
 //! | the closest places of elements                         | `near.rs`    |
+//! | the sheet on which sliding links walk                  | `sheet.rs`   |
 //! | meshes that are split where they can tear              | `tearing.rs`, `split_mesh.rs` |
 //! | the attributes of a frame; keyed `enable`              | `frame.rs`   |
 //!
@@ -22,5 +23,6 @@ pub(super) mod member;
 mod members;
 mod near;
 pub(super) mod select;
+mod sheet;
 pub(super) mod split_mesh;
 mod tearing;
