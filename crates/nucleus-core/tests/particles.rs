@@ -244,6 +244,36 @@ fn a_heap_of_particles_comes_to_rest_without_overlap() {
     assert!(speed < 0.02, "{speed} m/s");
 }
 
+/// The tangent of the slope of a heap of grains that come to rest on rough ground, as that of the cone whose grains are as
+/// high and as far from its axis on average.
+fn slope_of_heap(friction: f64) -> f64 {
+    let (radius, side) = (0.01, 4);
+    let mut places = layers(14, side, 0.0215);
+    let middle = Vec3::new(1.0, 0.0, 1.0) * (0.0215 * (side as f64 - 1.0) / 2.0);
+    places.iter_mut().for_each(|place| *place -= middle);
+    let mut solver = Solver::<f32>::new(built([beads(&places, &[], 0.005)]), 1);
+    let cloths = vec![ClothFrame { friction, ..balls(radius) }];
+    let input = FrameInput { plane: Some(ground(0.5)), cloths, ..frame(2, physical(64.0)) };
+    (0..60).for_each(|_| _ = solver.step(&input, &mut ()));
+    let grains = points(&solver, BEADS, places.len());
+    // Those that have rolled away are no part of the heap.
+    let across = |place: &Vec3| place.x.hypot(place.z);
+    let mut far: Vec<f64> = grains.iter().map(across).collect();
+    far.sort_by(f64::total_cmp);
+    let rim = 2.0 * far[far.len() / 2];
+    let heap: Vec<&Vec3> = grains.iter().filter(|place| across(place) < rim).collect();
+    let mean =
+        |of: &dyn Fn(&Vec3) -> f64| heap.iter().map(|place| of(place)).sum::<f64>() / heap.len() as f64;
+    2.0 * mean(&|place| place.y - radius) / mean(&across)
+}
+
+#[test]
+fn the_angle_of_repose_follows_friction() {
+    let [smooth, rough, rougher] = [0.02, 0.15, 0.4].map(slope_of_heap);
+    println!("{smooth:.3} {rough:.3} {rougher:.3}");
+    assert!(1.3 * smooth < rough && 1.3 * rough < rougher, "{smooth} {rough} {rougher}");
+}
+
 #[test]
 fn particles_stay_outside_of_static_and_moving_colliders() {
     for speed in [0.0, 1.0, 50.0] {

@@ -98,9 +98,10 @@ impl CellGrid {
     #[inline]
     fn cell(&self, place: [f32; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| {
-            let cell = ((place[axis] - self.low[axis]) * self.per_cell).floor();
-            // Beyond 2³¹ cells a spray shares them.
-            (cell as i32) as u32
+            let cells = (place[axis] - self.low[axis]) * self.per_cell;
+            // Rounded down; beyond 2³¹ cells a spray shares them.
+            let cell = cells as i32;
+            cell.wrapping_sub(i32::from(cells < cell as f32)) as u32
         })
     }
 

@@ -3,7 +3,7 @@
 //!
 //! A pass comes first in each time step, on the predicted positions: neighbours, then viscosity and surface tension, then
 //! density as a constraint. Contact follows, and corrections become velocities as those of all constraints do. Inside,
-//! lengths are in rest distances, from the liquid's first particle.
+//! lengths are in rest distances, from where its first particle begins the frame.
 //!
 //! A liquid is set up again at the start of each frame, so a checkpoint stores nothing of it, and after births and
 //! deaths. Within a frame it keeps the pressure and the excess density of each particle: an excess from before a time
@@ -65,10 +65,12 @@ pub struct LiquidSolver {
     pressure: Vec<f32>,
     excess: Vec<f32>,
     positions: Vec<[f32; 3]>,
-    velocities: Vec<[f32; 3]>,
+    velocities: Vec<[f32; 4]>,
     loads: Vec<Load>,
     /// Factors on viscosity and on surface tension, in the sorted order; empty where they are 1.
     factors: [Vec<f32>; 2],
+    /// Where lengths are taken from in this frame, in metres.
+    origin: Vector3<f64>,
     density_error: f64,
 }
 
@@ -137,10 +139,14 @@ impl LiquidSolver {
     ) {
         let rows = scene.model.cloths[cloth].points();
         let Some(settings) = scene.frame.cloths[cloth].liquid.filter(|_| !rows.is_empty()) else { return };
-        let origin = Vector3::from(state.position(rows.start));
+        let begins = self.pressure.len() != rows.len();
+        if begins {
+            self.origin = Vector3::from(state.position(rows.start));
+            self.walls.forget();
+        }
         let inverse_mass = state.inverse_mass[rows.start as usize].to_f64();
-        let step = LiquidStep { cloth, settings, origin, inverse_mass, h, span };
-        if self.pressure.len() != rows.len() {
+        let step = LiquidStep { cloth, settings, origin: self.origin, inverse_mass, h, span };
+        if begins {
             self.begin(scene, state, &step, pool);
         }
         self.gather(scene, state, &step, 0.0);
@@ -203,12 +209,16 @@ impl LiquidSolver {
             && let Some(plane) = contact.ground.in_step(step.span)
         {
             let first = cloths[step.cloth].points().start;
-            let height = plane.height_now(first, state.displacement[first as usize].xyz()).to_f64();
-            let normal = plane.normal().map(|x| x.to_f64() as f32);
+            let above = plane.height_now(first, state.displacement[first as usize].xyz()).to_f64();
+            let normal = plane.normal().map(|x| x.to_f64());
+            let height =
+                above - Vector3::from(normal).dot(&(Vector3::from(state.position(first)) - step.origin));
+            let normal = normal.map(|x| x as f32);
             let offset = (material.thickness * per_metre - 0.5).max(0.0) as f32;
             walls.plane = Some(Plane { normal, height: (height * per_metre) as f32, offset });
         }
         let bounds = grid::bounds(positions);
+        let region = walls.new_region(bounds);
         for (at, model) in colliders.iter().enumerate() {
             let factors = contact.material_maps.max_thickness_factors(step.cloth, at);
             let Some(material) = ContactMaterial::<R>::for_collider(own, &frame.colliders[at], factors)
@@ -217,10 +227,19 @@ impl LiquidSolver {
             };
             let material = Material { distance: (material.thickness * per_metre) as f32 };
             let collider = &contact.collider_states[at];
-            for triangle in &model.boundary.triangles {
-                let triangle = triangle.map(|point| place(collider.point(point, step.span.to)));
-                walls.cover(triangle, None, material, bounds);
+            let places =
+                |triangle: &[u32; 3]| triangle.map(|point| place(collider.point(point, step.span.to)));
+            let triangles = model.boundary.triangles.iter().map(places);
+            match (collider.moves, region) {
+                (true, _) => triangles.for_each(|triangle| walls.cover(triangle, None, material, bounds)),
+                (false, Some(region)) => {
+                    triangles.for_each(|triangle| walls.cover_still(triangle, material, region));
+                }
+                (false, None) => {}
             }
+        }
+        if region.is_some() {
+            walls.sort_still();
         }
         for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth) {
             let factors = [factors[step.cloth], factors[other]];
@@ -263,7 +282,8 @@ impl LiquidSolver {
             velocities.clear();
             velocities.extend(order.iter().map(|&particle| {
                 let velocity = state.velocity[(first + particle) as usize].xyz();
-                velocity.map(|x| (x.to_f64() * per_metre) as f32)
+                let [x, y, z] = velocity.map(|x| (x.to_f64() * per_metre) as f32);
+                [x, y, z, 0.0]
             }));
             let rate = (settings.viscosity * h * squared) as f32;
             viscosity.solve(neighbours, velocities, (&factors[0], rate), pool);
@@ -277,7 +297,7 @@ impl LiquidSolver {
             let is_free = state.displacement[(first + particle) as usize].0[3] > R::ZERO;
             let mut moved = [0.0f32; 3];
             if is_viscous {
-                moved = viscosity.change[at].map(|change| change * h as f32);
+                moved = std::array::from_fn(|axis| viscosity.change[at][axis] * h as f32);
             }
             if tension > 0.0 {
                 let chunk = at / CHUNK as usize;

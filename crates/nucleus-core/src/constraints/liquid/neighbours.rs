@@ -21,6 +21,16 @@ pub struct Chunk {
     /// Pairs with walls that can move, and the end of each particle's.
     wall_pairs: Vec<Pair>,
     wall_ends: Vec<u32>,
+    /// Candidates of one particle.
+    near: Vec<Near>,
+}
+
+/// A candidate: from it to the particle, the squared length of that, and its place in the sorted order.
+#[derive(Debug, Clone, Copy, Default)]
+struct Near {
+    apart: [f32; 3],
+    square: f32,
+    other: u32,
 }
 
 /// The neighbours of all particles; lengths in rest distances.
@@ -69,9 +79,15 @@ impl Neighbours {
     /// The pairs of a particle: the `k`th of a chunk.
     #[inline(always)]
     pub fn of(&self, chunk: usize, k: usize) -> &[Pair] {
-        let chunk = &self.chunks[chunk];
-        let first = if k == 0 { 0 } else { chunk.ends[k - 1] };
-        &chunk.pairs[first as usize..chunk.ends[k] as usize]
+        &self.chunks[chunk].pairs[self.range(chunk, k)]
+    }
+
+    /// Where these are among the pairs of the chunk.
+    #[inline(always)]
+    pub fn range(&self, chunk: usize, k: usize) -> Range<usize> {
+        let ends = &self.chunks[chunk].ends;
+        let first = if k == 0 { 0 } else { ends[k - 1] };
+        first as usize..ends[k] as usize
     }
 
     /// The pairs of a particle with walls that can move.
@@ -107,23 +123,29 @@ impl Chunk {
         self.ends.clear();
         for (at, out) in range.zip(sums) {
             let [x, y, z, _] = positions[at as usize];
-            let mut sum = [weight(0.0), 0.0, 0.0, 0.0];
+            // Candidates are written all, and those that are too far overwritten: this needs no branch.
+            let mut near = 0;
             for run in grid.runs([x, y, z]) {
+                if self.near.len() < near + run.len() {
+                    self.near.resize(near + run.len(), Near::default());
+                }
                 for (other, place) in (run.start as u32..).zip(&positions[run]) {
                     let apart = [x - place[0], y - place[1], z - place[2]];
                     let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                    if square >= REACH * REACH || other == at {
-                        continue;
-                    }
-                    let distance = square.sqrt();
-                    // Two particles in one place have no direction: they part along that of the others.
-                    let scale = if distance > 1e-6 { slope(distance) / distance } else { 0.0 };
-                    let gradient = apart.map(|x| x * scale);
-                    sum[0] += weight(distance);
-                    (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
-                    self.pairs.push(Pair { gradient, other });
+                    self.near[near] = Near { apart, square, other };
+                    near += usize::from((square < REACH * REACH) & (other != at));
                 }
             }
+            let mut sum = [weight(0.0), 0.0, 0.0, 0.0];
+            self.pairs.extend(self.near[..near].iter().map(|&Near { apart, square, other }| {
+                let distance = square.sqrt();
+                // Two particles in one place have no direction: they part along that of the others.
+                let scale = if distance > 1e-6 { slope(distance) / distance } else { 0.0 };
+                let gradient = apart.map(|x| x * scale);
+                sum[0] += weight(distance);
+                (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
+                Pair { gradient, other }
+            }));
             self.ends.push(self.pairs.len() as u32);
             *out = sum;
         }

@@ -19,14 +19,16 @@ const TOLERANCE: f64 = 1e-3;
 /// Most iterations in a time step.
 const MAX_ITERATIONS: u32 = 60;
 
-/// The solver of one liquid.
+/// The solver of one liquid. Vectors have three entries and a zero.
 #[derive(Debug, Default)]
 pub struct Viscosity {
     /// Change of velocity of each particle, in the sorted order.
-    pub change: Vec<[f32; 3]>,
-    residual: Vec<[f32; 3]>,
-    direction: Vec<[f32; 3]>,
-    product: Vec<[f32; 3]>,
+    pub change: Vec<[f32; 4]>,
+    residual: Vec<[f32; 4]>,
+    direction: Vec<[f32; 4]>,
+    product: Vec<[f32; 4]>,
+    /// By chunk, the entries of the matrix off the diagonal, without their sign.
+    weights: Vec<Vec<f32>>,
 }
 
 impl Viscosity {
@@ -35,17 +37,18 @@ impl Viscosity {
     pub fn solve(
         &mut self,
         neighbours: &Neighbours,
-        velocity: &[[f32; 3]],
+        velocity: &[[f32; 4]],
         rate: (&[f32], f32),
         pool: &ThreadPool,
     ) {
         let count = velocity.len();
         for column in [&mut self.change, &mut self.residual, &mut self.direction, &mut self.product] {
             column.clear();
-            column.resize(count, [0.0; 3]);
+            column.resize(count, [0.0; 4]);
         }
+        self.find_weights(neighbours, rate, pool);
         // The change x solves A x = u* - A u*.
-        multiply(neighbours, velocity, rate, &mut self.product, pool);
+        multiply((neighbours, &self.weights), velocity, &mut self.product, pool);
         for (residual, (own, product)) in self.residual.iter_mut().zip(velocity.iter().zip(&self.product)) {
             *residual = std::array::from_fn(|axis| own[axis] - product[axis]);
         }
@@ -56,7 +59,7 @@ impl Viscosity {
             if square <= first * TOLERANCE * TOLERANCE || square <= 0.0 {
                 break;
             }
-            multiply(neighbours, &self.direction, rate, &mut self.product, pool);
+            multiply((neighbours, &self.weights), &self.direction, &mut self.product, pool);
             let step = (square / dot(&self.direction, &self.product)) as f32;
             add(&mut self.change, &self.direction, step);
             add(&mut self.residual, &self.product, -step);
@@ -68,14 +71,36 @@ impl Viscosity {
             square = next;
         }
     }
+
+    fn find_weights(&mut self, neighbours: &Neighbours, (factors, rate): (&[f32], f32), pool: &ThreadPool) {
+        let count = neighbours.len();
+        self.weights.resize_with(count.div_ceil(CHUNK as usize), Vec::new);
+        let weights = DisjointSlice::new(&mut self.weights);
+        pool.parallel_for(count.div_ceil(CHUNK as usize), |chunk| {
+            // SAFETY: each task has the entry of its chunk.
+            #[allow(unsafe_code)]
+            let out = unsafe { &mut weights.run(chunk as u32..chunk as u32 + 1)[0] };
+            out.clear();
+            for (k, at) in chunk_range(chunk, count).enumerate() {
+                let place = neighbours.positions[at as usize];
+                out.extend(neighbours.of(chunk, k).iter().map(|pair| {
+                    let (other, [a, b, c]) = (neighbours.positions[pair.other as usize], pair.gradient);
+                    let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
+                    let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+                    // The gradient is W' times the direction: divided by the distance, it is along `apart` squared.
+                    let weight = -2.0 * (a * apart[0] + b * apart[1] + c * apart[2]) / square.max(1e-4);
+                    rate * weight * pair_factor(factors, [at as usize, pair.other as usize])
+                }));
+            }
+        });
+    }
 }
 
 /// `out` = (1 + rate L) x, with the Laplacian L of the neighbours.
 fn multiply(
-    neighbours: &Neighbours,
-    x: &[[f32; 3]],
-    (factors, rate): (&[f32], f32),
-    out: &mut [[f32; 3]],
+    (neighbours, weights): (&Neighbours, &[Vec<f32>]),
+    x: &[[f32; 4]],
+    out: &mut [[f32; 4]],
     pool: &ThreadPool,
 ) {
     let count = x.len();
@@ -86,20 +111,14 @@ fn multiply(
         #[allow(unsafe_code)]
         let out = unsafe { out.run(range.clone()) };
         for (k, out) in out.iter_mut().enumerate() {
-            let at = range.start as usize + k;
-            let (own, mut sum) = (x[at], [0.0f32; 3]);
-            let place = neighbours.positions[at];
-            for pair in neighbours.of(chunk, k) {
-                let (other, [a, b, c]) = (neighbours.positions[pair.other as usize], pair.gradient);
-                let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
-                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                // The gradient is W' times the direction: divided by the distance, it is along `apart` squared.
-                let weight = -2.0 * (a * apart[0] + b * apart[1] + c * apart[2]) / square.max(1e-4);
-                let weight = weight * pair_factor(factors, [at, pair.other as usize]);
-                let velocity = x[pair.other as usize];
-                (0..3).for_each(|axis| sum[axis] += weight * (own[axis] - velocity[axis]));
+            let own = x[range.start as usize + k];
+            let mut sum = own;
+            let weights = &weights[chunk][neighbours.range(chunk, k)];
+            for (pair, &weight) in neighbours.of(chunk, k).iter().zip(weights) {
+                let other = x[pair.other as usize];
+                (0..4).for_each(|lane| sum[lane] += weight * (own[lane] - other[lane]));
             }
-            *out = std::array::from_fn(|axis| own[axis] + rate * sum[axis]);
+            *out = sum;
         }
     });
 }
@@ -109,13 +128,13 @@ pub fn pair_factor(factors: &[f32], [a, b]: [usize; 2]) -> f32 {
     if factors.is_empty() { 1.0 } else { (factors[a] + factors[b]) * 0.5 }
 }
 
-fn add(column: &mut [[f32; 3]], other: &[[f32; 3]], factor: f32) {
+fn add(column: &mut [[f32; 4]], other: &[[f32; 4]], factor: f32) {
     for (own, other) in column.iter_mut().zip(other) {
         (0..3).for_each(|axis| own[axis] += factor * other[axis]);
     }
 }
 
-fn dot(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
-    let of = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+fn dot(a: &[[f32; 4]], b: &[[f32; 4]]) -> f64 {
+    let of = |(a, b): (&[f32; 4], &[f32; 4])| f64::from(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     a.iter().zip(b).map(of).sum()
 }

@@ -16,13 +16,16 @@ use super::kernel::{REACH, half_space, weight};
 /// half-space that begins there.
 const GAP: f32 = 0.03;
 /// Distance of samples in rest distances, at most.
-const SAMPLE_DISTANCE: f32 = 0.5;
+const SAMPLE_DISTANCE: f32 = 0.4;
 /// Distance from a sample below which its weight no longer grows.
 const NEAREST: f32 = 0.2;
 /// Distance of particles from the surface that they rest on.
 const TOUCHING: f32 = 0.5;
-/// Rows of samples along the longest edge of a triangle, at most: beyond, samples weigh more.
+/// Samples along and across a triangle, at most: beyond, samples weigh more.
 const MAX_ROWS: u32 = 2048;
+
+/// How far beyond the liquid the samples of surfaces at rest reach when they are made, in rest distances.
+const REGION_MARGIN: f32 = 3.0;
 
 /// The walls of one liquid; lengths in rest distances, from the liquid's origin.
 #[derive(Debug, Default)]
@@ -30,13 +33,14 @@ pub struct Walls {
     /// The plane: its unit normal, the height of the origin above it, and how far contact keeps particles from it
     /// beyond [`TOUCHING`].
     pub plane: Option<Plane>,
-    places: Vec<[f32; 3]>,
-    samples: Vec<Sample>,
-    grid: CellGrid,
-    max_offset: f32,
+    /// Samples of surfaces that rest in this frame, and the box that they serve.
+    still: Samples,
+    region: Option<[[f32; 3]; 2]>,
+    /// Those of all others.
+    moving: Samples,
     /// Corners of the triangles of cloth that has samples.
     corners: Vec<Corner>,
-    /// Displacement of each sample of cloth.
+    /// Displacement of each moving sample.
     moved: Vec<[f32; 3]>,
 }
 
@@ -79,13 +83,28 @@ pub struct Material {
 }
 
 impl Walls {
-    /// Forgets all walls.
+    /// Forgets all walls but the samples of surfaces at rest.
     pub fn clear(&mut self) {
         self.plane = None;
-        self.places.clear();
-        self.samples.clear();
+        self.moving.clear();
         self.corners.clear();
-        self.max_offset = 0.0;
+    }
+
+    /// Forgets the samples of surfaces at rest too.
+    pub fn forget(&mut self) {
+        self.region = None;
+    }
+
+    /// The box near which surfaces at rest need samples, if those that are there do not serve a liquid with these bounds.
+    pub fn new_region(&mut self, [low, high]: [[f32; 3]; 2]) -> Option<[[f32; 3]; 2]> {
+        let serves =
+            |region: &[[f32; 3]; 2]| (0..3).all(|k| region[0][k] <= low[k] && high[k] <= region[1][k]);
+        if self.region.as_ref().is_some_and(serves) {
+            return None;
+        }
+        self.still.clear();
+        self.region = Some([low.map(|x| x - REGION_MARGIN), high.map(|x| x + REGION_MARGIN)]);
+        self.region
     }
 
     /// Adds a point of cloth; returns its number.
@@ -99,59 +118,32 @@ impl Walls {
         &self.corners
     }
 
-    /// Covers a triangle with samples, where it is near a box.
+    /// Covers a triangle that rests in this frame with samples, where it is near a box.
+    pub fn cover_still(&mut self, triangle: [[f32; 3]; 3], material: Material, bounds: [[f32; 3]; 2]) {
+        self.still.cover(triangle, None, material, bounds);
+    }
+
+    /// Covers any other triangle with samples, where it is near a box. That of cloth has corners.
     pub fn cover(
         &mut self,
         triangle: [[f32; 3]; 3],
         corners: Option<[u32; 3]>,
         material: Material,
-        [low, high]: [[f32; 3]; 2],
+        bounds: [[f32; 3]; 2],
     ) {
-        let offset = (material.distance - TOUCHING).max(0.0);
-        let reach = REACH + offset;
-        let is_near =
-            |place: &[f32; 3]| (0..3).all(|k| low[k] - reach <= place[k] && place[k] <= high[k] + reach);
-        let beyond = |k: usize| {
-            let of = |corner: &[f32; 3]| corner[k];
-            triangle.iter().all(|corner| of(corner) < low[k] - reach)
-                || triangle.iter().all(|corner| of(corner) > high[k] + reach)
-        };
-        if (0..3).any(beyond) {
-            return;
-        }
-        let edge = |a: usize, b: usize| length(minus(triangle[a], triangle[b]));
-        let longest = edge(0, 1).max(edge(1, 2)).max(edge(2, 0));
-        let rows = ((longest / SAMPLE_DISTANCE).ceil().min(MAX_ROWS as f32) as u32).max(1);
-        let area = length(cross(minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0]))) / 2.0;
-        let each = area / (rows * rows) as f32;
-        self.max_offset = self.max_offset.max(offset);
-        // The centres of the triangles that the rows cut: upright ones, and turned ones between them.
-        for a in 0..rows {
-            for b in 0..rows - a {
-                for turned in [0.0, 1.0] {
-                    if turned > 0.0 && a + b + 1 >= rows {
-                        continue;
-                    }
-                    let part = |k: u32| (k as f32 + (1.0 + turned) / 3.0) / rows as f32;
-                    let [s, t] = [part(a), part(b)];
-                    let shares = [1.0 - s - t, s, t];
-                    let place = std::array::from_fn(|k| (0..3).map(|c| triangle[c][k] * shares[c]).sum());
-                    if is_near(&place) {
-                        self.places.push(place);
-                        self.samples.push(Sample { area: each, offset, corners, shares });
-                    }
-                }
-            }
-        }
+        self.moving.cover(triangle, corners, material, bounds);
     }
 
-    /// Sorts the samples, once all are there.
+    /// Sorts the samples of surfaces at rest, once all are there.
+    pub fn sort_still(&mut self) {
+        self.still.sort();
+    }
+
+    /// Sorts the other samples, once all are there.
     pub fn sort(&mut self) {
-        if !self.samples.is_empty() {
-            self.grid.sort(&self.places, REACH + self.max_offset);
-        }
+        self.moving.sort();
         self.moved.clear();
-        self.moved.resize(if self.corners.is_empty() { 0 } else { self.samples.len() }, [0.0; 3]);
+        self.moved.resize(if self.corners.is_empty() { 0 } else { self.moving.samples.len() }, [0.0; 3]);
     }
 
     /// Calls `add` with the density of each wall near a place, its gradient, and the sample if it can move.
@@ -165,21 +157,8 @@ impl Walls {
                 add(density, normal.map(|x| x * slope), None);
             }
         }
-        if self.samples.is_empty() {
-            return;
-        }
-        for &at in self.grid.runs(place).flat_map(|run| &self.grid.order()[run]) {
-            let (from, sample) = (self.places[at as usize], &self.samples[at as usize]);
-            let apart = minus(place, from);
-            let distance = length(apart).max(NEAREST);
-            let q = (distance + GAP - sample.offset).max(0.0);
-            if q < REACH {
-                let part = sample.area / (2.0 * PI * distance);
-                let sheet = -half_space(q)[1];
-                let slope = -part * (2.0 * PI * q * weight(q) + sheet / distance) / distance;
-                add(part * sheet, apart.map(|x| x * slope), sample.corners.map(|_| at));
-            }
-        }
+        self.still.near(place, &mut add);
+        self.moving.near(place, &mut add);
     }
 
     /// Term of the mobility of cloth in the diagonal entry of a particle.
@@ -187,7 +166,7 @@ impl Walls {
     pub fn mobility(&self, pairs: &[Pair]) -> f32 {
         let of = |pair: &Pair| {
             let [x, y, z] = pair.gradient;
-            let sample = &self.samples[pair.other as usize];
+            let sample = &self.moving.samples[pair.other as usize];
             let masses = sample.corners.into_iter().flatten().zip(sample.shares);
             let mobility: f32 = masses
                 .map(|(corner, share)| share * share * self.corners[corner as usize].inverse_mass)
@@ -215,7 +194,7 @@ impl Walls {
         self.corners.iter_mut().for_each(|corner| corner.moved = [0.0; 3]);
         for (lambda, pairs) in pushes {
             for pair in pairs {
-                let sample = self.samples[pair.other as usize];
+                let sample = self.moving.samples[pair.other as usize];
                 for (corner, share) in sample.corners.into_iter().flatten().zip(sample.shares) {
                     let corner = &mut self.corners[corner as usize];
                     let push = lambda * share * corner.inverse_mass;
@@ -223,12 +202,155 @@ impl Walls {
                 }
             }
         }
-        for (moved, sample) in self.moved.iter_mut().zip(&self.samples) {
+        for (moved, sample) in self.moved.iter_mut().zip(&self.moving.samples) {
             let Some(corners) = sample.corners else { continue };
             let corners = corners.map(|corner| self.corners[corner as usize].moved);
             *moved = std::array::from_fn(|axis| (0..3).map(|k| corners[k][axis] * sample.shares[k]).sum());
         }
     }
+}
+
+/// Samples of surfaces, sorted into cells.
+#[derive(Debug, Default)]
+struct Samples {
+    places: Vec<[f32; 3]>,
+    samples: Vec<Sample>,
+    grid: CellGrid,
+    /// In the order of the grid: places, and the squared distance at which each begins to count.
+    sorted: Vec<[f32; 4]>,
+    max_offset: f32,
+}
+
+impl Samples {
+    fn clear(&mut self) {
+        self.places.clear();
+        self.samples.clear();
+        self.sorted.clear();
+        self.max_offset = 0.0;
+    }
+
+    /// Covers a triangle with samples, where it is near a box: strips along its longest edge, cut by lines from the corner
+    /// opposite to it into parts of equal area.
+    fn cover(
+        &mut self,
+        triangle: [[f32; 3]; 3],
+        corners: Option<[u32; 3]>,
+        material: Material,
+        [low, high]: [[f32; 3]; 2],
+    ) {
+        let offset = (material.distance - TOUCHING).max(0.0);
+        let reach = REACH + offset;
+        let [low, high] = [low.map(|x| x - reach), high.map(|x| x + reach)];
+        let beyond = |k: usize| {
+            triangle.iter().all(|corner| corner[k] < low[k])
+                || triangle.iter().all(|corner| corner[k] > high[k])
+        };
+        if (0..3).any(beyond) {
+            return;
+        }
+        let edge = |a: usize| length(minus(triangle[(a + 1) % 3], triangle[a]));
+        let [x, y, z] = [edge(0), edge(1), edge(2)];
+        let a = if x >= y && x >= z {
+            0
+        } else if y >= z {
+            1
+        } else {
+            2
+        };
+        let [a, b, c] = [a, (a + 1) % 3, (a + 2) % 3];
+        let base = edge(a);
+        let area = length(cross(minus(triangle[b], triangle[a]), minus(triangle[c], triangle[a]))) / 2.0;
+        self.max_offset = self.max_offset.max(offset);
+        let strips = parts(2.0 * area / base.max(f32::MIN_POSITIVE));
+        for strip in 0..strips {
+            // Heights of the strip as shares, and that of its centre.
+            let [t, s] = [strip, strip + 1].map(|k| k as f32 / strips as f32);
+            let share = (1.0 - t) * (1.0 - t) - (1.0 - s) * (1.0 - s);
+            let centre = ((s * s - t * t) - (s * s * s - t * t * t) * (2.0 / 3.0)) / share;
+            let across = parts(base * (1.0 - t));
+            let at = |u: f32| -> [f32; 3] {
+                let mut shares = [0.0; 3];
+                (shares[a], shares[b], shares[c]) = ((1.0 - centre) * (1.0 - u), (1.0 - centre) * u, centre);
+                shares
+            };
+            let place = |shares: [f32; 3]| -> [f32; 3] {
+                std::array::from_fn(|k| (0..3).map(|c| triangle[c][k] * shares[c]).sum())
+            };
+            let ends = [place(at(0.0)), place(at(1.0))];
+            for k in within(ends, [low, high], across) {
+                let shares = at((k as f32 + 0.5) / across as f32);
+                let place = place(shares);
+                if (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k]) {
+                    self.places.push(place);
+                    self.samples.push(Sample { area: area * share / across as f32, offset, corners, shares });
+                }
+            }
+        }
+    }
+
+    /// Sorts the samples, once all are there.
+    fn sort(&mut self) {
+        if self.samples.is_empty() {
+            return;
+        }
+        self.grid.sort(&self.places, REACH + self.max_offset);
+        self.sorted.extend(self.grid.order().iter().map(|&at| {
+            let ([x, y, z], limit) =
+                (self.places[at as usize], REACH + self.samples[at as usize].offset - GAP);
+            [x, y, z, limit * limit]
+        }));
+    }
+
+    #[inline]
+    fn near(&self, place: [f32; 3], add: &mut impl FnMut(f32, [f32; 3], Option<u32>)) {
+        if self.samples.is_empty() {
+            return;
+        }
+        for run in self.grid.runs(place) {
+            for k in run {
+                let [x, y, z, limit] = self.sorted[k];
+                let apart = [place[0] - x, place[1] - y, place[2] - z];
+                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+                if square < limit {
+                    let at = self.grid.order()[k];
+                    let sample = &self.samples[at as usize];
+                    let (density, slope) = sample.density(square.sqrt().max(NEAREST));
+                    add(density, apart.map(|x| x * slope), sample.corners.map(|_| at));
+                }
+            }
+        }
+    }
+}
+
+impl Sample {
+    /// The density that it adds at a distance, and its derivative over the distance.
+    #[inline]
+    fn density(&self, distance: f32) -> (f32, f32) {
+        let q = (distance + GAP - self.offset).max(0.0);
+        let part = self.area / (2.0 * PI * distance);
+        let sheet = -half_space(q)[1];
+        (part * sheet, -part * (2.0 * PI * q * weight(q) + sheet / distance) / distance)
+    }
+}
+
+/// The number of parts of a length.
+fn parts(length: f32) -> u32 {
+    ((length / SAMPLE_DISTANCE).ceil().min(MAX_ROWS as f32) as u32).max(1)
+}
+
+/// Those of so many parts of a segment that may be in a box.
+fn within([from, to]: [[f32; 3]; 2], [low, high]: [[f32; 3]; 2], parts: u32) -> std::ops::Range<u32> {
+    let (mut first, mut last) = (0.0f32, 1.0f32);
+    for k in 0..3 {
+        let along = to[k] - from[k];
+        if along.abs() > 1e-6 {
+            let [a, b] = [(low[k] - from[k]) / along, (high[k] - from[k]) / along];
+            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+        }
+    }
+    let first = (first * parts as f32 - 1.0).max(0.0) as u32;
+    let last = (last * parts as f32 + 1.0).max(0.0) as u32;
+    first..last.min(parts).max(first)
 }
 
 fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
