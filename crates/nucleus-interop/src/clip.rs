@@ -5,6 +5,7 @@ use std::io::{Read, Seek};
 use nucleus_cache::{Camera, CameraView, ObjectInfo, ObjectKind, Playback, TextureCoordinates};
 
 use crate::error::ExportError;
+use crate::liquid_surface::{LiquidSurface, spacing, surface};
 
 /// Which part of a cache to export.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,11 +20,13 @@ pub struct Selection {
     pub substeps: bool,
     /// Factor on all lengths, applied after the conversion to the unit of the format.
     pub scale: f64,
+    /// Whether particles become a mesh of their surface, in formats of a file per sample.
+    pub surface: bool,
 }
 
 impl Default for Selection {
     fn default() -> Self {
-        Self { objects: Vec::new(), frames: None, every: 1, substeps: false, scale: 1.0 }
+        Self { objects: Vec::new(), frames: None, every: 1, substeps: false, scale: 1.0, surface: false }
     }
 }
 
@@ -54,6 +57,8 @@ pub struct Clip<'a, R> {
     objects: Vec<usize>,
     samples: Vec<Sample>,
     scale: f64,
+    /// By object, the spacing of the particles whose surface is exported.
+    spacings: Vec<Option<f32>>,
 }
 
 impl<'a, R: Read + Seek> Clip<'a, R> {
@@ -64,7 +69,39 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     pub fn of(cache: &'a mut Playback<R>, selection: &Selection) -> Result<Self, ExportError> {
         let objects = objects(cache, &selection.objects)?;
         let samples = samples(cache, selection)?;
-        Ok(Self { cache, objects, samples, scale: selection.scale })
+        let spacings = vec![None; objects.len()];
+        let mut clip = Self { cache, objects, samples, scale: selection.scale, spacings };
+        for object in (0..clip.objects.len()).filter(|_| selection.surface) {
+            clip.spacings[object] = clip.spacing(object)?;
+        }
+        Ok(clip)
+    }
+
+    /// The spacing of an object's particles at the first sample that has several; `None` for other objects.
+    fn spacing(&mut self, object: usize) -> Result<Option<f32>, ExportError> {
+        if self.object(object).kind != ObjectKind::Particles {
+            return Ok(None);
+        }
+        for sample in 0..self.samples.len() {
+            let found = spacing(&self.positions(object, sample)?);
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The surface of an object's particles at a sample in exported units; `None` for all other objects.
+    ///
+    /// # Errors
+    /// When the frame is damaged, or a coordinate is not finite.
+    pub(crate) fn surface(
+        &mut self,
+        object: usize,
+        sample: usize,
+    ) -> Result<Option<LiquidSurface>, ExportError> {
+        let Some(spacing) = self.spacings[object] else { return Ok(None) };
+        Ok(Some(surface(&self.positions(object, sample)?, spacing)))
     }
 
     /// The objects with their first mesh, in the order of the cache.

@@ -73,6 +73,12 @@ pub enum ExportError {
         /// The format.
         format: &'static str,
     },
+    /// Surfaces of liquids change their topology from frame to frame.
+    #[error("{format} cannot hold surfaces of liquids; write obj or ply")]
+    NoSurface {
+        /// The format.
+        format: &'static str,
+    },
     /// A quantity exceeds the limit of the format.
     #[error("{quantity} is more than {format} can hold; export fewer frames, or write usda")]
     TooLarge {

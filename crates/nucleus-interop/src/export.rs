@@ -144,6 +144,9 @@ pub fn export<R: Read + Seek>(
     request: &Request,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Exported, ExportError> {
+    if request.selection.surface && !matches!(request.format, Format::Obj | Format::Ply) {
+        return Err(ExportError::NoSurface { format: request.format.name() });
+    }
     let mut clip = Clip::of(cache, &request.selection)?;
     let mut output = Output::new(request.force);
     let out = &request.out;

@@ -8,10 +8,11 @@
 //! | how names are made valid, and files appear complete    | `output.rs`                            |
 //! | OBJ and PLY; PC2 and MDD                               | `mesh_files.rs`; `point_caches.rs`     |
 //! | USD as text and as binary                              | `usd/`                                 |
+//! | surfaces of liquids                                   | `liquid_surface.rs`                    |
 //! | materials and normals, for the formats that have them  | `materials.rs`, `normals.rs`           |
 //! | the bytes of another format                            | its file: `glb.rs`, `vtu.rs`, …        |
 //!
-//! **Invariant:** in every format the points have the order and count of the cache, and a position differs from the
+//! **Invariant:** but for surfaces of liquids, in every format the points have the order and count of the cache, and a position differs from the
 //! recorded one by no more than the rounding of one `f32`.
 
 #![forbid(unsafe_code)]
@@ -21,6 +22,7 @@ mod error;
 mod export;
 mod foxglove;
 mod glb;
+mod liquid_surface;
 mod materials;
 mod mesh_files;
 mod ncache;

@@ -4,9 +4,11 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::{ObjectInfo, TextureCoordinates};
+use nucleus_core::Faces;
 
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
+use crate::liquid_surface::LiquidSurface;
 use crate::materials;
 use crate::output::{OutFile, Output, file_names};
 
@@ -59,8 +61,16 @@ fn each_file<R: Read + Seek>(
     for sample in 0..clip.samples().len() {
         let frame = numbered(&clip.samples()[sample]);
         for (object, name) in names.iter().enumerate() {
-            let positions = clip.positions(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{frame}.{end}")))?;
+            if let Some(LiquidSurface { positions, quads }) = clip.surface(object, sample)? {
+                let mut faces = Faces::default();
+                quads.iter().for_each(|quad| faces.push(quad));
+                let object = ObjectInfo { faces, ..clip.object(object).clone() };
+                write(&mut file, &object, &positions, None);
+                output.finish(file)?;
+                continue;
+            }
+            let positions = clip.positions(object, sample)?;
             let uvs = clip.texture_coordinates(object).cloned();
             let object = clip.object_at(object, sample)?;
             let uvs = uvs.filter(|uvs| uvs.fit(object.rest.len(), object.faces.corners().len()));

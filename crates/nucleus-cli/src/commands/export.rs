@@ -44,6 +44,9 @@ pub struct Export {
     /// Factor for all lengths.
     #[arg(long, default_value_t = 1.0, value_parser = options::positive)]
     scale: f64,
+    /// Export the surface of particles as a mesh (obj, ply): for liquids.
+    #[arg(long)]
+    surface: bool,
     /// Replace existing files.
     #[arg(long)]
     force: bool,
@@ -110,6 +113,7 @@ impl Export {
             every: self.every,
             substeps: self.substeps,
             scale: self.scale,
+            surface: self.surface,
         };
         let request = Request { format, out: out.clone(), selection, force: self.force };
         let mut progress = ShareProgress::new("exporting");

@@ -1,0 +1,258 @@
+//! The surface of particles as a mesh of quads.
+//!
+//! The signed distance is that of Zhu & Bridson (2005, "Animating sand as a fluid", §5): from a place to the weighted mean of
+//! the particles around it, less the radius that a particle has on its own. Surface nets (Gibson 1998, "Constrained elastic
+//! surface nets") make the mesh: a point in each cell of a grid that the surface passes, at the mean of where it crosses the
+//! edges of the cell, and a quad across each edge that it crosses. The grid is stored in blocks about the particles, so a
+//! spray that is scattered widely takes no more memory than as many particles close together.
+
+use std::collections::BTreeMap;
+
+/// The reach of a particle in its spacings.
+const REACH: f32 = 2.0;
+/// The radius of a particle on its own, in spacings.
+const RADIUS: f32 = 0.55;
+/// Cells of the grid along a spacing.
+const CELLS: f32 = 2.0;
+/// Weight below which the distance grows: between particles that are far apart their mean is no surface.
+const LEAST_WEIGHT: f32 = 0.1;
+/// Cells along the side of a block.
+const SIDE: i32 = 8;
+/// Corners of a block.
+const CORNERS: usize = (SIDE * SIDE * SIDE) as usize;
+/// A cell that the surface does not pass.
+const NO_POINT: u32 = u32::MAX;
+
+/// Corners of the grid and the cells above them, `SIDE` along each axis.
+struct Block {
+    /// By corner: the weighted sum of the particles relative to the corner, in spacings, and of the weights.
+    sums: Vec<[f32; 4]>,
+    /// By cell: its point.
+    points: Vec<u32>,
+}
+
+/// A surface.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LiquidSurface {
+    /// Its points, in the units of the particles.
+    pub(crate) positions: Vec<[f32; 3]>,
+    /// Its faces, counterclockwise seen from outside.
+    pub(crate) quads: Vec<[u32; 4]>,
+}
+
+/// The median distance of particles to the nearest other; `None` for fewer than two.
+pub(crate) fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
+    // Sorted along x, the nearest one is soon found; of many, some are enough.
+    let mut sorted = particles.to_vec();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let every = (sorted.len() / 1000).max(1);
+    let nearest = |at: usize| {
+        let mut best = f32::INFINITY;
+        let mut consider = |other: &[f32; 3]| {
+            let apart: [f32; 3] = std::array::from_fn(|k| other[k] - sorted[at][k]);
+            best = best.min(apart.iter().map(|x| x * x).sum::<f32>());
+            apart[0] * apart[0] < best
+        };
+        let _ = sorted[..at].iter().rev().all(&mut consider);
+        let _ = sorted[at + 1..].iter().all(&mut consider);
+        best
+    };
+    let mut all: Vec<f32> = (0..sorted.len()).step_by(every).map(nearest).filter(|x| x.is_finite()).collect();
+    all.sort_by(f32::total_cmp);
+    all.get(all.len() / 2).map(|square| square.sqrt()).filter(|spacing| *spacing > 0.0)
+}
+
+/// The surface of particles of this spacing.
+pub(crate) fn surface(particles: &[[f32; 3]], spacing: f32) -> LiquidSurface {
+    let mut grid = Grid { width: spacing / CELLS, blocks: BTreeMap::new() };
+    particles.iter().for_each(|place| grid.add(*place));
+    let mut surface = LiquidSurface::default();
+    let keys: Vec<[i32; 3]> = grid.blocks.keys().copied().collect();
+    for &key in &keys {
+        grid.add_points(key, &mut surface.positions);
+    }
+    for &key in &keys {
+        grid.add_quads(key, &mut surface.quads);
+    }
+    surface
+}
+
+struct Grid {
+    width: f32,
+    /// By their place in blocks.
+    blocks: BTreeMap<[i32; 3], Block>,
+}
+
+/// The block of a corner, and its index in it.
+fn index([x, y, z]: [i32; 3]) -> ([i32; 3], usize) {
+    let block = [x, y, z].map(|k| k.div_euclid(SIDE));
+    let [x, y, z] = [x, y, z].map(|k| k.rem_euclid(SIDE));
+    (block, ((z * SIDE + y) * SIDE + x) as usize)
+}
+
+/// The corners of a block.
+fn corners([x, y, z]: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
+    (0..CORNERS as i32)
+        .map(move |k| [x * SIDE + k % SIDE, y * SIDE + k / SIDE % SIDE, z * SIDE + k / (SIDE * SIDE)])
+}
+
+impl Grid {
+    /// Adds a particle to the corners in its reach, and makes room for the cells about them.
+    fn add(&mut self, place: [f32; 3]) {
+        let place = place.map(|x| x / self.width);
+        let reach = REACH * CELLS;
+        let [low, high] = [-1.0f32, 1.0].map(|side| place.map(|x| (x + side * (reach + 1.0)).floor() as i32));
+        let blocks = [low, high].map(|corner| index(corner).0);
+        for x in blocks[0][0]..=blocks[1][0] {
+            for y in blocks[0][1]..=blocks[1][1] {
+                for z in blocks[0][2]..=blocks[1][2] {
+                    let new = || Block { sums: vec![[0.0; 4]; CORNERS], points: vec![NO_POINT; CORNERS] };
+                    let block = self.blocks.entry([x, y, z]).or_insert_with(new);
+                    let range = |k: usize, block: i32| {
+                        low[k].max(block * SIDE)..=high[k].min(block * SIDE + SIDE - 1)
+                    };
+                    for k in range(2, z) {
+                        for j in range(1, y) {
+                            for i in range(0, x) {
+                                let apart = [place[0] - i as f32, place[1] - j as f32, place[2] - k as f32]
+                                    .map(|x| x / CELLS);
+                                let square = apart.iter().map(|x| x * x).sum::<f32>() / (REACH * REACH);
+                                let left = (1.0 - square).max(0.0);
+                                let weight = left * left * left;
+                                let sum = &mut block.sums[index([i, j, k]).1];
+                                (0..3).for_each(|axis| sum[axis] += weight * apart[axis]);
+                                sum[3] += weight;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The signed distance of a corner in spacings.
+    fn distance(&self, corner: [i32; 3]) -> f32 {
+        let (block, at) = index(corner);
+        let [x, y, z, weight] = self.blocks.get(&block).map_or([0.0; 4], |block| block.sums[at]);
+        let sparse = (1.0 - weight / LEAST_WEIGHT).max(0.0) * REACH;
+        let length = (x * x + y * y + z * z).sqrt() / weight.max(1e-9);
+        length.min(REACH) - RADIUS + sparse
+    }
+
+    /// Adds a point in each cell of a block that the surface passes.
+    fn add_points(&mut self, key: [i32; 3], positions: &mut Vec<[f32; 3]>) {
+        for cell in corners(key) {
+            let corner = |k: usize| std::array::from_fn(|axis| cell[axis] + (k >> axis & 1) as i32);
+            let distances: [f32; 8] = std::array::from_fn(|k| self.distance(corner(k)));
+            let (mut sum, mut count) = ([0.0f32; 3], 0.0f32);
+            for (a, axis) in (0..8usize).flat_map(|a| (0..3).map(move |axis| (a, axis))) {
+                let b = a | 1 << axis;
+                if b != a && (distances[a] < 0.0) != (distances[b] < 0.0) {
+                    let share = distances[a] / (distances[a] - distances[b]);
+                    let from: [i32; 3] = corner(a);
+                    (0..3).for_each(|k| sum[k] += from[k] as f32 + if k == axis { share } else { 0.0 });
+                    count += 1.0;
+                }
+            }
+            if count > 0.0 {
+                let (block, at) = index(cell);
+                let point = positions.len() as u32;
+                if let Some(block) = self.blocks.get_mut(&block) {
+                    block.points[at] = point;
+                }
+                positions.push(sum.map(|x| x / count * self.width));
+            }
+        }
+    }
+
+    fn point(&self, cell: [i32; 3]) -> Option<u32> {
+        let (block, at) = index(cell);
+        self.blocks.get(&block).map(|block| block.points[at]).filter(|point| *point != NO_POINT)
+    }
+
+    /// Adds a quad across each edge of a block that the surface crosses.
+    fn add_quads(&self, key: [i32; 3], quads: &mut Vec<[u32; 4]>) {
+        for corner in corners(key) {
+            let own = self.distance(corner) < 0.0;
+            for axis in 0..3 {
+                let mut next = corner;
+                next[axis] += 1;
+                if own == (self.distance(next) < 0.0) {
+                    continue;
+                }
+                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                let around = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
+                    let mut cell = corner;
+                    (cell[u], cell[v]) = (cell[u] - a, cell[v] - b);
+                    self.point(cell)
+                });
+                if let [Some(a), Some(b), Some(c), Some(d)] = around {
+                    quads.push(if own { [a, b, c, d] } else { [d, c, b, a] });
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Particles of a ball on a grid of this spacing.
+    fn ball(radius: f32, spacing: f32) -> Vec<[f32; 3]> {
+        let side = (radius / spacing).ceil() as i32;
+        let line = || -side..=side;
+        let all = line().flat_map(|x| line().flat_map(move |y| line().map(move |z| [x, y, z])));
+        let places = all.map(|place| place.map(|k| k as f32 * spacing));
+        places.filter(|place| place.iter().map(|x| x * x).sum::<f32>() <= radius * radius).collect()
+    }
+
+    fn volume(surface: &LiquidSurface) -> f32 {
+        let triangles = surface.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let of = |[a, b, c]: [[f32; 3]; 3]| {
+            let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+            (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
+        };
+        triangles.map(|points| of(points.map(|point| surface.positions[point as usize]))).sum()
+    }
+
+    #[test]
+    fn the_surface_is_closed_and_holds_the_volume_of_its_particles() {
+        let spacing = 0.02;
+        let particles = ball(0.2, spacing);
+        let surface = surface(&particles, spacing);
+        let mut edges = BTreeMap::new();
+        for quad in &surface.quads {
+            for k in 0..4 {
+                let [a, b] = [quad[k], quad[(k + 1) % 4]];
+                *edges.entry([a.min(b), a.max(b)]).or_insert(0) += if a < b { 1 } else { -1 };
+            }
+        }
+        assert!(edges.values().all(|sum| *sum == 0), "each edge has a face on both sides");
+        let own = particles.len() as f32 * spacing.powi(3);
+        let share = volume(&surface) / own;
+        assert!((share - 1.0).abs() < 0.1, "{share}");
+    }
+
+    #[test]
+    fn a_single_particle_is_a_ball_and_particles_far_apart_are_not_joined() {
+        let particles = [[1.0, 2.0, 3.0], [1.36, 2.0, 3.0]];
+        let found = surface(&particles, 0.1);
+        assert!(!found.quads.is_empty());
+        for place in &found.positions {
+            let distance = |particle: &[f32; 3]| {
+                (0..3).map(|k| (place[k] - particle[k]).powi(2)).sum::<f32>().sqrt() / (RADIUS * 0.1)
+            };
+            let nearest = particles.iter().map(distance).fold(f32::INFINITY, f32::min);
+            // The ball is as wide as two cells: means of crossings are inside of it.
+            assert!((0.5..1.05).contains(&nearest), "{nearest}");
+        }
+    }
+
+    #[test]
+    fn the_spacing_is_that_of_the_grid() {
+        let found = spacing(&ball(0.2, 0.02)).expect("many particles");
+        assert!((found / 0.02 - 1.0).abs() < 1e-3, "{found}");
+        assert_eq!(spacing(&[[0.0; 3]]), None);
+    }
+}
