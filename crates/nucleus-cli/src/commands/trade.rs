@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
 use nucleus_graph::scene::{Scene, edit};
-use nucleus_measure::report::{self, Wish};
+use nucleus_measure::report;
 use nucleus_measure::result_cache::{ResultCache, write_atomic};
 use nucleus_measure::trade::SweepOptions;
 use nucleus_measure::trade::run::Trajectory;
 use nucleus_measure::trade::{
     Benchmark, Choice, Quantity, Reading, RemoteRun, Request, Setting, SweepControl, SweepResult, TradeError,
-    run_sweep,
+    Wish, run_sweep,
 };
 
 use crate::options::{self, FrameRange};
@@ -26,8 +26,13 @@ mod page;
 
 use elsewhere::{Remote, RemoteSweep};
 
-/// Default length of the comparison, in seconds from the start.
-const DEFAULT_SECONDS: f64 = 2.0;
+/// Default length of the comparison, in seconds from the start; and with `--thorough`.
+const DEFAULT_SECONDS: f64 = 1.0;
+const THOROUGH_SECONDS: f64 = 2.0;
+
+/// What a longer sweep adds, at the end of a short one.
+const MORE: &str = "`--thorough` compares two seconds, tries more settings and resolves smaller errors, in two to five \
+                    times the time; `--frames` compares others\n";
 
 /// Default error of the recommendation, as a share.
 const DEFAULT_ERROR: f64 = 0.01;
@@ -35,12 +40,12 @@ const DEFAULT_ERROR: f64 = 0.01;
 /// Measures the error and the time of many settings of a scene, and recommends one.
 ///
 /// Errors are differences from a reference: the same scene in double precision with more and smaller time steps. Position,
-/// stretch, shape, silhouette and energy are measured each; a setting meets an error only if all of them do. Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
+/// stretch, shape, silhouette and energy are measured each; a setting meets an error only if all of them do, the noise of the reference included. A few settings are tried first, then those near the best. Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
 #[derive(Debug, Args)]
 pub struct Trade {
     /// The scene (.ron).
     scene: PathBuf,
-    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 2 seconds.
+    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 1 second.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Recommend the cheapest setting with at most this error (`1%`) in every quantity.
@@ -69,6 +74,10 @@ pub struct Trade {
     /// Factors for stretch, compression and shear resistance to try, for the classic model.
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', value_parser = options::positive)]
     resistance_factors: Vec<f64>,
+    /// Compare 2 seconds, try the whole grid of evaluations, substeps and collision iterations, and use finer
+    /// references: two to five times as long.
+    #[arg(long)]
+    thorough: bool,
     /// Runs in parallel; default: one per core.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -183,7 +192,8 @@ impl Trade {
             return Ok(None);
         };
         if self.frames.is_none() {
-            let frames = (DEFAULT_SECONDS * scene.time.fps).ceil() as i64;
+            let seconds = if self.thorough { THOROUGH_SECONDS } else { DEFAULT_SECONDS };
+            let frames = (seconds * scene.time.fps).ceil() as i64;
             scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
         }
         Ok(Some((scene, text)))
@@ -197,6 +207,7 @@ impl Trade {
         let found = run_sweep(
             subject,
             &self.wishes(),
+            &self.wish(),
             store,
             SweepControl {
                 workers: options::thread_count(self.jobs),
@@ -222,6 +233,7 @@ impl Trade {
             collision_iterations: self.iterations.clone(),
             evaluations: self.evaluations.clone(),
             resistances: self.resistance_factors.clone(),
+            is_thorough: self.thorough,
         }
     }
 
@@ -251,7 +263,8 @@ impl Trade {
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
             let said = format!("{}\n{recommendation}", report::text(trade));
-            output::report(&format!("{said}wrote {}\n", names.join(", ")));
+            let more = if self.wishes().is_refined() { MORE } else { "" };
+            output::report(&format!("{said}{more}wrote {}\n", names.join(", ")));
         }
         if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
             self.apply(apply.as_ref(), subject, &point.setting, text)?;

@@ -16,4 +16,4 @@ mod text;
 
 pub use figures::{figure, percent};
 pub use html::{Page, Picture, html};
-pub use text::{Wish, csv, index, recommendation, request_name, text, time_to};
+pub use text::{csv, index, recommendation, request_name, text, time_to};

@@ -1,7 +1,7 @@
 //! Text renderings of a trade: terminal, CSV, and the Markdown index.
 
 use super::figures::{figure, percent};
-use crate::trade::{Choice, Component, Point, Quantity, Reading, Request, Trade};
+use crate::trade::{Choice, Component, Point, Quantity, Reading, Request, Trade, Wish};
 
 /// Errors for which the time is reported.
 const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -52,30 +52,11 @@ pub(super) fn errors(point: &Point) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// The target of a recommendation.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Wish {
-    /// Errors not above these.
-    Error(Request),
-    /// Milliseconds per frame on one core, at most.
-    Time(f64),
-}
-
-impl Wish {
-    /// The setting of a trade for this wish.
-    pub fn choose<'a>(&self, trade: &'a Trade) -> Choice<'a> {
-        match self {
-            Self::Error(request) => crate::trade::for_error(trade, request),
-            Self::Time(ms) => crate::trade::for_time(trade, *ms),
-        }
-    }
-
-    /// `an error of 1 %`, `stretch of 3 %`, `a time of 40 ms`.
-    fn name(&self) -> String {
-        match self {
-            Self::Time(ms) => format!("a time of {} ms", figure(*ms)),
-            Self::Error(request) => request_name(request),
-        }
+/// `an error of 1 %`, `stretch of 3 %`, `a time of 40 ms`.
+fn wish_name(wish: &Wish) -> String {
+    match wish {
+        Wish::Time(ms) => format!("a time of {} ms", figure(*ms)),
+        Wish::Error(request) => request_name(request),
     }
 }
 
@@ -90,7 +71,7 @@ pub fn request_name(request: &Request) -> String {
 
 /// The recommendation in words, one sentence a line.
 pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
-    let wanted = wish.name();
+    let wanted = wish_name(wish);
     let costs = |point: &Point| {
         format!("{}, {} ms per frame; errors: {}", point.setting, figure(point.ms), errors(point))
     };

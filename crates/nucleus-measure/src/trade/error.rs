@@ -53,7 +53,7 @@ impl Quantity {
 
     /// Whether a wanted error that the references do not resolve in this quantity makes the whole recommendation
     /// unresolved. In other quantities the error that the references resolve counts.
-    fn is_essential(self) -> bool {
+    pub(super) fn is_essential(self) -> bool {
         matches!(self, Self::Position | Self::Stretch | Self::Strain)
     }
 }
@@ -210,12 +210,16 @@ impl Request {
         self.bounds.iter().find(|(of, _)| *of == quantity).map(|(_, error)| *error).or(self.every)
     }
 
-    /// The components of a run that miss the request. An error within the noise of the references
-    /// misses nothing.
+    /// The components of a run that miss the request. The noise of the references counts as error, because against
+    /// other references the error may be larger by it. Where the references do not resolve the wanted error, an
+    /// error within their noise misses nothing.
     pub fn missed<'a>(&'a self, errors: &'a [Component]) -> impl Iterator<Item = &'a Component> {
         errors.iter().filter(|component| {
-            component.is_resolved()
-                && self.of(component.quantity).is_some_and(|wanted| component.error > wanted)
+            let Component { error, floor, .. } = **component;
+            self.of(component.quantity).is_some_and(|wanted| match 2.0 * floor > wanted {
+                true => component.is_resolved(),
+                false => error + floor > wanted,
+            })
         })
     }
 

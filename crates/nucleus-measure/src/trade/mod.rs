@@ -21,9 +21,9 @@ mod setting;
 pub mod sweep;
 
 pub use benchmark::{Benchmark, TradeError, object_positions};
-pub use curve::{Choice, Point, Trade, for_error, for_time};
+pub use curve::{Choice, Point, Trade, Wish, for_error, for_time};
 pub use error::{Component, ErrorMeasure, Quantity, Request};
 pub use plan::SweepOptions;
-pub use reference::References;
+pub use reference::{ReferenceRun, References};
 pub use setting::{Reading, Setting};
 pub use sweep::{Elsewhere, Progress, RemoteRun, SweepControl, SweepResult, run_sweep};

@@ -3,6 +3,7 @@
 use nucleus_graph::Simulation;
 
 use super::benchmark::{Benchmark, TradeError};
+use super::curve::{Choice, Trade, Wish};
 use super::setting::{Reading, Setting};
 
 /// Requested values; an empty list means values chosen for the scene.
@@ -18,6 +19,16 @@ pub struct SweepOptions {
     pub evaluations: Vec<f64>,
     /// Classic: factors on the resistances.
     pub resistances: Vec<f64>,
+    /// Whether to try the whole grid of settings, against finer references, instead of a few settings and those near the
+    /// recommended one.
+    pub is_thorough: bool,
+}
+
+impl SweepOptions {
+    /// Whether the sweep starts with few settings and adds those near the recommended one.
+    pub fn is_refined(&self) -> bool {
+        !self.is_thorough && self.evaluations.is_empty() && self.substeps.is_empty()
+    }
 }
 
 /// Default evaluations; extended by doubling up to the scene's own.
@@ -32,6 +43,12 @@ const RESISTANCES: [f64; 3] = [0.25, 1.0, 4.0];
 
 /// Evaluations of the two references (step h and step h/2), as multiples of those of the most exact run.
 const FINER: [f64; 2] = [2.0, 4.0];
+
+/// The same in a refined sweep, which doubles them if they do not resolve the wanted error.
+const FINER_AT_FIRST: [f64; 2] = [1.0, 2.0];
+
+/// Number of default evaluations that a refined sweep starts with.
+const EVALUATIONS_AT_FIRST: usize = 4;
 
 /// All settings to run without duplicates, the scene's own first.
 ///
@@ -57,18 +74,61 @@ pub fn settings(benchmark: &Benchmark, options: &SweepOptions) -> Result<Vec<Set
 
 /// Settings of the two references, the finer last. `None` if all settings are Classic, which has no limit to converge to:
 /// more iterations and more substeps make a different material.
-pub fn references(benchmark: &Benchmark, settings: &[Setting]) -> Option<[Setting; 2]> {
+///
+/// `finer` are the multiples of the most evaluations.
+pub fn references(benchmark: &Benchmark, settings: &[Setting], finer: [f64; 2]) -> Option<[Setting; 2]> {
     let physical = settings.iter().filter(|setting| setting.reading == Reading::Physical);
     let most = physical.clone().map(|setting| setting.evaluations).reduce(f64::max)?;
     let own = benchmark.own();
     let substeps = if own.reading == Reading::Physical { own.substeps.max(3) } else { 3 };
-    Some(FINER.map(|finer| Setting {
+    Some(finer.map(|finer| Setting {
         reading: Reading::Physical,
         substeps: substeps * finer as u32,
         collision_iterations: own.collision_iterations,
         evaluations: most * finer,
         resistance: 1.0,
     }))
+}
+
+/// The multiples for [`references`] that a sweep tries in order, until the references resolve the wanted error and a
+/// setting meets it.
+pub fn finenesses(is_refined: bool) -> &'static [[f64; 2]] {
+    const ALL: [[f64; 2]; 2] = [FINER_AT_FIRST, FINER];
+    if is_refined { &ALL } else { &ALL[1..] }
+}
+
+/// Settings near the recommended one of a sweep that may be cheaper, or more exact in the same time.
+///
+/// The first round varies the substeps, the later ones halve the distance to the neighbour in evaluations that misses the
+/// wish, on a logarithmic scale.
+pub fn near(trade: &Trade, wish: &Wish, round: u32) -> Vec<Setting> {
+    let own = match wish.choose(trade) {
+        Choice::Found(found) => found.setting,
+        Choice::Nearest(nearest) if matches!(wish, Wish::Error(_)) => return finer(trade, nearest.setting),
+        _ => return Vec::new(),
+    };
+    if own.reading == Reading::Classic {
+        return Vec::new();
+    }
+    if round == 0 {
+        return SUBSTEPS.map(|substeps| Setting { substeps, ..own }).to_vec();
+    }
+    let others = trade.points.iter().map(|point| point.setting);
+    let ladder = others.filter(|other| other.with_evaluations(own.evaluations) == own);
+    let neighbour = match wish {
+        Wish::Error(_) => ladder.map(|x| x.evaluations).filter(|x| *x < own.evaluations).reduce(f64::max),
+        Wish::Time(_) => ladder.map(|x| x.evaluations).filter(|x| *x > own.evaluations).reduce(f64::min),
+    };
+    let between = neighbour.map(|neighbour| (neighbour * own.evaluations).sqrt().round());
+    between.map(|evaluations| own.with_evaluations(evaluations)).into_iter().collect()
+}
+
+/// The setting with twice the evaluations, if the reference is finer by far.
+fn finer(trade: &Trade, nearest: Setting) -> Vec<Setting> {
+    let most = trade.reference.as_ref().map_or(0.0, |fine| 0.5 * fine.setting.evaluations);
+    let doubled = nearest.with_evaluations(2.0 * nearest.evaluations);
+    let is_finer = nearest.reading == Reading::Physical && doubled.evaluations <= most;
+    if is_finer { vec![doubled] } else { Vec::new() }
 }
 
 /// Estimated cost of a frame at a setting, in row evaluations of single precision.
@@ -86,6 +146,9 @@ pub fn work(benchmark: &Benchmark, setting: &Setting, bits: u32) -> Result<f64, 
 fn physical(benchmark: &Benchmark, options: &SweepOptions) -> Result<Vec<Setting>, TradeError> {
     let own = Setting { reading: Reading::Physical, resistance: 1.0, ..benchmark.own() };
     let evaluations = or_default(&options.evaluations, || {
+        if options.is_refined() {
+            return EVALUATIONS[..EVALUATIONS_AT_FIRST].to_vec();
+        }
         let mut all = EVALUATIONS.to_vec();
         while benchmark.own().reading == Reading::Physical && all[all.len() - 1] < own.evaluations {
             all.push(all[all.len() - 1] * 2.0);
@@ -96,11 +159,13 @@ fn physical(benchmark: &Benchmark, options: &SweepOptions) -> Result<Vec<Setting
     let passes = match iterations_matter(benchmark, &own)? {
         true => or_default(&options.collision_iterations, || {
             let c = own.collision_iterations.max(1);
-            vec![c, 4 * c]
+            if options.is_refined() { vec![own.collision_iterations] } else { vec![c, 4 * c] }
         }),
         false => vec![own.collision_iterations],
     };
-    let substeps = or_default(&options.substeps, || SUBSTEPS.to_vec());
+    let substeps = or_default(&options.substeps, || {
+        if options.is_refined() { vec![own.substeps] } else { SUBSTEPS.to_vec() }
+    });
     let mut all = Vec::new();
     for &evaluations in &evaluations {
         for &substeps in &substeps {
@@ -142,4 +207,34 @@ fn classic(benchmark: &Benchmark, options: &SweepOptions) -> Vec<Setting> {
 
 fn or_default<T: Clone>(requested: &[T], default: impl FnOnce() -> Vec<T>) -> Vec<T> {
     if requested.is_empty() { default() } else { requested.to_vec() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::tests::{point, trade};
+    use super::super::error::Request;
+    use super::*;
+
+    #[test]
+    fn a_sweep_with_requested_settings_or_a_thorough_one_is_not_refined() {
+        assert!(SweepOptions::default().is_refined());
+        assert!(!SweepOptions { is_thorough: true, ..SweepOptions::default() }.is_refined());
+        assert!(!SweepOptions { evaluations: vec![24.0], ..SweepOptions::default() }.is_refined());
+        assert!(!SweepOptions { substeps: vec![2], ..SweepOptions::default() }.is_refined());
+    }
+
+    #[test]
+    fn refinement_varies_the_substeps_and_then_the_evaluations_next_to_the_limit() {
+        let trade = trade(vec![point(25.0, 0.1), point(100.0, 0.005), point(400.0, 0.001)]);
+        let settings = |wish: &Wish, round| -> Vec<(u32, f64)> {
+            near(&trade, wish, round).iter().map(|x| (x.substeps, x.evaluations)).collect()
+        };
+        let error = Wish::Error(Request::every(0.01));
+        assert_eq!(settings(&error, 0), [(1, 100.0), (3, 100.0), (8, 100.0)]);
+        assert_eq!(settings(&error, 1), [(3, 50.0)]);
+        // 100 evaluations are the most that this time allows, and 400 exceed it.
+        assert_eq!(settings(&Wish::Time(150.0), 1), [(3, 200.0)]);
+        assert_eq!(settings(&Wish::Time(500.0), 1), []);
+        assert_eq!(settings(&Wish::Error(Request::every(0.0005)), 0), [], "no setting meets it");
+    }
 }

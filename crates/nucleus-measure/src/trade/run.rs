@@ -56,6 +56,9 @@ pub struct Run {
     pub outline: Option<Outline>,
     /// Hash of the last state, in hexadecimal.
     pub hash: String,
+    /// Key of the reference that distances and the outline were measured against; empty without a reference.
+    #[serde(default)]
+    pub against: String,
 }
 
 impl Run {
@@ -115,6 +118,7 @@ pub fn run_setting<R: Real>(
         queries: 0,
         outline: None,
         hash: String::new(),
+        against: String::new(),
     };
     // Only references need all their frames.
     let mut trajectory = (bits == 64).then(|| Trajectory::new(&points));

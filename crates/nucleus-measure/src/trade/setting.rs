@@ -30,6 +30,11 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// The same setting with so many evaluations.
+    pub fn with_evaluations(self, evaluations: f64) -> Self {
+        Self { evaluations, ..self }
+    }
+
     /// Unique name, for files and lists.
     pub fn key(&self) -> String {
         let Self { substeps, collision_iterations: passes, evaluations, resistance, .. } = self;

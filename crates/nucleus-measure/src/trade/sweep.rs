@@ -9,7 +9,7 @@ use nucleus_graph::compile::Program;
 use serde::{Deserialize, Serialize};
 
 use super::benchmark::{Benchmark, MAX_REFERENCE_UNCERTAINTY, TradeError};
-use super::curve::{Trade, is_resolved};
+use super::curve::{Choice, Trade, Wish, is_resolved};
 use super::error::ErrorMeasure;
 use super::plan::{self, SweepOptions};
 use super::reference::{self, ReferenceRun, References};
@@ -19,6 +19,9 @@ use crate::result_cache::ResultCache;
 
 /// List of the finished runs of a scene.
 const LIST: &str = "runs.jsonl";
+
+/// Rounds of settings near the recommended one.
+const REFINEMENTS: u32 = 3;
 
 /// Interval between progress reports.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(200);
@@ -85,7 +88,8 @@ struct Task {
     work: f64,
 }
 
-/// Makes the references, runs all settings and builds the curve. Loads finished runs from `cache`, and saves each new
+/// Makes the references, runs all settings and builds the curve. A refined sweep ([`SweepOptions::is_refined`]) then runs
+/// settings near the one that it recommends for `wish`. Loads finished runs from `cache`, and saves each new
 /// one when it finishes.
 ///
 /// # Errors
@@ -93,38 +97,85 @@ struct Task {
 pub fn run_sweep(
     benchmark: &Benchmark,
     options: &SweepOptions,
+    wish: &Wish,
     cache: &ResultCache,
     mut control: SweepControl,
 ) -> Result<SweepResult, TradeError> {
     let settings = plan::settings(benchmark, options)?;
-    let known: Vec<Run> = cache.list(LIST)?;
-    let frames = benchmark.frames();
-    let old = |setting: &Setting| known.iter().find(|run| run.key() == key(setting, 32, frames)).cloned();
-    let (kept, open): (Vec<_>, Vec<_>) =
-        settings.iter().map(|setting| (setting, old(setting))).partition(|(_, run)| run.is_some());
-    let mut runs: Vec<Run> = kept.into_iter().filter_map(|(_, run)| run).collect();
-    let tasks =
-        open.iter().map(|(setting, _)| task(benchmark, setting, 32)).collect::<Result<Vec<_>, _>>()?;
-
-    let mut done = Done {
-        progress: Progress { done: 0.0, runs: [0, tasks.len()], kept: runs.len() },
-        before: 0.0,
-        all: tasks.iter().map(|task| task.work).sum(),
-    };
-    let references = references(benchmark, &settings, cache, &mut done, &mut control)?;
-    if let Some(both) = &references {
-        validate_references(benchmark, both)?;
+    let mut done = Done { progress: Progress { done: 0.0, runs: [0, 0], kept: 0 }, before: 0.0, all: 0.0 };
+    // Runs in other processes are planned at once.
+    let is_refined = options.is_refined() && control.elsewhere.is_none();
+    let mut finer = plan::finenesses(is_refined).iter().peekable();
+    loop {
+        let both = finer.next().and_then(|finer| plan::references(benchmark, &settings, *finer));
+        let references = match both {
+            Some(both) => Some(references(benchmark, both, cache, &mut done, &mut control)?),
+            None => None,
+        };
+        if let Some(both) = &references {
+            if finer.peek().is_some() && !resolves(benchmark, both, wish) {
+                continue;
+            }
+            validate_references(benchmark, both)?;
+        }
+        let mut runs = Vec::new();
+        run_settings(benchmark, &settings, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
+        let mut trade = Trade::new(benchmark, &runs, references.as_ref());
+        for round in 0..if is_refined { REFINEMENTS } else { 0 } {
+            let mut near = plan::near(&trade, wish, round);
+            near.retain(|setting| runs.iter().all(|run| run.setting.key() != setting.key()));
+            run_settings(benchmark, &near, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
+            trade = Trade::new(benchmark, &runs, references.as_ref());
+        }
+        if finer.peek().is_some() && references.is_some() && !matches!(wish.choose(&trade), Choice::Found(_))
+        {
+            continue;
+        }
+        trade.save(cache)?;
+        return Ok(SweepResult { trade, references, runs });
     }
-    let target = references.as_ref().map(|both| &both.fine.trajectory);
-    work_through(benchmark, tasks, target, &mut done, &mut control, &mut |run, kept| {
+}
+
+/// Whether references resolve what is wished, over enough frames.
+fn resolves(benchmark: &Benchmark, references: &References, wish: &Wish) -> bool {
+    let References { coarse, fine, horizon } = references;
+    let measure = ErrorMeasure::new(benchmark, coarse, fine, horizon);
+    horizon.is_usable() && !wish.request().is_unresolved(&measure)
+}
+
+/// Adds the runs of settings to `runs`, loaded or done.
+fn run_settings(
+    benchmark: &Benchmark,
+    settings: &[Setting],
+    references: Option<&References>,
+    cache: &ResultCache,
+    done: &mut Done,
+    control: &mut SweepControl,
+    runs: &mut Vec<Run>,
+) -> Result<(), TradeError> {
+    let known: Vec<Run> = cache.list(LIST)?;
+    // A stored run holds its distances from the reference of its sweep, which may have been another.
+    let against = references.map(|both| both.fine.run.key()).unwrap_or_default();
+    let frames = benchmark.frames();
+    let mut tasks = Vec::new();
+    for setting in settings {
+        let is_same = |run: &&Run| run.key() == key(setting, 32, frames) && run.against == against;
+        match known.iter().find(is_same) {
+            Some(run) => runs.push(run.clone()),
+            None => tasks.push(task(benchmark, setting, 32)?),
+        }
+    }
+    done.progress.kept += settings.len() - tasks.len();
+    done.progress.runs[1] += tasks.len();
+    done.all += tasks.iter().map(|task| task.work).sum::<f64>();
+    let target = references.map(|both| &both.fine.trajectory);
+    work_through(benchmark, tasks, target, done, control, &mut |run, kept| {
+        let run = Run { against: against.clone(), ..run };
         reference::save_end(cache, &run.key(), &kept.end)?;
         cache.append(LIST, &run)?;
         runs.push(run);
         Ok(())
-    })?;
-    let trade = Trade::new(benchmark, &runs, references.as_ref());
-    trade.save(cache)?;
-    Ok(SweepResult { trade, references, runs })
+    })
 }
 
 impl RemoteRun {
@@ -155,15 +206,14 @@ pub fn end(
     Ok(reference::load_end(cache, &key(setting, 32, benchmark.frames()))?)
 }
 
-/// The two references, loaded or computed.
+/// Two references, loaded or computed.
 fn references(
     benchmark: &Benchmark,
-    settings: &[Setting],
+    both: [Setting; 2],
     cache: &ResultCache,
     done: &mut Done,
     control: &mut SweepControl,
-) -> Result<Option<References>, TradeError> {
-    let Some(both) = plan::references(benchmark, settings) else { return Ok(None) };
+) -> Result<References, TradeError> {
     let mut solved = Vec::new();
     let mut tasks = Vec::new();
     for setting in &both {
@@ -183,7 +233,7 @@ fn references(
     })?;
     solved.sort_by(|a, b| a.run.setting.evaluations.total_cmp(&b.run.setting.evaluations));
     let [coarse, fine] = <[ReferenceRun; 2]>::try_from(solved).map_err(|_| TradeError::Interrupted)?;
-    Ok(Some(References::new(coarse, fine, benchmark.size)))
+    Ok(References::new(coarse, fine, benchmark.size))
 }
 
 /// Rejects references that diverge, do not move, or do not converge.
