@@ -207,6 +207,10 @@ fn accept(seed: u64) -> Outcome {
     let unresolved: Vec<&str> = request.unresolved(measure).map(|(quantity, _)| quantity.name()).collect();
     let misses: Vec<String> =
         over.iter().map(|c| format!("{} {}", c.quantity.name(), percent(c.error))).collect();
+    let shown = |error: f64| match point.limit {
+        Some(limit) => format!("{} {}", limit.name(), percent(error)),
+        None => "within the noise".to_owned(),
+    };
     Outcome {
         is_promised: true,
         is_met: over.iter().all(|c| !is_resolved(c.quantity)),
@@ -214,11 +218,10 @@ fn accept(seed: u64) -> Outcome {
         // Below the noise of the references there is nothing to predict.
         is_predicted: point.limit.is_none() || (measured / predicted - 1.0).abs() <= 0.2,
         row: format!(
-            "| {seed} | {} | {} {} | {} | {} | {} |",
+            "| {seed} | {} | {} | {} | {} | {} |",
             point.setting,
-            limit.name(),
-            percent(predicted),
-            percent(measured),
+            shown(predicted),
+            shown(measured),
             misses.join(", "),
             unresolved.join(", "),
         ),
