@@ -141,7 +141,7 @@ fn a_cache_opens_at_the_requested_frame() {
 fn the_members_of_a_constraint_are_listed_and_drawn_when_chosen() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let player = serve(&written(folder.path(), Sample { selected: true, ..Sample::default() }), 0).unwrap();
+    let player = serve(written(folder.path(), Sample { selected: true, ..Sample::default() }), 0).unwrap();
     let yellow = |shown: &Shown| shown.share(|[r, g, b]| *r > 170 && *g > 110 && *b < *g / 2 && *r > *g);
     let listed = |shown: &Shown| shown.page.contains("33 points of flag");
     let hidden = look_until(&player, chromium, "frame=1", listed);
