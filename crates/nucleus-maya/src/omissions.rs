@@ -42,6 +42,8 @@ pub enum Cause {
     Expression(String),
     /// Something that is carried over as an approximation, and how.
     Approximate(String),
+    /// A mesh that is written at its first frame only, and why.
+    Motion(String),
     /// A part of a constraint.
     Component(String),
     /// A connection between nodes that are carried over.
@@ -66,7 +68,9 @@ impl Cause {
             Self::OtherMember(kind) => format!("a {kind} is not solved"),
             Self::Mesh(why) => format!("its mesh cannot be built: {why}"),
             Self::Operator(kind) => format!("{kind} is not carried out"),
-            Self::Value(why) | Self::Component(why) | Self::Approximate(why) => why.clone(),
+            Self::Value(why) | Self::Component(why) | Self::Approximate(why) | Self::Motion(why) => {
+                why.clone()
+            }
             Self::Unused(names) => format!("the simulation has no use for {names}"),
             Self::Driven(kind) => format!("it is driven by a {kind}, which is not read"),
             Self::Expression(why) => format!("the expression cannot be translated: {why}"),
@@ -92,6 +96,7 @@ impl Cause {
             Self::Value(_) => "the attribute keeps its default, or the nearest valid value",
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",
+            Self::Motion(_) => "it stands still; import its file into Maya for the motion",
             Self::Component(_) => "this part of the constraint does not act",
             Self::Connection(_) => "the connection is left out",
             Self::Cache(how) => how,

@@ -251,3 +251,30 @@ fn a_written_scene_is_wired_as_mayas_commands_do() {
     }
     assert!(imported(&text).scene == scene, "{}", write_scene(&imported(&text).scene));
 }
+
+#[test]
+fn meshes_of_every_format_are_written_with_their_points_and_motion_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 0 2.5\n3 0 1 2\n";
+    let usd = "#usda 1.0\n(\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\ndef Mesh \"a\" {\n\
+               int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\n\
+               point3f[] points.timeSamples = { 1: [(0, 0, 0), (1, 0, 0), (0, 0, 0.75)], 5: [(0, 4, 0), (1, 4, 0), (0, 4, 1)] }\n}\n";
+    for (name, text) in [("still.ply", ply), ("moves.usda", usd)] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let ron = "Scene(time: (start: 1, end: 10, fps: 24), nodes: {\"n\": nucleus(spaceScale: 0.01),
+        \"p\": mesh(file: \"still.ply\"), \"u\": mesh(file: \"moves.usda\"),
+        \"c\": nCloth(inputMesh: \"p\"), \"r\": nRigid(inputMesh: \"u\")})";
+    let (scene, _) = read_scene_text(ron, &folder.path().join("out.ron")).unwrap();
+    let (text, omissions) = maya_ascii(&scene, "out").unwrap();
+    // Units of a PLY are scene units; a USD states metres, and a scene unit is a centimetre.
+    for points in ["\n\t\t0 0 0\n\t\t1 0 0\n\t\t0 0 2.5;", "\n\t\t0 0 0\n\t\t100 0 0\n\t\t0 0 75;"] {
+        assert!(text.contains(points), "{points:?} is missing in\n{text}");
+    }
+    let found: Vec<(&str, String)> = omissions.iter().map(|(what, cause)| (what, cause.reason())).collect();
+    let moves = "its file moves it; the scene for Maya has its shape at the first frame";
+    assert_eq!(found, [("u", moves.to_owned())]);
+    std::fs::remove_file(folder.path().join("still.ply")).unwrap();
+    assert!(maya_ascii(&scene, "out").unwrap_err().contains("still.ply"));
+}

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use nucleus_core::Surface;
 
 use crate::attributes::{mesh, nucleus};
-use crate::diagnostic::Findings;
+use crate::diagnostic::{Diagnostic, Findings};
 use crate::files;
-use crate::graph::{Graph, Node};
+use crate::graph::{Graph, Node, NodeId};
 use crate::memory::{self, Budget, Cost, Size, TooLarge};
 use crate::mesh::{FileMesh, Frames, MeshFile, MeshFormat, read_obj};
 use crate::scene::document::Scene;
@@ -22,6 +22,17 @@ pub(super) struct Mesh {
     pub(super) frames: Vec<Points>,
     /// Texture coordinates of each point from a file other than OBJ.
     pub(super) uvs: Option<Vec<Option<[f64; 2]>>>,
+}
+
+/// The mesh that a mesh node reads from its file: its surface at the first frame in scene units, and whether the file, or
+/// a file per frame, moves it.
+///
+/// # Errors
+/// When the file cannot be read, or exceeds the memory limit of the scene.
+pub fn file_mesh(scene: &Scene, node: NodeId) -> Result<(Surface, bool), Vec<Diagnostic>> {
+    let mut findings = Findings::new(scene.source.file().to_owned());
+    let read = read_files(scene, scene.graph.node(node), &mut scene.source.budget(), &mut findings);
+    read.map(|mesh| (mesh.surface, !mesh.frames.is_empty())).ok_or_else(|| findings.in_order())
 }
 
 /// A mesh node whose file is being read.

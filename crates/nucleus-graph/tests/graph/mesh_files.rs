@@ -309,26 +309,74 @@ fn malformed_files_are_refused_without_their_content() {
     assert!(refused("e.gltf", required).starts_with("it needs an extension that is not read"));
 }
 
+/// Reads a file whole, if it can be read.
+fn read_all(path: &Path) {
+    let _ = MeshFile::open(path, "", FRAMES).and_then(|file| {
+        file.mesh(1)?;
+        file.positions(7)
+    });
+}
+
+/// Reads a file with one, two or four bytes replaced at random, and cut off at random.
+fn read_mutations(path: &Path, cases: usize) {
+    let whole = fs::read(path).unwrap();
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize
+    };
+    for case in 0..cases {
+        let mut bytes = whole.clone();
+        for _ in 0..[1, 2, 4][case % 3] {
+            let place = random() % bytes.len();
+            // A digit stays a digit most of the time, so that the numbers of a text change and not only its syntax.
+            let is_digit = bytes[place].is_ascii_digit() && random() % 4 > 0;
+            bytes[place] = if is_digit { b'0' + (random() % 10) as u8 } else { random() as u8 };
+        }
+        if case % 8 == 7 {
+            bytes.truncate(random() % whole.len());
+        }
+        fs::write(path, bytes).unwrap();
+        read_all(path);
+    }
+}
+
 #[test]
 fn no_truncation_and_no_flipped_byte_of_a_gltf_makes_reading_panic() {
     let folder = tempfile::tempdir().unwrap();
     arm(folder.path());
-    let path = folder.path().join("a.gltf");
-    let text = fs::read(&path).unwrap();
-    let mut random = 1_u64;
-    for _ in 0..300 {
-        let mut bytes = text.clone();
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let place = (random >> 33) as usize % bytes.len();
-        if bytes[place].is_ascii_digit() {
-            bytes[place] = b'0' + (random >> 20) as u8 % 10;
-        } else {
-            bytes[place] = (random >> 20) as u8;
-        }
-        fs::write(&path, bytes).unwrap();
-        let _ = MeshFile::open(&path, "", FRAMES).and_then(|file| {
-            file.mesh(1)?;
-            file.positions(7)
-        });
-    }
+    read_mutations(&folder.path().join("a.gltf"), 300);
+}
+
+#[test]
+fn no_truncation_and_no_flipped_byte_of_a_binary_gltf_makes_reading_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    arm(folder.path());
+    let mut text =
+        fs::read_to_string(folder.path().join("a.gltf")).unwrap().replace(r#""uri": "a%20b.bin", "#, "");
+    text.push_str(&" ".repeat(text.len().next_multiple_of(4) - text.len()));
+    let binary = fs::read(folder.path().join("a b.bin")).unwrap();
+    let mut bytes = b"glTF".to_vec();
+    let number = |x: usize| (x as u32).to_le_bytes();
+    bytes.extend([number(2), number(28 + text.len() + binary.len()), number(text.len())].concat());
+    bytes.extend([&b"JSON"[..], text.as_bytes()].concat());
+    bytes.extend([&number(binary.len())[..], b"BIN\0", &binary].concat());
+    let path = folder.path().join("a.glb");
+    fs::write(&path, bytes).unwrap();
+    let moved = MeshFile::open(&path, "arm", FRAMES).unwrap().positions(25).unwrap();
+    let text = MeshFile::open(folder.path().join("a.gltf"), "arm", FRAMES).unwrap();
+    assert_eq!(moved, text.positions(25).unwrap());
+    read_mutations(&path, 300);
+}
+
+#[test]
+fn no_truncation_and_no_flipped_byte_of_a_usd_makes_reading_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let [text, binary] = ["a.usda", "a.usdc"].map(|name| folder.path().join(name));
+    fs::write(&text, STAGE).unwrap();
+    openusd::usdc::CrateWriter::write_to_file(&openusd::usda::parse(STAGE).unwrap(), &binary).unwrap();
+    let positions = |path| MeshFile::open(path, "figure", FRAMES).unwrap().positions(25).unwrap();
+    assert_eq!(positions(&text), positions(&binary));
+    read_mutations(&text, 200);
+    read_mutations(&binary, 400);
 }

@@ -5,8 +5,12 @@ use std::fmt::Write;
 
 use nucleus_core::Surface;
 use nucleus_graph::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
+use nucleus_graph::compile::file_mesh;
 use nucleus_graph::graph::NodeId;
-use nucleus_graph::mesh::{MeshFormat, Primitive, read_obj};
+use nucleus_graph::mesh::Primitive;
+use nucleus_graph::scene::Diagnostic;
+
+use crate::omissions::Cause;
 
 use super::writer::Writer;
 
@@ -43,23 +47,25 @@ impl Writer<'_> {
     }
 
     fn file_surface(&self, id: NodeId) -> Result<Option<Surface>, String> {
-        let file = self.graph().node(id).get(&mesh::FILE);
-        if file.is_empty() {
+        Ok(self.file_mesh(id)?.map(|(surface, _)| surface))
+    }
+
+    /// The mesh of a file at the first frame, and whether the file moves it.
+    fn file_mesh(&self, id: NodeId) -> Result<Option<(Surface, bool)>, String> {
+        if self.graph().node(id).get(&mesh::FILE).is_empty() {
             return Ok(None);
         }
-        if MeshFormat::of(&file) != MeshFormat::Obj {
-            let name = self.graph().node(id).name();
-            return Err(format!(
-                "`{name}` is read from `{file}`: Maya ASCII takes meshes of OBJ files; convert it first"
-            ));
-        }
-        let path = self.scene.source.path(&numbered(&file, self.scene.time.start));
-        read_obj(&path).map(Some).map_err(|error| error.to_string())
+        let refused = |found: Vec<Diagnostic>| found.first().map_or(String::new(), |one| one.message.clone());
+        file_mesh(self.scene, id).map(Some).map_err(refused)
     }
 
     /// Points, edges and faces of a mesh.
     pub(super) fn embedded_mesh(&mut self, id: NodeId) -> Result<(), String> {
-        let Some(surface) = self.surface_of(id)? else { return Ok(()) };
+        let Some((surface, moves)) = self.file_mesh(id)? else { return Ok(()) };
+        if moves {
+            let why = "its file moves it; the scene for Maya has its shape at the first frame".to_owned();
+            self.omissions.add(self.graph().node(id).name(), Cause::Motion(why));
+        }
         let count = surface.positions.len();
         let mut text = String::new();
         let _ = write!(text, "\tsetAttr -s {count} \".vt[0:{}]\"", count.saturating_sub(1));
@@ -100,11 +106,4 @@ impl Writer<'_> {
         self.text.push_str(&text);
         Ok(())
     }
-}
-
-/// The file of a frame, where `####` stands for its number.
-fn numbered(file: &str, frame: i64) -> String {
-    let Some(first) = file.find('#') else { return file.to_owned() };
-    let digits = file[first..].bytes().take_while(|byte| *byte == b'#').count();
-    format!("{}{frame:0digits$}{}", &file[..first], &file[first + digits..])
 }
