@@ -117,7 +117,7 @@ fn a_paper_aeroplane_glides_on_lift_and_falls_like_a_stone_without() {
 
 // EVIDENCE: N1.2-4  a balloon that is let go flies by its jet until it is empty
 #[test]
-fn a_balloon_that_is_let_go_flies_by_its_jet_and_falls_when_it_is_empty() {
+fn a_released_balloon_flies_by_its_jet_and_falls_when_it_is_empty() {
     let frames = film(&changed("open_balloon", &[]), 71);
     let height = |frame: usize| mean(&frames[frame - 2]).y;
     let highest = (25..=72).map(height).fold(0.0, f64::max);

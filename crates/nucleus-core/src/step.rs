@@ -24,7 +24,7 @@ use crate::constraints::whole;
 use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
-use crate::contact::collider::start_gaps::keep_start_gaps;
+use crate::contact::collider::start_gaps::record_start_gaps;
 use crate::contact::exclusion::update_pair_filter;
 use crate::contact::force_field::apply_force_fields;
 use crate::contact::point_field::apply_point_fields;
@@ -108,7 +108,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
             solver.contact.invalidate_bounds(row as usize);
         }
     }
-    keep_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
+    record_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
     if let Some(contacts) = &mut solver.contact.cloth_contacts {
         contacts.cache.update_anchors(&solver.state.anchor);

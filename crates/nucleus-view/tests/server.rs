@@ -52,7 +52,7 @@ fn a_range_beyond_the_end_is_not_satisfiable() {
 }
 
 #[test]
-fn without_a_range_the_whole_file_is_sent_and_head_has_no_body() {
+fn without_a_range_the_complete_file_is_sent_and_head_has_no_body() {
     let (_folder, player, bytes) = served();
     let (status, head, body) = get(player.address(), "/cache.mcap", "");
     assert_eq!((status, &body), (200, &bytes));

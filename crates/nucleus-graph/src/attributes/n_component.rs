@@ -11,7 +11,7 @@ node_table! {
     N_COMPONENT = "nComponent", inherits None, hides [];
     "Nucleus (open)" {
         /// Elements selected by meaning, separated by semicolons: `border`, `corners`, `where(y > 1.49)`, `group(collar)`, `mask(tear.png)`.
-        SELECT: String = text("select", "select").solved("nucleus_graph::compile::constraints::select").extension();
+        SELECT: String = text("select", "select").solved("nucleus_graph::compile::select").extension();
     }
     "Component" {
         /// Kind of elements: points, edges, faces, or the object as a whole.

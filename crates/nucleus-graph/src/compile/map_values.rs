@@ -6,7 +6,7 @@ use crate::memory;
 use crate::paint::{Expression, Point, Texture, read_numbers};
 
 use super::compiler::Compiler;
-use super::constraints::select::{Elements, Selected};
+use super::select::{Elements, Selected};
 
 /// `...MapType: none`.
 const NONE: Choice = Choice(0);

@@ -19,7 +19,8 @@
 //! | mesh sequences and blends                            | `animated_mesh.rs`                 |
 //! | vertex maps                                          | `vertex_maps.rs`, `map_values.rs`  |
 //! | pins of transform constraints                        | `attachments.rs`                   |
-//! | all other constraints, and selections of elements    | `constraints/`                     |
+//! | selections of elements                               | `select.rs`                        |
+//! | all other constraints                                | `constraints/`                     |
 //! | thickness, self-collision, push-out                  | `thickness.rs`                     |
 //! | cameras                                              | `camera.rs`                        |
 //! | texture coordinates, for exports                     | `texture_coordinates.rs`           |
@@ -49,6 +50,7 @@ mod particle_ramps;
 mod particles;
 mod perturbation;
 mod program;
+mod select;
 mod soft_body;
 mod sources;
 mod texture_coordinates;

@@ -27,7 +27,7 @@ type Point = Vector3<f64>;
 const START_GAP: f64 = 2.0 * MIN_THICKNESS;
 
 /// Looks at the start of a Classic run, once. Anchors are at the start positions; those of points in a surface move off it.
-pub fn keep_start_gaps<R: Real>(
+pub fn record_start_gaps<R: Real>(
     model: &Model<R>,
     state: &mut State<R>,
     contact: &mut ContactSystem<R>,

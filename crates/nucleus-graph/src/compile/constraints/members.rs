@@ -11,11 +11,11 @@ use crate::attributes::{
 use crate::compile::compiler::Compiler;
 use crate::compile::map_values::{MapAttributes, MapOfCloth};
 use crate::compile::program::NamedSelection;
+use crate::compile::select::{Elements, Selected};
 use crate::graph::NodeId;
 
 use super::kinds::{self, Values};
 use super::member::{ConstraintSource, Member, MemberObject, Part};
-use super::select::{Elements, Selected};
 use super::split_mesh::Tearing;
 
 /// `componentType: object`.

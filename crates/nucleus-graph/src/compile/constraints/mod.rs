@@ -4,7 +4,6 @@
 //! |--------------------------------------------------------|--------------|
 //! | what each of Maya's ten kinds stands for               | `kinds.rs`   |
 //! | which objects and elements are members               | `members.rs`, `member.rs` |
-//! | which elements a component selects                     | `select.rs`  |
 //! | which elements are joined, and where                   | `forming.rs` |
 //! | joined edges that resist folding                      | `folding.rs` |
 //! | the closest places of elements                         | `near.rs`    |
@@ -22,7 +21,6 @@ pub(super) mod kinds;
 pub(super) mod member;
 mod members;
 mod near;
-pub(super) mod select;
 mod sheet;
 pub(super) mod split_mesh;
 mod tearing;

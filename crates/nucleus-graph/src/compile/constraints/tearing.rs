@@ -6,10 +6,10 @@ use nucleus_core::Surface;
 
 use crate::attributes::{Choice, ElementKind, dynamic_constraint as con, n_component};
 use crate::compile::compiler::Compiler;
+use crate::compile::select::{Elements, Selected};
 use crate::graph::NodeId;
 
 use super::kinds::{self, Values};
-use super::select::{Elements, Selected};
 use super::split_mesh::Tearing;
 
 /// `componentType: object`.

@@ -6,10 +6,11 @@ use nalgebra::Vector3;
 use nucleus_core::Faces;
 
 use crate::attributes::{Choice, ElementKind, Which, n_component, read_which};
-use crate::compile::compiler::Compiler;
 use crate::graph::NodeId;
 use crate::mesh::read_obj_groups;
 use crate::paint::{Expression, Point, Texture};
+
+use super::compiler::Compiler;
 
 /// `elements` of a component.
 const BORDERS: Choice = Choice(1);
@@ -20,7 +21,7 @@ const FACE: Choice = Choice(4);
 const OBJECT: Choice = Choice(6);
 
 /// The elements of a mesh that can be selected.
-pub(in crate::compile) struct Elements<'a> {
+pub(super) struct Elements<'a> {
     pub(super) faces: &'a Faces,
     pub(super) points: usize,
     /// Each edge once, in the order in which faces name them, with the number of its faces.
@@ -30,7 +31,7 @@ pub(in crate::compile) struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    pub(in crate::compile) fn new(faces: &'a Faces, points: usize) -> Self {
+    pub(super) fn new(faces: &'a Faces, points: usize) -> Self {
         let mut found: BTreeMap<[u32; 2], usize> = BTreeMap::new();
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
         let mut behind = Vec::new();
@@ -110,11 +111,11 @@ impl<'a> Elements<'a> {
 }
 
 /// The mesh of a selection, for values per point and for messages.
-pub(in crate::compile) struct Selected {
+pub(super) struct Selected {
     /// The constraint, or another node that names the elements.
-    pub(in crate::compile) owner: NodeId,
-    pub(in crate::compile) object: NodeId,
-    pub(in crate::compile) mesh: NodeId,
+    pub(super) owner: NodeId,
+    pub(super) object: NodeId,
+    pub(super) mesh: NodeId,
 }
 
 impl Compiler<'_> {
@@ -182,7 +183,7 @@ impl Compiler<'_> {
     }
 
     /// The elements of one selection, or why there are none.
-    pub(in crate::compile) fn chosen(
+    pub(super) fn chosen(
         &mut self,
         of: &Selected,
         kind: ElementKind,
