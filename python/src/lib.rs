@@ -2,10 +2,10 @@
 //!
 //! | You want to know…                              | Read             |
 //! |------------------------------------------------|------------------|
-//! | how positions become numpy arrays without copy | [`mod@array`]    |
-//! | a step loop, and how Ctrl-C reaches it         | [`simulation`]   |
-//! | how a cache is read                            | [`playback`]     |
-//! | how a scene is checked and changed             | [`scene`]        |
+//! | how positions become numpy arrays without copy | `array.rs`       |
+//! | a step loop, and how Ctrl-C reaches it         | `simulation.rs`  |
+//! | how a cache is read                            | `playback.rs`    |
+//! | how a scene is checked and changed             | `scene.rs`       |
 //!
 //! Structured results cross the border as JSON text, which the package parses; arrays cross it without a copy.
 //!
