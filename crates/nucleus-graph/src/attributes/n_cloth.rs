@@ -24,7 +24,7 @@ node_table! {
     }
     "Dynamic Properties" {
         /// Name of a mesh whose lengths and angles are the rest shape, in place of the input mesh. It has the same points and faces.
-        REST_SHAPE_MESH: Plugged = node("restShapeMesh", "rsmh", Some(Data::Mesh)).solved("nucleus_graph::compile::soft_body");
+        REST_SHAPE_MESH: Plugged = node("restShapeMesh", "rsmh", Some(Data::Mesh)).solved("nucleus_graph::compile::input_mesh");
         /// Classic: whether a resistance applies per link, per object independent of its resolution, or also independent of its size. Physical: a stiffness never depends on the mesh.
         SCALING_RELATION: Choice = choice("scalingRelation", "srl", 0, &[(0, "Link"), (1, "Object Space"), (2, "World Space")]).solved("nucleus_graph::compile::soft_body");
         /// Resistance to stretch: of links that are longer than at rest.
@@ -50,7 +50,7 @@ node_table! {
         /// Strength of the attraction to the animated input mesh. Physical: 1 is 24 Hz. Classic: the share of the distance in 1/24 s.
         INPUT_MESH_ATTRACT: f64 = float("inputMeshAttract", "imat", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
         /// Whether points whose attraction is 1 or greater are locked to the input mesh.
-        INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]).solved("nucleus_graph::compile::soft_body");
+        INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]).solved("nucleus_graph::compile::input_mesh");
         /// Damping of the attraction to the input mesh, as a share of critical damping: 1 does not overshoot.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
         /// Rate at which velocities approach those of the input mesh, per 1/24 s.
@@ -180,11 +180,11 @@ node_table! {
         /// Factor on tangential drag, per point.
         TANGENTIAL_DRAG_PER_VERTEX: Vec<f64> = floats("tangentialDragPerVertex", "tdpv").solved("nucleus_core::model::vertex_maps");
         /// Texture of the map of wrinkle.
-        WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0).solved("nucleus_graph::compile::soft_body");
+        WRINKLE_MAP: f64 = texture("wrinkleMap", "wkmp", 0.0).solved("nucleus_graph::compile::input_mesh");
         /// Factor on wrinkle, per point.
-        WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv").solved("nucleus_graph::compile::soft_body");
+        WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv").solved("nucleus_graph::compile::input_mesh");
         /// Height of the wrinkles of the wrinkle map.
-        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::soft_body");
+        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::input_mesh");
         /// Source of the map of stretch: none, a value per point, or a texture.
         STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Source of the map of compression: none, a value per point, or a texture.
@@ -210,7 +210,7 @@ node_table! {
         /// Source of the map of tangential drag: none, a value per point, or a texture.
         TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Source of the map of wrinkle: none, a value per point, or a texture.
-        WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::soft_body");
+        WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::input_mesh");
     }
     "Hidden" {
         /// Obsolete in Maya.

@@ -12,7 +12,7 @@ node_table! {
         /// Number of particles.
         COUNT: i64 = int("count", "cnt", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh.
-        IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::soft_body");
+        IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::input_mesh");
     }
     "Time Attributes" {
         /// Time of the evaluation; driven by `time1.outTime`.

@@ -14,8 +14,8 @@ use crate::attributes::{
 use crate::graph::{EvalContext, NodeId};
 
 use super::compiler::Compiler;
+use super::force_fields::ramp_at;
 use super::program::EvaluationInterval;
-use super::soft_body::ramp_at;
 use super::sources::FieldSource;
 
 impl Compiler<'_> {

@@ -6,12 +6,14 @@
 //! | what the result is                                   | [`Program`], `sources.rs`          |
 //! | what compiling one nucleus shares                    | `compiler.rs`                      |
 //! | shape, mass and constraint lists of cloth; colliders | `objects.rs`                       |
-//! | pressure, shape, yielding, the input mesh            | `soft_body.rs`                     |
+//! | bending, yielding, pressure, resistances that count  | `soft_body.rs`                     |
+//! | attraction to the input mesh, the shape at rest      | `input_mesh.rs`                    |
+//! | fields that objects exert                            | `force_fields.rs`                  |
 //! | settings that another setting switches off           | `contradictions.rs`                |
 //! | particles                                            | `particles.rs`                     |
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
 //! | emitters, and the particles born in a frame          | `emission/`                        |
-//! | force fields                                         | `fields.rs`                        |
+//! | field nodes                                          | `fields.rs`                        |
 //! | particles that fill a box or a mesh                  | `fill.rs`                          |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
 //! | the input of a frame                                 | `frame.rs`                         |
@@ -39,9 +41,11 @@ mod contradictions;
 mod emission;
 mod fields;
 mod fill;
+mod force_fields;
 mod frame;
 mod geometry;
 mod initial_state;
+mod input_mesh;
 mod map_values;
 mod mesh_files;
 mod objects;

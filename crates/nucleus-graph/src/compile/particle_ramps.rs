@@ -13,7 +13,7 @@ use crate::paint::{Expression, Point, read_numbers};
 
 use super::compiler::Compiler;
 use super::emission::Lifespan;
-use super::soft_body::ramp_at;
+use super::force_fields::ramp_at;
 
 /// Samples of a ramp.
 const SAMPLES: usize = 129;

@@ -11,7 +11,7 @@ use crate::attributes::n_cloth;
 use crate::graph::NodeId;
 
 use super::compiler::Compiler;
-use super::soft_body::normals;
+use super::input_mesh::normals;
 
 impl Compiler<'_> {
     /// Moves the points of a cloth along their normals; `positions` and `surface` in metres.

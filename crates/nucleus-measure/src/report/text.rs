@@ -28,7 +28,7 @@ pub(super) fn method_text(trade: &Trade) -> String {
         let floor = |(quantity, floor): &(Quantity, f64)| format!("{} {}", quantity.name(), percent(*floor));
         let floors: Vec<String> = measure.floors.iter().map(floor).collect();
         text += &format!(
-            "\nThe two references differ by: {}. An error below twice that cannot be told from none.",
+            "\nThe two references differ by: {}. An error below twice that is within the noise of the references.",
             floors.join(", ")
         );
     } else {

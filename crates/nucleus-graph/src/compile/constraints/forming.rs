@@ -1,17 +1,17 @@
 //! Forming links: which elements of the members are joined, and where, from positions at a time.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, Link, LinkSide, PointId};
+use nucleus_core::{Link, LinkSide, PointId};
 
 use crate::attributes::{ElementKind, RampPoint, dynamic_constraint as con};
-use crate::compile::soft_body::ramp_at;
+use crate::compile::force_fields::ramp_at;
 
 use super::kinds::{self, Values};
 use super::member::{ConstraintSource, Member, MemberObject, Places};
 use super::near::{Foot, Nearby, barycentric, distance, foot};
 use super::sheet::Sheet;
 
-type Point = Vector3<f64>;
+pub(super) type Point = Vector3<f64>;
 
 /// `componentRelation`.
 const ALL_TO_FIRST: i32 = 0;
@@ -35,15 +35,15 @@ pub(super) struct Forming<'a> {
 
 /// A place on an element of a member.
 #[derive(Clone, Copy)]
-struct Place {
-    side: LinkSide,
-    at: Point,
+pub(super) struct Place {
+    pub(super) side: LinkSide,
+    pub(super) at: Point,
     /// The element, for its strength.
-    element: u32,
+    pub(super) element: u32,
 }
 
 impl Member {
-    fn side(&self, points: [u32; 3], weights: [f64; 3]) -> LinkSide {
+    pub(super) fn side(&self, points: [u32; 3], weights: [f64; 3]) -> LinkSide {
         let points = points.map(PointId);
         match self.object {
             MemberObject::Cloth(cloth) => LinkSide::Cloth { cloth, points, weights },
@@ -143,7 +143,7 @@ impl Forming<'_> {
         points.map(|&point| self.places.point(member.object, point)).collect()
     }
 
-    fn all_corners(&self, member: &Member) -> Vec<Vec<Point>> {
+    pub(super) fn all_corners(&self, member: &Member) -> Vec<Vec<Point>> {
         (0..member.elements.len() as u32).map(|element| self.corners(member, element)).collect()
     }
 
@@ -266,14 +266,14 @@ impl Forming<'_> {
         }
     }
 
-    fn place(&self, member: &Member, element: u32, on: &Foot) -> Place {
+    pub(super) fn place(&self, member: &Member, element: u32, on: &Foot) -> Place {
         let points = member.elements.face(element as usize);
         let side = member.side(on.corners.map(|corner| points[corner]), on.weights);
         Place { side, at: on.place, element }
     }
 
     /// The link of two places; on a surface with this normal, its rest length is along it.
-    fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], normal: Option<Point>) -> Link {
+    pub(super) fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], normal: Option<Point>) -> Link {
         let line = a.at - b.at;
         let rest = normal.map_or(line.norm(), |normal| line.dot(&normal));
         let (ours, theirs) = (from.factors(a.element), to.factors(b.element));
@@ -316,85 +316,6 @@ impl Forming<'_> {
         }
         links
     }
-
-    /// The welds of a tearable surface, each for half of its edge.
-    fn seams(&self) -> Vec<Link> {
-        let glue = self.source.members.first().map_or(1.0, |member| member.factors(0)[2]);
-        let weld = |(cloth, points, edge): &(ClothId, [u32; 2], [u32; 2])| {
-            let place = |point: u32| self.places.point(MemberObject::Cloth(*cloth), point);
-            let sides = points.map(|point| LinkSide::point(*cloth, PointId(point)));
-            Link { glue, length: (place(edge[0]) - place(edge[1])).norm() / 2.0, ..Link::new(sides, 0.0) }
-        };
-        let mut links: Vec<Link> = self.source.seams.iter().map(weld).collect();
-        if self.bends {
-            links.extend(self.folds_of_seams());
-        }
-        links
-    }
-
-    /// Links from the points of borders to the closest places of other borders, within `maxDistance`.
-    fn borders(&self) -> Vec<Link> {
-        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
-        let within = self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || self.source.members.len() == 1;
-        let mut links = Vec::new();
-        let mut joined = std::collections::BTreeSet::new();
-        let mut welds = std::collections::BTreeMap::new();
-        for (a, from) in self.source.members.iter().enumerate() {
-            for (b, to) in self.source.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
-                let edges = self.all_corners(to);
-                let nearby = Nearby::new(edges.iter().map(Vec::as_slice));
-                let along = (a == b).then(|| Chains::new(to, &edges));
-                for (point, element) in from.points() {
-                    let at = self.places.point(from.object, point);
-                    let near =
-                        along.as_ref().map(|chains| chains.near(point, 2.0 * reach)).unwrap_or_default();
-                    let of = |edge: u32| match near.contains(&edge) {
-                        true => f64::INFINITY,
-                        false => (foot(&edges[edge as usize], at).place - at).norm(),
-                    };
-                    let found = nearby.nearest(at.x, of).filter(|(distance, _)| *distance <= reach);
-                    let Some((_, edge)) = found else { continue };
-                    let on = snapped(foot(&edges[edge as usize], at), &edges[edge as usize]);
-                    let to_point = to.elements.face(edge as usize)[on.corners[0]];
-                    if on.weights[0] == 1.0 {
-                        // Two points that find each other are one weld.
-                        let [p, q] = [(from.object.key(), point), (to.object.key(), to_point)];
-                        if !joined.insert([p.min(q), p.max(q)]) {
-                            continue;
-                        }
-                    }
-                    let from_place = Place { side: from.side([point; 3], [1.0, 0.0, 0.0]), at, element };
-                    let to_place = self.place(to, edge, &on);
-                    let link = self.link([(from, from_place), (to, to_place)], None);
-                    welds.insert((a, point), links.len() as u32);
-                    links.push(Link { length: from.border_length(point, self.places), ..link });
-                }
-            }
-        }
-        if self.bends {
-            let folds: Vec<Link> = self
-                .border_pairs(within, reach)
-                .into_iter()
-                .flat_map(|[a, b]| {
-                    let members = [a, b].map(|(member, edge)| (&self.source.members[member], edge));
-                    let ends = members[0].0.elements.face(a.1 as usize);
-                    let weld = |end: u32| welds.get(&(a.0, end)).copied().unwrap_or(u32::MAX);
-                    self.folds(members, [weld(ends[0]), weld(ends[ends.len() - 1])])
-                })
-                .collect();
-            links.extend(folds);
-        }
-        links
-    }
-}
-
-/// A foot that is a corner where it is within a thousandth of the edge of one.
-fn snapped(on: Foot, edge: &[Point]) -> Foot {
-    let near = (0..edge.len()).find(|&k| {
-        on.corners[..2][..].contains(&k)
-            && (edge[k] - on.place).norm() <= 1e-3 * (edge[edge.len() - 1] - edge[0]).norm()
-    });
-    near.map_or(on, |k| Foot { corners: [k; 3], weights: [1.0, 0.0, 0.0], place: edge[k] })
 }
 
 /// The place of a triangle's plane below a point, so that several links hold an element rigidly.
@@ -423,44 +344,4 @@ fn chance(x: u32, y: u32) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// Border edges by their points, to find those that are near along the border.
-struct Chains<'a> {
-    member: &'a Member,
-    lengths: Vec<f64>,
-    of_point: std::collections::BTreeMap<u32, Vec<u32>>,
-}
-
-impl<'a> Chains<'a> {
-    fn new(member: &'a Member, edges: &[Vec<Point>]) -> Self {
-        let mut of_point: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
-        for edge in 0..member.elements.len() as u32 {
-            for &point in member.elements.face(edge as usize) {
-                of_point.entry(point).or_default().push(edge);
-            }
-        }
-        let length = |edge: &Vec<Point>| (edge[edge.len() - 1] - edge[0]).norm();
-        Self { member, lengths: edges.iter().map(length).collect(), of_point }
-    }
-
-    /// The edges that a walk along the border from a point reaches within a length.
-    fn near(&self, point: u32, length: f64) -> Vec<u32> {
-        let mut found: Vec<u32> = Vec::new();
-        let mut open = vec![(point, 0.0)];
-        while let Some((point, walked)) = open.pop() {
-            for &edge in self.of_point.get(&point).into_iter().flatten() {
-                if found.contains(&edge) {
-                    continue;
-                }
-                found.push(edge);
-                let reached = walked + self.lengths[edge as usize];
-                if reached <= length {
-                    let ends = self.member.elements.face(edge as usize).iter();
-                    open.extend(ends.filter(|&&end| end != point).map(|&end| (end, reached)));
-                }
-            }
-        }
-        found
-    }
 }

@@ -12,8 +12,8 @@ use nucleus_core::{
 
 use crate::animation::Affine;
 use crate::attributes::dynamic_constraint as con;
+use crate::compile::force_fields::FIELD_ACCELERATION;
 use crate::compile::program::{EvaluationInterval, NucleusProgram};
-use crate::compile::soft_body::FIELD_ACCELERATION;
 use crate::graph::EvalContext;
 
 use super::forming::Forming;

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use nucleus_core::Falloff;
 
 use crate::attributes::{Choice, FromValue, Key, RampPoint, dynamic_constraint as con};
-use crate::compile::soft_body::ramp_at;
+use crate::compile::force_fields::ramp_at;
 use crate::graph::{EvalContext, NodeId};
 
 /// Kinds by their number in `constraintType`.

@@ -5,6 +5,7 @@
 //! | what each of Maya's ten kinds stands for               | `kinds.rs`   |
 //! | which objects and elements are members               | `members.rs`, `member.rs` |
 //! | which elements are joined, and where                   | `forming.rs` |
+//! | welds of tearable surfaces and of borders              | `borders.rs` |
 //! | joined edges that resist folding                      | `folding.rs` |
 //! | the closest places of elements                         | `near.rs`    |
 //! | the sheet on which sliding links walk                  | `sheet.rs`   |
@@ -14,6 +15,7 @@
 //! A transform constraint without any attribute of springs pins its points; see `attachments.rs`. Every other kind is
 //! links of the solver, exclusions of its contact, or both.
 
+mod borders;
 mod folding;
 mod forming;
 mod frame;
