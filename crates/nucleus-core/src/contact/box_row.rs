@@ -10,7 +10,7 @@ use crate::math::{Lanes as _, Real};
 type Lanes = <f32 as Real>::Lanes;
 
 /// Swept boxes of some elements.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct BoxRow {
     eights: Vec<Aabb8>,
 }
@@ -37,6 +37,17 @@ impl BoxRow {
         }));
     }
 
+    /// One of the boxes.
+    #[inline(always)]
+    pub fn swept_box(&self, at: usize) -> SweptBox {
+        let Aabb8 { low, high } = &self.eights[at / 8];
+        let corner = |of: &[[f32; 8]; 3]| [of[0][at % 8], of[1][at % 8], of[2][at % 8], 0.0];
+        [
+            Aabb::from_corners([corner(&low[0]), corner(&high[0])]),
+            Aabb::from_corners([corner(&low[1]), corner(&high[1])]),
+        ]
+    }
+
     /// Calls `found` with the index of each box that may overlap, as [`Aabb::may_overlap`] says.
     #[inline(always)]
     pub fn for_each_overlap(&self, ours: &SweptBox, mut found: impl FnMut(usize)) {
@@ -51,15 +62,18 @@ impl BoxRow {
 }
 
 impl Aabb8 {
-    /// Transposes eight boxes.
+    /// Transposes eight boxes. With loops, because maps over arrays are not inlined.
     #[inline(always)]
     fn of(boxes: &[SweptBox; 8]) -> Self {
         let (mut low, mut high) = ([[[0.0; 8]; 3]; 2], [[[0.0; 8]; 3]; 2]);
         for half in [0, 4] {
             for end in 0..2 {
-                let corners = [0, 1, 2, 3].map(|k| boxes[half + k][end].corners());
                 for (side, all) in [&mut low, &mut high].into_iter().enumerate() {
-                    let axes = Lanes::transpose(corners.map(|corners| Lanes::from_array(corners[side])));
+                    let mut corners = [Lanes::splat(0.0); 4];
+                    for (k, corner) in corners.iter_mut().enumerate() {
+                        *corner = Lanes::from_array(boxes[half + k][end].corners()[side]);
+                    }
+                    let axes = Lanes::transpose(corners);
                     for axis in 0..3 {
                         all[end][axis][half..half + 4].copy_from_slice(&axes[axis].to_array());
                     }
@@ -159,6 +173,9 @@ mod tests {
             row.for_each_overlap(&ours, |at| found.push(at));
             let alone = (0..theirs.len()).filter(|&at| Aabb::may_overlap(&ours, &theirs[at]));
             prop_assert_eq!(found, alone.collect::<Vec<_>>());
+            for (at, boxes) in theirs.iter().enumerate() {
+                prop_assert_eq!(row.swept_box(at), *boxes);
+            }
         }
 
         #[test]

@@ -5,10 +5,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::bvh::Aabb;
-use crate::contact::cloth::contacts::{ClothContacts, SearchBuffers};
+use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers};
 use crate::contact::cloth::intersections::find_intersections;
 use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory, mean_motion};
-use crate::contact::cloth::query::SearchTask;
+use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::{ClothSearch, RefreshKind, SearchInput};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
@@ -32,8 +32,6 @@ const MIN_BOUND_RADIUS: f64 = 1e-6;
 const MAX_TRAVEL: f64 = 2.0;
 /// In metres: more than any motion in a frame, and finite in single precision.
 const UNLIMITED_TRAVEL: f64 = 1e9;
-/// Groups in a task.
-const GROUPS_PER_TASK: usize = 64;
 
 /// Ensures that the contact cache includes all that can touch in this step. Does nothing while every point
 /// keeps its motion bound.
@@ -204,27 +202,27 @@ fn find_candidates<R: Real>(
         .map(|material| material.thickness * material.adhesion_range)
         .fold(0.0, f64::max);
     let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
-    cloth_contacts.update_bounds(&input, margin, refresh);
+    cloth_contacts.update_bounds(&input, margin, refresh, pool);
     if !refresh.is_incremental() && cloth_contacts.untangling.may_exist() {
         let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
         find_intersections(elements, materials, &input, untangling);
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, groups, tasks } = buffers;
+    let SearchBuffers { bounds, group_bounds, groups, tasks, .. } = buffers;
     let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
-    tasks.resize_with(tasks.len().max(chunks), SearchTask::default);
+    tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
     let own = DisjointSlice::new(tasks);
-    let search = ClothSearch { elements, materials, bounds, untangling, input, bounds_violated, margin };
+    let search =
+        ClothSearch { elements, materials, bounds, group_bounds, untangling, input, bounds_violated };
     pool.parallel_for(chunks, |task| {
         // Uncontended: a task runs once.
         // SAFETY: every task has its own.
         #[allow(unsafe_code)]
-        let [own] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
-        own.found.clear();
-        own.group_bounds.clear();
+        let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
+        found.clear();
         let end = ((task + 1) * GROUPS_PER_TASK).min(groups.len());
-        groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, own));
+        groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, found));
     });
     cache.update(&tasks[..chunks], bounds_violated, refresh, (&elements.block, elements.blocks), pool);
     bounds_violated.fill(false);
@@ -232,12 +230,12 @@ fn find_candidates<R: Real>(
 
 impl<R: Real> ClothSearch<'_, R> {
     /// Finds all contacts of the elements of a group that have a new bound.
-    fn search_group(&self, group: u32, task: &mut SearchTask<R>) {
-        let SearchTask { found, query, group_bounds } = task;
-        let all = query.fill(self, group);
-        self.elements.query(&all[0].union(all[1]), |other| {
-            if Aabb::may_overlap(&all, &self.elements.swept_boxes[other as usize]) {
-                query.find_contacts(self, other, group_bounds.of(self, other), found);
+    fn search_group(&self, group: u32, found: &mut FoundContacts<R>) {
+        let ours = self.group(group);
+        let [start, end] = ours.swept_box;
+        self.elements.query(&start.union(*end), |other| {
+            if Aabb::may_overlap(ours.swept_box, &self.elements.swept_boxes[other as usize]) {
+                self.find_contacts(&ours, other, found);
             }
         });
     }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::batches::{Blocks, ContactList};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
-use crate::contact::cloth::query::{FoundContacts, SearchTask};
+use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::RefreshKind;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
@@ -43,7 +43,7 @@ impl<R> Default for ContactCache<R> {
 
 /// The result of a search, and the contacts that it replaces.
 struct CacheUpdate<'a, R> {
-    tasks: &'a [SearchTask<R>],
+    tasks: &'a [FoundContacts<R>],
     bounds_violated: &'a [bool],
     refresh: RefreshKind,
     blocks: Blocks<'a>,
@@ -57,7 +57,7 @@ impl<R: Real> CacheUpdate<'_, R> {
         of: impl Fn(&FoundContacts<R>) -> &[ClothContact<R, N, M>],
     ) {
         contacts.remove_violated(self.bounds_violated, self.refresh);
-        let found = |task: usize| of(&self.tasks[task].found);
+        let found = |task: usize| of(&self.tasks[task]);
         contacts.assign_batches(self.tasks.len(), found, self.refresh, self.blocks);
     }
 }
@@ -75,7 +75,7 @@ impl<R: Real> ContactCache<R> {
     /// bounds.
     pub(super) fn update(
         &mut self,
-        tasks: &[SearchTask<R>],
+        tasks: &[FoundContacts<R>],
         bounds_violated: &[bool],
         refresh: RefreshKind,
         blocks: Blocks<'_>,

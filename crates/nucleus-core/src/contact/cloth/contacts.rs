@@ -4,14 +4,16 @@ use std::ops::Range;
 
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::element_bounds::ElementBounds;
-use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
+use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::motion_bounds::Trajectories;
-use crate::contact::cloth::query::SearchTask;
+use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
+use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::population::close_up;
 
@@ -63,6 +65,7 @@ impl<R: Real> ClothContacts<R> {
         self.interval[1] = self.interval[0];
         let Self { elements, cache, buffers, bounds_violated, interval_start, trajectories, .. } = self;
         buffers.bounds.forget(points.clone());
+        buffers.bounds_margin = None;
         let rows = points.start as usize..points.end as usize;
         close_up(&mut interval_start[rows.clone()], kept);
         close_up(&mut trajectories.origin[rows.clone()], kept);
@@ -84,22 +87,45 @@ impl<R: Real> ClothContacts<R> {
         self.materials.iter().any(Option::is_some)
     }
 
-    /// Updates the bounds of points and of the groups that contain them: of those that violated theirs, or of
-    /// all.
-    pub(super) fn update_bounds(&mut self, input: &SearchInput<'_, R>, margin: f32, refresh: RefreshKind) {
+    /// Updates the bounds of points, and of the groups that contain a point whose bound has changed. Lists the groups to be
+    /// searched: those of points that violated theirs.
+    pub(super) fn update_bounds(
+        &mut self,
+        input: &SearchInput<'_, R>,
+        margin: f32,
+        refresh: RefreshKind,
+        pool: &ThreadPool,
+    ) {
         let (anchors, points) = (input.anchors, || input.cloths.iter().flat_map(ClothModel::points));
         let Self { elements, bounds_violated, buffers, trajectories, .. } = self;
-        let SearchBuffers { bounds, groups, .. } = buffers;
+        let SearchBuffers { bounds, group_bounds, bounds_margin, changed, groups, .. } = buffers;
         let violated = points().filter(|&point| bounds_violated[point as usize]);
-        elements.groups_of(violated.clone(), groups);
         if refresh.is_incremental() {
-            bounds.update(anchors, trajectories, violated);
-            groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
+            bounds.update(anchors, trajectories, violated.clone(), changed);
         } else {
-            bounds.update(anchors, trajectories, points());
-            (0..elements.groups.len() as u32).for_each(|group| elements.set_bound(group, bounds, margin));
+            bounds.update(anchors, trajectories, points(), changed);
         }
+        group_bounds.resize_with(elements.groups.len(), GroupBounds::default);
+        if bounds_margin.replace(margin) == Some(margin) {
+            elements.groups_of(changed.iter().copied(), groups);
+        } else {
+            groups.clear();
+            groups.extend(0..elements.groups.len() as u32);
+        }
+        groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
         elements.refit();
+        let group_bounds = DisjointSlice::new(group_bounds);
+        pool.parallel_for(groups.len().div_ceil(GROUPS_PER_TASK), |task| {
+            for &group in groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default() {
+                let ClothGroup { cloth, group: own } = &elements.groups[group as usize];
+                // SAFETY: a group is listed once.
+                #[allow(unsafe_code)]
+                if let [slot] = unsafe { group_bounds.run(group..group + 1) } {
+                    slot.fill(&input.cloths[*cloth as usize].boundary, own, bounds, margin);
+                }
+            }
+        });
+        elements.groups_of(violated, groups);
     }
 }
 
@@ -107,13 +133,29 @@ impl<R: Real> ClothContacts<R> {
 #[derive(Debug)]
 pub struct SearchBuffers<R> {
     pub(super) bounds: ElementBounds,
-    /// The groups with a new bound.
+    pub(super) group_bounds: Vec<GroupBounds>,
+    /// The margin in metres of all group bounds; `None` if they are out of date.
+    bounds_margin: Option<f32>,
+    /// The points whose bounds have changed.
+    changed: Vec<u32>,
+    /// The groups that are searched.
     pub(super) groups: Vec<u32>,
-    pub(super) tasks: Vec<SearchTask<R>>,
+    /// The contacts that each task has found.
+    pub(super) tasks: Vec<FoundContacts<R>>,
 }
+
+/// Groups in a task.
+pub(super) const GROUPS_PER_TASK: usize = 64;
 
 impl<R> Default for SearchBuffers<R> {
     fn default() -> Self {
-        Self { bounds: ElementBounds::default(), groups: Vec::new(), tasks: Vec::new() }
+        Self {
+            bounds: ElementBounds::default(),
+            group_bounds: Vec::new(),
+            bounds_margin: None,
+            changed: Vec::new(),
+            groups: Vec::new(),
+            tasks: Vec::new(),
+        }
     }
 }

@@ -113,21 +113,27 @@ pub struct ContactDistance {
 const CERTIFIED_GAP: f32 = 0.02;
 
 impl ElementBounds {
-    /// Updates some points.
+    /// Updates some points. Lists those whose boxes have changed.
     pub fn update<R: Real>(
         &mut self,
         anchors: &[[f64; 3]],
         trajectories: &Trajectories<R>,
         points: impl Iterator<Item = u32>,
+        changed: &mut Vec<u32>,
     ) {
+        changed.clear();
         let Some(origin) = anchors.first() else { return };
         self.swept_points.resize(anchors.len());
         self.boxes.resize(anchors.len(), [Aabb::EMPTY; 2]);
         for point in points {
             let at = point as usize;
             let anchor = std::array::from_fn(|axis| anchors[at][axis] - origin[axis]);
-            let boxes = self.swept_points.set(at, &trajectories.of(point), anchor);
-            self.boxes[at] = boxes.map(|(centre, radius)| Aabb::ball(centre, radius));
+            let [start, end] = self.swept_points.set(at, &trajectories.of(point), anchor);
+            let boxes = [Aabb::ball(start.0, start.1), Aabb::ball(end.0, end.1)];
+            if self.boxes[at] != boxes {
+                self.boxes[at] = boxes;
+                changed.push(point);
+            }
         }
     }
 

@@ -1,11 +1,10 @@
-//! Broad-phase query of one element group against others: tests rows of swept boxes, then builds contacts.
+//! Broad-phase query of one element group against others: tests rows of swept boxes, then creates contacts.
 
 use crate::contact::box_row::BoxRow;
-use crate::contact::bvh::{Aabb, SweptBox};
+use crate::contact::bvh::SweptBox;
 use crate::contact::cloth::contact::{ClothContact, ContactParams};
 use crate::contact::cloth::element_bounds::ElementPoints;
-use crate::contact::cloth::group_bounds::{GroupBounds, GroupBoundsCache};
-use crate::contact::cloth::search::ClothSearch;
+use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;
 use crate::math::Real;
@@ -44,227 +43,129 @@ impl<R> FoundContacts<R> {
     }
 }
 
-/// The contacts that a task finds, and its buffers.
-#[derive(Debug)]
-pub struct SearchTask<R> {
-    pub(super) found: FoundContacts<R>,
-    pub(super) query: QueryGroup,
-    pub(super) group_bounds: GroupBoundsCache,
-}
-
-impl<R> Default for SearchTask<R> {
-    fn default() -> Self {
-        Self {
-            found: FoundContacts::default(),
-            query: QueryGroup::default(),
-            group_bounds: GroupBoundsCache::default(),
-        }
-    }
-}
-
-/// The elements of a group that have a new bound.
-#[derive(Debug, Default)]
-pub struct QueryGroup {
-    cloth: usize,
-    points: QueryElements<u32>,
-    /// With their index in the boundary.
-    edges: QueryElements<(u32, [u32; 2])>,
-    triangles: QueryElements<[u32; 3]>,
-    /// Whether it is a group of free points.
-    is_free: bool,
-}
-
-/// Elements and their swept boxes.
-#[derive(Debug)]
-struct QueryElements<T> {
-    list: Vec<T>,
-    boxes: Vec<SweptBox>,
-    row: BoxRow,
-}
-
-impl<T> Default for QueryElements<T> {
-    fn default() -> Self {
-        Self { list: Vec::new(), boxes: Vec::new(), row: BoxRow::default() }
-    }
-}
-
-impl<T> QueryElements<T> {
-    fn fill(&mut self, all: impl Iterator<Item = T>, bound: impl Fn(&T) -> SweptBox) {
-        let Self { list, boxes, row } = self;
-        list.clear();
-        list.extend(all);
-        boxes.clear();
-        boxes.extend(list.iter().map(bound));
-        row.fill(boxes, |one| *one);
-    }
-
-    /// Calls `found` with each element that may overlap a swept box.
-    #[inline(always)]
-    fn for_each_overlap(&self, swept_box: &SweptBox, mut found: impl FnMut(&T, &SweptBox)) {
-        self.row.for_each_overlap(swept_box, |at| found(&self.list[at], &self.boxes[at]));
-    }
-}
-
-impl QueryGroup {
-    /// Takes up a group. Returns the union of its swept boxes.
-    pub(super) fn fill<R: Real>(&mut self, search: &ClothSearch<'_, R>, group: u32) -> SweptBox {
-        let (boundary, elements) = search.elements(group);
-        self.cloth = search.elements.groups[group as usize].cloth as usize;
-        self.is_free = elements.triangles.is_empty();
-        let points = boundary.points[elements.points.clone()].iter().copied();
-        self.points
-            .fill(points.filter(|&point| search.has_new_bound(&[point])), |&point| search.bound(&[point]));
-        let edges =
-            (elements.edges.start as u32..).zip(boundary.edges[elements.edges.clone()].iter().copied());
-        self.edges.fill(edges.filter(|(_, ends)| search.has_new_bound(ends)), |(_, ends)| search.bound(ends));
-        let triangles = boundary.triangles[elements.triangles.clone()].iter().copied();
-        self.triangles.fill(triangles.filter(|face| search.has_new_bound(face)), |face| search.bound(face));
-        let all = self.points.boxes.iter().chain(&self.edges.boxes).chain(&self.triangles.boxes);
-        all.fold([Aabb::EMPTY; 2], |[start, end], boxes| [start.union(boxes[0]), end.union(boxes[1])])
-    }
-
-    /// Finds all contacts with the elements of a group. Where both elements have new bounds, the contact is found
-    /// once: from the point in point-edge and point-face pairs, from the lower index in others.
-    pub(super) fn find_contacts<R: Real>(
-        &self,
-        search: &ClothSearch<'_, R>,
-        group: u32,
-        bounds: &GroupBounds,
-        found: &mut FoundContacts<R>,
-    ) {
-        let cloths = [self.cloth, search.elements.groups[group as usize].cloth as usize];
-        let Some(pair) = ClothPair::new(search, cloths) else { return };
-        let (boundary, elements) = search.elements(group);
-        let target = TargetGroup {
-            points: &boundary.points[elements.points.clone()],
-            edges: &boundary.edges[elements.edges.clone()],
-            triangles: &boundary.triangles[elements.triangles.clone()],
-            first_edge: (cloths[1], elements.edges.start),
-            swept_box: &search.elements.swept_boxes[group as usize],
-            bounds,
-        };
+impl<R: Real> ClothSearch<'_, R> {
+    /// Finds all contacts of a group's elements that have new bounds with the elements of another group. Where both elements
+    /// have new bounds, the contact is found once: from the point in point-edge and point-face pairs, from the lower index
+    /// in others.
+    pub(super) fn find_contacts(&self, ours: &SearchedGroup<'_>, other: u32, found: &mut FoundContacts<R>) {
+        let theirs = self.group(other);
+        let Some(pair) = ClothPair::new(self, [ours.first_edge.0, theirs.first_edge.0]) else { return };
+        let groups =
+            GroupPair { ours, theirs: &theirs, all_new: self.all_have_new_bounds(other), pair: &pair };
         // A group without faces is points, whatever the cloth's element type.
         let element_type =
             |is_free: bool, elements: Elements| if is_free { Elements::Points } else { elements };
-        let ours = element_type(self.is_free, pair.material.elements[0]);
-        let theirs = element_type(target.triangles.is_empty(), pair.material.elements[1]);
+        let our_type = element_type(ours.is_free(), pair.material.elements[0]);
+        let their_type = element_type(theirs.is_free(), pair.material.elements[1]);
         let FoundContacts { point_face, edge_edge, point_edge, point_point } = found;
-        match theirs {
-            Elements::Points if ours == Elements::Points => {
-                self.points_against_points(&target, &pair, point_point)
-            }
+        let (edges, triangles) = (&theirs.bounds.edges, &theirs.bounds.triangles);
+        match their_type {
+            Elements::Points if our_type == Elements::Points => groups.points_against_points(point_point),
             Elements::Points => {}
-            Elements::Edges => {
-                self.points_against_elements(&target, (target.edges, &bounds.edges), &pair, point_edge)
-            }
-            Elements::Faces => self.points_against_elements(
-                &target,
-                (target.triangles, &bounds.triangles),
-                &pair,
-                point_face,
-            ),
+            Elements::Edges => groups.points_against_elements((theirs.edges, edges), point_edge),
+            Elements::Faces => groups.points_against_elements((theirs.triangles, triangles), point_face),
         }
-        match ours {
+        match our_type {
             Elements::Points => {}
-            Elements::Edges => {
-                target.elements_against_points(&self.edges, |(_, ends)| *ends, &pair, point_edge)
-            }
+            Elements::Edges => groups.elements_against_points((ours.edges, &ours.bounds.edges), point_edge),
             Elements::Faces => {
-                target.elements_against_points(&self.triangles, |face| *face, &pair, point_face)
+                groups.elements_against_points((ours.triangles, &ours.bounds.triangles), point_face);
             }
         }
         if pair.material.edges {
-            self.edges_against_edges(&target, &pair, edge_edge);
+            groups.edges_against_edges(edge_edge);
         }
     }
+}
 
-    fn points_against_points<R: Real>(
-        &self,
-        target: &TargetGroup<'_>,
-        pair: &ClothPair<'_, R>,
-        found: &mut Vec<ClothContact<R, 1, 1>>,
-    ) {
-        self.points.for_each_overlap(target.swept_box, |&p, here| {
-            target.bounds.points.for_each_overlap(here, |at| {
-                let q = target.points[at];
-                let (low, high) = (p.min(q), p.max(q));
-                if q != p && (p == low || !pair.search.has_new_bound(&[q])) {
-                    found.extend(pair.contact(([low], [high])));
-                }
-            });
-        });
-    }
+/// A group whose elements with new bounds are tested against those of another.
+struct GroupPair<'a, R> {
+    ours: &'a SearchedGroup<'a>,
+    theirs: &'a SearchedGroup<'a>,
+    /// Whether all points of theirs have new bounds.
+    all_new: bool,
+    pair: &'a ClothPair<'a, R>,
+}
 
-    /// Query points against target edges or faces.
-    fn points_against_elements<R: Real, const N: usize>(
+impl<R: Real> GroupPair<'_, R> {
+    /// Calls `found` with each of our elements that has a new bound and may overlap the other group: its index, its points
+    /// and its box.
+    #[inline(always)]
+    fn for_each_new<const N: usize>(
         &self,
-        target: &TargetGroup<'_>,
         (elements, boxes): (&[[u32; N]], &BoxRow),
-        pair: &ClothPair<'_, R>,
+        mut found: impl FnMut(usize, [u32; N], &SweptBox),
+    ) {
+        boxes.for_each_overlap(self.theirs.swept_box, |at| {
+            if self.pair.search.has_new_bound(&elements[at]) {
+                found(at, elements[at], &boxes.swept_box(at));
+            }
+        });
+    }
+
+    fn our_points(&self) -> (&[[u32; 1]], &BoxRow) {
+        (self.ours.points.as_chunks().0, &self.ours.bounds.points)
+    }
+
+    fn points_against_points(&self, found: &mut Vec<ClothContact<R, 1, 1>>) {
+        self.for_each_new(self.our_points(), |_, [p], here| {
+            self.theirs.bounds.points.for_each_overlap(here, |at| {
+                let q = self.theirs.points[at];
+                let (low, high) = (p.min(q), p.max(q));
+                if q != p && (p == low || !self.pair.search.has_new_bound(&[q])) {
+                    found.extend(self.pair.contact(([low], [high])));
+                }
+            });
+        });
+    }
+
+    /// Our points against their edges or faces.
+    fn points_against_elements<const N: usize>(
+        &self,
+        (elements, boxes): (&[[u32; N]], &BoxRow),
         found: &mut Vec<ClothContact<R, 1, N>>,
     ) {
-        self.points.for_each_overlap(target.swept_box, |p, here| {
+        self.for_each_new(self.our_points(), |_, [p], here| {
             boxes.for_each_overlap(here, |at| {
-                if !elements[at].contains(p) {
-                    found.extend(pair.contact(([*p], elements[at])));
+                if !elements[at].contains(&p) {
+                    found.extend(self.pair.contact(([p], elements[at])));
                 }
             });
         });
     }
 
-    fn edges_against_edges<R: Real>(
+    /// Our edges or faces against their points whose bounds are not new.
+    fn elements_against_points<const N: usize>(
         &self,
-        target: &TargetGroup<'_>,
-        pair: &ClothPair<'_, R>,
-        found: &mut Vec<ClothContact<R, 2, 2>>,
-    ) {
-        let (cloth, first) = target.first_edge;
-        let is_new = |ends: &[u32]| target.bounds.all_have_new_bounds || pair.search.has_new_bound(ends);
-        let last = self.edges.list.last().map_or((0, 0), |&(edge, _)| (self.cloth, edge as usize));
-        if target.bounds.all_have_new_bounds && last >= (cloth, first + target.edges.len()) {
-            return; // every pair is found from theirs
-        }
-        self.edges.for_each_overlap(target.swept_box, |&(edge, [a, b]), here| {
-            target.bounds.edges.for_each_overlap(here, |at| {
-                let [c, d] = target.edges[at];
-                let is_joined = a == c || a == d || b == c || b == d;
-                if !is_joined && ((self.cloth, edge as usize) < (cloth, first + at) || !is_new(&[c, d])) {
-                    found.extend(pair.contact(([a, b], [c, d])));
-                }
-            });
-        });
-    }
-}
-
-/// The group that is queried.
-struct TargetGroup<'a> {
-    points: &'a [u32],
-    edges: &'a [[u32; 2]],
-    triangles: &'a [[u32; 3]],
-    /// Its cloth, and the index of its first edge in the boundary.
-    first_edge: (usize, usize),
-    /// Swept box of the whole group.
-    swept_box: &'a SweptBox,
-    bounds: &'a GroupBounds,
-}
-
-impl TargetGroup<'_> {
-    /// Query edges or faces against target points whose bounds are not new.
-    fn elements_against_points<R: Real, T, const N: usize>(
-        &self,
-        ours: &QueryElements<T>,
-        element: impl Fn(&T) -> [u32; N],
-        pair: &ClothPair<'_, R>,
+        ours: (&[[u32; N]], &BoxRow),
         found: &mut Vec<ClothContact<R, 1, N>>,
     ) {
-        if self.bounds.all_have_new_bounds {
+        if self.all_new {
             return;
         }
-        ours.for_each_overlap(self.swept_box, |ours, here| {
-            self.bounds.points.for_each_overlap(here, |at| {
-                let (q, element) = (self.points[at], element(ours));
-                if !pair.search.has_new_bound(&[q]) && !element.contains(&q) {
-                    found.extend(pair.contact(([q], element)));
+        self.for_each_new(ours, |_, element, here| {
+            self.theirs.bounds.points.for_each_overlap(here, |at| {
+                let q = self.theirs.points[at];
+                if !self.pair.search.has_new_bound(&[q]) && !element.contains(&q) {
+                    found.extend(self.pair.contact(([q], element)));
+                }
+            });
+        });
+    }
+
+    fn edges_against_edges(&self, found: &mut Vec<ClothContact<R, 2, 2>>) {
+        let [our_first, their_first] = [self.ours.first_edge, self.theirs.first_edge];
+        if self.all_new && our_first > their_first {
+            return; // every pair is found from theirs
+        }
+        let is_new = |ends: &[u32]| self.all_new || self.pair.search.has_new_bound(ends);
+        self.for_each_new((self.ours.edges, &self.ours.bounds.edges), |edge, [a, b], here| {
+            let edge = (our_first.0, our_first.1 + edge);
+            self.theirs.bounds.edges.for_each_overlap(here, |at| {
+                let [c, d] = self.theirs.edges[at];
+                let is_joined = a == c || a == d || b == c || b == d;
+                if !is_joined && (edge < (their_first.0, their_first.1 + at) || !is_new(&[c, d])) {
+                    found.extend(self.pair.contact(([a, b], [c, d])));
                 }
             });
         });

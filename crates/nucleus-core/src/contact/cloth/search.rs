@@ -1,9 +1,9 @@
 //! One search for contacts among cloths: the contacts that it replaces, and the inputs of its tasks.
 
-use crate::contact::boundary::{BoundaryElements, ElementGroup};
 use crate::contact::bvh::SweptBox;
 use crate::contact::cloth::element_bounds::ElementBounds;
-use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
+use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
@@ -50,27 +50,52 @@ pub(super) struct ClothSearch<'a, R> {
     pub(super) bounds: &'a ElementBounds,
     pub(super) untangling: &'a Untangling,
     pub(super) input: SearchInput<'a, R>,
+    pub(super) group_bounds: &'a [GroupBounds],
     pub(super) bounds_violated: &'a [bool],
-    /// Half of the largest interaction range, in metres.
-    pub(super) margin: f32,
 }
 
 impl<R: Real> ClothSearch<'_, R> {
-    /// A group's elements, and the boundary that contains them.
-    pub(super) fn elements(&self, group: u32) -> (&BoundaryElements, &ElementGroup) {
-        let target = &self.elements.groups[group as usize];
-        (&self.input.cloths[target.cloth as usize].boundary, &target.group)
-    }
-
-    /// The swept box of some points, inflated by half of the largest interaction range.
-    #[inline(always)]
-    pub(super) fn bound(&self, points: &[u32]) -> SweptBox {
-        self.bounds.bound(points, self.margin)
+    /// The elements of a group.
+    pub(super) fn group(&self, group: u32) -> SearchedGroup<'_> {
+        let ClothGroup { cloth, group: own } = &self.elements.groups[group as usize];
+        let boundary = &self.input.cloths[*cloth as usize].boundary;
+        SearchedGroup {
+            points: &boundary.points[own.points.clone()],
+            edges: &boundary.edges[own.edges.clone()],
+            triangles: &boundary.triangles[own.triangles.clone()],
+            first_edge: (*cloth as usize, own.edges.start),
+            swept_box: &self.elements.swept_boxes[group as usize],
+            bounds: &self.group_bounds[group as usize],
+        }
     }
 
     /// Whether any of these points has a new bound.
     #[inline(always)]
     pub(super) fn has_new_bound(&self, points: &[u32]) -> bool {
         points.iter().any(|&point| self.bounds_violated[point as usize])
+    }
+
+    /// Whether all points of a group have new bounds.
+    pub(super) fn all_have_new_bounds(&self, group: u32) -> bool {
+        self.elements.points_of(group as usize).iter().all(|&point| self.bounds_violated[point as usize])
+    }
+}
+
+/// The elements of a group, with their boxes.
+pub(super) struct SearchedGroup<'a> {
+    pub(super) points: &'a [u32],
+    pub(super) edges: &'a [[u32; 2]],
+    pub(super) triangles: &'a [[u32; 3]],
+    /// Its cloth, and the index of its first edge in the boundary.
+    pub(super) first_edge: (usize, usize),
+    /// Swept box of the whole group.
+    pub(super) swept_box: &'a SweptBox,
+    pub(super) bounds: &'a GroupBounds,
+}
+
+impl SearchedGroup<'_> {
+    /// Whether it is a group of free points.
+    pub(super) fn is_free(&self) -> bool {
+        self.triangles.is_empty()
     }
 }
