@@ -94,6 +94,18 @@ fn a_steady_emitter_leaves_an_even_trail_within_frames_and_across_them() {
 }
 
 #[test]
+fn particles_in_air_may_be_far_fewer_than_there_is_room_for() {
+    let mut solver = solver(room(40_000, &[], &[], 1.0), 2);
+    let cloth = ClothFrame { drag: 0.3, tangential_drag: 1.0, lift: 0.0, ..free() };
+    for number in 0..3 {
+        let births = even_births(number, 1400.0, Vec3::x());
+        let input = FrameInput { births, air_density: 1.0, cloths: vec![cloth], ..frame(1, CLASSIC) };
+        solver.step(&input, &mut ());
+    }
+    assert_eq!(places(&solver).len(), 4200);
+}
+
+#[test]
 fn a_particle_born_within_a_frame_falls_like_one_that_was_there() {
     // Both start from rest at the origin, one a third of a frame later; after t seconds each has fallen as symplectic
     // Euler says: g t (t + h) / 2.

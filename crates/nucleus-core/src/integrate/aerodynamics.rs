@@ -160,8 +160,9 @@ pub fn update_normals<R: Real>(
         [0, 1, 2].map(|axis| anchor[axis] + moved[axis].to_f64())
     };
     let normals = DisjointSlice::new(normal);
-    for cloth in cloths {
-        pool.parallel_for(cloth.triangles.len(), |block| {
+    for cloth in cloths.iter().filter(|cloth| !cloth.triangles.is_empty()) {
+        // Particles have room for more blocks than there are.
+        pool.parallel_for(cloth.blocks.len(), |block| {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             unsafe {
