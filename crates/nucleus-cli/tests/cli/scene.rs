@@ -85,12 +85,14 @@ fn warnings_alone_do_not_fail() {
     let path = folder.path().join("drape.ron");
     fs::write(
         &path,
-        fs::read_to_string(&path).unwrap().replace("thickness: 1", "thickness: 1, playFromCache: true"),
+        fs::read_to_string(&path)
+            .unwrap()
+            .replace("thickness: 1", "thickness: 1, cacheableAttributes: dynamicState"),
     )
     .unwrap();
     let output = nucleus(folder.path(), &["check", "drape.ron"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("`playFromCache`") && stderr(&output).ends_with("1 warning\n"));
+    assert!(stderr(&output).contains("`cacheableAttributes`") && stderr(&output).ends_with("1 warning\n"));
 }
 
 #[test]

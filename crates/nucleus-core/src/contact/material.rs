@@ -55,7 +55,7 @@ impl<R: Real> ContactMaterial<R> {
     pub fn for_self_collision(cloth: &ClothFrame, max_thickness_factor: f64) -> Option<Self> {
         let own = &cloth.self_collision;
         let both = |x: f64| [R::from_f64(x); 2];
-        (own.on && cloth.collide_strength > 0.0).then(|| Self {
+        (own.on && !cloth.is_driven && cloth.collide_strength > 0.0).then(|| Self {
             thickness: (2.0 * own.thickness * max_thickness_factor).max(MIN_THICKNESS),
             adhesion_range: adhesion_range(2.0 * cloth.stickiness),
             thicknesses: both(own.thickness),
@@ -77,7 +77,8 @@ impl<R: Real> ContactMaterial<R> {
     pub fn for_cloths([a, b]: [&ClothFrame; 2], max_thickness_factor: [f64; 2], range: f64) -> Option<Self> {
         let above = a.layer - b.layer;
         let strength = [a, b].map(|side| side.collide_strength.min(1.0));
-        if !a.collide || !b.collide || above.abs() >= range || strength.iter().any(|&side| side <= 0.0) {
+        let is_off = !a.collide || !b.collide || (a.is_driven && b.is_driven);
+        if is_off || above.abs() >= range || strength.iter().any(|&side| side <= 0.0) {
             return None;
         }
         // At a difference of one layer the lower layer does not move.
@@ -111,7 +112,8 @@ impl<R: Real> ContactMaterial<R> {
         max_thickness_factor: [f64; 2],
     ) -> Option<Self> {
         let strength = [cloth.collide_strength, collider.collide_strength].map(|side| side.min(1.0));
-        if !cloth.collide || !collider.collide || strength.iter().any(|&side| side <= 0.0) {
+        let is_off = !cloth.collide || cloth.is_driven || !collider.collide;
+        if is_off || strength.iter().any(|&side| side <= 0.0) {
             return None;
         }
         let per_side = |sides: [f64; 2]| sides.map(R::from_f64);

@@ -154,8 +154,10 @@ node_table! {
         VELOCITIES: Plugged = plug("velocities", "vels", Data::Vectors).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
         /// Solver state from a cache.
         INTERNAL_STATE: Plugged = plug("internalState", "inst", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
-        /// Reads the state from a cache instead of solving.
-        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
+        /// Plays recorded positions, those of `cacheFile`, instead of solving. Others collide with the object; nothing pushes it.
+        PLAY_FROM_CACHE: bool = toggle("playFromCache", "pfc", false).solved("nucleus_graph::compile::recorded");
+        /// The recorded positions in world space: an OBJ file, or a file of numbers, for each frame, `points/cloth.####.obj`. Maya has a `cacheFile` node for it.
+        CACHE_FILE: String = text("cacheFile", "cacheFile").unit("scene units").solved("nucleus_graph::compile::recorded").extension();
         /// All data from a particle cache.
         CACHE_ARRAY_DATA: Plugged = plug("cacheArrayData", "chad", Data::Bundle).elsewhere("a cache is a file of its own: `nucleus run --from` starts from one of its frames");
     }

@@ -11,7 +11,7 @@ const NO_USE_TO_COLLIDERS: &[&str] = &[
     "acceleration", "position0", "velocity0", "mass", "startVelocities", "damp", "dampMap", "dampPerVertex",
     "selfCollisionFlag", "maxSelfCollisionIterations", "maxIterations", "pointMass", "massMap", "massPerVertex",
     "restLengthScale", "localForce", "localWind", "selfCollide", "selfAttract", "dampMapType", "massMapType",
-    "nextState",
+    "nextState", "cacheFile",
 ];
 
 node_table! {

@@ -101,7 +101,7 @@ impl EvaluationInterval<'_> {
         }
     }
 
-    /// Pins of transform constraints, and of points that are locked to their input mesh.
+    /// Pins of transform constraints, of points that are locked to their input mesh, and of recorded motion.
     fn locked_and_pinned(
         &self,
         attachments: &mut AttachmentState,
@@ -109,6 +109,7 @@ impl EvaluationInterval<'_> {
     ) -> Vec<Pin> {
         let mut pins = self.pins(attachments, position);
         self.lock_to_input_meshes(&mut pins);
+        self.play_recorded(&mut pins, position);
         pins
     }
 
@@ -138,7 +139,9 @@ impl EvaluationInterval<'_> {
     }
 
     fn active_frame(&self, cloth: &ClothSource) -> ClothFrame {
-        if cloth.is_particles { self.particle_frame(cloth.node) } else { self.cloth_frame(cloth) }
+        let frame =
+            if cloth.is_particles { self.particle_frame(cloth.node) } else { self.cloth_frame(cloth) };
+        ClothFrame { is_driven: self.plays(cloth), ..frame }
     }
 
     fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {
@@ -203,9 +206,7 @@ impl EvaluationInterval<'_> {
                 self_shadow: to.get(node, &n_cloth::WIND_SELF_SHADOW),
                 ..self.wind_field(node)
             },
-            liquid: None,
-            conserve: 1.0,
-            overlap_pruning: 0.0,
+            ..ClothFrame::default()
         }
     }
 

@@ -99,7 +99,12 @@ impl Compiler<'_> {
         let key = self.first_given(node, &n_particle::POSITION0, &n_particle::POSITION);
         let name = self.scene.graph.node(node).name();
         let place = self.place(node, &key.row);
-        let vectors = match self.vectors(node, key) {
+        let is_recorded = self.plays_from_start(node);
+        let vectors = match is_recorded {
+            true => self.recorded_file(node, self.program.start),
+            false => self.vectors(node, key),
+        };
+        let vectors = match vectors {
             Ok(vectors) => vectors,
             Err(message) => {
                 self.findings.error(&place, message);
@@ -108,7 +113,7 @@ impl Compiler<'_> {
         };
         let filled = self.filled_positions(node, vectors.len())?;
         let graph = &self.scene.graph;
-        let is_filled = !emitter_nodes(graph, node).is_empty() || is_event_target(graph, node);
+        let is_filled = is_recorded || !emitter_nodes(graph, node).is_empty() || is_event_target(graph, node);
         if vectors.is_empty() && filled.is_empty() && !is_filled {
             let message = format!("`{name}` has no particles, and does nothing");
             let warning = self.findings.warning(&self.scene.source.place(name), message);
@@ -181,17 +186,20 @@ impl Compiler<'_> {
     fn vectors(&self, node: NodeId, key: &Key<Vec<[f64; 3]>>) -> Result<Vec<[f64; 3]>, String> {
         match self.start.held(node, key) {
             Some(Value::Vectors(vectors)) => Ok(vectors),
-            Some(Value::Painting(Painting::File(file))) => {
-                let path = self.scene.source.path(&file);
-                self.check_file(&path, memory::NUMBER_BYTE)?;
-                if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
-                    let points = read_obj(path).map_err(|error| error.to_string())?.positions;
-                    return Ok(points.into_iter().map(Into::into).collect());
-                }
-                read_vectors(&path).map_err(|error| error.to_string())
-            }
+            Some(Value::Painting(Painting::File(file))) => self.vectors_of_file(&file),
             _ => Ok(Vec::new()),
         }
+    }
+
+    /// The points of an OBJ file, or the vectors of a file of numbers; else the reason why it cannot be read.
+    pub(super) fn vectors_of_file(&self, file: &str) -> Result<Vec<[f64; 3]>, String> {
+        let path = self.scene.source.path(file);
+        self.check_file(&path, memory::NUMBER_BYTE)?;
+        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
+            let points = read_obj(path).map_err(|error| error.to_string())?.positions;
+            return Ok(points.into_iter().map(Into::into).collect());
+        }
+        read_vectors(&path).map_err(|error| error.to_string())
     }
 }
 

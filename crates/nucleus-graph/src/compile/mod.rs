@@ -20,6 +20,7 @@
 //! | meshes, and how many points they have                | `geometry.rs`                      |
 //! | mesh sequences and blends                            | `animated_mesh.rs`                 |
 //! | vertex maps                                          | `vertex_maps.rs`, `map_values.rs`  |
+//! | recorded positions (`playFromCache`)                 | `recorded.rs`                      |
 //! | pins of transform constraints                        | `attachments.rs`                   |
 //! | selections of elements                               | `select.rs`                        |
 //! | all other constraints                                | `constraints/`                     |
@@ -54,6 +55,7 @@ mod particle_ramps;
 mod particles;
 mod perturbation;
 mod program;
+mod recorded;
 mod select;
 mod soft_body;
 mod sources;

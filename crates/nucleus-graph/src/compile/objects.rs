@@ -75,11 +75,16 @@ impl Compiler<'_> {
         let maps = self.vertex_maps(id, mesh, given);
         let start = self.start_state(id, mesh, given);
         let (CompiledMaps { scales, mut vertex_maps }, mut start) = (maps?, start?);
+        let mut recorded = self.recorded(id, Some((mesh, given)))?;
+        if let Some(positions) = recorded.as_ref().and_then(|recorded| recorded.at(self.start.frame())) {
+            start.positions = positions.to_vec();
+        }
         if let Some(tearing) = &tearing {
             let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
             vertex_maps = tearing.maps(vertex_maps, is_classic);
             tearing.extend(&mut start.positions);
             tearing.extend(&mut start.velocities);
+            recorded.iter_mut().for_each(|recorded| recorded.extend(tearing));
         }
         if start.positions.is_empty() {
             start.positions = moved.unwrap_or_default();
@@ -120,6 +125,7 @@ impl Compiler<'_> {
             area,
             followed,
             tearing,
+            recorded,
         });
         Some(())
     }
@@ -168,6 +174,7 @@ impl Compiler<'_> {
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let motion = self.collider_motion(mesh)?;
         self.warn_of_contradictions(id);
+        self.warn_of_recorded_collider(id, mesh);
         let surface = self.program.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());
         let maps = self.collider_maps(id, mesh, points)?;

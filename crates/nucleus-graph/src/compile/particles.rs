@@ -15,6 +15,7 @@ use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
 use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
+use super::recorded::RecordedPoints;
 use super::sources::{ClothSource, Emitter, MapScales};
 
 /// Kinematic viscosity in m²/s at a `viscosity` of 1: about that of honey.
@@ -29,8 +30,12 @@ impl Compiler<'_> {
         let points = surface.positions.len();
         let places = surface.positions.clone();
         let surface = self.program.units.surface(surface);
+        let recorded = self.recorded(id, None)?;
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
-        let velocities = self.start_vectors(id, id, points, velocities)?;
+        let velocities = match self.plays_from_start(id) {
+            true => Vec::new(),
+            false => self.start_vectors(id, id, points, velocities)?,
+        };
         let graph = &self.scene.graph;
         let lists = ClothLists {
             air: graph.is_ever_nonzero(id, &n_particle::DRAG)
@@ -41,7 +46,8 @@ impl Compiler<'_> {
         let mass = self.start.get(id, &n_particle::POINT_MASS);
         let start = Start { velocities, ..Start::default() };
         let emitters = self.emitters(id, ClothId(self.program.model.cloths().len() as u32));
-        let particles = self.births_and_deaths(id, &places, &emitters)?;
+        let most = recorded.as_ref().map_or(0, RecordedPoints::most);
+        let particles = self.births_and_deaths(id, (&places, most), &emitters)?;
         let varies = particles.is_some();
         let masses = self.particle_numbers(id, &particle::MASS0, &places)?;
         if let Some(bad) = masses.iter().find(|kilograms| **kilograms <= 0.0) {
@@ -82,17 +88,18 @@ impl Compiler<'_> {
             area: 0.0,
             followed: None,
             tearing: None,
+            recorded,
         };
         self.program.cloths.push(source);
         Some(())
     }
 
     /// What particles need that are born, die or differ from each other, where there are any; `None` after an error, which
-    /// is reported.
+    /// is reported. `recorded` is the largest number that a recording of them has.
     fn births_and_deaths(
         &mut self,
         id: NodeId,
-        places: &[Vector3<f64>],
+        (places, recorded): (&[Vector3<f64>], usize),
         emitters: &[Emitter],
     ) -> Option<Option<Particles>> {
         let points = places.len();
@@ -105,11 +112,12 @@ impl Compiler<'_> {
         let runs = self.has_runtime_expression(id);
         let graph = &self.scene.graph;
         let is_target = is_event_target(graph, id);
-        let varies = dies(graph, id) || !ramps.is_empty() || !events.is_empty() || is_target || runs;
+        let differs = !ramps.is_empty() || !events.is_empty() || is_target || runs;
+        let varies = dies(graph, id) || differs || recorded > points;
         if emitters.is_empty() && !varies && numbers.is_empty() && ages.is_empty() {
             return Some(None);
         }
-        let mut room = self.room_for_particles(id, points, emitters);
+        let mut room = self.room_for_particles(id, points, emitters).max(recorded as u64);
         if is_target && self.start.get(id, &particle::MAX_COUNT) < 0 {
             room = room.saturating_add(EVENT_ROOM);
         }
@@ -127,6 +135,8 @@ impl Compiler<'_> {
         let seed = self.start.get(id, &particle::GENERAL_SEED) as u64;
         let lifespan = Lifespan::new(id, &self.start);
         let lifespans = match lifespan.is_listed() {
+            // A recording has no deaths.
+            _ if self.plays_from_start(id) => Vec::new(),
             true => listed.into_iter().map(|seconds| seconds.max(0.0)).collect(),
             false => lifespan.of_first(points, seed),
         };

@@ -8,6 +8,7 @@ use crate::graph::NodeId;
 
 use super::animated_mesh::AnimatedMesh;
 use super::constraints::split_mesh::Tearing;
+use super::recorded::RecordedPoints;
 
 /// Source of the frames of a cloth or of particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +30,8 @@ pub(super) struct ClothSource {
     pub(super) followed: Option<FollowedMesh>,
     /// How its mesh is split, where it can tear.
     pub(super) tearing: Option<Tearing>,
+    /// The recorded positions that it plays, where it plays any.
+    pub(super) recorded: Option<RecordedPoints>,
 }
 
 /// The live input mesh of a cloth that follows it.

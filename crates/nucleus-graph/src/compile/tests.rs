@@ -182,6 +182,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         local_force: Vector3::new(11.0, 12.0, 13.0),
         local_wind: Vector3::new(14.0, 15.0, 16.0),
         collide: false,
+        is_driven: false,
         thickness: 17.0,
         friction: 18.0,
         stickiness: 22.0,

@@ -116,13 +116,14 @@ fn soft_ranges_may_be_exceeded() {
 // EVIDENCE: N3.1-10  a setting that is not supported gives a warning, also if it is inherited
 #[test]
 fn a_setting_without_effect_is_a_warning_with_the_reason_at_its_place() {
-    let text = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", playFromCache: true)"#);
+    let text =
+        with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", cacheableAttributes: dynamicState)"#);
     let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
     let [warning] = warnings.as_slice() else { panic!("{warnings:#?}") };
     assert_eq!(warning.severity, Severity::Warning);
-    let reason = "a cache is a file of its own: `nucleus run --from` starts from one of its frames";
-    assert_eq!(warning.message, format!("`playFromCache` of `c` has no effect: {reason}"));
-    assert_eq!(&text[warning.span.clone()], "playFromCache");
+    let reason = "a run records every frame in its own cache, which `--from` starts from";
+    assert_eq!(warning.message, format!("`cacheableAttributes` of `c` has no effect: {reason}"));
+    assert_eq!(&text[warning.span.clone()], "cacheableAttributes");
     let inherited = with_nodes(r#""p": polyPlane(), "c": nCloth(inputMesh: "p", lifespanRandom: 1)"#);
     let (_, warnings) = read_scene_text(&inherited, Path::new("test.ron")).expect("a valid scene");
     assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect on such a node");

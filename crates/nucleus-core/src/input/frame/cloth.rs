@@ -42,6 +42,9 @@ pub struct ClothFrame {
     pub local_wind: Vector3<f64>,
     /// Whether it collides with colliders and the ground plane.
     pub collide: bool,
+    /// Whether pins move all of its points: other cloth collides with it, and it has no contacts with colliders, with the
+    /// ground plane, with itself, or with another such cloth.
+    pub is_driven: bool,
     /// Thickness in metres; two objects touch at the sum of theirs.
     pub thickness: f64,
     /// Friction; the two sides' values are added.
@@ -113,6 +116,7 @@ impl ClothFrame {
         local_force: Vector3::new(0.0, 0.0, 0.0),
         local_wind: Vector3::new(0.0, 0.0, 0.0),
         collide: true,
+        is_driven: false,
         thickness: 0.0,
         friction: 0.1,
         stickiness: 0.0,

@@ -172,8 +172,11 @@ impl EvaluationInterval<'_> {
         states.resize(self.nucleus.emitters.len(), EmitterState::default());
         let mut births = Vec::new();
         for (emitter, state) in self.nucleus.emitters.iter().zip(states) {
-            self.emit(emitter, state, seconds, &mut births);
+            if !self.plays(&self.nucleus.cloths[emitter.cloth.index()]) {
+                self.emit(emitter, state, seconds, &mut births);
+            }
         }
+        self.recorded_births(&mut births);
         births.sort_by(|a, b| a.time.total_cmp(&b.time));
         births
     }
