@@ -38,6 +38,9 @@ pub struct Import {
     /// Read resistances as stiffnesses that depend on neither mesh nor substeps.
     #[arg(long)]
     physical: bool,
+    /// Solve objects that the scene plays from a cache.
+    #[arg(long)]
+    simulate: bool,
     /// Replace existing files.
     #[arg(long)]
     force: bool,
@@ -63,7 +66,8 @@ impl Import {
             Some(out) => out.clone(),
             None => beside(&self.file)?,
         };
-        let how = How { meshes: self.mesh, physical: self.physical, force: self.force };
+        let Self { mesh: meshes, physical, simulate, force, .. } = self;
+        let how = How { meshes, physical, simulate, force };
         let imported = import(&self.file, &out, how)?;
         let solvers = imported.scene.graph.of_type(&nucleus::NUCLEUS).count();
         if solvers == 0 {
@@ -154,6 +158,8 @@ pub struct How {
     pub meshes: Vec<(String, PathBuf)>,
     /// Whether resistances are stiffnesses.
     pub physical: bool,
+    /// Whether objects that the scene plays from a cache are solved.
+    pub simulate: bool,
     /// Whether other files may be replaced.
     pub force: bool,
 }
@@ -172,6 +178,7 @@ pub fn import(file: &Path, out: &Path, how: How) -> Result<Imported> {
     });
     options.meshes = how.meshes;
     options.physical = how.physical;
+    options.simulate = how.simulate;
     let imported = import_scene(file, out, &mut options)?;
     drop(options);
     let origin = file.file_name().unwrap_or_default().to_string_lossy();
@@ -216,6 +223,6 @@ pub fn own_scene(scene: PathBuf, cache: &Path, force: bool) -> Result<PathBuf> {
         return Ok(scene);
     }
     let out = cache.with_extension("ron");
-    import(&scene, &out, How { meshes: Vec::new(), physical: false, force })?;
+    import(&scene, &out, How { meshes: Vec::new(), physical: false, simulate: false, force })?;
     Ok(out)
 }

@@ -63,7 +63,7 @@ impl<'s> Importer<'s> {
     /// Carries everything over.
     ///
     /// # Errors
-    /// When a file of a mesh cannot be written.
+    /// When a file of a mesh or a cache cannot be written.
     pub(crate) fn run(mut self) -> Result<Carried, String> {
         let all = self.kept.all.clone();
         let mut plans: BTreeMap<usize, Plan> = BTreeMap::new();
@@ -98,7 +98,7 @@ impl<'s> Importer<'s> {
             });
             self.fill_node(&all[*index], *id, plan)?;
         }
-        self.connect(&all, &present);
+        self.connect(&all, &present)?;
         Ok(Carried { graph: self.graph, frames: self.frames, omissions: self.omissions })
     }
 
@@ -161,7 +161,7 @@ impl<'s> Importer<'s> {
         }
     }
 
-    fn connect(&mut self, all: &[Kept], present: &[(usize, OwnId)]) {
+    fn connect(&mut self, all: &[Kept], present: &[(usize, OwnId)]) -> Result<(), String> {
         let of = |importer: &Self, base: &'static NodeType| -> Vec<(NodeId, OwnId)> {
             let is = |id: &OwnId| importer.graph.node(*id).node_type().is_a(base);
             present.iter().filter(|(_, id)| is(id)).map(|(index, id)| (all[*index].node, *id)).collect()
@@ -172,7 +172,9 @@ impl<'s> Importer<'s> {
         constraints.into_iter().for_each(|(from, to)| self.connect_constraint(from, to));
         of(self, &dyn_base::DYN_BASE).into_iter().for_each(|(from, to)| self.connect_effect(from, to));
         self.connect_the_rest();
-        self.report_caches(&of(self, &n_base::N_BASE));
+        let objects = of(self, &n_base::N_BASE);
+        self.report_unjoined(&objects);
+        self.play_caches(&objects)
     }
 
     /// The number of points of an object, as far as it is known.
@@ -312,22 +314,11 @@ impl<'s> Importer<'s> {
         }
     }
 
-    /// Recorded results: the object would play them in Maya.
-    fn report_caches(&mut self, objects: &[(NodeId, OwnId)]) {
-        let scene = self.scene;
-        for (from, to) in objects {
-            let Some(wire) = scene.source(*from, &["pfc", "playFromCache"], None) else { continue };
-            let name = scene.string(wire.from.node, &["cn", "cacheName"]).unwrap_or_default();
-            let folder = scene.string(wire.from.node, &["cp", "cachePath"]).unwrap_or_default();
-            let how = format!(
-                "it is simulated instead; `nucleus diff` compares the run with `{folder}{name}.xml`, and \
-                 `nucleus import {name}.xml -o {name}.mcap` makes a cache of it"
-            );
-            self.omissions.add(self.graph.node(*to).name(), Cause::Cache(how));
-        }
+    /// Objects without a nucleus are not simulated, as in Maya.
+    fn report_unjoined(&mut self, objects: &[(NodeId, OwnId)]) {
         for (from, to) in objects {
             if !self.is_joined(*to) && !self.is_own {
-                self.omissions.add(scene.name(*from), Cause::NoNucleus);
+                self.omissions.add(self.scene.name(*from), Cause::NoNucleus);
             }
         }
     }

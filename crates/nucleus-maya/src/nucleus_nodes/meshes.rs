@@ -121,7 +121,7 @@ impl Importer<'_> {
     }
 
     /// The folder and name of the files of a mesh.
-    fn file_stem(&self, to: OwnId) -> String {
+    pub(super) fn file_stem(&self, to: OwnId) -> String {
         let name: String = self
             .graph
             .node(to)

@@ -6,6 +6,7 @@
 //! | values of attributes, ramps, vertex maps              | `attributes.rs`     |
 //! | transforms with pivots, joints, shear                 | `transforms.rs`     |
 //! | meshes: Nucleus primitives, OBJ files, sequences      | `meshes.rs`         |
+//! | recorded results that an object plays                 | `caches.rs`         |
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!
@@ -13,6 +14,7 @@
 //! attributes of cloth.
 
 mod attributes;
+mod caches;
 mod constraints;
 mod importer;
 mod kept;

@@ -13,14 +13,22 @@ pub struct ImportOptions<'a> {
     pub folder: String,
     /// Reads resistances as stiffnesses in place of Maya's counts of iterations.
     pub physical: bool,
-    /// Writes a file of a mesh: its name relative to our scene file, and its text. The error is a message.
+    /// Solves objects that the scene plays from a cache.
+    pub simulate: bool,
+    /// Writes a file of a mesh or a cache: its name relative to our scene file, and its text. The error is a message.
     pub write: Box<WriteFile<'a>>,
 }
 
 impl<'a> ImportOptions<'a> {
-    /// Without meshes of the artist, in Maya's model of resistances.
+    /// Without meshes of the artist, in Maya's model of resistances, with caches where they are.
     pub fn new(folder: &str, write: impl FnMut(&str, String) -> Result<(), String> + 'a) -> Self {
-        Self { meshes: Vec::new(), folder: folder.to_owned(), physical: false, write: Box::new(write) }
+        Self {
+            meshes: Vec::new(),
+            folder: folder.to_owned(),
+            physical: false,
+            simulate: false,
+            write: Box::new(write),
+        }
     }
 }
 
@@ -29,12 +37,13 @@ pub(crate) struct BorrowedOptions<'s> {
     pub(super) meshes: &'s [(String, PathBuf)],
     pub(super) folder: &'s str,
     pub(super) physical: bool,
+    pub(super) simulate: bool,
     pub(super) write: &'s mut WriteFile<'s>,
 }
 
 impl<'s> BorrowedOptions<'s> {
     pub(crate) fn of(options: &'s mut ImportOptions<'_>) -> Self {
-        let ImportOptions { meshes, folder, physical, write } = options;
-        Self { meshes, folder, physical: *physical, write: &mut **write }
+        let ImportOptions { meshes, folder, physical, simulate, write } = options;
+        Self { meshes, folder, physical: *physical, simulate: *simulate, write: &mut **write }
     }
 }

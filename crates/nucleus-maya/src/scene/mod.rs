@@ -18,5 +18,7 @@ mod reference;
 mod units;
 
 pub use attributes::{ANY, Names, Set, Vector3};
+pub(crate) use reference::locate;
+
 pub use graph::{Assigned, MayaNode, MayaScene, NodeId, PlugRef, Wire};
 pub use units::Units;

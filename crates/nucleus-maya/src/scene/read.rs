@@ -364,7 +364,7 @@ impl Reader<'_> {
                 (outer, "") => outer.to_owned(),
                 (outer, inner) => format!("{outer}:{inner}"),
             };
-            let Some(found) = reference::locate(&from, &reference.path) else {
+            let Some(found) = reference::locate(&from, &reference.path, "ma") else {
                 self.scene.omissions.add(reference.path, Cause::NoFile);
                 continue;
             };

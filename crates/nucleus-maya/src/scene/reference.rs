@@ -48,18 +48,18 @@ pub(super) fn merged(all: Vec<Reference>) -> Vec<Reference> {
     merged
 }
 
-/// The file that a path in a scene means: as it is; else by its last folders and name, beside the scene or in a folder
-/// above it, because projects are moved.
-pub(super) fn locate(scene: &Path, path: &str) -> Option<PathBuf> {
+/// The file that a path in a scene means, of a type by its extension: as it is; else by its last folders and name, beside
+/// the scene or in a folder above it, because projects are moved.
+pub(crate) fn locate(scene: &Path, path: &str, extension: &str) -> Option<PathBuf> {
     // A file that is referred to twice has `{1}` after its name.
     let path = path.split('{').next().unwrap_or(path).replace('\\', "/");
-    let is_scene = |file: &PathBuf| {
-        let is_ascii = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("ma"));
-        is_ascii && std::fs::metadata(file).is_ok_and(|about| about.is_file())
+    let is_it = |file: &PathBuf| {
+        let fits = file.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension));
+        fits && std::fs::metadata(file).is_ok_and(|about| about.is_file())
     };
     let folder = scene.parent().unwrap_or(Path::new(""));
     let given = folder.join(&path);
-    if is_scene(&given) {
+    if is_it(&given) {
         return Some(given);
     }
     let parts: Vec<&str> = path.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
@@ -67,7 +67,7 @@ pub(super) fn locate(scene: &Path, path: &str) -> Option<PathBuf> {
     let tails = (start..parts.len()).map(|k| parts[k..].join("/")).filter(|tail| !tail.contains(".."));
     let tails: Vec<String> = tails.collect();
     let folders = folder.ancestors().take(4);
-    folders.flat_map(|folder| tails.iter().map(move |tail| folder.join(tail))).find(is_scene)
+    folders.flat_map(|folder| tails.iter().map(move |tail| folder.join(tail))).find(is_it)
 }
 
 /// Applies the edits that reference nodes hold: values, connections and parents of nodes in referenced files.

@@ -1,0 +1,232 @@
+//! Results that Maya recorded: played by an imported scene, and compared with a run.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nucleus_core::ClothId;
+use nucleus_graph::Simulation;
+use nucleus_graph::attributes::n_base;
+use nucleus_graph::compile::compile;
+use nucleus_maya::{ImportOptions, Imported, import_scene};
+
+/// Imports a scene of a folder; its files are written beside it.
+fn import(folder: &Path, name: &str, simulate: bool) -> Imported {
+    let mut options = ImportOptions::new("files", |name, text| {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).map_err(|error| error.to_string())
+    });
+    options.simulate = simulate;
+    import_scene(&folder.join(name), &folder.join("out.ron"), &mut options).unwrap()
+}
+
+fn run(imported: &Imported) -> Simulation<f32> {
+    let program = compile(&imported.scene).unwrap_or_else(|errors| panic!("{errors:#?}"));
+    Simulation::new(&program, 1)
+}
+
+fn point(run: &Simulation<f32>, at: usize) -> Vector3<f64> {
+    run.state().point(ClothId(0), at)
+}
+
+/// A block of an nCache as Maya writes it, with sizes of 32 bits.
+fn block(tag: &[u8], data: &[u8]) -> Vec<u8> {
+    let mut all = [tag, &(data.len() as u32).to_be_bytes(), data].concat();
+    if tag != b"FOR4" {
+        all.resize(all.len().next_multiple_of(4), 0);
+    }
+    all
+}
+
+/// Writes an nCache of one file: the points of a channel for each frame.
+fn write_cache(folder: &Path, name: &str, channel: &str, frames: &[(i32, Vec<[f32; 3]>)]) {
+    let start = (250 * frames[0].0).to_be_bytes();
+    let mut all = block(b"FOR4", &[&b"CACH"[..], &block(b"STIM", &start)].concat());
+    for (frame, points) in frames {
+        let numbers: Vec<u8> = points.iter().flatten().flat_map(|x| x.to_be_bytes()).collect();
+        let name = [channel.as_bytes(), b"\0"].concat();
+        let blocks = [
+            block(b"TIME", &(250 * frame).to_be_bytes()),
+            block(b"CHNM", &name),
+            block(b"SIZE", &(points.len() as u32).to_be_bytes()),
+            block(b"FVCA", &numbers),
+        ];
+        all.extend(block(b"FOR4", &[&b"MYCH"[..], &blocks.concat()].concat()));
+    }
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join(format!("{name}.mc")), all).unwrap();
+    let xml = "<Autodesk_Cache_File>\n  <cacheType Type=\"OneFile\" Format=\"mcc\"/>\n  \
+               <cacheTimePerFrame TimePerFrame=\"250\"/>\n</Autodesk_Cache_File>\n";
+    fs::write(folder.join(format!("{name}.xml")), xml).unwrap();
+}
+
+/// `tests/maya/drape.ma` with a cache that drives its cloth, at the path of another project.
+fn cached_drape(folder: &Path) {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/maya/drape.ma");
+    let text = fs::read_to_string(scene).unwrap()
+        + "createNode cacheFile -n \"cache1\";\n\tsetAttr \".cn\" -type \"string\" \"show\";\n\
+           \tsetAttr \".cp\" -type \"string\" \"D:/other/cache/nCache/drape\";\n\tsetAttr \".ch[0]\" -type \"string\" \"nClothShape1\";\n\
+           \tsetAttr \".ss\" 101;\n\tsetAttr \".se\" 110;\n\tsetAttr \".sf\" 1;\n\
+           connectAttr \"cache1.ocd[0]\" \"nClothShape1.poss\";\nconnectAttr \"cache1.ir\" \"nClothShape1.pfc\";\n";
+    fs::write(folder.join("drape.ma"), text).unwrap();
+}
+
+/// The grid of the scene, in the space of its mesh, after a lift by a tenth for each frame.
+fn lifted(frame: i32) -> Vec<[f32; 3]> {
+    let y = 0.1 * (frame - 101) as f32;
+    (0..441).map(|k| [(k % 21) as f32 * 0.3 - 3.0, y, 3.0 - (k / 21) as f32 * 0.3]).collect()
+}
+
+#[test]
+fn a_cloth_plays_the_cache_that_lies_with_its_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    cached_drape(folder.path());
+    let frames: Vec<_> = (101..=110).map(|frame| (frame, lifted(frame))).collect();
+    write_cache(&folder.path().join("cache/nCache/drape"), "show", "nClothShape1", &frames);
+    let imported = import(folder.path(), "drape.ma", false);
+    let graph = &imported.scene.graph;
+    let cloth = graph.find("nCloth1").unwrap();
+    let plays = |frame: f64| graph.at(frame).get(cloth, &n_base::PLAY_FROM_CACHE);
+    assert_eq!([1.0, 10.0, 11.0].map(plays), [true, true, false], "frames 101 to 110 begin at frame 1");
+    let said = imported.omissions.to_string();
+    assert!(said.contains("`nCloth1`: the scene plays recorded results") && said.contains("frames 1 to 10"));
+    let mut run = run(&imported);
+    for frame in 1..=10 {
+        // The cache is in the space of the mesh, which is 5 above the ground; spaceScale is 0.01.
+        let expected = (5.0 + 0.1 * f64::from(frame - 1)) / 100.0;
+        for at in [0, 220, 440] {
+            let y = point(&run, at).y;
+            assert!((y - expected).abs() < 1e-7, "frame {frame}, point {at}: {y}, {expected}");
+        }
+        run.advance(&mut ());
+    }
+    let solved = import(folder.path(), "drape.ma", true);
+    let cloth = solved.scene.graph.find("nCloth1").unwrap();
+    assert!(!solved.scene.graph.at(1.0).get(cloth, &n_base::PLAY_FROM_CACHE));
+    assert!(solved.omissions.to_string().contains("`--simulate` says so"));
+}
+
+#[test]
+fn a_cloth_whose_cache_is_missing_or_of_another_mesh_is_simulated_and_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    cached_drape(folder.path());
+    let said = || {
+        let imported = import(folder.path(), "drape.ma", false);
+        let cloth = imported.scene.graph.find("nCloth1").unwrap();
+        assert!(!imported.scene.graph.node(cloth).settings().contains_key("playFromCache"));
+        imported.omissions.to_string()
+    };
+    let missing = said();
+    assert!(missing.contains("it is simulated instead: there is no `show.xml`"), "{missing}");
+    write_cache(folder.path(), "show", "nClothShape1", &[(101, lifted(101)[..440].to_vec())]);
+    let other = said();
+    assert!(other.contains("`show` has 440 points, its mesh 441"), "{other}");
+    fs::write(folder.path().join("show.mc"), "FOR4").unwrap();
+    let broken = said();
+    assert!(broken.contains("cut off"), "{broken}");
+}
+
+/// Five particles of `nParticles.mcx`, which Maya recorded from `InstancerDrawTest.ma`: positions and velocities at frame
+/// 14, then positions at frames 15, 24, 50 and 100, in centimetres.
+///
+/// The figures are from Autodesk's maya-usd, `plugin/pxr/maya/lib/pxrUsdMayaGL/testenv/InstancerDrawTest`, commit
+/// `139c895ecba3c8868000275a480531e7e25b8696`, under its Modified Apache 2.0 License.
+const RECORDED: [[[f64; 3]; 6]; 5] = [
+    [
+        [-2.444546, 2.0264437, -2.3631794],
+        [-5.533188, 4.586819, -5.3490186],
+        [-2.6735659, 2.216293, -2.5845764],
+        [-4.6349545, 3.842217, -4.480682],
+        [-9.404009, 7.7956023, -9.0910015],
+        [-15.725581, 13.035972, -15.202177],
+    ],
+    [
+        [-2.8461187, 0.41747013, 1.7054571],
+        [-7.7788596, 1.1410072, 4.6612654],
+        [-3.1680872, 0.46469665, 1.8983878],
+        [-5.925518, 0.8691578, 3.5507011],
+        [-12.630127, 1.8525932, 7.568249],
+        [-21.51735, 3.1561768, 12.89367],
+    ],
+    [
+        [-1.4504653, 0.1697235, 1.7658093],
+        [-5.961587, 0.69758415, 7.2576885],
+        [-1.6972166, 0.19859666, 2.0662065],
+        [-3.810464, 0.44587448, 4.6388936],
+        [-8.948758, 1.047123, 10.894311],
+        [-15.759782, 1.8441027, 19.186132],
+    ],
+    [
+        [-0.8262276, 0.4388732, -1.0579435],
+        [-5.621151, 2.985827, -7.197604],
+        [-1.0588882, 0.5624572, -1.3558537],
+        [-3.0514596, 1.6208656, -3.9072423],
+        [-7.8963394, 4.1943545, -10.110867],
+        [-14.318418, 7.605617, -18.33402],
+    ],
+    [
+        [-0.05307197, 0.14421852, -0.030477187],
+        [-3.3538923, 9.113916, -1.9260113],
+        [-0.19189027, 0.5214454, -0.11019518],
+        [-1.3807693, 3.7521226, -0.7929227],
+        [-4.271493, 11.607415, -2.4529552],
+        [-8.10326, 22.019922, -4.6533995],
+    ],
+];
+
+/// The nodes of `InstancerDrawTest.ma` that a simulation needs, with some particles at the start.
+fn instancer_scene(particles: &str, start: i64) -> String {
+    format!(
+        "//Maya ASCII 2016 scene\ncurrentUnit -l centimeter -a degree -t film;\n\
+         createNode pointEmitter -n \"emitter1\";\n\tsetAttr \".rat\" 10;\n\tsetAttr \".sro\" no;\n\tsetAttr \".spd\" 10;\n\
+         createNode transform -n \"nParticle1\";\ncreateNode nParticle -n \"nParticleShape1\" -p \"nParticle1\";\n{particles}\
+         \tsetAttr \".cofl\" 1;\n\tsetAttr \".scld\" no;\n\
+         createNode nucleus -n \"nucleus1\";\n\tsetAttr \".grty\" 0;\n\tsetAttr \".stf\" {start};\n\
+         createNode script -n \"sceneConfigurationScriptNode\";\n\
+         \tsetAttr \".b\" -type \"string\" \"playbackOptions -min {start} -max 100 -ast 1 -aet 100 \";\n\
+         connectAttr \":time1.o\" \"emitter1.ct\";\nconnectAttr \"nParticleShape1.ifl\" \"emitter1.full[0]\";\n\
+         connectAttr \"nParticleShape1.tss\" \"emitter1.dt[0]\";\nconnectAttr \"nParticleShape1.inh\" \"emitter1.inh[0]\";\n\
+         connectAttr \"nParticleShape1.stt\" \"emitter1.stt[0]\";\nconnectAttr \"nParticleShape1.sd[0]\" \"emitter1.sd[0]\";\n\
+         connectAttr \":time1.o\" \"nParticleShape1.cti\";\nconnectAttr \"nucleus1.noao[0]\" \"nParticleShape1.nxst\";\n\
+         connectAttr \"nucleus1.stf\" \"nParticleShape1.stf\";\nconnectAttr \"emitter1.ot[0]\" \"nParticleShape1.npt[0]\";\n\
+         connectAttr \":time1.o\" \"nucleus1.cti\";\nconnectAttr \"nParticleShape1.cust\" \"nucleus1.niao[0]\";\n\
+         connectAttr \"nParticleShape1.stst\" \"nucleus1.nias[0]\";\n"
+    )
+}
+
+/// The particles of the record at frame 14 as an initial state.
+fn initial_state() -> String {
+    let list = |name: &str, part: usize| {
+        let mut text = format!("\tsetAttr \".{name}\" -type \"vectorArray\" {}", RECORDED.len());
+        RECORDED.iter().flat_map(|own| own[part]).for_each(|x| write!(text, " {x}").unwrap());
+        text + " ;\n"
+    };
+    list("pos0", 0) + &list("vel0", 1)
+}
+
+fn run_text(text: &str) -> Simulation<f32> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.ma"), text).unwrap();
+    run(&import(folder.path(), "a.ma", false))
+}
+
+#[test]
+fn particles_fly_as_maya_recorded_them() {
+    let mut run = run_text(&instancer_scene(&initial_state(), 14));
+    let mut worst: f64 = 0.0;
+    for (part, frame) in [(2, 15), (3, 24), (4, 50), (5, 100)] {
+        while run.frame() < frame {
+            run.advance(&mut ());
+        }
+        for (at, own) in RECORDED.iter().enumerate() {
+            let [start, recorded] = [own[0], own[part]].map(Vector3::from);
+            // A unit of the scene is a metre to the solver.
+            let error = (point(&run, at) - recorded).norm() / (recorded - start).norm();
+            worst = worst.max(error);
+        }
+    }
+    println!("worst {worst:.2e} of the distance travelled");
+    assert!(worst < 1e-4, "{worst}");
+}
