@@ -6,6 +6,7 @@ use crate::bytes::RestoreError;
 use crate::constraints::link::lists::Links;
 use crate::constraints::link::sizes::ModelSizes;
 use crate::constraints::liquid::LiquidSolver;
+use crate::constraints::tether::Tethers;
 use crate::constraints::whole;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
@@ -40,6 +41,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) links: Links<R>,
     /// By cloth: the state of its liquid within a frame.
     pub(crate) liquids: Vec<LiquidSolver>,
+    /// By cloth: its tethers; empty where none has any.
+    pub(crate) tethers: Vec<Tethers<R>>,
     pub(crate) pool: ThreadPool,
 }
 
@@ -144,6 +147,10 @@ impl<R: Real> Solver<R> {
         let colliders: Vec<_> = colliders.map(with_map).collect();
         let contact =
             ContactSystem::new(&cloths, &models, (&colliders, &collider_maps), &state, self_collides);
+        let tethers = match cloths.iter().any(|cloth| cloth.lists.tethers) {
+            true => cloths.iter().zip(&models).map(|(cloth, model)| Tethers::new(cloth, model)).collect(),
+            false => Vec::new(),
+        };
         drop(cloths);
         let liquids = models.iter().map(|_| LiquidSolver::default()).collect();
         for population in &state.populations {
@@ -151,7 +158,7 @@ impl<R: Real> Solver<R> {
         }
         let model = Model { cloths: models, colliders };
         let links = Links::new(&model.cloths);
-        let mut solver = Self { model, state, contact, links, liquids, pool };
+        let mut solver = Self { model, state, contact, links, liquids, tethers, pool };
         update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
         solver
     }

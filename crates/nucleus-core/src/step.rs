@@ -122,6 +122,9 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     update_pair_filter(contact, model, links, frame, links_changed);
     contact.ground.begin_frame(frame.plane.as_ref(), &state.anchor, &contact.pair_filter);
     solver.liquids.iter_mut().for_each(LiquidSolver::begin_frame);
+    for (tethers, cloth) in solver.tethers.iter_mut().zip(&solver.model.cloths) {
+        tethers.begin_frame(cloth, &solver.state, frame.duration);
+    }
 }
 
 /// All substeps of a frame, unless the observer ends it before.
@@ -271,6 +274,14 @@ fn apply_pass<R: CompiledReal>(
                 [span.to, schedule.h],
                 &solver.pool,
             );
+        }
+        Pass::Tethers(cloth) => {
+            observer.enter(Stage::Constraints);
+            let settings = &frame.cloths[*cloth];
+            if let (Some(tethers), Some(scale)) = (solver.tethers.get(*cloth), settings.tethers) {
+                let scale = scale.max(0.0) * settings.rest_length_scale.max(0.0);
+                tethers.relax(&mut solver.state.displacement, scale, &solver.pool);
+            }
         }
         Pass::Links(at) => {
             observer.enter(Stage::Constraints);

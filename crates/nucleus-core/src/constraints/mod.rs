@@ -19,6 +19,7 @@
 //! | stretch, compression, shear | links | [`stretch`] |
 //! | links that are all corrected from the same state | links | [`parallel`] |
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
+//! | tethers to pins | points | [`tether`] |
 //! | damping of relative velocities | links | [`damp`] |
 //! | signed rest angles, angle scale and dropoff, flip tracking | hinges | [`angle`] |
 //! | links and hinges that yield | links and hinges | [`plastic`] |
@@ -47,4 +48,5 @@ pub mod shape;
 pub mod strength_map;
 pub mod stretch;
 pub mod sweep;
+pub mod tether;
 pub mod whole;

@@ -51,6 +51,8 @@ pub struct ClothLists {
     pub shells: bool,
     /// Links or bends can stay as they are deformed.
     pub plastic: bool,
+    /// Points are tethered to pins at some time.
+    pub tethers: bool,
 }
 
 impl ClothLists {
@@ -69,6 +71,7 @@ impl ClothLists {
         shape: false,
         shells: false,
         plastic: false,
+        tethers: false,
     };
     /// Everything off: free points.
     pub const NONE: Self = Self {
@@ -85,6 +88,7 @@ impl ClothLists {
         shape: false,
         shells: false,
         plastic: false,
+        tethers: false,
     };
 }
 

@@ -13,11 +13,13 @@
 //! | edges, cross links, seams, areas | `topology.rs` |
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
 //! | blocks of points; colours and lane groups of rows | `blocks.rs`, `rows.rs` |
+//! | distances along a mesh | [`geodesic`] |
 //! | vertex maps, as given and per row | [`vertex_maps`], `strength_maps.rs` |
 
 pub mod blocks;
 pub mod build_error;
 pub mod builder;
+pub mod geodesic;
 pub mod link_order;
 pub mod order;
 pub mod rows;

@@ -1,5 +1,6 @@
 //! How much memory the points and rows of a solver take.
 
+use crate::constraints::tether::Tethers;
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::model::rows::RowList;
@@ -9,7 +10,9 @@ use crate::state::State;
 
 /// Bytes of the columns of points and the lists of rows, without contact; see [`Solver::memory`].
 pub fn bytes<R: Real>(solver: &Solver<R>) -> usize {
-    of_state(&solver.state) + solver.model.cloths.iter().map(of_cloth).sum::<usize>()
+    of_state(&solver.state)
+        + solver.model.cloths.iter().map(of_cloth).sum::<usize>()
+        + solver.tethers.iter().map(Tethers::bytes).sum::<usize>()
 }
 
 /// Every column is named, so that a new one does not compile until it is counted.

@@ -35,6 +35,14 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     for name in ["stretch", "compress", "shear", "bend"] {
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
+    let tethered = schedule.passes.iter().filter_map(|pass| match pass {
+        Pass::Tethers(cloth) => Some(*cloth).zip(solver.tethers.get(*cloth)),
+        _ => None,
+    });
+    let pinned =
+        |of: usize| frame.pins.iter().filter(move |pin| pin.cloth.index() == of).map(|pin| pin.point);
+    let tethers = tethered.map(|(of, tethers)| tethers.count(&solver.model.cloths[of], pinned(of))).sum();
+    passes.push(PassCost { name: "tethers", rows: tethers, sweeps: f64::from(steps) });
     let liquid = (0..frame.cloths.len()).filter(|&cloth| frame.cloths[cloth].liquid.is_some());
     let liquid = liquid.map(|cloth| solver.model.cloths[cloth].points().len()).sum();
     passes.push(PassCost { name: "liquid", rows: liquid, sweeps: f64::from(steps) });

@@ -52,6 +52,8 @@ pub enum Pass {
     Constraints(std::ops::Range<usize>),
     /// An effect on a whole cloth, of [`Schedule::wholes`].
     Whole(usize),
+    /// The tethers of a cloth, by its index.
+    Tethers(usize),
     /// One pass over the links of a constraint, of [`Schedule::links`].
     Links(usize),
     /// Density, viscosity and surface tension of a liquid, by the index of its cloth.

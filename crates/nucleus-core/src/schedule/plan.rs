@@ -78,6 +78,7 @@ impl<R: Real> Schedule<R> {
             ResistanceModel::Physical { .. } => physical(frame, self.h, &mut self.sweeps, &mut self.wholes),
         };
         self.push_outwards(frame);
+        self.tether(frame);
         self.join(frame);
         let is_liquid = |cloth: &usize| frame.cloths[*cloth].liquid.is_some();
         let liquids = (0..frame.cloths.len()).filter(is_liquid).map(Pass::Liquid);
@@ -92,6 +93,20 @@ impl<R: Real> Schedule<R> {
         }
     }
 
+    /// Adds the passes over tethers before the last contact passes.
+    fn tether(&mut self, frame: &FrameInput) {
+        let is_tethered = |cloth: &usize| frame.cloths[*cloth].tethers.is_some();
+        let tethers = (0..frame.cloths.len()).filter(is_tethered).map(Pass::Tethers);
+        let last = self.before_last_contact();
+        self.passes.splice(last..last, tethers);
+    }
+
+    /// The place in the passes before the last ones of contact.
+    fn before_last_contact(&self) -> usize {
+        let contact = |pass: &Pass| matches!(pass, Pass::ClothContact | Pass::ColliderContact);
+        self.passes.iter().rposition(|pass| !contact(pass)).map_or(0, |last| last + 1)
+    }
+
     /// Adds the passes over links before the last contact passes: springs first, then welds, which are exact.
     ///
     /// Classic passes are due like those of cloth, at equal parts of the substep.
@@ -104,8 +119,7 @@ impl<R: Real> Schedule<R> {
             let links = self.links.len();
             self.links.push(sweep);
             // Contact comes last; the passes before it are divided into equal parts.
-            let contact = |pass: &Pass| matches!(pass, Pass::ClothContact | Pass::ColliderContact);
-            let last = self.passes.iter().rposition(|pass| !contact(pass)).map_or(0, |last| last + 1);
+            let last = self.before_last_contact();
             for k in (1..=count as usize).rev() {
                 self.passes.insert(last * k / count as usize, Pass::Links(links));
             }
@@ -192,6 +206,7 @@ mod tests {
             }),
             Pass::Links(_) => String::from("L"),
             Pass::Liquid(_) => String::from("Q"),
+            Pass::Tethers(_) => String::from("T"),
             Pass::ClothContact => String::from("M"),
             Pass::ColliderContact => String::from("C"),
             Pass::Safeguard => String::from("S"),

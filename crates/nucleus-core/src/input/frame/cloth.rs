@@ -22,6 +22,9 @@ pub struct ClothFrame {
     pub stiffness: Stiffness,
     /// Factor on all rest lengths.
     pub rest_length_scale: f64,
+    /// Factor on the lengths of tethers (`tetherScale`); `None` without tethers. They need
+    /// [`ClothLists::tethers`](crate::ClothLists::tethers).
+    pub tethers: Option<f64>,
     /// Damping of the relative velocity along links.
     pub stretch_damp: f64,
     /// Averaging of velocities between linked points.
@@ -106,6 +109,7 @@ impl ClothFrame {
         bend_resistance: 0.1,
         stiffness: Stiffness::NONE,
         rest_length_scale: 1.0,
+        tethers: None,
         stretch_damp: 0.1,
         damp: 0.0,
         drag: 0.05,

@@ -74,7 +74,9 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.damp, 0.0),
         (&mut cloth.input_attract.motion_drag, 0.0),
     ]);
-    let fields = cloth.field.as_mut().is_some_and(sanitize_field)
+    let tethers = cloth.tethers.as_mut().is_some_and(|scale| sanitize_numbers([(scale, 1.0)]));
+    let fields = tethers
+        | cloth.field.as_mut().is_some_and(sanitize_field)
         | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
         | sanitize_wind_field(&mut cloth.wind_field)
         | sanitize_liquid(&mut cloth.liquid);

@@ -1,0 +1,164 @@
+//! Tethers (`tethers`, `tetherScale`): no point is farther from the nearest pins than the mesh reaches (long range
+//! attachments: Kim, Chentanez and Müller-Fischer 2012).
+//!
+//! A Gauss-Seidel sweep passes the load of a hanging cloth to its pins along one edge, so cloth of many edges stretches.
+//! A tether passes it on at once: it is a link from a point straight to a pin, as long as the way along the mesh at rest,
+//! that acts only when it is tight. A point has at most two, to the nearest pins of two groups. Where two pins are farther
+//! apart than both reach, both grow in proportion, and the sweeps share out the stretch.
+//!
+//! The lengths follow from the mesh and the pins of a frame, so a checkpoint stores nothing of them.
+
+use crate::input::PointId;
+use crate::math::{Lanes, Real, Row4, dot, sub};
+use crate::model::ClothModel;
+use crate::model::builder::Cloth;
+use crate::model::geodesic::{LABELS, Label, RestDistances};
+use crate::model::rows::Row;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+use crate::state::State;
+
+use super::strength_map::{Sides, Uniform};
+use super::stretch::{LinkGroup, LinkProjection, LinkRow, LinkStrength};
+
+/// The tethers of one cloth; empty where it has none.
+#[derive(Debug, Clone, Default)]
+pub struct Tethers<R> {
+    mesh: RestDistances,
+    /// By row of the cloth: whether it was pinned when the labels were made, and its labels.
+    is_pinned: Vec<bool>,
+    labels: Vec<Vec<Label>>,
+    /// Links from points to pins: block by block, those to the farther pins first.
+    groups: Vec<LinkGroup<R>>,
+    /// By block: where its groups begin; one more for the end.
+    starts: Vec<usize>,
+}
+
+impl<R: Real> Tethers<R> {
+    /// For a cloth that can have tethers; empty for others.
+    pub fn new(cloth: &Cloth, model: &ClothModel<R>) -> Self {
+        if !cloth.lists.tethers || cloth.particles.is_some() {
+            return Self::default();
+        }
+        let place = |point: u32| model.order.place(point as usize);
+        let mesh = RestDistances::new(&cloth.surface, &cloth.vertex_maps.rest_length, place);
+        Self { mesh, ..Self::default() }
+    }
+
+    /// The number of tethers of a cloth with these pins.
+    pub fn count(&self, cloth: &ClothModel<R>, pins: impl Iterator<Item = PointId>) -> usize {
+        let mut is_pinned = vec![false; self.mesh.points()];
+        pins.for_each(|pin| is_pinned[cloth.order.place(pin.index()) as usize] = true);
+        let of =
+            |(point, labels): (u32, Vec<Label>)| labels.iter().filter(|label| label.pin != point).count();
+        (0..).zip(self.mesh.labels(&is_pinned)).map(of).sum()
+    }
+
+    /// Bytes of its lists.
+    pub fn bytes(&self) -> usize {
+        let labels: usize = self.labels.iter().map(|labels| size_of_val(&labels[..])).sum();
+        self.mesh.bytes() + labels + size_of_val(&self.is_pinned[..]) + size_of_val(&self.groups[..])
+    }
+
+    /// Begins a frame of `duration` seconds: lengths where pins have changed, and spans.
+    pub fn begin_frame(&mut self, cloth: &ClothModel<R>, state: &State<R>, duration: f64) {
+        if self.mesh.points() == 0 {
+            return;
+        }
+        let rows = cloth.points();
+        let is_pinned = |row: &Row4<R>| row.0[3] == R::ZERO;
+        let rows = state.displacement[rows.start as usize..rows.end as usize].iter().map(is_pinned);
+        if !rows.clone().eq(self.is_pinned.iter().copied()) {
+            self.is_pinned = rows.collect();
+            self.labels = self.mesh.labels(&self.is_pinned);
+        }
+        self.lay_out(cloth, state, duration);
+    }
+
+    fn lay_out(&mut self, cloth: &ClothModel<R>, state: &State<R>, duration: f64) {
+        self.groups.clear();
+        self.starts.clear();
+        let first = cloth.points().start;
+        for block in 0..cloth.blocks.len() {
+            self.starts.push(self.groups.len());
+            let idle = LinkRow::idle(cloth.blocks.padding_point(block));
+            for label in (0..LABELS).rev() {
+                let (mut four, mut filled) = ([idle; 4], 0);
+                for row in cloth.blocks.range(block) {
+                    let labels = &self.labels[(row - first) as usize];
+                    let Some(own) = labels.get(label).filter(|own| own.pin != row - first) else { continue };
+                    let rest_length = R::from_f64(own.distance * slack(labels, first, state, duration));
+                    four[filled] = LinkRow { ends: [row, first + own.pin], rest_length, slenderness: R::ONE };
+                    filled += 1;
+                    if filled == 4 {
+                        self.groups.push(LinkRow::group(std::mem::replace(&mut four, [idle; 4])));
+                        filled = 0;
+                    }
+                }
+                self.groups.extend((filled > 0).then(|| LinkRow::group(four)));
+            }
+        }
+        self.starts.push(self.groups.len());
+        self.groups.iter_mut().for_each(|group| group.anchor(&state.anchor));
+    }
+
+    /// Shortens all tethers that are longer than `scale` times their lengths.
+    pub fn relax(&self, displacement: &mut [Row4<R>], scale: f64, pool: &ThreadPool) {
+        let strength = LinkStrength {
+            share: Sides { above: R::ONE, below: R::ZERO },
+            compliance: Sides { above: R::ZERO, below: R::ZERO },
+            rest_scale: R::from_f64(scale),
+        };
+        let points = DisjointSlice::new(displacement);
+        pool.parallel_for(self.starts.len().saturating_sub(1), |block| {
+            let projection = LinkProjection::new(&strength);
+            for group in &self.groups[self.starts[block]..self.starts[block + 1]] {
+                // SAFETY: the first ends are points of this block, which no other task touches; the second ends are pins,
+                // which no task writes, or the padding point of this block.
+                #[allow(unsafe_code)]
+                unsafe {
+                    shorten(points, group, &projection);
+                }
+            }
+        });
+    }
+}
+
+/// Moves the first ends of four links towards the second ends.
+///
+/// # Safety
+/// No other task touches the first ends of the group, and none writes the second ends.
+#[allow(unsafe_code)]
+#[inline(always)]
+unsafe fn shorten<R: Real>(
+    points: DisjointSlice<'_, Row4<R>>,
+    group: &LinkGroup<R>,
+    projection: &LinkProjection<R::Lanes>,
+) {
+    // SAFETY: the caller's promise.
+    let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
+    let push = projection.push(group, Uniform, [a, b]);
+    for lane in 0..4 {
+        let moved = a[lane] + a[lane].splat_last() * push[lane];
+        // SAFETY: the caller's promise.
+        unsafe { points.set(group.ends[0][lane], Row4(moved.to_array())) };
+    }
+}
+
+/// The factor on both tethers of a point: above one where their pins are farther apart in this frame than both reach.
+fn slack<R: Real>(labels: &[Label], first: u32, state: &State<R>, duration: f64) -> f64 {
+    let [a, b] = labels else { return 1.0 };
+    let pins = [a, b].map(|label| (first + label.pin) as usize);
+    let distance = |time: f64| {
+        let [p, q] = pins.map(|pin| {
+            let velocity = state.velocity[pin].xyz().map(R::to_f64);
+            let anchor = state.anchor[pin];
+            [0, 1, 2].map(|axis| anchor[axis] + time * velocity[axis])
+        });
+        let d = sub(q, p);
+        dot(d, d).sqrt()
+    };
+    let apart = distance(0.0).max(distance(duration));
+    let reach = a.distance + b.distance;
+    if reach > 0.0 { (apart / reach).max(1.0) } else { 1.0 }
+}
