@@ -117,6 +117,10 @@ node_table! {
         SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: flexural rigidity, the moment on a width of 1 m that bends the cloth to a radius of 1 m. Below 0: 1e-4 N·m times `bendResistance`.
         BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("nucleus_core::constraints::bend").extension();
+        /// No point is farther from its nearest pins than the mesh reaches: cloth of many edges that hangs by pins stretches far less at the same `evaluations`. For cloth that hardly stretches.
+        TETHERS: bool = toggle("tethers", "tethers", false).solved("nucleus_core::constraints::tether").extension();
+        /// Factor on the lengths of tethers: 1.02 lets a point go 2 % farther than the mesh reaches at rest.
+        TETHER_SCALE: f64 = float("tetherScale", "tetherScale", 1.0).min(0.0).soft(1.0, 1.1).solved("nucleus_core::constraints::tether").extension();
     }
     "Initial State" {
         /// Displaces each start position along its normal by a random length up to this, so that a symmetric sheet folds under load instead of staying flat. The rest shape is unchanged.

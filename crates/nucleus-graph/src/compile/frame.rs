@@ -173,6 +173,7 @@ impl EvaluationInterval<'_> {
                 bend: stiffness(&n_cloth::BEND_STIFFNESS, scales.bend),
             },
             rest_length_scale: number(&n_base::REST_LENGTH_SCALE) * scales.rest_length,
+            tethers: to.get(node, &n_cloth::TETHERS).then(|| number(&n_cloth::TETHER_SCALE)),
             stretch_damp: number(&n_cloth::STRETCH_DAMP),
             damp: number(&n_base::DAMP) * scales.damp,
             drag: number(&n_cloth::DRAG) * scales.drag,

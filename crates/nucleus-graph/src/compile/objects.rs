@@ -210,6 +210,7 @@ fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapS
     use n_cloth::{
         ADD_CROSS_LINKS, BEND_RESISTANCE, BEND_STIFFNESS, COMPRESSION_RESISTANCE, COMPRESSION_STIFFNESS,
         DRAG, LIFT, SHEAR_RESISTANCE, SHEAR_STIFFNESS, STRETCH_DAMP, STRETCH_RESISTANCE, STRETCH_STIFFNESS,
+        TETHERS,
     };
     let used = |key, scale: f64| scale != 0.0 && graph.is_ever_nonzero(cloth, key);
     let node = graph.node(cloth);
@@ -231,6 +232,7 @@ fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapS
             && graph.is_ever_nonzero(nucleus, &nucleus::AIR_DENSITY),
         damp: used(&STRETCH_DAMP, 1.0) || used(&n_base::DAMP, scales.damp),
         self_collision: graph.is_ever_nonzero(cloth, &n_base::SELF_COLLIDE),
+        tethers: graph.is_ever_nonzero(cloth, &TETHERS),
         ..ClothLists::NONE
     };
     soft_body::lists(graph, cloth, lists)
