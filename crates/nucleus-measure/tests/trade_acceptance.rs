@@ -55,10 +55,10 @@ impl Random {
     }
 }
 
-/// A random scene of 25 frames, in metres.
+/// A random scene of 17 frames, in metres.
 fn scene_text(seed: u64) -> String {
     let mut random = Random(seed);
-    let [across, along] = [0, 1].map(|_| 16 + random.index(17));
+    let [across, along] = [0, 1].map(|_| 12 + random.index(9));
     let (width, height) = (random.between(0.6, 1.6), random.between(0.6, 1.6));
     let material = format!(
         "pointMass: {:.3}, stretchResistance: {:.0}, bendResistance: {:.3}, shearResistance: {:.2}, friction: {:.2}, \
@@ -101,7 +101,7 @@ fn scene_text(seed: u64) -> String {
         false => format!("\"pins\": dynamicConstraint(constraintType: transform, components: [{pins}]),"),
     };
     format!(
-        "Scene(time: (start: 1, end: 25, fps: 24), nodes: {{
+        "Scene(time: (start: 1, end: 17, fps: 24), nodes: {{
         \"nucleus\": nucleus(usePlane: true, windDirection: (0.3, 0, 1), windSpeed: {wind:.2}),
         \"plane\": polyPlane(width: {width:.3}, height: {height:.3}, subdivisions: ({across}, {along}),
             translate: (0, {up:.3}, 0), rotate: ({rotate:.2}, {turn:.2}, 0)),
