@@ -387,7 +387,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, is_near, by_point, active, is_searched, searched_groups, tasks],
+    rebuilt: [cloth, collider, is_near, by_point, active, is_searched, searched_groups, tasks, unproven],
 });
 
 checkpoint_struct!([R: Real] ClothContacts<R> {

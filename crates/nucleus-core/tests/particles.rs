@@ -103,6 +103,20 @@ fn a_particle_falls_in_air_as_the_closed_form_says() {
     assert!((fallen / exact - 1.0).abs() < 5e-4, "{fallen} for {exact}");
 }
 
+#[test]
+fn a_particle_that_falls_through_air_reaches_the_speed_at_which_drag_carries_it() {
+    let cloths = vec![ClothFrame { drag: 0.5, tangential_drag: 1.0, ..balls(0.1) }];
+    for (mass, substeps) in [(1.0, 50), (2.0, 50), (2.0, 200)] {
+        let input = FrameInput { cloths: cloths.clone(), ..frame(substeps, CLASSIC) };
+        let mut solver = Solver::<f32>::new(built([beads(&[Vec3::zeros()], &[], mass)]), 1);
+        (0..72).for_each(|_| _ = solver.step(&input, &mut ()));
+        // Weight m g over the drag of 24 · 0.5 kg/s.
+        let exact = 9.81 * mass / 12.0;
+        let speed = -velocities(&solver, BEADS)[0].y;
+        assert!((speed / exact - 1.0).abs() < 5e-3, "{speed} for {exact} m/s");
+    }
+}
+
 // EVIDENCE: N2.3-2  points collide with each other, with thickness
 #[test]
 fn a_collision_of_two_particles_keeps_their_momentum_at_any_speed() {

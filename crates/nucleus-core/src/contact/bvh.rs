@@ -152,6 +152,11 @@ impl Bvh {
         }
     }
 
+    /// The box around all elements.
+    pub fn bounds(&self) -> Aabb {
+        self.nodes[0]
+    }
+
     /// Calls `found` with each element whose leaf overlaps the box, in an order that depends on the hierarchy
     /// alone.
     pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {

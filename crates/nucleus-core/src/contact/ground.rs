@@ -69,7 +69,9 @@ impl<R: Real> Ground<R> {
         let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
         self.start = now.map(|now| self.end.filter(|last| !turns_over(last)).unwrap_or(now));
         self.end = now;
-        for (heights, plane) in self.heights.iter_mut().zip([self.start, self.end]) {
+        let rests = self.start == self.end;
+        let [at_start, at_end] = &mut self.heights;
+        for (heights, plane) in [(&mut *at_start, self.start), (&mut *at_end, self.end.filter(|_| !rests))] {
             heights.clear();
             let of = |plane: Plane| anchors.iter().map(move |&anchor| R::from_f64(plane.height(anchor)));
             heights.extend(plane.into_iter().flat_map(of));
@@ -77,6 +79,9 @@ impl<R: Real> Ground<R> {
                 let excluded = (0..).zip(heights.iter_mut()).filter(|(row, _)| filter.excludes_ground(*row));
                 excluded.for_each(|(_, height)| *height = R::from_f64(FAR_ABOVE));
             }
+        }
+        if rests {
+            at_end.clone_from(at_start);
         }
     }
 

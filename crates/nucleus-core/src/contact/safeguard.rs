@@ -10,7 +10,7 @@
 //!    neighbour or collider.
 //! 5. The pair is accepted as unresolved, and counted.
 //!
-//! Only islands of cloths with a failed certificate push again.
+//! Only islands of cloths with a failed certificate push again; of free points that touch no cloth, only those that failed.
 //!
 //! The positions at the start of the step are certified, so a pair that does not move is certified too. Only
 //! between colliders that close on cloth, and between pins that cross, does the fourth fallback fail.
@@ -20,6 +20,7 @@ use std::sync::atomic::Ordering;
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
+use crate::contact::collider::free_points::settle_free_points;
 use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
     revert_collider_contacts,
@@ -49,7 +50,12 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
         watch.enter(Stage::Contact);
         pass.contact.has_unproven.iter().for_each(|mark| mark.store(false, Ordering::Relaxed));
         let cloths = certify_cloth_contacts(pass);
-        let [sides, inseparable] = certify_collider_contacts(pass);
+        let [mut sides, inseparable] = certify_collider_contacts(pass);
+        if sides > 0 {
+            settle_free_points(pass);
+            let is_left = pass.contact.has_unproven.iter().any(|mark| mark.load(Ordering::Relaxed));
+            sides = if is_left { sides } else { 0 };
+        }
         let unproven = [cloths, sides];
         let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
         if unproven == [0, 0] || is_last {

@@ -23,9 +23,10 @@ use crate::state::State;
 pub fn max_speeds<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> Vec<f64> {
     let of_cloth = |points: Range<u32>| {
         let rows = &state.velocity[points.start as usize..points.end as usize];
-        let speeds = rows.iter().map(|row| row.xyz().map(R::to_f64));
-        let max = speeds.flatten().fold(0.0, |max, x| if x.abs() > max { x.abs() } else { max });
-        max + frame.gravity.amax() * frame.duration
+        let zero = R::Lanes::splat(R::ZERO);
+        let max = rows.iter().fold(zero, |max, row| (row.lanes().most(zero - row.lanes())).most(max));
+        let [x, y, z, _] = max.to_array();
+        [x, y, z].map(R::to_f64).into_iter().fold(0.0, f64::max) + frame.gravity.amax() * frame.duration
     };
     cloths.iter().map(|cloth| of_cloth(cloth.points())).collect()
 }

@@ -241,7 +241,7 @@ fn smallest_ground_gap<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, fram
     let touching = |(_, settings): &(_, &ClothFrame)| settings.collide && settings.thickness > 0.0;
     let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
         let free = cloth.points().filter(|&row| state.displacement[row as usize].0[3] > R::ZERO);
-        free.map(|row| height(row) / settings.thickness).fold(f64::INFINITY, f64::min)
+        free.map(height).fold(f64::INFINITY, f64::min) / settings.thickness
     };
     cloths.iter().zip(&frame.cloths).filter(touching).map(of_cloth).fold(f64::INFINITY, f64::min)
 }

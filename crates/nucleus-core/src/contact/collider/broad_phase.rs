@@ -18,7 +18,7 @@ use crate::contact::collider::query::ColliderQuery;
 use crate::contact::material::MIN_THICKNESS;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
-use crate::math::{Real, dot, sub};
+use crate::math::{Real, Row4, dot};
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::StepInterval;
@@ -105,7 +105,10 @@ fn moving_frame<R: Real>(contact: &ContactSystem<R>, cloth: usize) -> [f64; 3] {
 fn interval_end<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> f64 {
     let StepInterval { from, to, end_of_substep } = pass.span;
     let model = &pass.model.cloths[cloth];
-    let points = model.points();
+    let points = match model.edge_length > 0.0 {
+        true => model.points(),
+        false => 0..0, // one step at any speed
+    };
     let rows = &pass.state.velocity[points.start as usize..points.end as usize];
     let squares = rows.iter().map(|row| dot(row.xyz(), row.xyz()).to_f64());
     let max_speed = squares.fold(0.0, f64::max).sqrt() * pass.frame.duration;
@@ -206,8 +209,10 @@ fn predict_bounds<R: Real>(
             ContactSystem { window_bounds, bound_growth, interval_bounds, frame_travel, bounds_violated, .. },
         ..
     } = pass;
-    let [frame_at_start, frame_now] =
-        [pass.span.from, pass.span.to].map(|time| travel_at(frame_travel[cloth], time));
+    let [frame_at_start, frame_now] = [pass.span.from, pass.span.to].map(|time| {
+        let [x, y, z] = travel_at(frame_travel[cloth], time);
+        Row4([x, y, z, R::ZERO])
+    });
     let thickness = pass.frame.cloths[cloth].thickness.max(MIN_THICKNESS);
     let most = R::from_f64(cloths[cloth].edge_length);
     let horizon = |time: [f64; 2], margin_share: f64| {
@@ -226,9 +231,9 @@ fn predict_bounds<R: Real>(
     let blocks = &cloths[cloth].blocks;
     pool.parallel_for(blocks.len(), |block| {
         for row in blocks.range(block) {
-            let start = sub(state.start[row as usize].xyz(), frame_at_start);
-            let now = sub(state.displacement[row as usize].xyz(), frame_now);
-            let bound = predict_box(start, now, window_bound.0, window_bound.1);
+            let start = state.start[row as usize].lanes() - frame_at_start.lanes();
+            let now = state.displacement[row as usize].lanes() - frame_now.lanes();
+            let bound = predict_box::<R>(start, now, window_bound.0, window_bound.1);
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             unsafe {
@@ -236,7 +241,8 @@ fn predict_bounds<R: Real>(
                 bound_growth.set(row, bound_growth.get(row) + growth);
                 window_bounds.set(row, bound);
                 if bounds_violated.get(row) || !box_within(&bound, &interval_bounds.get(row)) {
-                    interval_bounds.set(row, predict_box(start, now, interval_bound.0, interval_bound.1));
+                    interval_bounds
+                        .set(row, predict_box::<R>(start, now, interval_bound.0, interval_bound.1));
                     bounds_violated.set(row, true);
                     any.store(true, Ordering::Relaxed);
                 }

@@ -44,6 +44,8 @@ pub struct ColliderContacts<R> {
     pub tasks: Vec<Mutex<FoundContacts<R>>>,
     /// Points of the cloth that are inside the collider.
     pub depenetration: Depenetration,
+    /// Points with a contact without certificate, at the last certification.
+    pub unproven: Vec<u32>,
 }
 
 /// The contacts that a task finds, and its buffers.
@@ -84,6 +86,7 @@ impl<R: Real> ColliderContacts<R> {
             searched_groups: Vec::new(),
             tasks: Vec::new(),
             depenetration: Depenetration::default(),
+            unproven: Vec::new(),
         }
     }
 
@@ -198,7 +201,9 @@ pub fn certify<R: Real>(
     certification.certify_all(point_face, points, step, pool);
     certification.certify_all(edge_edge, edges, step, pool);
     certification.certify_all(face_point, faces, step, pool);
-    let Certification { counts, has_new_plane } = certification;
+    let Certification { counts, has_new_plane, unproven } = certification;
+    list.unproven.clear();
+    list.unproven.extend(unproven.into_inner().unwrap_or_default());
     if has_new_plane.into_inner() {
         list.copy_planes();
     }
@@ -212,6 +217,8 @@ struct Certification {
     counts: [AtomicU64; 2],
     /// Whether any contact was certified along a plane that it did not have.
     has_new_plane: AtomicBool,
+    /// Points with a contact without certificate, in any order.
+    unproven: Mutex<Vec<u32>>,
 }
 
 impl Certification {
@@ -225,7 +232,7 @@ impl Certification {
         let pairs = DisjointSlice::new(pairs);
         pool.parallel_for(active.len().div_ceil(CERTIFICATES_PER_TASK), |task| {
             let end = active.len().min((task + 1) * CERTIFICATES_PER_TASK);
-            let (mut counts_here, mut has_new_plane) = ([0; 2], false);
+            let (mut counts_here, mut has_new_plane, mut unproven) = ([0; 2], false, Vec::new());
             for &index in &active[task * CERTIFICATES_PER_TASK..end] {
                 // SAFETY: a contact is active once, and certification moves no point.
                 #[allow(unsafe_code)]
@@ -233,12 +240,20 @@ impl Certification {
                 let normal = contact.normal;
                 let certificate = contact.certify(step);
                 counts_here[0] += u64::from(certificate == Certificate::Unproven);
+                if N == 1 && certificate == Certificate::Unproven {
+                    unproven.push(contact.points[0]);
+                }
                 counts_here[1] += u64::from(certificate == Certificate::Inseparable);
                 has_new_plane |= contact.normal != normal;
             }
             // Added once per task, to avoid contention.
             (0..2).for_each(|k| _ = self.counts[k].fetch_add(counts_here[k], Ordering::Relaxed));
             self.has_new_plane.fetch_or(has_new_plane, Ordering::Relaxed);
+            if !unproven.is_empty()
+                && let Ok(mut all) = self.unproven.lock()
+            {
+                all.append(&mut unproven);
+            }
         });
     }
 }

@@ -23,6 +23,7 @@ pub mod broad_phase;
 pub mod contact;
 pub mod contacts;
 pub mod frame_start;
+pub mod free_points;
 pub mod motion_bounds;
 pub mod pass;
 mod plane_columns;

@@ -1,6 +1,6 @@
 //! Motion bounds of points among colliders: a box that contains a point's displacement over a window of time steps.
 
-use crate::math::{Real, Row4, dot, scale, sub};
+use crate::math::{Lanes, Real, Row4, dot, max, scale, sub};
 
 /// Distance that anything may move in a candidate interval, in edge lengths.
 pub const MAX_TRAVEL: f64 = 2.0;
@@ -41,26 +41,24 @@ pub fn travel_at<R: Real>(drift: [R; 3], time: f64) -> [R; 3] {
 const TRAVEL_MARGIN: f64 = 0.25;
 
 /// Predicts a bound: it contains the start and the end of this step, and the extrapolation of this motion over
-/// `steps_left` steps, with a margin. The motion contributes at most `most` to the margin.
+/// `steps_left` steps, with a margin. The motion contributes at most `most` to the margin. The fourth lanes do not count.
+#[inline(always)]
 pub fn predict_box<R: Real>(
-    start: [R; 3],
-    now: [R; 3],
+    start: R::Lanes,
+    now: R::Lanes,
     steps_left: R,
     [margin, most]: [R; 2],
 ) -> MotionBox<R> {
-    let mut travel = R::ZERO;
-    let end: [R; 3] = std::array::from_fn(|axis| now[axis] + (now[axis] - start[axis]) * steps_left);
-    for axis in 0..3 {
-        let along = end[axis] - start[axis];
-        travel = max(travel, max(along, -along));
-    }
+    let end = now + (now - start) * R::Lanes::splat(steps_left);
+    let [x, y, z, _] = (end - start).to_array();
+    let travel = [x, y, z].into_iter().fold(R::ZERO, |travel, along| max(travel, max(along, -along)));
     let margin_share = travel * R::from_f64(TRAVEL_MARGIN);
-    let margin = margin + if margin_share > most { most } else { margin_share };
-    let corner = |side: R, pick: fn(R, R) -> R| {
-        let at = |axis: usize| pick(pick(start[axis], now[axis]), end[axis]) + margin * side;
-        Row4([at(0), at(1), at(2), R::ZERO])
+    let margin = R::Lanes::splat(margin + if margin_share > most { most } else { margin_share });
+    let corner = |lanes: R::Lanes| {
+        let [x, y, z, _] = lanes.to_array();
+        Row4([x, y, z, R::ZERO])
     };
-    [corner(-R::ONE, min), corner(R::ONE, max)]
+    [corner(start.least(now).least(end) - margin), corner(start.most(now).most(end) + margin)]
 }
 
 /// The square of the diagonal of a bound, in square metres.
@@ -71,29 +69,23 @@ pub fn squared_diagonal<R: Real>([low, high]: &MotionBox<R>) -> R {
 }
 
 /// How far a bound extends beyond an older one, in metres: the sum over all axes.
+#[inline(always)]
 pub fn box_growth<R: Real>(old: &MotionBox<R>, new: &MotionBox<R>) -> R {
-    let of_axis = |axis: usize| {
-        let beyond = max(old[0].0[axis] - new[0].0[axis], new[1].0[axis] - old[1].0[axis]);
-        max(beyond, R::ZERO)
-    };
-    of_axis(0) + of_axis(1) + of_axis(2)
+    let [old, new] = [old, new].map(|corners| corners.map(Row4::lanes));
+    let beyond = (old[0] - new[0]).most(new[1] - old[1]).most(R::Lanes::splat(R::ZERO));
+    let [x, y, z, _] = beyond.to_array();
+    x + y + z
 }
 
 /// Whether one bound contains another.
+#[inline(always)]
 pub fn box_within<R: Real>(inner: &MotionBox<R>, outer: &MotionBox<R>) -> bool {
-    (0..3).all(|axis| outer[0].0[axis] <= inner[0].0[axis] && inner[1].0[axis] <= outer[1].0[axis])
+    let [inner, outer] = [inner, outer].map(|corners| corners.map(Row4::lanes));
+    (outer[0] - inner[0]).above_zero() | (inner[1] - outer[1]).above_zero() == 0
 }
 
 /// Whether a bound contains a displacement; `frame_motion` is the motion of the moving frame.
 pub fn box_contains<R: Real>([low, high]: &MotionBox<R>, now: [R; 3], frame_motion: [R; 3]) -> bool {
     let now = sub(now, frame_motion);
     (0..3).all(|axis| low.0[axis] <= now[axis] && now[axis] <= high.0[axis])
-}
-
-fn min<R: Real>(a: R, b: R) -> R {
-    if b < a { b } else { a }
-}
-
-fn max<R: Real>(a: R, b: R) -> R {
-    if b > a { b } else { a }
 }

@@ -12,7 +12,6 @@ use crate::contact::material::ContactMaterial;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::{ColliderStep, ColliderStepArgs, ContactCounters, PositionWriter};
 use crate::math::Real;
-use crate::model::Model;
 use crate::output::{Stage, StepObserver};
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -48,7 +47,11 @@ pub fn apply_collider_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
     if pass.frame.plane.is_some()
         && pass.contact.ground_materials.iter().flatten().any(ContactMaterial::has_adhesion)
     {
-        for_ground_contacts(pass, 1.0, |ground, points, _| ground.adhere(points));
+        let model = pass.model;
+        for_ground_contacts(pass, 1.0, |cloth, ground, pool, _| {
+            let blocks = &model.cloths[cloth].blocks;
+            pool.parallel_for(blocks.len(), |block| ground.adhere(blocks.range(block)));
+        });
     }
     for cloth in 0..pass.model.cloths.len() {
         if pass.contact.collider_materials_of(cloth).iter().flatten().any(ContactMaterial::has_adhesion) {
@@ -117,7 +120,7 @@ fn for_all_contacts<R: Real>(
 }
 
 /// Calls `work` with the contacts of a cloth and each collider that it collides with.
-fn for_contacts_of<R: Real>(
+pub(super) fn for_contacts_of<R: Real>(
     pass: &mut ContactPass<'_, R>,
     cloth: usize,
     mut work: impl FnMut(&mut ColliderContacts<R>, ColliderStep<'_, R>, &ThreadPool, &ContactCounters),
@@ -142,27 +145,45 @@ fn for_contacts_of<R: Real>(
 }
 
 fn resolve_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>, thickness_scale: f64) {
-    for_ground_contacts(pass, thickness_scale, |ground, points, counters| {
-        let pushed = ground.resolve(points);
-        if pushed > 0 {
-            ground.has_touched.store(true, Ordering::Relaxed);
-            counters.contacts.fetch_add(pushed, Ordering::Relaxed);
-        }
+    let model = pass.model;
+    for_ground_contacts(pass, thickness_scale, |cloth, ground, pool, counters| {
+        let blocks = &model.cloths[cloth].blocks;
+        pool.parallel_for(blocks.len(), |block| push(ground, blocks.range(block), counters));
     });
 }
 
-/// Calls `work` with the points of all cloths that collide with the ground, block by block.
+/// Pushes some points of one cloth above the ground plane.
+pub(super) fn push_by_ground<R: Real>(
+    pass: &mut ContactPass<'_, R>,
+    of: usize,
+    points: &[u32],
+    thickness_scale: f64,
+) {
+    for_ground_contacts(pass, thickness_scale, |cloth, ground, _, counters| {
+        let own = points.iter().filter(|_| cloth == of);
+        own.for_each(|&point| push(ground, point..point + 1, counters));
+    });
+}
+
+fn push<R: Real>(ground: &GroundContact<'_, R>, points: Range<u32>, counters: &ContactCounters) {
+    let pushed = ground.resolve(points);
+    if pushed > 0 {
+        ground.has_touched.store(true, Ordering::Relaxed);
+        counters.contacts.fetch_add(pushed, Ordering::Relaxed);
+    }
+}
+
+/// Calls `work` with each cloth that collides with the ground.
 fn for_ground_contacts<R: Real>(
     pass: &mut ContactPass<'_, R>,
     thickness_scale: f64,
-    work: impl Fn(&GroundContact<'_, R>, Range<u32>, &ContactCounters) + Sync,
+    work: impl Fn(usize, &GroundContact<'_, R>, &ThreadPool, &ContactCounters),
 ) {
-    let ContactPass { state, pool, model: Model { cloths, .. }, contact, counters, .. } = pass;
+    let ContactPass { state, pool, contact, counters, .. } = pass;
     let ContactSystem { ground, ground_materials, material_maps, contact_mask, has_touched, .. } = &**contact;
-    let counters = &**counters;
     let Some(plane) = ground.in_step(pass.span) else { return };
     let (writer, start, _) = PositionWriter::of(state);
-    for (index, (cloth, material)) in cloths.iter().zip(ground_materials).enumerate() {
+    for (index, material) in ground_materials.iter().enumerate() {
         let is_resolved = contact_mask.get(index).is_none_or(|&is_resolved| is_resolved);
         let Some(material) = material.filter(|_| is_resolved) else { continue };
         let ground = GroundContact {
@@ -175,6 +196,6 @@ fn for_ground_contacts<R: Real>(
             h: R::from_f64(pass.schedule.h),
             has_touched: &has_touched[index],
         };
-        pool.parallel_for(cloth.blocks.len(), |block| work(&ground, cloth.blocks.range(block), counters));
+        work(index, &ground, pool, counters);
     }
 }

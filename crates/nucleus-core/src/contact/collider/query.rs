@@ -91,6 +91,7 @@ impl<R: Real> ColliderQuery<'_, R> {
         point_face.retain(|contact| !is_searched[contact.group as usize]);
         edge_edge.retain(|contact| !is_searched[contact.group as usize]);
         face_point.retain(|contact| !is_searched[contact.group as usize]);
+        let reach = self.reach();
         let chunks = searched_groups.len().div_ceil(GROUPS_PER_TASK);
         tasks.resize_with(tasks.len().max(chunks), Mutex::default);
         pool.parallel_for(chunks, |task| {
@@ -100,7 +101,7 @@ impl<R: Real> ColliderQuery<'_, R> {
             let end = ((task + 1) * GROUPS_PER_TASK).min(searched_groups.len());
             searched_groups[task * GROUPS_PER_TASK..end]
                 .iter()
-                .for_each(|&group| self.search_group(group, &mut found));
+                .for_each(|&group| self.search_group(group, &reach, &mut found));
         });
         // In the order of the groups, so that the result does not depend on the threads.
         for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
@@ -116,9 +117,36 @@ impl<R: Real> ColliderQuery<'_, R> {
         by_point.sort_unstable();
     }
 
-    /// Finds all contacts of a group.
-    fn search_group(&self, index: u32, found: &mut FoundContacts<R>) {
+    /// The box outside of which the motion bound of a point touches nothing, relative to the moving frame.
+    fn reach(&self) -> [Vector3<f64>; 2] {
+        let corners = self.state.bvh.bounds().corners();
+        let [low, high] = corners.map(|[x, y, z, _]| Vector3::<f64>::from([x, y, z].map(f64::from)));
+        let [from, to] = self.frame_shifts;
+        // Boxes are in single precision.
+        let rounding = (low.amax().max(high.amax()) + from.amax().max(to.amax())) * 1e-5;
+        let margin = Vector3::repeat(self.step.interaction_range().to_f64() * (1.0 + 1e-5) + rounding);
+        [low - margin - from.sup(&to), high + margin - from.inf(&to)]
+    }
+
+    /// Whether a group of free points touches nothing: most particles are far from a collider.
+    fn is_far(&self, group: &ElementGroup, [low, high]: &[Vector3<f64>; 2]) -> bool {
+        let is_outside = |&point: &u32| {
+            let anchor = self.step.anchors[point as usize];
+            let [from, to] = self.motion_bounds.of(point);
+            (0..3).any(|axis| {
+                (anchor[axis] + from.0[axis].to_f64() > high[axis])
+                    | (anchor[axis] + to.0[axis].to_f64() < low[axis])
+            })
+        };
+        group.triangles.is_empty() && self.cloth.boundary.points[group.points.clone()].iter().all(is_outside)
+    }
+
+    /// Finds all contacts of a group, unless it is out of `reach`.
+    fn search_group(&self, index: u32, reach: &[Vector3<f64>; 2], found: &mut FoundContacts<R>) {
         let group = self.cloth.boundary.group(index as usize, GROUP_SIZE);
+        if self.is_far(&group, reach) {
+            return;
+        }
         let mut boxes = std::mem::take(&mut found.boxes);
         let around = self.bound_group(&group, &mut boxes);
         let target = GroupBoxes { index, group: &group, boxes: &boxes, around: &around };
@@ -228,7 +256,8 @@ impl<R: Real> ColliderQuery<'_, R> {
         let anchor = Vector3::from(self.step.anchors[point as usize]);
         let [low, high] =
             self.motion_bounds.of(point).map(|corner| anchor + Vector3::from(corner.xyz().map(R::to_f64)));
-        let [from, to] = self.frame_shifts.map(|shift| Aabb::new(low + shift, high + shift));
-        from.union(to)
+        let [from, to] = self.frame_shifts;
+        let at = |shift: Vector3<f64>| Aabb::new(low + shift, high + shift);
+        if from == to { at(from) } else { at(from).union(at(to)) }
     }
 }

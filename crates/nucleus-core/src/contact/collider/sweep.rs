@@ -122,7 +122,7 @@ pub fn adhere<R: Real>(list: &mut ColliderContacts<R>, step: &ColliderStep<'_, R
 
 /// Repeats the contacts of one point until none pushes. A point that is still reverted in the last round moves
 /// with the face that it would pass: points that move with a rigid surface pass no part of it.
-fn resolve_point<R: Real>(
+pub(super) fn resolve_point<R: Real>(
     pairs: DisjointSlice<'_, ColliderContact<R, 1, 3>>,
     of_point: &[u32],
     step: &ColliderStep<'_, R>,
