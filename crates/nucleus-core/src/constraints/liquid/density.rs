@@ -41,7 +41,7 @@ pub struct Density {
 }
 
 /// Inputs of the pressure solver, per particle.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Load {
     /// Excess of density that must go.
     pub excess: f32,

@@ -33,13 +33,14 @@ use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, Liquid};
 use crate::math::Real;
 use crate::model::Model;
+use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::population::Population;
 use crate::schedule::StepInterval;
 use crate::state::State;
 
 use density::{Density, Load};
-use neighbours::{CHUNK, Neighbours};
+use neighbours::{CHUNK, Neighbours, chunk_range};
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
@@ -291,32 +292,45 @@ impl LiquidSolver {
         let tension = (settings.surface_tension * squared * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
         let recovery = (RECOVERY * h as f32).min(MAX_RECOVERY);
-        density.lambda.clear();
-        loads.clear();
-        for (at, &particle) in order.iter().enumerate() {
-            let is_free = state.displacement[(first + particle) as usize].0[3] > R::ZERO;
-            let mut moved = [0.0f32; 3];
-            if is_viscous {
-                moved = std::array::from_fn(|axis| viscosity.change[at][axis] * h as f32);
+        density.lambda.resize(order.len(), 0.0);
+        loads.resize(order.len(), Load::default());
+        let (lambda, loads) = (DisjointSlice::new(&mut density.lambda), DisjointSlice::new(loads));
+        let excess = DisjointSlice::new(excess);
+        pool.parallel_for(order.len().div_ceil(CHUNK as usize), |chunk| {
+            let range = chunk_range(chunk, order.len());
+            // SAFETY: chunks do not overlap.
+            #[allow(unsafe_code)]
+            let (lambda, loads) = unsafe { (lambda.run(range.clone()), loads.run(range.clone())) };
+            for (k, at) in range.map(|at| at as usize).enumerate() {
+                let particle = order[at];
+                let is_free = state.displacement[(first + particle) as usize].0[3] > R::ZERO;
+                let mut moved = [0.0f32; 3];
+                if is_viscous {
+                    moved = std::array::from_fn(|axis| viscosity.change[at][axis] * h as f32);
+                }
+                if tension > 0.0 {
+                    let pulled = surface_tension::acceleration(neighbours, chunk, k, &factors[1]);
+                    (0..3).for_each(|axis| moved[axis] += pull * pulled[axis]);
+                }
+                let now = neighbours.sums[at][0] - 1.0;
+                // SAFETY: the order holds each particle once.
+                #[allow(unsafe_code)]
+                let before = unsafe { excess.get(particle) };
+                // Remaining excess of earlier time steps. The excess of a compressible liquid follows from its pressure.
+                let kept = match settings.incompressibility < 1.0 {
+                    true => 0.0,
+                    false => (before * (1.0 - recovery)).min(now).max(0.0),
+                };
+                // SAFETY: as above.
+                #[allow(unsafe_code)]
+                unsafe {
+                    excess.set(particle, kept);
+                }
+                let inverse_mass = if is_free { 1.0 } else { 0.0 };
+                loads[k] = Load { excess: now - kept, inverse_mass, moved: moved.map(|x| x * inverse_mass) };
+                lambda[k] = pressure[particle as usize] * (h * h) as f32;
             }
-            if tension > 0.0 {
-                let chunk = at / CHUNK as usize;
-                let pulled =
-                    surface_tension::acceleration(neighbours, chunk, at % CHUNK as usize, &factors[1]);
-                (0..3).for_each(|axis| moved[axis] += pull * pulled[axis]);
-            }
-            let now = neighbours.sums[at][0] - 1.0;
-            let kept = &mut excess[particle as usize];
-            // Remaining excess of earlier time steps. The excess of a compressible liquid follows from its pressure.
-            *kept = if settings.incompressibility < 1.0 {
-                0.0
-            } else {
-                (*kept * (1.0 - recovery)).min(now).max(0.0)
-            };
-            let inverse_mass = if is_free { 1.0 } else { 0.0 };
-            loads.push(Load { excess: now - *kept, inverse_mass, moved: moved.map(|x| x * inverse_mass) });
-            density.lambda.push(pressure[particle as usize] * (h * h) as f32);
-        }
+        });
     }
 
     /// Solves for the pressure, and moves the particles and the cloth beside them.
