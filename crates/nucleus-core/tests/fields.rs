@@ -92,14 +92,25 @@ fn newtons_attraction_falls_with_the_power_of_the_distance_and_stays_finite() {
 #[test]
 fn drag_slows_a_motion_and_never_turns_it_round() {
     for magnitude in [0.1, 10.0, 1e6] {
-        let kind = FieldKind::Drag { magnitude, along: None, velocity: Vec3::zeros() };
+        let kind = FieldKind::Drag { magnitude, along: None, velocity: Vec3::zeros(), half_speed: 0.0 };
         let left = velocity_after(kind, Vec3::zeros(), Vec3::x() * 3.0).x;
         let expected = 3.0 / (1.0 + magnitude / 2.0 * COUNT_PERIOD);
         assert!((left - expected).abs() < 1e-6, "{magnitude}: {left} for {expected}");
     }
-    let kind = FieldKind::Drag { magnitude: 1e6, along: Some(Vec3::y()), velocity: Vec3::zeros() };
+    let kind =
+        FieldKind::Drag { magnitude: 1e6, along: Some(Vec3::y()), velocity: Vec3::zeros(), half_speed: 0.0 };
     let left = velocity_after(kind, Vec3::zeros(), Vec3::new(3.0, 2.0, 0.0));
     assert!((left - Vec3::x() * 3.0).norm() < 1e-3, "only along its direction: {left}");
+}
+
+#[test]
+fn drag_on_slow_points_is_weaker_where_it_is_attenuated() {
+    for (speed, share) in [(1e-6, 0.0), (1.0, 1.0 / 3.0), (2.0, 0.5), (1e5, 1.0)] {
+        let kind = FieldKind::Drag { magnitude: 10.0, along: None, velocity: Vec3::zeros(), half_speed: 2.0 };
+        let left = velocity_after(kind, Vec3::zeros(), Vec3::x() * speed).x / speed;
+        let expected = 1.0 / (1.0 + share * 5.0 * COUNT_PERIOD);
+        assert!((left - expected).abs() < 1e-4, "{speed} m/s: {left} for {expected}");
+    }
 }
 
 #[test]

@@ -21,8 +21,8 @@ fn hidden_attributes_are_shown_on_request() {
 #[test]
 fn an_attribute_without_effect_is_listed_as_such() {
     let folder = folder();
-    let said = stdout(&nucleus(folder.path(), &["attrs", "dragField"]));
-    let (_, row) = said.split_once("motionAttenuation (mna)").expect("it is listed");
+    let said = stdout(&nucleus(folder.path(), &["attrs", "nRigid"]));
+    let (_, row) = said.split_once("selfCollide (scld)").expect("it is listed");
     assert!(row.lines().nth(1).is_some_and(|line| line.ends_with("No effect yet.")), "{said}");
 }
 

@@ -20,3 +20,8 @@ pub(super) fn acceleration(
     }
     -through * (rate / (1.0 + rate * point.interval))
 }
+
+/// The factor on the resistance at a speed; it grows from 0 at rest to 1, and is one half at `half_speed`.
+pub(super) fn attenuation(speed: f64, half_speed: f64) -> f64 {
+    if half_speed > 0.0 { speed / (speed + half_speed) } else { 1.0 }
+}

@@ -122,7 +122,8 @@ impl Field {
                 &point,
             ),
             // The share belongs to the resistance, which is implicit.
-            FieldKind::Drag { magnitude, along, velocity } => {
+            FieldKind::Drag { magnitude, along, velocity, half_speed } => {
+                let share = share * drag::attenuation(point.velocity.norm(), half_speed);
                 return drag::acceleration(magnitude * share, along, velocity, &point);
             }
             FieldKind::Air { velocity, rate, component_only, spread } => {

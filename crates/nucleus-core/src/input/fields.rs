@@ -49,6 +49,8 @@ pub enum FieldKind {
         along: Option<Vector3<f64>>,
         /// Velocity of the medium in m/s.
         velocity: Vector3<f64>,
+        /// Speed of a point in m/s at which the force is half of that; 0 is none.
+        half_speed: f64,
     },
     /// Moving air, which takes points along.
     Air {

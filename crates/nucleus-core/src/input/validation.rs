@@ -221,8 +221,10 @@ fn is_valid_field(field: &Field) -> bool {
         }
         FieldKind::Radial { force } => numbers(&[*force]),
         FieldKind::Newton { magnitude, min_distance } => numbers(&[*magnitude, *min_distance]),
-        FieldKind::Drag { magnitude, along, velocity } => {
-            numbers(&[*magnitude]) && is_in_range(velocity) && along.as_ref().is_none_or(is_in_range)
+        FieldKind::Drag { magnitude, along, velocity, half_speed } => {
+            numbers(&[*magnitude, *half_speed])
+                && is_in_range(velocity)
+                && along.as_ref().is_none_or(is_in_range)
         }
         FieldKind::Air { velocity, rate, .. } => is_in_range(velocity) && numbers(&[*rate]),
         FieldKind::Turbulence { force, noise: waves } => numbers(&[*force]) && noise(waves),

@@ -167,10 +167,10 @@ pub mod drag_field {
             USE_DIRECTION: bool = toggle("useDirection", "ud", false).solved("nucleus_core::fields::drag");
             /// Share of the field's velocity that the drag is relative to.
             INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0).solved("nucleus_core::fields::drag");
-            /// Reduces the drag of a field that moves slowly.
-            MOTION_ATTENUATION: f64 = float("motionAttenuation", "mna", 0.0);
-            /// Reduces the drag on objects that move slowly.
-            SPEED_ATTENUATION: f64 = float("speedAttenuation", "spa", 0.0);
+            /// Speed of the field in scene units per second at which half of the drag is left; at rest there is none.
+            MOTION_ATTENUATION: f64 = float("motionAttenuation", "mna", 0.0).solved("nucleus_core::fields::drag");
+            /// Speed of a point in scene units per second at which half of the drag is left; at rest there is none.
+            SPEED_ATTENUATION: f64 = float("speedAttenuation", "spa", 0.0).solved("nucleus_core::fields::drag");
             /// Time of the evaluation; driven by `time1.outTime`.
             CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).elsewhere("the clock of the nucleus counts");
         }

@@ -101,10 +101,14 @@ impl FieldNode<'_> {
             FieldKind::Newton { magnitude: force, min_distance }
         } else if is(&drag_field::DRAG_FIELD) {
             let along = self.to.get(self.id, &drag_field::USE_DIRECTION);
+            // Maya documents which way these act, and no law: here half of the drag is left at a speed of this value.
+            let half = self.number(&drag_field::MOTION_ATTENUATION);
+            let moving = if half > 0.0 { velocity.norm() / (velocity.norm() + half) } else { 1.0 };
             FieldKind::Drag {
-                magnitude: self.number(&field::MAGNITUDE),
+                magnitude: self.number(&field::MAGNITUDE) * moving,
                 along: along.then(|| self.direction(&drag_field::DIRECTION)),
                 velocity: velocity * self.number(&drag_field::INHERIT_VELOCITY) * metre,
+                half_speed: self.number(&drag_field::SPEED_ATTENUATION).max(0.0) * metre,
             }
         } else if is(&air_field::AIR_FIELD) {
             self.air(velocity, metre)

@@ -74,6 +74,17 @@ fn particles_fill_the_volume_of_a_mesh_where_it_stands() {
     );
 }
 
+#[test]
+fn the_attenuations_of_a_drag_field_are_speeds_in_scene_units() {
+    let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(position: [(0, 0, 0)]),
+        "f": dragField(target: "q", magnitude: 8, speedAttenuation: 200, motionAttenuation: 24,
+            translateX: keys([(1, 0), (25, 24)]))"#;
+    let field = program(&of_nodes(nodes, "")).first_input().fields[0].kind;
+    let nucleus_core::FieldKind::Drag { magnitude, half_speed, .. } = field else { panic!("{field:?}") };
+    assert!((half_speed - 2.0).abs() < 1e-12, "200 cm/s: {half_speed}");
+    assert!((magnitude - 4.0).abs() < 1e-6, "the field moves at 24 cm/s: {magnitude}");
+}
+
 // EVIDENCE: N1.2-11  the node of a liquid becomes one for the solver
 #[test]
 fn a_liquid_at_rest_overlaps_as_often_as_its_rest_density_says() {
