@@ -14,6 +14,7 @@ use crate::memory::Size;
 use error::Fault;
 pub use error::MeshFileError;
 use gltf::GltfFile;
+use guard::guarded;
 use ply::PlyFile;
 pub use source::Frames;
 use source::Source;
@@ -23,6 +24,7 @@ mod accessor;
 mod deform;
 mod error;
 mod gltf;
+mod guard;
 mod ply;
 mod source;
 mod track;
@@ -87,11 +89,13 @@ impl MeshFile {
     pub fn open(path: impl AsRef<Path>, object: &str, frames: Frames) -> Result<Self, MeshFileError> {
         let path = path.as_ref();
         let format = MeshFormat::of(path);
-        let source: Result<Box<dyn Source>, Fault> = match format {
-            MeshFormat::Gltf => GltfFile::open(path, object, frames).map(|file| Box::new(file) as _),
-            MeshFormat::Usd => UsdFile::open(path, object, frames).map(|file| Box::new(file) as _),
-            MeshFormat::Ply | MeshFormat::Obj => PlyFile::open(path).map(|file| Box::new(file) as _),
-        };
+        let source = guarded(|| -> Result<Box<dyn Source>, Fault> {
+            Ok(match format {
+                MeshFormat::Gltf => Box::new(GltfFile::open(path, object, frames)?),
+                MeshFormat::Usd => Box::new(UsdFile::open(path, object, frames)?),
+                MeshFormat::Ply | MeshFormat::Obj => Box::new(PlyFile::open(path)?),
+            })
+        });
         let source = source.map_err(|fault| fault.in_file(path))?;
         Ok(Self { path: path.to_owned(), format, source })
     }
@@ -116,7 +120,7 @@ impl MeshFile {
     /// # Errors
     /// When the file is malformed.
     pub fn mesh(&self, frame: i64) -> Result<FileMesh, MeshFileError> {
-        self.checked_mesh(frame).map_err(|fault| fault.in_file(&self.path))
+        guarded(|| self.checked_mesh(frame)).map_err(|fault| fault.in_file(&self.path))
     }
 
     fn checked_mesh(&self, frame: i64) -> Result<FileMesh, Fault> {
@@ -142,7 +146,7 @@ impl MeshFile {
     /// # Errors
     /// When the file is malformed.
     pub fn positions(&self, frame: i64) -> Result<Vec<Vector3<f64>>, MeshFileError> {
-        self.source.positions(frame).map_err(|fault| fault.in_file(&self.path))
+        guarded(|| self.source.positions(frame)).map_err(|fault| fault.in_file(&self.path))
     }
 
     /// Merges the points that the format splits: glTF has a point for each normal and each pair of texture coordinates
