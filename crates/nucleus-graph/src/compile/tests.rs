@@ -164,7 +164,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         forceField: doubleSided, fieldMagnitude: 3, fieldDistance: 4, rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace, windShadowDistance: 33, \
         windShadowDiffusion: 0.34, windSelfShadow: true, airPushDistance: 35, airPushVorticity: 0.36, \
-        pointForceField: worldspace, pointFieldMagnitude: 37, selfAttract: 38, pointFieldDistance: 39";
+        pointForceField: worldspace, pointFieldMagnitude: 37, selfAttract: 38, pointFieldDistance: 39, tethers: true, tetherScale: 40";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
         compression_resistance: 2.0,
@@ -172,6 +172,7 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         bend_resistance: 4.0,
         stiffness: Stiffness { stretch: Some(20.0), compression: Some(21.0), shear: Some(0.0), bend: None },
         rest_length_scale: 5.0,
+        tethers: Some(40.0),
         stretch_damp: 6.0,
         damp: 7.0,
         drag: 8.0,
