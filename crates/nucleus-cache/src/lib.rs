@@ -10,6 +10,7 @@
 //! | how the mesh of an object changes                  | [`FrameRecorder::change_mesh`], [`Playback::object_at`] |
 //! | how a damaged file is recovered                    | [`Playback::recover`]                     |
 //! | how a run is resumed from its cache                | [`Recorder::resume`]                      |
+//! | the surface of particles as a mesh                 | [`LiquidSurface`]                         |
 //! | the metadata of a run: scene, frames, units        | [`RunInfo`]                               |
 //! | the bytes of a message                             | `messages/`                               |
 //! | how chunks isolate frames from each other          | `container/writer.rs`, `container/chunk.rs` |
@@ -59,6 +60,7 @@ mod camera;
 mod container;
 mod corruption;
 mod error;
+mod liquid_surface;
 mod messages;
 mod read;
 mod run;
@@ -70,6 +72,7 @@ pub use camera::{Camera, CameraView, FilmFit};
 pub use container::part_file::part_path;
 pub use corruption::CorruptionReport;
 pub use error::{OpenError, ReadError, RecordError};
+pub use liquid_surface::LiquidSurface;
 pub use messages::checkpoint::Checkpoint;
 pub use read::diff::{Comparison, Difference, PointDifference, compare};
 pub use read::playback::{Playback, Sizes};

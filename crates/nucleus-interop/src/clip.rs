@@ -2,10 +2,11 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_cache::{Camera, CameraView, ObjectInfo, ObjectKind, Playback, TextureCoordinates};
+use nucleus_cache::{
+    Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, TextureCoordinates,
+};
 
 use crate::error::ExportError;
-use crate::liquid_surface::{LiquidSurface, spacing, surface};
 
 /// Which part of a cache to export.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +58,7 @@ pub struct Clip<'a, R> {
     objects: Vec<usize>,
     samples: Vec<Sample>,
     scale: f64,
-    /// By object, the spacing of the particles whose surface is exported.
+    /// By object, the spacing in scene units of the particles whose surface is exported.
     spacings: Vec<Option<f32>>,
 }
 
@@ -72,23 +73,9 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         let spacings = vec![None; objects.len()];
         let mut clip = Self { cache, objects, samples, scale: selection.scale, spacings };
         for object in (0..clip.objects.len()).filter(|_| selection.surface) {
-            clip.spacings[object] = clip.spacing(object)?;
+            clip.spacings[object] = clip.cache.particle_spacing(clip.objects[object])?;
         }
         Ok(clip)
-    }
-
-    /// The spacing of an object's particles at the first sample that has several; `None` for other objects.
-    fn spacing(&mut self, object: usize) -> Result<Option<f32>, ExportError> {
-        if self.object(object).kind != ObjectKind::Particles {
-            return Ok(None);
-        }
-        for sample in 0..self.samples.len() {
-            let found = spacing(&self.positions(object, sample)?);
-            if found.is_some() {
-                return Ok(found);
-            }
-        }
-        Ok(None)
     }
 
     /// The surface of an object's particles at a sample in exported units; `None` for all other objects.
@@ -101,7 +88,8 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         sample: usize,
     ) -> Result<Option<LiquidSurface>, ExportError> {
         let Some(spacing) = self.spacings[object] else { return Ok(None) };
-        Ok(Some(surface(&self.positions(object, sample)?, spacing)))
+        let spacing = (f64::from(spacing) * self.scale) as f32;
+        Ok(Some(LiquidSurface::of(&self.positions(object, sample)?, spacing)))
     }
 
     /// The objects with their first mesh, in the order of the cache.

@@ -8,7 +8,6 @@
 //! | how names are made valid, and files appear complete    | `output.rs`                            |
 //! | OBJ and PLY; PC2 and MDD                               | `mesh_files.rs`; `point_caches.rs`     |
 //! | USD as text and as binary                              | `usd/`                                 |
-//! | surfaces of liquids                                   | `liquid_surface.rs`                    |
 //! | materials and normals, for the formats that have them  | `materials.rs`, `normals.rs`           |
 //! | the bytes of another format                            | its file: `glb.rs`, `vtu.rs`, …        |
 //!
@@ -22,7 +21,6 @@ mod error;
 mod export;
 mod foxglove;
 mod glb;
-mod liquid_surface;
 mod materials;
 mod mesh_files;
 mod ncache;

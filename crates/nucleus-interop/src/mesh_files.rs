@@ -3,12 +3,11 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::{ObjectInfo, TextureCoordinates};
+use nucleus_cache::{LiquidSurface, ObjectInfo, TextureCoordinates};
 use nucleus_core::Faces;
 
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
-use crate::liquid_surface::LiquidSurface;
 use crate::materials;
 use crate::output::{OutFile, Output, file_names};
 

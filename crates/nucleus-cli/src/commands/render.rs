@@ -58,6 +58,9 @@ pub struct Render {
     /// Draw the edges of the faces.
     #[arg(long)]
     wireframe: bool,
+    /// Draw the surface of particles as a mesh, instead of the particles: for liquids.
+    #[arg(long)]
+    surface: bool,
     /// What is behind the objects: `studio`, a colour `#rrggbb`, or `none` for a still with opacities and without a floor.
     #[arg(long, value_name = "BACKGROUND", default_value = "studio", value_parser = parse_background)]
     background: Background,
@@ -143,6 +146,7 @@ impl Render {
             size: self.size,
             colouring,
             wireframe: self.wireframe,
+            surfaces: self.surface,
             background: self.background,
             tints: self.tint.clone(),
             samples: self.samples,

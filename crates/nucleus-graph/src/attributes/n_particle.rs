@@ -212,7 +212,7 @@ node_table! {
     }
     "Shading" {
         /// Density at the drawn surface, without effect on the motion.
-        THRESHOLD: f64 = float("threshold", "thr", 0.1).min(0.0).soft(0.0, 2.0).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        THRESHOLD: f64 = float("threshold", "thr", 0.1).min(0.0).soft(0.0, 2.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Opacity of the particles.
         OPACITY: f64 = float("opacity", "op", 1.0).min(0.0).max(1.0).solved("nucleus_core::particles::ramps").fixed();
         /// Ramp of factors on opacity, per particle.
@@ -300,32 +300,32 @@ node_table! {
     }
     "Output Mesh" {
         /// Factor on the radius for the surface around the particles.
-        BLOBBY_RADIUS_SCALE: f64 = float("blobbyRadiusScale", "brs", 1.0).min(0.0).soft(0.0, 10.0).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        BLOBBY_RADIUS_SCALE: f64 = float("blobbyRadiusScale", "brs", 1.0).min(0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stretch of the surface along the motion.
-        MOTION_STREAK: f64 = float("motionStreak", "mstr", 0.0).soft(0.0, 10.0).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        MOTION_STREAK: f64 = float("motionStreak", "mstr", 0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores colours on the surface.
-        COLOR_PER_VERTEX: bool = toggle("colorPerVertex", "cpvx", false).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        COLOR_PER_VERTEX: bool = toggle("colorPerVertex", "cpvx", false).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores opacity on the surface.
-        OPACITY_PER_VERTEX: bool = toggle("opacityPerVertex", "opvx", false).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        OPACITY_PER_VERTEX: bool = toggle("opacityPerVertex", "opvx", false).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores incandescence on the surface.
-        INCANDESCENCE_PER_VERTEX: bool = toggle("incandescencePerVertex", "ipvx", false).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        INCANDESCENCE_PER_VERTEX: bool = toggle("incandescencePerVertex", "ipvx", false).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores velocities on the surface.
-        VELOCITY_PER_VERTEX: bool = toggle("velocityPerVertex", "vpvx", true).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        VELOCITY_PER_VERTEX: bool = toggle("velocityPerVertex", "vpvx", true).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores texture coordinates on the surface.
-        UVW_PER_VERTEX: bool = toggle("uvwPerVertex", "upvx", false).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        UVW_PER_VERTEX: bool = toggle("uvwPerVertex", "upvx", false).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Computes the normals of the surface from the gradient of the density.
-        USE_GRADIENT_NORMALS: bool = toggle("useGradientNormals", "ugn", false).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        USE_GRADIENT_NORMALS: bool = toggle("useGradientNormals", "ugn", false).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Size of the triangles of the surface.
-        MESH_TRIANGLE_SIZE: f64 = float("meshTriangleSize", "mts", 0.5).min(0.0).soft(0.0, 10.0).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        MESH_TRIANGLE_SIZE: f64 = float("meshTriangleSize", "mts", 0.5).min(0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Largest number of cells along an axis.
-        MAX_TRIANGLE_RESOLUTION: i64 = int("maxTriangleResolution", "mtrr", 100).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        MAX_TRIANGLE_RESOLUTION: i64 = int("maxTriangleResolution", "mtrr", 100).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Number of smoothing iterations of the surface.
-        MESH_SMOOTHING_ITERATIONS: i64 = int("meshSmoothingIterations", "msit", 0).min(0.0).soft(0.0, 10.0).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        MESH_SMOOTHING_ITERATIONS: i64 = int("meshSmoothingIterations", "msit", 0).min(0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Elements of the surface.
-        MESH_METHOD: Choice = choice("meshMethod", "mmd", 0, &[(0, "Triangle Mesh"), (1, "Tetrahedra"), (2, "Acute Tetrahedra"), (3, "Quad Mesh")]).elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        MESH_METHOD: Choice = choice("meshMethod", "mmd", 0, &[(0, "Triangle Mesh"), (1, "Tetrahedra"), (2, "Acute Tetrahedra"), (3, "Quad Mesh")]).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
     }
     "Connections" {
         /// The surface around the particles.
-        OUT_MESH: Plugged = plug("outMesh", "oms", Data::Mesh).output().elsewhere("no surface is made of particles; `nucleus export` writes them as points, of which other tools make one");
+        OUT_MESH: Plugged = plug("outMesh", "oms", Data::Mesh).output().elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
     }
 }

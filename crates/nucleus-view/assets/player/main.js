@@ -24,6 +24,7 @@ const KEYS = {
   t: (player) => player.nextCamera(),
   f: (player) => player.frameAll(),
   w: (player) => player.toggleWireframe(),
+  u: (player) => player.toggleSurface(),
   s: (player) => player.colourBy("strain"),
   v: (player) => player.colourBy("speed"),
   x: (player) => player.colourBy("contacts"),
@@ -38,7 +39,7 @@ const KEYS = {
   "]": (player) => player.scaleColours(2),
   "?": () => byId("help").toggleAttribute("open"),
 };
-const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wireframe: "w", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
+const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wireframe: "w", surface: "u", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
 
 function listen(player) {
   document.addEventListener("keydown", (event) => {

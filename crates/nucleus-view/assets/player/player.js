@@ -9,6 +9,7 @@ import {
 } from "./panel.js";
 import { Scene, unionOf } from "./scene.js";
 import { Series } from "./series.js";
+import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
 
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
@@ -62,6 +63,7 @@ export class Player {
     showObjects(scene, this.redraw);
     showSelections(scene, this.redraw);
     showIncomplete(cache);
+    byId("surface").hidden = !hasSurfaces(cache);
     byId("camera").hidden = cache.run.cameras.length === 0;
     camera.track = cache.run.cameras[0] ?? null;
     this.take(cache);
@@ -126,7 +128,8 @@ export class Player {
   async show(cache, index, timeIndex) {
     const { scene } = this;
     try {
-      const state = await cache.state(index, timeIndex);
+      const recorded = await cache.state(index, timeIndex);
+      const state = scene.look.surface ? await withSurfaces(cache, recorded) : recorded;
       const twin = await this.twinOf(cache, state);
       await this.findSpeed(cache, state);
       scene.objects.forEach((object, k) => (object.contacts = state.contacts[k]));
@@ -225,6 +228,17 @@ export class Player {
     look.wireframe = !look.wireframe;
     byId("wireframe").setAttribute("aria-pressed", look.wireframe);
     this.redraw();
+  }
+
+  // Draws particles as a surface, or as particles again.
+  toggleSurface() {
+    const { look } = this.scene;
+    if (byId("surface").hidden) {
+      return;
+    }
+    look.surface = !look.surface;
+    byId("surface").setAttribute("aria-pressed", look.surface);
+    this.timeline.go(this.timeline.index, this.timeline.timeIndex);
   }
 
   // Colours the objects by a quantity; a second call returns to a colour per object. Without a scale, that of the

@@ -27,7 +27,7 @@ export class Scene {
     this.twins = [];
     this.selections = [];
     // Colour by "object", "strain", "speed", "difference" or "contacts"; a scalar has a value of full saturation.
-    this.look = { wireframe: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
+    this.look = { wireframe: false, surface: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
 
   // Replaces the objects. `twins` are the objects of the other run, if one is compared.

@@ -3,8 +3,8 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::{CameraView, ObjectKind, Playback};
-use nucleus_core::ParticleLook;
+use nucleus_cache::{CameraView, LiquidSurface, ObjectKind, Playback};
+use nucleus_core::{Faces, ParticleLook};
 
 use super::animation::AnimationWriter;
 use super::camera::Camera;
@@ -40,6 +40,8 @@ pub struct Film<'a, R> {
     style: Style,
     /// Whether the floor is the ground plane, which may move.
     is_ground_plane: bool,
+    /// By object, the spacing of the particles whose surface is drawn.
+    spacings: Vec<Option<f32>>,
     /// The visibility buffer of the last picture.
     fragments: Vec<Fragment>,
 }
@@ -64,7 +66,19 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let fps = cache.run().frames_per_second / every as f64;
         let style = Style { ground, ..style };
         let (scene_camera, fragments) = (None, Vec::new());
-        Ok(Self { cache, moments, fps, camera, scene_camera, stage, style, is_ground_plane, fragments })
+        let spacings = spacings(cache, style.surfaces).map_err(|source| ViewError::Read { source })?;
+        Ok(Self {
+            cache,
+            moments,
+            fps,
+            camera,
+            scene_camera,
+            stage,
+            style,
+            is_ground_plane,
+            spacings,
+            fragments,
+        })
     }
 
     /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
@@ -166,7 +180,10 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If the index is out of range, or the frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
-        let (states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
+        let (mut states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
+        for (state, spacing) in states.iter_mut().zip(&self.spacings) {
+            spacing.iter().for_each(|spacing| state.cover(*spacing));
+        }
         let style = Style { ground: self.ground_at(moment), ..self.style.clone() };
         Ok(draw_with(&mut self.fragments, &objects(self.cache, moment, &states)?, &camera, &style))
     }
@@ -215,6 +232,26 @@ fn norm(vector: [f64; 3]) -> f64 {
 struct ObjectState {
     positions: Vec<[f32; 3]>,
     looks: Option<Vec<ParticleLook>>,
+    /// The faces of the surface of its particles, where that is drawn.
+    surface: Option<Faces>,
+}
+
+impl ObjectState {
+    /// Replaces particles by their surface.
+    fn cover(&mut self, spacing: f32) {
+        let LiquidSurface { positions, quads } = LiquidSurface::of(&self.positions, spacing);
+        let faces = quads.iter().map(|quad| &quad[..]).collect();
+        *self = Self { positions, looks: None, surface: Some(faces) };
+    }
+}
+
+/// The spacing of the particles of each object; `None` for other objects, and where no surface is wanted.
+fn spacings<R: Read + Seek>(
+    cache: &mut Playback<R>,
+    is_wanted: bool,
+) -> Result<Vec<Option<f32>>, nucleus_cache::ReadError> {
+    let objects = 0..cache.objects().len();
+    objects.map(|object| if is_wanted { cache.particle_spacing(object) } else { Ok(None) }).collect()
 }
 
 /// Every object at a recorded time.
@@ -222,7 +259,7 @@ fn states<R: Read + Seek>(cache: &mut Playback<R>, moment: usize) -> Result<Vec<
     let objects = 0..cache.objects().len();
     let read = |object| {
         let positions = cache.positions(object, moment)?;
-        Ok(ObjectState { positions, looks: cache.looks(object, moment)? })
+        Ok(ObjectState { positions, looks: cache.looks(object, moment)?, surface: None })
     };
     objects.map(read).collect::<Result<_, _>>().map_err(|source| ViewError::Read { source })
 }
@@ -240,14 +277,14 @@ fn objects<'a, R: Read + Seek>(
         .map(|(object, state)| Object {
             name: &object.name,
             kind: match object.kind {
-                ObjectKind::Cloth => Kind::Cloth,
+                ObjectKind::Particles if state.surface.is_none() => Kind::Particles,
+                ObjectKind::Cloth | ObjectKind::Particles => Kind::Cloth,
                 ObjectKind::Collider => Kind::Collider,
-                ObjectKind::Particles => Kind::Particles,
             },
-            faces: &object.faces,
+            faces: state.surface.as_ref().unwrap_or(&object.faces),
             positions: &state.positions,
             looks: state.looks.as_deref(),
-            rest: Some(&object.rest),
+            rest: Some(&object.rest[..]).filter(|_| state.surface.is_none()),
             radius: radii.get(&object.name).map(|radius| *radius as f32),
         })
         .collect())

@@ -52,6 +52,8 @@ pub struct Style {
     pub colouring: Colouring,
     /// Whether the edges of the faces are drawn.
     pub wireframe: bool,
+    /// Whether the pictures of a cache show the surface of particles as a mesh, instead of the particles.
+    pub surfaces: bool,
     /// Where the floor is.
     pub ground: Ground,
 }
@@ -66,6 +68,7 @@ impl Default for Style {
             tints: Vec::new(),
             colouring: Colouring::Objects,
             wireframe: false,
+            surfaces: false,
             ground: Ground::Below,
         }
     }

@@ -5,6 +5,7 @@ mod live;
 mod request;
 mod response;
 mod server;
+mod surface;
 
 pub use live::LiveRun;
 pub use server::{Player, serve, serve_both, serve_live};

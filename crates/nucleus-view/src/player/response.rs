@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::live::LiveRun;
 use super::request::{ByteRange, Request};
+use super::surface::surface;
 
 /// The caches that the page can request.
 #[derive(Debug)]
@@ -38,6 +39,9 @@ const CACHE: &str = "/cache.mcap";
 /// The path of the second cache.
 const OTHER: &str = "/other.mcap";
 
+/// Before the object and the recorded time of a surface of particles.
+const SURFACE: &str = "/surface/";
+
 /// The path of the state of a live run.
 const LIVE: &str = "/live.json";
 
@@ -56,6 +60,9 @@ pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -
         (LIVE, _) => return send_live(&caches.shown, with_body, to),
         (OTHER, Some(other)) => return send_cache(request, other, with_body, to),
         _ => {}
+    }
+    if let Some(wanted) = request.path.strip_prefix(SURFACE) {
+        return send_surface(&caches.shown.path(), wanted, with_body, to);
     }
     match asset(&request.path) {
         Some(asset) => send_asset(asset, with_body, to),
@@ -78,6 +85,12 @@ fn send_live(shown: &Shown, with_body: bool, to: &mut impl Write) -> io::Result<
     let text = run.to_json();
     head(to, "200 OK", text.len() as u64, "Content-Type: application/json\r\n")?;
     if with_body { to.write_all(text.as_bytes()) } else { Ok(()) }
+}
+
+fn send_surface(cache: &Path, wanted: &str, with_body: bool, to: &mut impl Write) -> io::Result<()> {
+    let Some(bytes) = surface(cache, wanted) else { return refuse(to, "404 Not Found", "") };
+    head(to, "200 OK", bytes.len() as u64, "Content-Type: application/octet-stream\r\n")?;
+    if with_body { to.write_all(&bytes) } else { Ok(()) }
 }
 
 /// The length is read at each request, because the cache of a running simulation grows.
@@ -169,6 +182,7 @@ const ASSETS: &[Asset] = assets![
     "/player/shading.js" as SCRIPT,
     "/player/series.js" as SCRIPT,
     "/player/source.js" as SCRIPT,
+    "/player/surface.js" as SCRIPT,
     "/player/timeline.js" as SCRIPT,
     "/vendor/fzstd.mjs" as SCRIPT,
 ];

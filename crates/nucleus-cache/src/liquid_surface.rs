@@ -7,6 +7,11 @@
 //! spray that is scattered widely takes no more memory than as many particles close together.
 
 use std::collections::BTreeMap;
+use std::io::{Read, Seek};
+
+use crate::error::ReadError;
+use crate::read::playback::Playback;
+use crate::run::ObjectKind;
 
 /// The reach of a particle in its spacings.
 const REACH: f32 = 2.0;
@@ -16,6 +21,8 @@ const RADIUS: f32 = 0.55;
 const CELLS: f32 = 2.0;
 /// Weight below which the distance grows: between particles that are far apart their mean is no surface.
 const LEAST_WEIGHT: f32 = 0.1;
+/// Cells from the origin, at most: particles beyond, as of a broken run, have no surface.
+const MAX_CELLS: f32 = 1e9;
 /// Cells along the side of a block.
 const SIDE: i32 = 8;
 /// Corners of a block.
@@ -33,15 +40,35 @@ struct Block {
 
 /// A surface.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct LiquidSurface {
+pub struct LiquidSurface {
     /// Its points, in the units of the particles.
-    pub(crate) positions: Vec<[f32; 3]>,
+    pub positions: Vec<[f32; 3]>,
     /// Its faces, counterclockwise seen from outside.
-    pub(crate) quads: Vec<[u32; 4]>,
+    pub quads: Vec<[u32; 4]>,
+}
+
+impl<R: Read + Seek> Playback<R> {
+    /// The spacing of an object's particles in scene units: the median distance to the nearest other, at the first recorded
+    /// time that has several. `None` for other objects.
+    ///
+    /// # Errors
+    /// If a frame is damaged.
+    pub fn particle_spacing(&mut self, object: usize) -> Result<Option<f32>, ReadError> {
+        if self.objects()[object].kind != ObjectKind::Particles {
+            return Ok(None);
+        }
+        for sample in 0..self.time_samples().len() {
+            let found = spacing(&self.positions(object, sample)?);
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
 }
 
 /// The median distance of particles to the nearest other; `None` for fewer than two.
-pub(crate) fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
+fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
     // Sorted along x, the nearest one is soon found; of many, some are enough.
     let mut sorted = particles.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -62,19 +89,23 @@ pub(crate) fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
     all.get(all.len() / 2).map(|square| square.sqrt()).filter(|spacing| *spacing > 0.0)
 }
 
-/// The surface of particles of this spacing.
-pub(crate) fn surface(particles: &[[f32; 3]], spacing: f32) -> LiquidSurface {
-    let mut grid = Grid { width: spacing / CELLS, blocks: BTreeMap::new() };
-    particles.iter().for_each(|place| grid.add(*place));
-    let mut surface = LiquidSurface::default();
-    let keys: Vec<[i32; 3]> = grid.blocks.keys().copied().collect();
-    for &key in &keys {
-        grid.add_points(key, &mut surface.positions);
+impl LiquidSurface {
+    /// The surface of particles of this spacing, in their units.
+    pub fn of(particles: &[[f32; 3]], spacing: f32) -> Self {
+        let mut grid = Grid { width: spacing / CELLS, blocks: BTreeMap::new() };
+        let is_in_reach = |place: &&[f32; 3]| place.iter().all(|x| (x / grid.width).abs() < MAX_CELLS);
+        let reached: Vec<_> = particles.iter().filter(is_in_reach).collect();
+        reached.into_iter().for_each(|place| grid.add(*place));
+        let mut surface = Self::default();
+        let keys: Vec<[i32; 3]> = grid.blocks.keys().copied().collect();
+        for &key in &keys {
+            grid.add_points(key, &mut surface.positions);
+        }
+        for &key in &keys {
+            grid.add_quads(key, &mut surface.quads);
+        }
+        surface
     }
-    for &key in &keys {
-        grid.add_quads(key, &mut surface.quads);
-    }
-    surface
 }
 
 struct Grid {
@@ -220,7 +251,7 @@ mod tests {
     fn the_surface_is_closed_and_holds_the_volume_of_its_particles() {
         let spacing = 0.02;
         let particles = ball(0.2, spacing);
-        let surface = surface(&particles, spacing);
+        let surface = LiquidSurface::of(&particles, spacing);
         let mut edges = BTreeMap::new();
         for quad in &surface.quads {
             for k in 0..4 {
@@ -237,7 +268,7 @@ mod tests {
     #[test]
     fn a_single_particle_is_a_ball_and_particles_far_apart_are_not_joined() {
         let particles = [[1.0, 2.0, 3.0], [1.36, 2.0, 3.0]];
-        let found = surface(&particles, 0.1);
+        let found = LiquidSurface::of(&particles, 0.1);
         assert!(!found.quads.is_empty());
         for place in &found.positions {
             let distance = |particle: &[f32; 3]| {
@@ -247,6 +278,14 @@ mod tests {
             // The ball is as wide as two cells: means of crossings are inside of it.
             assert!((0.5..1.05).contains(&nearest), "{nearest}");
         }
+    }
+
+    #[test]
+    fn particles_that_are_nowhere_change_no_surface() {
+        let mut particles = ball(0.1, 0.02);
+        let alone = LiquidSurface::of(&particles, 0.02);
+        particles.extend([[f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0], [0.0, 0.0, -f32::MAX]]);
+        assert_eq!(LiquidSurface::of(&particles, 0.02), alone);
     }
 
     #[test]

@@ -1,0 +1,86 @@
+//! The surface of particles, in pictures and from the server of the player.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
+
+use nalgebra::Vector3;
+use nucleus_cache::{ObjectInfo, ObjectKind, Playback, Recorder, RunInfo, Source};
+use nucleus_core::{Cloth, ClothLists, Faces, Mass, ModelBuilder, Solver, Surface};
+use nucleus_view::{Background, Camera, Film, Ground, Image, Style, serve};
+
+const SIDE: u32 = 12;
+const SPACING: f32 = 0.1;
+const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
+
+/// Writes a cache of one frame: a cube of particles about the origin, whose balls leave gaps.
+fn write(path: &Path) {
+    let at = |k: u32| (k as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
+    let place = |k: u32| [at(k % SIDE), at(k / SIDE % SIDE), at(k / (SIDE * SIDE))];
+    let rest: Vec<[f32; 3]> = (0..SIDE.pow(3)).map(place).collect();
+    let positions = rest.iter().map(|place| Vector3::from(place.map(f64::from))).collect();
+    let surface = Surface { positions, faces: Faces::default() };
+    let mut builder = ModelBuilder::new();
+    let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE)).unwrap();
+    let (name, kind) = ("wa/ter".to_owned(), ObjectKind::Particles);
+    let radii = BTreeMap::from([(name.clone(), f64::from(0.15 * SPACING))]);
+    let object = ObjectInfo { name, kind, faces: Faces::default(), rest };
+    let run = RunInfo { radii, ..RunInfo::default() };
+    let mut recorder = Recorder::create(path, &run, vec![(Source::Cloth(cloth), object)]).unwrap();
+    recorder.record_start(&Solver::<f32>::new(builder, 1)).unwrap();
+    recorder.finish().unwrap();
+}
+
+fn picture(cache: &mut Playback, surfaces: bool) -> Image {
+    let background = Background::Colour(GREEN);
+    let style =
+        Style { size: [64, 64], samples: 1, ground: Ground::None, background, surfaces, ..Style::default() };
+    let camera = Camera { eye: [0.0, 0.0, 4.0], target: [0.0; 3], field_of_view: 25.0, ..Camera::default() };
+    Film::of(cache, 1, style).unwrap().seen_by(camera).picture(0).unwrap()
+}
+
+/// The pixels of a square in the middle through which the background shows.
+fn gaps(image: &Image) -> usize {
+    let pixels = (24..40).flat_map(|x| (24..40).map(move |y| image.pixel(x, y)));
+    pixels.filter(|[red, green, blue]| *green > 200 && *red < 50 && *blue < 50).count()
+}
+
+#[test]
+fn a_surface_closes_the_gaps_between_particles() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    write(&path);
+    let mut cache = Playback::open(&path).unwrap();
+    let spacing = cache.particle_spacing(0).unwrap().unwrap();
+    assert!((spacing / SPACING - 1.0).abs() < 1e-3, "{spacing}");
+    assert!(gaps(&picture(&mut cache, false)) > 20, "one looks through between balls");
+    assert_eq!(gaps(&picture(&mut cache, true)), 0);
+}
+
+fn get(address: SocketAddr, path: &str) -> (String, Vec<u8>) {
+    let mut stream = TcpStream::connect(address).unwrap();
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    let end = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").unwrap();
+    let status = String::from_utf8_lossy(&answer[9..12]).into_owned();
+    (status, answer[end + 4..].to_vec())
+}
+
+#[test]
+fn the_player_gets_the_surface_of_a_recorded_time_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    write(&path);
+    let player = serve(&path, 0).unwrap();
+    let frame = Playback::open(&path).unwrap().time_samples()[0].frame;
+    let (status, body) = get(player.address(), &format!("/surface/wa%2Fter/{frame}/0"));
+    assert_eq!(status, "200");
+    let word = |at: usize| u32::from_le_bytes(body[4 * at..4 * at + 4].try_into().unwrap()) as usize;
+    assert_eq!(body.len(), 8 + 12 * word(0) + 16 * word(1));
+    assert!(word(1) > 100);
+    for path in ["wa%2Fter/99/0", "wa%2Fter/1/7", "other/1/0", "wa%2Fter", "", "%/1/0", "../../secret/1/0"] {
+        assert_eq!(get(player.address(), &format!("/surface/{path}")).0, "404", "{path}");
+    }
+}
