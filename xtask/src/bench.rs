@@ -13,6 +13,7 @@
 //! | contact scenes of the gallery                    | [`gallery`]   |
 //! | a timed scene                                    | [`timed`]     |
 //! | cost of a link, a million points, threads        | [`scaling`]   |
+//! | particles: free, colliding, liquid               | [`particles`] |
 //! | cost of each feature                             | [`features`]  |
 //! | speed of caches                                  | [`caches`]    |
 //! | collected results                                | [`report`]    |
@@ -30,6 +31,7 @@ pub mod features;
 mod gallery;
 mod mesh;
 mod output;
+mod particles;
 mod peers;
 mod report;
 mod run;
@@ -94,6 +96,8 @@ enum Part {
     Threads,
     /// Up to a million points
     Scale,
+    /// Up to a million particles: free, colliding, liquid
+    Particles,
     /// Features added one by one to the same sheet
     Features,
 }
@@ -136,6 +140,7 @@ impl Part {
             }
             Self::Threads => scaling::threads(sizes, threads, *repeat, report),
             Self::Scale => scaling::scale(*repeat, report),
+            Self::Particles => particles::run(threads, report),
             Self::Features => features::run(*repeat, report),
         }
     }
@@ -144,7 +149,7 @@ impl Part {
 impl Options {
     /// Options of `docs/benchmarks.md`: comparison with other solvers, all sizes.
     pub fn of_benchmarks(root: &Path) -> Self {
-        let parts = [Part::W1, Part::W2, Part::Hang, Part::Threads, Part::Scale];
+        let parts = [Part::W1, Part::W2, Part::Hang, Part::Threads, Part::Scale, Part::Particles];
         Self::of_page(&parts, &[33, 65, 129, 257], root.join("docs/benchmarks.md"))
     }
 
