@@ -59,7 +59,8 @@ fn no_point_is_farther_from_a_pin_than_the_flat_sheet_reaches() {
     }
 }
 
-// Without them the strip stretches by more than half of its length: a light point takes nearly all of each correction.
+// The hem weighs 0.96 N, and the strip carries 312 N: it stretches by 0.3 %. Sweeps alone leave far more, because a light
+// point takes nearly all of each correction.
 #[test]
 fn a_light_strip_holds_a_hem_of_a_thousand_times_the_mass() {
     let strip = grid(2, 33, Vec3::x() / 32.0, -Vec3::y());
@@ -75,7 +76,7 @@ fn a_light_strip_holds_a_hem_of_a_thousand_times_the_mass() {
         (0..24).map(|_| solver.step(&input, &mut ()).max_strain).fold(0.0, f64::max)
     };
     let [with, without] = [tethered(), still()].map(worst);
-    assert!(with < 0.02 && without > 0.5, "{with} with tethers, {without} without");
+    assert!(with < 0.01 && without > 0.1, "{with} with tethers, {without} without");
 }
 
 /// Positions after some frames.
