@@ -18,6 +18,7 @@ mod commands;
 mod diagnostics;
 mod figures;
 mod files;
+mod hanging;
 mod initial_state;
 mod options;
 mod output;

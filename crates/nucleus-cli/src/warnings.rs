@@ -101,7 +101,8 @@ pub fn large_strain(statistics: &RunStatistics, checks: &[Outcome]) -> Option<St
         format!(
             "warning: cloth is stretched by {percent} at frame {frame}: try more `evaluations` or `subSteps` of the \
              nucleus (`nucleus trade` measures how many are needed); a flat, symmetric sheet that cannot buckle folds with \
-             a small `initialPerturbation` of the cloth; or allow it with the check `{MAX_STRETCH}({above})`"
+             a small `initialPerturbation` of the cloth; cloth that hangs by pins keeps its length with `tethers`; or \
+             allow it with the check `{MAX_STRETCH}({above})`"
         )
     })
 }

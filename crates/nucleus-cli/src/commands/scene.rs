@@ -8,9 +8,9 @@ use nucleus_cache::atomic_file;
 use nucleus_graph::scene::{Scene, format_scene, read_scene_text};
 
 use crate::process::Outcome;
-use crate::{diagnostics, files, output};
+use crate::{diagnostics, files, hanging, output};
 
-/// Reads and compiles a scene and prints all its errors and warnings.
+/// Reads and compiles a scene and prints all its errors and warnings, and hints at cloth whose budget is too small.
 #[derive(Debug, Args)]
 pub struct Check {
     /// The scene (.ron).
@@ -24,8 +24,9 @@ impl Check {
         let count = diagnostics::count(&file.diagnostics);
         match file.report()? {
             None => Ok(Outcome::InvalidInput),
-            Some(_) => {
+            Some((_, program, _)) => {
                 output::report(&format!("`{}` can run: {count}\n", self.scene.display()));
+                hanging::hints(&program).iter().for_each(|hint| output::report(&format!("{hint}\n")));
                 Ok(Outcome::Success)
             }
         }
