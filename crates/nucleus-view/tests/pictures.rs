@@ -111,6 +111,19 @@ fn a_sheet_casts_a_shadow_on_the_floor_below_it_only() {
 }
 
 #[test]
+fn a_floor_that_is_seen_from_below_is_not_drawn() {
+    let faces = one_face();
+    let sheet = square(1.0, 1.0);
+    let picture = |eye: [f32; 3], ground: Ground| {
+        let camera = Camera { eye, ..FROM_ABOVE };
+        draw(&[object(Kind::Cloth, &faces, &sheet)], &camera, &Style { ground, ..small() })
+    };
+    let (above, below) = ([0.0, 4.0, 9.0], [0.0, -2.0, 9.0]);
+    assert_eq!(picture(below, Ground::At(0.0)), picture(below, Ground::None));
+    assert_ne!(picture(above, Ground::At(0.0)), picture(above, Ground::None));
+}
+
+#[test]
 fn moving_scene_and_camera_together_does_not_change_the_picture() {
     let faces = one_face();
     let far = |by: f32| square(0.5, 1.0).into_iter().map(|[x, y, z]| [x + by, y, z]).collect::<Vec<_>>();

@@ -32,7 +32,9 @@ pub(super) fn draw_with(
     light.find_sky_visibility(&mut mesh);
     visibility::draw(&mesh, &view, fragments);
     let is_transparent = style.background == Background::Transparent;
-    let floor = if is_transparent { None } else { floor_height(objects, style.ground) };
+    // Seen from below, a floor would hide the scene.
+    let is_seen = |height: &f32| !is_transparent && *height <= view.eye.y;
+    let floor = floor_height(objects, style.ground).filter(is_seen);
     let options = Options {
         floor,
         wireframe: style.wireframe,
@@ -227,7 +229,7 @@ impl Shader<'_> {
         let slack = self.view.distance * 1e-3;
         self.floor.as_ref().is_some_and(|floor| {
             let point = self.view.eye + self.ray(place) / fragment.inverse_depth;
-            floor.hides(self.view, &point, slack)
+            floor.hides(&point, slack)
         })
     }
 

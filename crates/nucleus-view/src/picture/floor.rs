@@ -12,7 +12,7 @@ const FLOOR: [f32; 3] = [0.545, 0.54, 0.53];
 /// Factor on the colour of grid lines.
 const LINE_DARKER: f32 = 0.86;
 
-/// A floor, prepared for one view.
+/// A floor, prepared for one view from above.
 pub(super) struct Floor {
     height: f32,
     centre: Vec3,
@@ -44,9 +44,9 @@ impl Floor {
         }
     }
 
-    /// Whether the floor hides a point that is more than `slack` behind it.
-    pub fn hides(&self, view: &View, point: &Vec3, slack: f32) -> bool {
-        if view.eye.y >= self.height { point.y < self.height - slack } else { point.y > self.height + slack }
+    /// Whether the floor hides a point that is more than `slack` below it.
+    pub fn hides(&self, point: &Vec3, slack: f32) -> bool {
+        point.y < self.height - slack
     }
 
     /// The linear colour of the floor along a ray from the eye, and its opacity, 0 to 1; `None` where the ray misses it.
