@@ -19,11 +19,11 @@ fn hidden_attributes_are_shown_on_request() {
 }
 
 #[test]
-fn an_attribute_without_effect_is_listed_as_such() {
+fn an_attribute_without_effect_is_listed_with_the_reason() {
     let folder = folder();
-    let said = stdout(&nucleus(folder.path(), &["attrs", "nRigid"]));
-    let (_, row) = said.split_once("selfCollide (scld)").expect("it is listed");
-    assert!(row.lines().nth(1).is_some_and(|line| line.ends_with("No effect yet.")), "{said}");
+    let said = stdout(&nucleus(folder.path(), &["attrs", "nParticle"]));
+    let (_, row) = said.split_once("computeRotation (cprt)").expect("it is listed");
+    assert!(row.lines().nth(1).is_some_and(|line| line.contains("No effect: particles are balls")), "{said}");
 }
 
 #[test]

@@ -112,8 +112,8 @@ pub mod poly_plane {
             SUBDIVISIONS_WIDTH: i64 = int("subdivisionsWidth", "sw", 10).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
             /// Quads along z.
             SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 10).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
-            /// Direction of the y axis of the primitive.
-            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
+            /// Direction of the y axis of the primitive, of any length.
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).solved("nucleus_graph::mesh").fixed();
         }
         "Nucleus (open)" {
             /// All counts of subdivisions at once.
@@ -136,8 +136,8 @@ pub mod poly_sphere {
             SUBDIVISIONS_AXIS: i64 = int("subdivisionsAxis", "sa", 20).min(3.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
             /// Faces from pole to pole.
             SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 20).min(2.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
-            /// Direction of the y axis of the primitive.
-            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
+            /// Direction of the y axis of the primitive, of any length.
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).solved("nucleus_graph::mesh").fixed();
         }
         "Nucleus (open)" {
             /// All counts of subdivisions at once.
@@ -166,8 +166,8 @@ pub mod poly_cube {
             SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
             /// Quads along z.
             SUBDIVISIONS_DEPTH: i64 = int("subdivisionsDepth", "sd", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
-            /// Direction of the y axis of the primitive.
-            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
+            /// Direction of the y axis of the primitive, of any length.
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).solved("nucleus_graph::mesh").fixed();
         }
         "Nucleus (open)" {
             /// All counts of subdivisions at once.
@@ -194,8 +194,8 @@ pub mod poly_cylinder {
             SUBDIVISIONS_HEIGHT: i64 = int("subdivisionsHeight", "sh", 1).min(1.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
             /// Rings of a cap from rim to centre; 0 makes each cap one polygon.
             SUBDIVISIONS_CAPS: i64 = int("subdivisionsCaps", "sc", 0).min(0.0).max(4096.0).solved("nucleus_graph::mesh").fixed();
-            /// Direction of the y axis of the primitive.
-            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).fixed();
+            /// Direction of the y axis of the primitive, of any length.
+            AXIS: [f64; 3] = vector("axis", "ax", [0.0, 1.0, 0.0], ["axx", "axy", "axz"]).solved("nucleus_graph::mesh").fixed();
         }
         "Nucleus (open)" {
             /// All counts of subdivisions at once.

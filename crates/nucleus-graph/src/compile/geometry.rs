@@ -11,7 +11,10 @@ use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{Graph, Node, NodeId};
 use crate::memory::{Budget, Cost, Size};
-use crate::mesh::{MeshFormat, ObjError, Primitive, drop_degenerate_faces, poly_plane_uvs, read_obj_uvs};
+use crate::mesh::{
+    MeshFormat, ObjError, Primitive, PrimitiveError, drop_degenerate_faces, poly_plane_uvs, read_obj_uvs,
+    rotation_to_axis,
+};
 use crate::scene::document::{Scene, Source};
 
 use super::animated_mesh::{AnimatedMesh, NumberedFile};
@@ -34,7 +37,7 @@ impl Geometry {
 
     /// The size of a node's mesh. A primitive is not made for this.
     pub(super) fn size(&mut self, scene: &Scene, node: NodeId, findings: &mut Findings) -> Option<Size> {
-        if let Some(primitive) = primitive(scene.graph.node(node)) {
+        if let Some((primitive, _)) = primitive(scene.graph.node(node)) {
             return Some(primitive.size());
         }
         let surface = self.surface(scene, node, findings)?;
@@ -123,12 +126,12 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
     let mut mesh = if node.node_type() == &mesh::MESH {
         read_files(scene, node, budget, findings)?
     } else {
-        let primitive = primitive(node)?;
+        let (primitive, _) = primitive(node)?;
         if let Err(refused) = budget.claim(Cost::MESH.of(primitive.size())) {
             report_too_large(scene, node, &refused, findings);
             return None;
         }
-        match primitive.surface() {
+        match primitive_surface(node)? {
             Ok(surface) => Mesh { surface, frames: Vec::new(), uvs: None },
             Err(error) => {
                 findings.error(&scene.source.place(node.name()), format!("`{}`: {error}", node.name()));
@@ -149,30 +152,49 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
     Some(mesh)
 }
 
-/// The primitive of a node, if it is one.
-fn primitive(node: &Node) -> Option<Primitive> {
+/// The primitive of a node and the direction of its y axis, if it is one.
+fn primitive(node: &Node) -> Option<(Primitive, [f64; 3])> {
     let node_type = node.node_type();
     Some(if node_type == &poly_plane::POLY_PLANE {
-        use poly_plane::{HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
+        use poly_plane::{AXIS, HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
         let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT];
-        Primitive::Plane([&WIDTH, &HEIGHT].map(|key| node.get(key)), steps.map(|key| count(node.get(key))))
+        let lengths = [&WIDTH, &HEIGHT].map(|key| node.get(key));
+        (Primitive::Plane(lengths, steps.map(|key| count(node.get(key)))), node.get(&AXIS))
     } else if node_type == &poly_sphere::POLY_SPHERE {
-        use poly_sphere::{RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_HEIGHT};
+        use poly_sphere::{AXIS, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_HEIGHT};
         let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT];
-        Primitive::Sphere(node.get(&RADIUS), steps.map(|key| count(node.get(key))))
+        (Primitive::Sphere(node.get(&RADIUS), steps.map(|key| count(node.get(key)))), node.get(&AXIS))
     } else if node_type == &poly_cube::POLY_CUBE {
-        use poly_cube::{DEPTH, HEIGHT, SUBDIVISIONS_DEPTH, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
+        use poly_cube::{
+            AXIS, DEPTH, HEIGHT, SUBDIVISIONS_DEPTH, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH,
+        };
         let lengths = [&WIDTH, &HEIGHT, &DEPTH].map(|key| node.get(key));
         let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_DEPTH];
-        Primitive::Cube(lengths, steps.map(|key| count(node.get(key))))
+        (Primitive::Cube(lengths, steps.map(|key| count(node.get(key)))), node.get(&AXIS))
     } else if node_type == &poly_cylinder::POLY_CYLINDER {
-        use poly_cylinder::{HEIGHT, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_CAPS, SUBDIVISIONS_HEIGHT};
+        use poly_cylinder::{
+            AXIS, HEIGHT, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_CAPS, SUBDIVISIONS_HEIGHT,
+        };
         let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_CAPS];
         let lengths = [&RADIUS, &HEIGHT].map(|key| node.get(key));
-        Primitive::Cylinder(lengths, steps.map(|key| count(node.get(key))))
+        (Primitive::Cylinder(lengths, steps.map(|key| count(node.get(key)))), node.get(&AXIS))
     } else {
         return None;
     })
+}
+
+/// The surface of a primitive node round its origin, in scene units; `None` for any other node.
+///
+/// # Errors
+/// When a parameter is invalid.
+pub fn primitive_surface(node: &Node) -> Option<Result<Surface, PrimitiveError>> {
+    let (primitive, axis) = primitive(node)?;
+    Some(primitive.surface().map(|mut surface| {
+        if let Some(rotation) = rotation_to_axis(axis) {
+            surface.positions.iter_mut().for_each(|point| *point = rotation * *point);
+        }
+        surface
+    }))
 }
 
 /// The attribute's hard range fits into 32 bits.
@@ -198,7 +220,7 @@ pub(crate) fn max_points(
         let is_bounded = !file.contains('#') && MeshFormat::of(&file) == MeshFormat::Obj;
         return is_bounded.then(|| of_file(&file));
     }
-    primitive(mesh).map(|primitive| primitive.size().points)
+    primitive(mesh).map(|(primitive, _)| primitive.size().points)
 }
 
 /// The same for particles, from their list of positions.

@@ -80,6 +80,7 @@ use program::ProgramData;
 pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
 pub(crate) use geometry::max_points;
+pub use geometry::primitive_surface;
 pub use mesh_files::file_mesh;
 pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
 pub(crate) use sources::EmitterState;

@@ -24,4 +24,5 @@ pub use file::{FileMesh, Frames, MeshFile, MeshFileError, MeshFormat};
 pub use obj::{CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_uvs};
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,
+    rotation_to_axis,
 };

@@ -2,7 +2,7 @@
 //!
 //! Parameters are checked first, and the size of a primitive is known before it is made.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use nucleus_core::{Faces, Surface};
 
 use crate::animation::sin_cos_degrees;
@@ -66,6 +66,18 @@ impl Primitive {
             Self::Cylinder([radius, height], [x, y, z]) => poly_cylinder(radius, height, (x, y, z)),
         }
     }
+}
+
+/// The smallest rotation that takes the y axis to a direction of any length; `None` where nothing turns.
+pub fn rotation_to_axis(axis: [f64; 3]) -> Option<Rotation3<f64>> {
+    let axis = Vector3::from(axis).try_normalize(1e-12).filter(|axis| *axis != Vector3::y())?;
+    if axis.y < -1.0 + 1e-12 {
+        let half_turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+        return Some(Rotation3::from_matrix_unchecked(half_turn));
+    }
+    // Without angles: the half-way quaternion.
+    let quaternion = Quaternion::from_parts(1.0 + axis.y, Vector3::y().cross(&axis));
+    Some(UnitQuaternion::new_normalize(quaternion).to_rotation_matrix())
 }
 
 /// A rectangle of quads in the xz plane, facing up, round the origin: Maya's `polyPlane`.

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use nucleus_graph::animation::sin_cos_degrees;
-use nucleus_graph::mesh::Primitive;
+use nucleus_graph::mesh::{Primitive, rotation_to_axis};
 
 use crate::scene::{MayaScene, NodeId, Vector3};
 
@@ -290,15 +290,7 @@ fn dual(mesh: &Poly) -> Poly {
 
 /// Turns a mesh by the smallest rotation that takes y to an axis.
 fn turn(mesh: &mut Poly, axis: [f64; 3]) {
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if length < 1e-12 {
-        return;
-    }
-    let axis = nalgebra::Vector3::from(axis.map(|x| x / length));
-    let up = nalgebra::Vector3::y();
-    let rotation = nalgebra::Rotation3::rotation_between(&up, &axis).unwrap_or_else(|| {
-        nalgebra::Rotation3::from_axis_angle(&nalgebra::Vector3::x_axis(), std::f64::consts::PI)
-    });
+    let Some(rotation) = rotation_to_axis(axis) else { return };
     for point in &mut mesh.points {
         *point = (rotation * nalgebra::Vector3::from(*point)).into();
     }

@@ -4,10 +4,9 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use nucleus_core::Surface;
-use nucleus_graph::attributes::{mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere};
-use nucleus_graph::compile::file_mesh;
+use nucleus_graph::attributes::mesh;
+use nucleus_graph::compile::{file_mesh, primitive_surface};
 use nucleus_graph::graph::NodeId;
-use nucleus_graph::mesh::Primitive;
 use nucleus_graph::scene::Diagnostic;
 
 use crate::omissions::Cause;
@@ -18,32 +17,10 @@ impl Writer<'_> {
     /// The surface of a mesh node at the first frame; `None` for a mesh that only displays another.
     pub(super) fn surface_of(&self, id: NodeId) -> Result<Option<Surface>, String> {
         let node = self.graph().node(id);
-        let count = |x: i64| u32::try_from(x).unwrap_or(1);
-        let kind = node.node_type();
-        let primitive = if kind == &poly_plane::POLY_PLANE {
-            use poly_plane::{HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};
-            let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
-            Primitive::Plane([&WIDTH, &HEIGHT].map(|key| node.get(key)), steps)
-        } else if kind == &poly_sphere::POLY_SPHERE {
-            use poly_sphere::{RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_HEIGHT};
-            let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT].map(|key| count(node.get(key)));
-            Primitive::Sphere(node.get(&RADIUS), steps)
-        } else if kind == &poly_cube::POLY_CUBE {
-            use poly_cube::{
-                DEPTH, HEIGHT, SUBDIVISIONS_DEPTH, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH,
-            };
-            let steps = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_DEPTH]
-                .map(|key| count(node.get(key)));
-            Primitive::Cube([&WIDTH, &HEIGHT, &DEPTH].map(|key| node.get(key)), steps)
-        } else if kind == &poly_cylinder::POLY_CYLINDER {
-            use poly_cylinder::{HEIGHT, RADIUS, SUBDIVISIONS_AXIS, SUBDIVISIONS_CAPS, SUBDIVISIONS_HEIGHT};
-            let steps = [&SUBDIVISIONS_AXIS, &SUBDIVISIONS_HEIGHT, &SUBDIVISIONS_CAPS]
-                .map(|key| count(node.get(key)));
-            Primitive::Cylinder([&RADIUS, &HEIGHT].map(|key| node.get(key)), steps)
-        } else {
-            return self.file_surface(id);
-        };
-        primitive.surface().map(Some).map_err(|error| format!("`{}`: {error}", node.name()))
+        match primitive_surface(node) {
+            Some(surface) => surface.map(Some).map_err(|error| format!("`{}`: {error}", node.name())),
+            None => self.file_surface(id),
+        }
     }
 
     fn file_surface(&self, id: NodeId) -> Result<Option<Surface>, String> {

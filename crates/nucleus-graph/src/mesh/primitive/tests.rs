@@ -180,3 +180,20 @@ proptest! {
         prop_assert_eq!(sphere.positions.len() as u32, sx * (sy - 1) + 2);
     }
 }
+
+#[test]
+fn the_rotation_to_an_axis_takes_y_there_and_turns_nothing_about_it() {
+    for axis in [[1.0, 0.0, 0.0], [0.0, 0.0, -3.0], [1.0, 2.0, 3.0], [0.0, -2.0, 0.0], [1e-3, -5.0, 0.0]] {
+        let rotation = rotation_to_axis(axis).expect("a rotation");
+        let direction = Vector3::from(axis).normalize();
+        assert!((rotation * Vector3::y() - direction).norm() < 1e-12, "{axis:?}");
+        assert!((rotation.matrix().determinant() - 1.0).abs() < 1e-12, "{axis:?}");
+        let across = Vector3::y().cross(&direction);
+        assert!(
+            (rotation * across - across).norm() < 1e-12,
+            "the normal of the plane of both stays: {axis:?}"
+        );
+    }
+    assert_eq!(rotation_to_axis([0.0, 7.0, 0.0]), None);
+    assert_eq!(rotation_to_axis([0.0; 3]), None);
+}
