@@ -11,8 +11,9 @@
 //! opening runs into.
 //!
 //! A constant pressure on a surface that grows does unlimited work: beyond some size no linear stiffness holds it (a balloon
-//! bursts). So the push of a time step is limited: it moves no point farther than the radius of a sphere of the mesh's rest
-//! area, and it holds a chamber within [`BURST_STRETCH`] times that sphere. No mesh that keeps its area encloses
+//! bursts). So the push of a time step is limited, relative to a sphere of the mesh's rest area: it moves no point farther
+//! than the radius, the faces an eighth of it in the mean, and it holds a chamber within [`BURST_STRETCH`] times that sphere,
+//! which it approaches ever more slowly: what pressure has set in motion must not fly on. No mesh that keeps its area encloses
 //! more than the sphere does (isoperimetric inequality), so cloth that is not stretched never meets the limit.
 
 mod holes;
@@ -46,6 +47,11 @@ const LEAST_VOLUME: f64 = 1e-3;
 /// Stretch of the sphere of a chamber's rest area beyond which pressure inflates it no further: about where rubber breaks.
 pub const BURST_STRETCH: f64 = 5.0;
 
+/// Mean advance of a chamber's faces in a time step, as a share of the radius of its sphere.
+const MAX_ADVANCE: f64 = 1.0 / 8.0;
+/// Growth in a time step, as a share of the volume that is left up to the burst sphere.
+const APPROACH: f64 = 1.0 / 4.0;
+
 /// The chambers and holes of one cloth, fixed once it is compiled.
 #[derive(Debug, Clone, Default)]
 pub struct PressureModel {
@@ -78,6 +84,8 @@ struct Sums {
     mobility: f64,
     /// The largest w² |a|² of a point.
     fastest: f64,
+    /// Σ |a| in m²: about the area of the mesh.
+    area: f64,
     /// Area of the holes in m², and the flow of still air into them in m³/s.
     hole: f64,
     inflow: f64,
@@ -208,6 +216,7 @@ impl PressureModel {
             let inverse_mass = state.displacement[row as usize].0[3].to_f64();
             sums.mobility += inverse_mass * a.norm_squared();
             sums.fastest = sums.fastest.max(inverse_mass * inverse_mass * a.norm_squared());
+            sums.area += a.norm();
         }
         for hole in self.holes.iter().filter(|_| !sealed) {
             let corners: Vec<_> =
@@ -239,24 +248,24 @@ pub struct PressureFrame<'a> {
 }
 
 impl Sums {
-    /// The push λ within its limits, for a chamber of this volume in m³ along its normals, and of this radius in metres.
-    /// A vacuum is a pressure that inflates the mesh inside out. What coasts beyond the limit is brought back to it.
-    fn limited(&self, push: f64, volume: f64, radius: f64) -> f64 {
+    /// The push λ within its limits, for a chamber of this volume in m³ along its normals, of its volume in the step before,
+    /// and of this radius in metres. A vacuum is a pressure that inflates the mesh inside out.
+    ///
+    /// Outwards, the mean advance in a time step is a share of the radius at most, and the volume grows by a share of what is
+    /// left up to the burst sphere: it comes to rest there, and what is larger shrinks back to it.
+    fn limited(&self, push: f64, volume: f64, before: f64, radius: f64) -> f64 {
         if self.mobility <= 0.0 {
             return push; // nothing moves
         }
         let burst = BURST_STRETCH * radius;
         let sphere = 4.0 / 3.0 * std::f64::consts::PI * burst * burst * burst;
-        let side = if volume < 0.0 { -1.0 } else { 1.0 };
-        if side * volume > sphere {
-            return side * (sphere - side * volume) / self.mobility;
-        }
-        let towards = if push < 0.0 { -volume } else { volume };
-        let (growth, advance) = (push.abs() * self.mobility, push.abs() * self.fastest.sqrt());
-        let room = sphere - towards;
-        let by_growth = if growth > room { room / growth } else { 1.0 };
-        let by_advance = if advance > radius { radius / advance } else { 1.0 };
-        push * by_growth.min(by_advance)
+        let after = volume + push * self.mobility;
+        let side = if after < 0.0 { -1.0 } else { 1.0 };
+        let before = side * before;
+        let most = before + (self.area * radius * MAX_ADVANCE).min((sphere - before) * APPROACH);
+        let push = if side * after > most { side * (most - side * volume) / self.mobility } else { push };
+        let advance = push.abs() * self.fastest.sqrt();
+        push * if advance > radius { radius / advance } else { 1.0 }
     }
 }
 
@@ -274,7 +283,7 @@ impl Chamber {
                 let damping = if start > 0.0 { h * damping / start } else { 0.0 };
                 let push =
                     (h * h * pascals - damping * (volume - before) * side) / (1.0 + damping * sums.mobility);
-                let push = sums.limited(push, sums.volume / 3.0, radius);
+                let push = sums.limited(push, sums.volume / 3.0, side * before, radius);
                 self.volume += push * sums.mobility;
                 push
             }
@@ -288,7 +297,7 @@ impl Chamber {
                 let gas =
                     Gas { amount: self.amount * start, bulk: h * h * bulk, damping: h * damping / start };
                 let push = gas.solve(volume.max(LEAST_VOLUME * start), before, sums.mobility);
-                let push = sums.limited(push, volume, radius);
+                let push = sums.limited(push, volume, before, radius);
                 let after = (volume + push * sums.mobility).max(LEAST_VOLUME * start);
                 self.volume = side * after;
                 let gauge = bulk * (gas.amount / after - 1.0);
