@@ -15,8 +15,7 @@ use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
 use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
-use super::recorded::RecordedPoints;
-use super::sources::{ClothSource, Emitter, MapScales};
+use super::sources::{ClothSource, Emitter, MapScales, RecordedPoints};
 
 /// Kinematic viscosity in m²/s at a `viscosity` of 1: about that of honey.
 const HONEY: f64 = 0.01;

@@ -6,9 +6,8 @@ use nucleus_core::{ClothId, PointId};
 
 use crate::graph::NodeId;
 
-use super::animated_mesh::AnimatedMesh;
+use super::animated_mesh::{AnimatedMesh, Points};
 use super::constraints::split_mesh::Tearing;
-use super::recorded::RecordedPoints;
 
 /// Source of the frames of a cloth or of particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,4 +160,41 @@ impl MapScales {
         restitution_angle: 1.0,
         field_magnitude: 1.0,
     };
+}
+
+/// Recorded positions of an object in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RecordedPoints {
+    pub(super) first: i64,
+    /// The positions from the first frame on; nothing where the object is solved.
+    pub(super) frames: Vec<Option<Points>>,
+}
+
+impl RecordedPoints {
+    /// The points at a frame, linear between two whole ones; nothing where one of both is not played.
+    pub(super) fn at(&self, frame: f64) -> Option<Points> {
+        let before = frame.floor();
+        let at = |frame: f64| self.frames.get(usize::try_from(frame as i64 - self.first).ok()?)?.clone();
+        let from = at(before)?;
+        if frame == before {
+            return Some(from);
+        }
+        let to = at(before + 1.0)?;
+        let share = frame - before;
+        Some(from.iter().zip(to.iter()).map(|(a, b)| a + (b - a) * share).collect())
+    }
+
+    /// The largest number of points.
+    pub(super) fn most(&self) -> usize {
+        self.frames.iter().flatten().map(|points| points.len()).max().unwrap_or_default()
+    }
+
+    /// Splits the points as the mesh is split.
+    pub(super) fn extend(&mut self, tearing: &Tearing) {
+        for points in self.frames.iter_mut().flatten() {
+            let mut all = points.to_vec();
+            tearing.extend(&mut all);
+            *points = all.into();
+        }
+    }
 }
