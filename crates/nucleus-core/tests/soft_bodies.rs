@@ -512,13 +512,15 @@ fn farthest_of_a_ball(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// Gauge pressures up to 10 000 atmospheres, masses from a milligram to a ton per square metre.
+    /// Gauge pressures from a vacuum (minus one atmosphere) to 10 000 atmospheres, masses from a milligram to a ton per square
+    /// metre. Without links points are no mesh, and fly on; so do those of a heavy shell that implodes under more than a
+    /// vacuum.
     #[test]
     fn no_pressure_blows_a_mesh_up(
         magnitude in 0.0..9.0f64, vacuum: bool, tracks_gas: bool, density in -6.0..3.0f64, substeps in 1..12u32,
-        classic: bool, stretch in 0.0..40.0f64,
+        classic: bool, stretch in 1.0..40.0f64,
     ) {
-        let pascals = 10f64.powf(magnitude) * if vacuum { -1.0 } else { 1.0 };
+        let pascals = if vacuum { -10f64.powf(magnitude * 5.0 / 9.0) } else { 10f64.powf(magnitude) };
         let pressure = match tracks_gas {
             false => Pressure::Manual { pascals, damping: 0.0 },
             true => Pressure::Gas {

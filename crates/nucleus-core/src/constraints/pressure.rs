@@ -251,8 +251,8 @@ impl Sums {
     /// The push λ within its limits, for a chamber of this volume in m³ along its normals, of its volume in the step before,
     /// and of this radius in metres. A vacuum is a pressure that inflates the mesh inside out.
     ///
-    /// Outwards, the mean advance in a time step is a share of the radius at most, and the volume grows by a share of what is
-    /// left up to the burst sphere: it comes to rest there, and what is larger shrinks back to it.
+    /// The faces advance in a time step by a share of the radius at most, in the mean, and the volume grows by a share of what
+    /// is left up to the burst sphere: it comes to rest there, and what is larger shrinks back to it.
     fn limited(&self, push: f64, volume: f64, before: f64, radius: f64) -> f64 {
         if self.mobility <= 0.0 {
             return push; // nothing moves
@@ -261,9 +261,11 @@ impl Sums {
         let sphere = 4.0 / 3.0 * std::f64::consts::PI * burst * burst * burst;
         let after = volume + push * self.mobility;
         let side = if after < 0.0 { -1.0 } else { 1.0 };
-        let before = side * before;
-        let most = before + (self.area * radius * MAX_ADVANCE).min((sphere - before) * APPROACH);
-        let push = if side * after > most { side * (most - side * volume) / self.mobility } else { push };
+        let (after, volume, before) = (side * after, side * volume, side * before);
+        let change = self.area * radius * MAX_ADVANCE;
+        let most = before + change.min((sphere - before) * APPROACH);
+        let limited = after.max((before - change).min(most)).min(most);
+        let push = if limited == after { push } else { side * (limited - volume) / self.mobility };
         let advance = push.abs() * self.fastest.sqrt();
         push * if advance > radius { radius / advance } else { 1.0 }
     }
