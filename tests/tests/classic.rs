@@ -68,7 +68,7 @@ fn rigidity_and_deform_resistance_keep_the_shape_of_a_box() {
     assert!((rigid - 0.41).abs() < 0.005 && (deforming - 0.41).abs() < 0.005, "{rigid} {deforming}");
 }
 
-/// A strip, held at its left end, whose right end is moved and then let go.
+/// A strip, held at its left end, whose right end is moved and then released.
 fn strip(mesh: &str, fields: &str, [left, right]: [&str; 2], motion: &str) -> Vec<Vec3> {
     let nodes = format!(
         r#""p": polyPlane(width: 1, height: 0.2, {mesh}), "c": nCloth(inputMesh: "p", pointMass: 0.1,

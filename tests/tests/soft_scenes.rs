@@ -115,7 +115,7 @@ fn a_paper_aeroplane_glides_on_lift_and_falls_like_a_stone_without() {
     assert!(lost > 0.6 * stone, "{lost} m, a stone {stone} m");
 }
 
-// EVIDENCE: N1.2-4  a balloon that is let go flies by its jet until it is empty
+// EVIDENCE: N1.2-4  a released balloon flies by its jet until it is empty
 #[test]
 fn a_released_balloon_flies_by_its_jet_and_falls_when_it_is_empty() {
     let frames = film(&changed("open_balloon", &[]), 71);
