@@ -30,6 +30,6 @@ async function surfaceOf(name, { frame, timeIndex }) {
   const corners = new Uint32Array(bytes, 8 + 12 * points, 4 * quads);
   const starts = Uint32Array.from({ length: quads + 1 }, (_, quad) => 4 * quad);
   // A number of its own in each frame: its points are not those of another frame.
-  const mesh = { kind: "cloth", points, starts, corners, rest: positions, number: NaN };
+  const mesh = { kind: "surface", points, starts, corners, rest: positions, number: NaN };
   return { positions, mesh, contacts: null };
 }
