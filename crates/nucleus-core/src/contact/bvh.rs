@@ -93,6 +93,23 @@ impl Aabb {
         [self.low, self.high]
     }
 
+    /// Whether the box meets the part of a ray up to the share `end` of its length (slab test, Kay and Kajiya 1986).
+    pub fn meets_ray(&self, from: Vector3<f64>, ray: Vector3<f64>, end: f64) -> bool {
+        let (mut first, mut last) = (0.0f64, end);
+        for k in 0..3 {
+            let [low, high] = [self.low[k], self.high[k]].map(|side| f64::from(side) - from[k]);
+            if ray[k] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+            } else {
+                let [a, b] = [low / ray[k], high / ray[k]];
+                (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+            }
+        }
+        first <= last
+    }
+
     /// Whether two boxes have a point in common.
     #[inline(always)]
     pub fn overlaps(&self, other: &Self) -> bool {
@@ -159,14 +176,19 @@ impl Bvh {
 
     /// Calls `found` with each element whose leaf overlaps the box, in an order that depends on the hierarchy
     /// alone.
-    pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {
+    pub fn query(&self, target: &Aabb, found: impl FnMut(u32)) {
+        self.descend(|bounds| bounds.overlaps(target), found);
+    }
+
+    /// Calls `found` with each element of the leaves that `reaches` does not exclude, itself or by a box around it.
+    pub fn descend(&self, reaches: impl Fn(&Aabb) -> bool, mut found: impl FnMut(u32)) {
         // Deeper than any hierarchy: one level for each bit of the number of leaves.
         let mut stack = [0usize; 64];
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
             let node = stack[depth];
-            if !self.nodes[node].overlaps(target) {
+            if !reaches(&self.nodes[node]) {
                 continue;
             }
             if node >= self.leaves - 1 {
@@ -195,6 +217,22 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_ray_meets_the_boxes_that_hold_one_of_its_points(corners in boxes(), target in 0usize..100, at in 0.0..1.0f64) {
+            let [low, high] = corners[target % corners.len()];
+            let bounds = Aabb::new(low, high);
+            let (from, through) = (corners[0][0], low + (high - low) * at);
+            let ray = through - from;
+            prop_assert!(bounds.meets_ray(from, ray, 1.0 + 1e-9));
+            // Halfway to a box that lies wholly behind a plane across the ray, nothing is met.
+            let nearest = (0..8).map(|k| ray.dot(&(Vector3::from_fn(|axis, _| if k >> axis & 1 == 0 { low } else { high }[axis]) - from)));
+            let share = nearest.fold(f64::INFINITY, f64::min) / ray.norm_squared();
+            if share > 0.01 {
+                prop_assert!(!bounds.meets_ray(from, ray, 0.99 * share));
+                prop_assert!(!bounds.meets_ray(from, -ray, 1.0));
+            }
+        }
+
         #[test]
         fn the_hierarchy_finds_every_box_that_overlaps(corners in boxes(), target in 0usize..100) {
             let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();

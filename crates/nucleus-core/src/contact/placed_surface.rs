@@ -1,5 +1,7 @@
 //! A triangulated surface at its present position: nearest point and ray intersection.
 
+use std::cell::Cell;
+
 use nalgebra::Vector3;
 
 use crate::contact::bvh::{Aabb, Bvh};
@@ -77,19 +79,19 @@ impl PlacedSurface {
     /// count.
     pub fn first_hit(&self, from: Point, ray: Point, own: Option<u32>) -> Option<f64> {
         let start = from - self.origin;
-        let end = start + ray;
-        let mut first: Option<f64> = None;
-        self.bvh.query(&Aabb::new(start.inf(&end), start.sup(&end)), |at| {
+        let first = Cell::new(None);
+        let reaches = |bounds: &Aabb| bounds.meets_ray(start, ray, first.get().unwrap_or(1.0));
+        self.bvh.descend(reaches, |at| {
             let at = at as usize;
             if own.is_some_and(|own| self.corners[at].contains(&own)) {
                 return;
             }
             let share = meets(from, ray, self.triangles[at]);
-            if let Some(share) = share.filter(|share| first.is_none_or(|first| *share < first)) {
-                first = Some(share);
+            if let Some(share) = share.filter(|share| first.get().is_none_or(|first| *share < first)) {
+                first.set(Some(share));
             }
         });
-        first
+        first.get()
     }
 }
 
