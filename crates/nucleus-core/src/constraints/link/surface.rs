@@ -235,15 +235,7 @@ impl<R: Real> ConstraintLinks<R> {
             let tangent = pull(&sweep.tangent, link.tangent_strength, across.norm());
             let across = across.try_normalize(0.0).unwrap_or_default();
             let push = normal * lambda + across * tangent;
-            let masses: Vec<f64> = ends.rows[..ends.count]
-                .iter()
-                .map(|&row| state.displacement[row as usize].0[3].to_f64())
-                .collect();
-            let mass = |row: u32| {
-                let k = ends.rows[..ends.count].iter().position(|&other| other == row);
-                k.map_or(0.0, |k| masses[k])
-            };
-            ends.apply(mass, &mut state.displacement, -push);
+            ends.displace(&mut state.displacement, -push);
             self.surface[k].impulse += push / h;
         }
     }
