@@ -65,3 +65,17 @@ pub fn program_of(nodes: &str) -> Program {
     let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
     program(&scene(&text, Path::new("test.ron")))
 }
+
+/// A scene of the gallery, such as `soft/can`, with parts of its text replaced.
+///
+/// # Panics
+/// If a part is not in the text, or the scene has an error or a warning.
+pub fn changed(name: &str, changes: &[(&str, &str)]) -> Program {
+    let file = root().join("scenes").join(name).with_extension("ron");
+    let mut text = fs::read_to_string(&file).expect("it is text");
+    for (from, to) in changes {
+        assert!(text.contains(from), "{name} has no `{from}`");
+        text = text.replace(from, to);
+    }
+    program(&scene(&text, &file))
+}

@@ -80,3 +80,27 @@ fn a_constraint_that_is_enabled_attaches_to_falling_points() {
     assert!(attached.y < -0.9, "it has fallen for 11 frames: {attached:?}");
     assert!((later - attached - Vector3::new(2.0, 0.0, 0.0)).norm() < 1e-5, "{attached:?} {later:?}");
 }
+
+/// The largest strain of a sheet that is shaken by its upper edge so far, four times a second.
+fn strain_when_shaken(way: f64, evaluations: u32) -> f64 {
+    let keys: String =
+        (0..8).map(|k| format!("({}, {}),", 1 + 3 * k, if k % 2 == 0 { -way } else { way })).collect();
+    let program = program_of(&format!(
+        r#""nucleus1": nucleus(evaluations: {evaluations}, gravity: 0),
+           "plane": polyPlane(subdivisions: (10, 10), rotate: (90, 0, 0)),
+           "sheet": nCloth(inputMesh: "plane", pointMass: 0.2, selfCollide: false),
+           "hand": dynamicConstraint(constraintType: transform, components: ["sheet.vtx[0:10]"],
+               translateY: keys([{keys}]))"#
+    ));
+    let mut run = Simulation::<f32>::new(&program, 1);
+    (0..20).map(|_| run.advance(&mut ()).report.max_strain).fold(0.0, f64::max)
+}
+
+// EVIDENCE: N2.2-6  shaken tenfold, a sheet needs more than four times the evaluations for the same strain
+#[test]
+fn violent_motion_takes_more_evaluations() {
+    let [gentle, violent, more] =
+        [(0.02, 24), (0.2, 24), (0.2, 96)].map(|(way, n)| strain_when_shaken(way, n));
+    assert!(violent > 2.0 * gentle, "{gentle} {violent}");
+    assert!(more > gentle && more < violent, "{gentle} {more} {violent}");
+}

@@ -1,24 +1,16 @@
 //! What the scenes of soft bodies show, measured: the slinky's law, a glide, the drape of materials, a flag's frequency.
 
-use std::fs;
-
 use nalgebra::Vector3;
 use nucleus_core::ClothId;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
-use nucleus_tests::gallery::{program, root, scene};
+use nucleus_tests::gallery;
 
 type Vec3 = Vector3<f64>;
 
-/// A scene of the gallery with parts of its text replaced.
+/// A scene of soft bodies with parts of its text replaced.
 fn changed(name: &str, changes: &[(&str, &str)]) -> Program {
-    let file = root().join("scenes/soft").join(name).with_extension("ron");
-    let mut text = fs::read_to_string(&file).expect("it is text");
-    for (from, to) in changes {
-        assert!(text.contains(from), "{name} has no `{from}`");
-        text = text.replace(from, to);
-    }
-    program(&scene(&text, &file))
+    gallery::changed(&format!("soft/{name}"), changes)
 }
 
 fn points(run: &Simulation<f32>, cloth: u32, count: usize) -> Vec<Vec3> {

@@ -118,6 +118,7 @@ fn path(torn: &[[Vec3; 2]]) -> [f64; 2] {
     [length, torn.iter().map(off).sum::<f64>() / length.max(1e-9)]
 }
 
+// EVIDENCE: N1.2-1  cloth tears where it is pulled, and the tear runs on from a notch
 #[test]
 fn a_tear_runs_from_its_notch_across_the_pull_however_the_cells_are_cut() {
     for kind in [Cells::Quads, Cells::Rising, Cells::Falling, Cells::Crossed] {
