@@ -1,7 +1,9 @@
 //! All checks before a merge, in order; stops at the first failure.
 
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
@@ -96,7 +98,7 @@ fn remove_old_cache(root: &Path, command: &str) -> anyhow::Result<()> {
     if cache.exists() { fs::remove_file(&cache).context("the cache of an earlier run") } else { Ok(()) }
 }
 
-/// Runs every scene with its checks.
+/// Runs every scene with its checks, one per core at a time.
 fn scenes(root: &Path) -> anyhow::Result<()> {
     let program = built(root).join("nucleus");
     let all = files::below(&root.join("scenes"))?;
@@ -106,14 +108,31 @@ fn scenes(root: &Path) -> anyhow::Result<()> {
     };
     let scenes: Vec<_> = all.iter().filter(is_scene).collect();
     ensure!(!scenes.is_empty(), "there are no scenes");
-    for scene in scenes {
-        let name = files::name(root, scene);
-        let start = Instant::now();
-        let mut command = Command::new(&program);
-        command.arg("run").arg(scene).args(["--record", "none"]).current_dir(root);
-        succeed(command, &name)?;
-        println!("-- {name}: {:.1} s", start.elapsed().as_secs_f64());
-    }
+    let next = AtomicUsize::new(0);
+    let jobs = thread::available_parallelism().map_or(1, NonZero::get);
+    let run_all = || {
+        // A failure ends the job; the others finish their scenes, so that all failures are seen.
+        while let Some(scene) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
+            run_scene(root, &program, scene)?;
+        }
+        anyhow::Ok(())
+    };
+    thread::scope(|scope| {
+        let jobs: Vec<_> = (0..jobs).map(|_| scope.spawn(run_all)).collect();
+        jobs.into_iter().try_for_each(|job| job.join().expect("a job does not panic"))
+    })
+}
+
+/// Runs a scene on one thread, with its output in one piece.
+fn run_scene(root: &Path, program: &Path, scene: &Path) -> anyhow::Result<()> {
+    let name = files::name(root, scene);
+    let start = Instant::now();
+    let mut command = Command::new(program);
+    command.arg("run").arg(scene).args(["--record", "none", "--threads", "1"]).current_dir(root);
+    let output = command.output().with_context(|| format!("`{name}` cannot be started"))?;
+    let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    println!("{out}{err}-- {name}: {:.1} s", start.elapsed().as_secs_f64());
+    ensure!(output.status.success(), "`{name}`: {}", output.status);
     Ok(())
 }
 
