@@ -59,17 +59,21 @@ impl ShadowMap {
         }
     }
 
+    /// Draws a sphere as a disc through its centre, of one cell at least.
     fn render_sphere(&mut self, centre: &Vec3, radius: f32) {
         let at = self.at(centre);
-        let cells = radius / self.half_extent * 0.5 * self.side as f32;
+        let cells = (radius / self.half_extent * 0.5 * self.side as f32).max(std::f32::consts::FRAC_1_SQRT_2);
         let range = |middle: f32| {
-            let low = (middle - cells).ceil().max(0.0) as u32;
-            low..((middle + cells).ceil().max(0.0) as u32).max(low.saturating_add(1)).min(self.side)
+            let low = (middle - cells).floor().max(0.0) as u32;
+            low..((middle + cells).ceil().max(0.0) as u32).min(self.side)
         };
         for row in range(at.y) {
             for column in range(at.x) {
-                let cell = &mut self.heights[(row * self.side + column) as usize];
-                *cell = cell.max(at.z);
+                let [across, up] = [column as f32 + 0.5 - at.x, row as f32 + 0.5 - at.y];
+                if across * across + up * up <= cells * cells {
+                    let cell = &mut self.heights[(row * self.side + column) as usize];
+                    *cell = cell.max(at.z);
+                }
             }
         }
     }
@@ -170,17 +174,14 @@ mod tests {
 
     /// The map of a slanted square above the origin.
     fn map() -> ShadowMap {
-        let faces = nucleus_core::Faces::from_iter([&[0u32, 1, 2, 3][..]]);
         let positions = [[-1.0, 1.0, 1.0], [1.0, 1.5, 1.0], [1.0, 1.5, -1.0], [-1.0, 1.0, -1.0]];
-        let object = Object {
-            name: "square",
-            kind: Kind::Cloth,
-            faces: &faces,
-            positions: &positions,
-            rest: None,
-            radius: None,
-            looks: None,
-        };
+        map_of(Kind::Cloth, &nucleus_core::Faces::from_iter([&[0u32, 1, 2, 3][..]]), &positions)
+    }
+
+    /// The map of an object under a light from above.
+    fn map_of(kind: Kind, faces: &nucleus_core::Faces, positions: &[[f32; 3]]) -> ShadowMap {
+        let radius = Some(1.0);
+        let object = Object { name: "it", kind, faces, positions, rest: None, radius, looks: None };
         let camera =
             Camera { eye: [0.0, 0.0, 5.0], target: [0.0; 3], field_of_view: 30.0, ..Camera::default() };
         let mesh = Mesh::gather(&[object], &Style::default(), &View::new(&camera, [64, 64]));
@@ -195,6 +196,17 @@ mod tests {
         assert_eq!(found, [0.0, 1.0, 1.0, 1.0]);
         let edge = visibility(1.0, 0.0);
         assert!(edge > 0.2 && edge < 0.8, "a soft edge of the shadow: {edge}");
+    }
+
+    #[test]
+    fn the_shadow_of_a_particle_is_round() {
+        let map = map_of(Kind::Particles, &nucleus_core::Faces::default(), &[[0.0, 1.0, 0.0]]);
+        let visibility = |x: f32, z: f32| map.visibility(&Vec3::new(x, 0.0, z), &Vec3::y(), 0);
+        for angle in [0.0f32, 0.4, 0.8, 2.0, 4.0] {
+            let (z, x) = angle.sin_cos();
+            assert_eq!(visibility(0.9 * x, 0.9 * z), 0.0, "{angle}");
+            assert_eq!(visibility(1.1 * x, 1.1 * z), 1.0, "{angle}");
+        }
     }
 
     proptest! {
