@@ -210,7 +210,11 @@ pub(crate) fn max_points(
     object: NodeId,
     mesh: Option<NodeId>,
 ) -> Option<u64> {
-    let of_file = |file: &str| files::length(&source.path(file)) / MIN_POINT_BYTES + 1;
+    // Of a file that is missing or empty nothing is known; the error about it comes when it is read.
+    let of_file = |file: &str| match files::length(&source.path(file)) {
+        0 => None,
+        length => Some(length / MIN_POINT_BYTES + 1),
+    };
     let Some(mesh) = mesh.or_else(|| graph.source(object, &n_base::INPUT_MESH)) else {
         return max_particles(graph.node(object), of_file);
     };
@@ -218,13 +222,13 @@ pub(crate) fn max_points(
     if mesh.node_type() == &mesh::MESH {
         let file = mesh.get(&mesh::FILE);
         let is_bounded = !file.contains('#') && MeshFormat::of(&file) == MeshFormat::Obj;
-        return is_bounded.then(|| of_file(&file));
+        return of_file(&file).filter(|_| is_bounded);
     }
     primitive(mesh).map(|(primitive, _)| primitive.size().points)
 }
 
 /// The same for particles, from their list of positions.
-fn max_particles(node: &Node, of_file: impl Fn(&str) -> u64) -> Option<u64> {
+fn max_particles(node: &Node, of_file: impl Fn(&str) -> Option<u64>) -> Option<u64> {
     if !node.node_type().is_a(&n_particle::N_PARTICLE) {
         return None;
     }
@@ -232,7 +236,7 @@ fn max_particles(node: &Node, of_file: impl Fn(&str) -> u64) -> Option<u64> {
     let setting = given.iter().find_map(|key| node.setting(key))?;
     match setting.at(0.0, &n_particle::POSITION.row) {
         Value::Vectors(vectors) => Some(vectors.len() as u64),
-        Value::Painting(Painting::File(file)) => Some(of_file(&file)),
+        Value::Painting(Painting::File(file)) => of_file(&file),
         _ => None,
     }
 }

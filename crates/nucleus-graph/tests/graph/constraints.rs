@@ -101,6 +101,18 @@ fn components_that_are_not_there_or_empty_are_errors_that_name_constraint_and_co
 }
 
 #[test]
+fn points_of_a_missing_mesh_are_reported_as_the_missing_file() {
+    for file in ["none.obj", "none.ply"] {
+        let nodes = format!(
+            r#""n": nucleus(), "m": mesh(file: "{file}"), "c": nCloth(inputMesh: "m"),
+            "h": dynamicConstraint(components: ["c.vtx[2]"])"#
+        );
+        let (found, _) = error(&nodes);
+        assert!(found.contains(file) && !found.contains("has no point"), "{found}");
+    }
+}
+
+#[test]
 fn constraints_that_cannot_join_their_members_are_refused() {
     let collider = r#""b": polyCube(translate: (0, -3, 0)), "r": nRigid(inputMesh: "b"),"#;
     for (constraint, message) in [

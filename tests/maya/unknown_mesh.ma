@@ -1,0 +1,58 @@
+//Maya ASCII 2015 scene
+//Codeset: ISO-8859-1
+requires maya "2015";
+currentUnit -l centimeter -a degree -t film;
+createNode transforsh -n "sheetShape" -p "sheet";
+	setAttr ".io" yes;
+createNode polyPlane -n "polyPlane1";
+createNode transform -n "nCloth1";
+createNode nCloth -n "nClothShape1" -p "nCloth1";
+	setAttr ".fmt" 1;
+	setAttr ".fpv" -type "doubleArray" 121 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2
+		 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2
+		 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 1 2 0 ;
+	setAttr ".bpv" -type "doubleArray" 2 7 7 ;
+	setAttr -s 3 ".fsc[0:2]"  0 1 2 0.5 0.75 3 1 0 1;
+createNode transform -n "dynamicConstraint1";
+	setAttr ".t" -type "double3" 0 3 0 ;
+createNode dynamicConstraint -n "dynamicConstraintShape1" -p "dynamicConstraint1";
+	setAttr ".crr" 0;
+	setAttr ".cdnr[0]"  0 1 1;
+	setAttr ".sdp[0]"  0 1 1;
+createNode transform -n "dynamicConstraint2";
+createNode dynamicConstraint -n "dynamicConstraintShape2" -p "dynamicConstraint2";
+	setAttr ".cmr" 1;
+	setAttr ".cm" 0;
+	setAttr ".cnm" 1;
+	setAttr ".mds" 0.05;
+	setAttr ".cwc" yes;
+createNode nComponent -n "nComponent1";
+	setAttr ".ct" 2;
+	setAttr -s 4 ".ci[0:3]"  0 1 2 10;
+createNode nComponent -n "nComponent2";
+	setAttr ".ct" 3;
+	setAttr ".el" 1;
+	setAttr ".stn" 0.5;
+createNode nucleus -n "nucleus1";
+createNode nucleus -n "nucleus2";
+createNode transform -n "hairSystem1";
+createNode hairSystem -n "hairSystemShape1" -p "hairSystem1";
+connectAttr "polyPlane1.out" "sheetShape.i";
+connectAttr "sheetShape.w" "nClothShape1.imsh";
+connectAttr "nClothShape1.cust" "nucleus1.niao[1]";
+connectAttr "nClothShape1.stst" "nucleus1.nias[1]";
+connectAttr "nucleus1.noao[1]" "nClothShape1.nxst";
+connectAttr "hairSystemShape1.cust" "nucleus1.niao[0]";
+connectAttr "hairSystemShape1.stst" "nucleus1.nias[0]";
+connectAttr "nClothShape1.nuid" "nComponent1.obid";
+connectAttr "nClothShape1.nuid" "nComponent2.obid";
+connectAttr "nComponent1.ocp" "dynamicConstraintShape1.cid[0]";
+connectAttr "nComponent2.ocp" "dynamicConstraintShape2.cid[2]";
+!onnectAttr "dynamicConstraintShape1.evs[0]" "nucleus1.is[0]";
+connectAttr "dynamicConstraintShape1.evc[0]" "nucleus1.ic[0]";
+connectAttr "dynamicConstraintShape2.evs[0]" "nucleus1.is[5]";
+connectAttr "dynamicConstraintShape2.evc[0]" "nucleus1.ic[5]";
+connectAttr ":time1.o" "dynamicConstraintShape1.cti";
+connectAttr ":time1.o" "dynamicConstraintShape2.cti";
+connectAttr ":time1.o" "nClothShape1.cti";
+connectAttr ":time1.o" "nucleus1.cti";
