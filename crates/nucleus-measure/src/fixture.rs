@@ -101,7 +101,7 @@ impl<R: Real> Fixture<R> {
 pub fn gravity_only(evaluations: f64) -> FrameInput {
     let none = Some(0.0);
     let cloth = ClothFrame {
-        stiffness: Stiffness { stretch: none, compression: none, shear: none, bend: none },
+        stiffness: Stiffness { stretch: none, compression: none, shear: none, bend: none, ..Stiffness::NONE },
         stretch_damp: 0.0,
         drag: 0.0,
         lift: 0.0,
@@ -127,7 +127,13 @@ pub fn gravity_only(evaluations: f64) -> FrameInput {
 
 /// The same stiffness in tension and compression, in N/m.
 pub fn membrane(stiffness: f64) -> Stiffness {
-    Stiffness { stretch: Some(stiffness), compression: Some(stiffness), shear: Some(0.0), bend: Some(0.0) }
+    Stiffness {
+        stretch: Some(stiffness),
+        compression: Some(stiffness),
+        shear: Some(0.0),
+        bend: Some(0.0),
+        ..Stiffness::NONE
+    }
 }
 
 /// A sheet of quads: `columns` by `rows` points, from `origin` along `u` and `v`, row by row along `u`.

@@ -265,13 +265,14 @@ impl ClothStiffness {
     }
 
     fn words(&self) -> String {
-        let Self::Physical(PhysicalStiffness { stretch, compression, shear, bend }) = self else {
+        let Self::Physical(PhysicalStiffness { stretch, compression, shear, bend, warp, weft }) = self else {
             return format!("stretch about {} N/m", figures::number(self.stretch()));
         };
         let membrane = [(stretch, "stretch"), (compression, "compression"), (shear, "shear")];
-        let membrane = membrane.map(|(stiffness, name)| (stiffness, name, "N/m"));
-        let all =
-            membrane.into_iter().chain([(bend, "bend", "N·m")]).filter(|(stiffness, ..)| **stiffness > 0.0);
+        // Of cloth without threads of its own they are the stiffness in stretch.
+        let threads = [(warp, "warp"), (weft, "weft")].into_iter().filter(|(own, _)| *own != stretch);
+        let membrane = membrane.into_iter().chain(threads).map(|(stiffness, name)| (stiffness, name, "N/m"));
+        let all = membrane.chain([(bend, "bend", "N·m")]).filter(|(stiffness, ..)| **stiffness > 0.0);
         let words: Vec<String> = all
             .map(|(stiffness, name, unit)| format!("{name} {} {unit}", figures::number(*stiffness)))
             .collect();
@@ -281,8 +282,11 @@ impl ClothStiffness {
     fn as_json(&self) -> Value {
         match self {
             Self::Classic(stretch) => json!({ "stretch": stretch }),
-            Self::Physical(PhysicalStiffness { stretch, compression, shear, bend }) => {
-                json!({ "stretch": stretch, "compression": compression, "shear": shear, "bend": bend })
+            Self::Physical(PhysicalStiffness { stretch, compression, shear, bend, warp, weft }) => {
+                json!({
+                    "stretch": stretch, "compression": compression, "shear": shear, "bend": bend, "warp": warp,
+                    "weft": weft,
+                })
             }
         }
     }

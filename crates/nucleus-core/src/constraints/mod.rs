@@ -17,6 +17,7 @@
 //! | Effect | Rows | Read |
 //! |---|---|---|
 //! | stretch, compression, shear | links | [`stretch`] |
+//! | warp and weft of woven cloth; compression up to the buckling load | links | [`weave`] |
 //! | links that are all corrected from the same state | links | [`parallel`] |
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
 //! | tethers to pins | points | [`tether`] |
@@ -49,4 +50,5 @@ pub mod strength_map;
 pub mod stretch;
 pub mod sweep;
 pub mod tether;
+pub mod weave;
 pub mod whole;

@@ -7,20 +7,59 @@
 
 use crate::math::{Lanes, Real, Row4};
 use crate::model::ClothModel;
-use crate::model::rows::RowList;
+use crate::model::rows::{RowBatch, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
 use super::row_loops::for_all_rows;
-use super::strength_map::{StrengthGroup, StrengthMap, Uniform};
-use super::stretch::{LinkGroup, LinkProjection, LinkStrength};
+use super::strength_map::{StrengthGroup, Uniform};
+use super::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkStrength};
+use super::weave::{WeaveGroup, WeaveStrength, Woven};
+
+/// The links of one effect of a cloth, and what lies beside them in the same layout.
+#[derive(Debug)]
+pub struct LinkLists<'a, R> {
+    /// The links.
+    pub rows: &'a RowList<LinkGroup<R>>,
+    /// Their vertex map, if they can have one; empty where there is none.
+    maps: Option<&'a RowList<StrengthGroup<R>>>,
+    /// Their directions and the strength of the sweep, in cloth that is woven or buckles.
+    pub weave: Option<(&'a RowList<WeaveGroup<R>>, &'a WeaveStrength<R>)>,
+}
+
+impl<'a, R: Real> LinkLists<'a, R> {
+    /// The links along edges.
+    pub fn stretch(cloth: &'a ClothModel<R>, strength: &'a WeaveStrength<R>) -> Self {
+        let maps = &cloth.strength_maps;
+        Self::new(&cloth.stretch, Some(&maps.stretch), (&maps.stretch_weave, strength))
+    }
+
+    /// The cross links.
+    pub fn shear(cloth: &'a ClothModel<R>, strength: &'a WeaveStrength<R>) -> Self {
+        let maps = &cloth.strength_maps;
+        Self::new(&cloth.shear, None, (&maps.shear_weave, strength))
+    }
+
+    fn new(
+        rows: &'a RowList<LinkGroup<R>>,
+        maps: Option<&'a RowList<StrengthGroup<R>>>,
+        weave: (&'a RowList<WeaveGroup<R>>, &'a WeaveStrength<R>),
+    ) -> Self {
+        Self { rows, maps, weave: Some(weave).filter(|(rows, _)| rows.len() > 0) }
+    }
+
+    /// The vertex map of a batch; empty where there is none.
+    pub fn maps(&self, batch: RowBatch) -> &'a [StrengthGroup<R>] {
+        self.maps.map_or(&[], |maps| maps.batch(batch))
+    }
+}
 
 /// Sweeps a list of links of a cloth once. `corrections` has a row for each row of `points`.
 pub fn sweep<R: Real>(
     points: &mut [Row4<R>],
     corrections: &mut [Row4<R>],
     cloth: &ClothModel<R>,
-    (list, maps): (&RowList<LinkGroup<R>>, &RowList<StrengthGroup<R>>),
+    lists: &LinkLists<'_, R>,
     strength: &LinkStrength<R>,
     pool: &ThreadPool,
 ) {
@@ -29,14 +68,24 @@ pub fn sweep<R: Real>(
     corrections[own.clone()].fill(Row4::ZERO);
     let sums = DisjointSlice::new(corrections);
     let jacobi = Jacobi { points, sums, first, valence: &cloth.valence };
-    for_all_rows(pool, &cloth.blocks, list, |batch| {
-        let (groups, maps) = (list.batch(batch).iter(), maps.batch(batch).iter());
+    for_all_rows(pool, &cloth.blocks, lists.rows, |batch| {
+        let (groups, maps) = (lists.rows.batch(batch).iter(), lists.maps(batch).iter());
         // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
         #[allow(unsafe_code)]
         unsafe {
-            match maps.len() > 0 {
-                true => jacobi.add(groups.zip(maps), strength),
-                false => jacobi.add(groups.map(|group| (group, Uniform)), strength),
+            match (lists.weave, maps.len() > 0) {
+                (None, true) => jacobi.add(groups.zip(maps), strength),
+                (None, false) => jacobi.add(groups.map(|group| (group, Uniform)), strength),
+                (Some((weave, law)), true) => {
+                    let woven = groups.zip(weave.batch(batch)).zip(maps);
+                    let woven = woven.map(|((row, group), map)| (row, Woven { group, strength: law, map }));
+                    jacobi.add(woven, strength);
+                }
+                (Some((weave, law)), false) => {
+                    let woven = groups.zip(weave.batch(batch));
+                    let woven = woven.map(|(row, group)| (row, Woven { group, strength: law, map: Uniform }));
+                    jacobi.add(woven, strength);
+                }
             }
         }
     });
@@ -59,15 +108,15 @@ impl<R: Real> Jacobi<'_, R> {
     /// # Safety
     /// No other task of the loop touches the points of `groups`.
     #[allow(unsafe_code)]
-    unsafe fn add<'g, P: StrengthMap<R>>(
+    unsafe fn add<'g, P: LinkLaw<R>>(
         &self,
         groups: impl Iterator<Item = (&'g LinkGroup<R>, P)>,
         strength: &LinkStrength<R>,
     ) {
         let projection = LinkProjection::new(strength);
-        for (group, map) in groups {
+        for (group, law) in groups {
             let [a, b] = group.ends.map(|ends| ends.map(|end| self.points[end as usize].lanes()));
-            let push = projection.push(group, map, [a, b]);
+            let push = projection.push(group, law, [a, b]);
             for lane in 0..4 {
                 let [end_a, end_b] = group.ends.map(|ends| ends[lane]);
                 let valence = |end: u32| self.valence[(end - self.first) as usize];

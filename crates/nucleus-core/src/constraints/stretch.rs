@@ -6,14 +6,17 @@
 //!
 //! Shear rows are links too: the cross links of quads, swept with the strength of `shearResistance`.
 
+use nalgebra::Vector3;
+
 use crate::math::{Lanes, Real, Row4};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
 use crate::model::topology::{Link, shear_links};
 use crate::model::vertex_maps::mean;
+use crate::model::weave::woven_links;
 use crate::parallel::disjoint::DisjointSlice;
 
-use super::strength_map::{Sides, StrengthMap};
+use super::strength_map::{Sides, StrengthGroup, StrengthMap, Uniform};
 
 /// Four links side by side. 28 bytes a link in `f32`.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +40,8 @@ pub struct LinkRow<R> {
     pub rest_length: R,
     /// Length over width of the strip of cloth that the link stands for.
     pub slenderness: R,
+    /// Squared cosine of the angle to the warp of woven cloth; 1 in other cloth.
+    pub warp: R,
 }
 
 impl<R: Real> LinkRow<R> {
@@ -47,18 +52,26 @@ impl<R: Real> LinkRow<R> {
             ends: link.ends.map(place),
             rest_length: R::from_f64(link.rest_length * rest),
             slenderness: R::from_f64(link.slenderness),
+            warp: R::from_f64(link.warp),
         }
     }
 }
 
-/// The shear rows of a mesh: its cross links. `rest` is the vertex map of rest length factors.
+/// The shear rows of a mesh: its cross links. `rest` is the vertex map of rest length factors, `warp` the directions of
+/// the warp of woven cloth.
 ///
 /// Two diagonals of stiffness k in every cell of a square grid resist shear with the modulus k, so a resistance means
 /// the same stiffness here as along the edges.
-pub fn shear_rows<R: Real>(surface: &Surface, rest: &[f64], place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
+pub fn shear_rows<R: Real>(
+    surface: &Surface,
+    warp: &[Vector3<f64>],
+    rest: &[f64],
+    place: impl Fn(u32) -> u32,
+) -> Vec<LinkRow<R>> {
     let row =
         |link: &Link| LinkRow::new(link, mean(rest, link.ends.map(|end| end as usize).into_iter()), &place);
-    let mut rows: Vec<LinkRow<R>> = shear_links(surface).iter().map(row).collect();
+    let links = if warp.is_empty() { shear_links(surface) } else { woven_links(surface, warp).cross };
+    let mut rows: Vec<LinkRow<R>> = links.iter().map(row).collect();
     rows.sort_unstable_by_key(|row| row.ends);
     rows
 }
@@ -72,7 +85,7 @@ impl<R: Real> Row for LinkRow<R> {
     }
 
     fn idle(padding_point: u32) -> Self {
-        Self { ends: [padding_point; 2], rest_length: R::ZERO, slenderness: R::ONE }
+        Self { ends: [padding_point; 2], rest_length: R::ZERO, slenderness: R::ONE, warp: R::ONE }
     }
 
     fn group(rows: [Self; 4]) -> LinkGroup<R> {
@@ -119,22 +132,58 @@ impl<R: Real> LinkGroup<R> {
     }
 }
 
-/// Sweeps the links of `groups` once, each group with its strength map.
+/// How four links side by side resist: a strength map, or the law of [`Woven`](super::weave::Woven) links.
+pub trait LinkLaw<R: Real>: Copy {
+    /// The multipliers of the corrections, over the lengths of the links, from those lengths and the sums of the
+    /// inverse masses.
+    fn multiplier(
+        self,
+        projection: &LinkProjection<R::Lanes>,
+        group: &LinkGroup<R>,
+        length_and_mobility: [R::Lanes; 2],
+    ) -> R::Lanes;
+}
+
+impl<R: Real> LinkLaw<R> for Uniform {
+    #[inline(always)]
+    fn multiplier(
+        self,
+        projection: &LinkProjection<R::Lanes>,
+        group: &LinkGroup<R>,
+        length_and_mobility: [R::Lanes; 2],
+    ) -> R::Lanes {
+        projection.multiplier(group, self, length_and_mobility)
+    }
+}
+
+impl<R: Real> LinkLaw<R> for &StrengthGroup<R> {
+    #[inline(always)]
+    fn multiplier(
+        self,
+        projection: &LinkProjection<R::Lanes>,
+        group: &LinkGroup<R>,
+        length_and_mobility: [R::Lanes; 2],
+    ) -> R::Lanes {
+        projection.multiplier(group, self, length_and_mobility)
+    }
+}
+
+/// Sweeps the links of `groups` once, each group with its law.
 ///
 /// # Safety
 /// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>>(
+pub unsafe fn relax<'a, R: Real, P: LinkLaw<R>>(
     points: DisjointSlice<'_, Row4<R>>,
     groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
     strength: &LinkStrength<R>,
 ) {
     let projection = LinkProjection::new(strength);
-    for (group, map) in groups {
+    for (group, law) in groups {
         // SAFETY: the caller's promise.
         let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-        let push = projection.push(group, map, [a, b]);
+        let push = projection.push(group, law, [a, b]);
         for lane in 0..4 {
             let [end_a, end_b] = group.ends.map(|end| end[lane]);
             let moved_a = a[lane] + a[lane].splat_last() * push[lane];
@@ -172,13 +221,47 @@ impl<L: Copy> LinkProjection<L> {
         }
     }
 
-    /// The vectors by which the first ends of four links move, over their inverse masses, in metres times kilograms; the
-    /// second ends move the other way. `a` and `b` are the rows of the ends.
+    /// The multipliers of links that all have the compliance of the sweep, times a vertex map; see [`LinkLaw`].
     #[inline(always)]
-    pub fn push<R: Real<Lanes = L>, P: StrengthMap<R>>(
+    pub fn multiplier<R: Real<Lanes = L>, P: StrengthMap<R>>(
         &self,
         group: &LinkGroup<R>,
         map: P,
+        [length, mobility]: [L; 2],
+    ) -> L
+    where
+        L: Lanes<R>,
+    {
+        let c = length - L::from_array(group.rest_length) * self.rest_scale;
+        let compliance = c.choose_by_sign(self.compliance[0], self.compliance[1]);
+        let (share, compliance) = map.scale(c, self.share(c), compliance);
+        let softness = compliance * L::from_array(group.slenderness);
+        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
+        share * c / ((mobility + softness) * length + self.tiny)
+    }
+
+    /// The share of the error that a sweep removes, by the sign of `c`.
+    #[inline(always)]
+    pub fn share<R: Real<Lanes = L>>(&self, c: L) -> L
+    where
+        L: Lanes<R>,
+    {
+        c.choose_by_sign(self.share[0], self.share[1])
+    }
+
+    /// Factor on all rest lengths.
+    #[inline(always)]
+    pub fn rest_scale(&self) -> L {
+        self.rest_scale
+    }
+
+    /// The vectors by which the first ends of four links move, over their inverse masses, in metres times kilograms; the
+    /// second ends move the other way. `a` and `b` are the rows of the ends.
+    #[inline(always)]
+    pub fn push<R: Real<Lanes = L>, P: LinkLaw<R>>(
+        &self,
+        group: &LinkGroup<R>,
+        law: P,
         [a, b]: [[L; 4]; 2],
     ) -> [L; 4]
     where
@@ -189,13 +272,7 @@ impl<L: Copy> LinkProjection<L> {
         let [sx, sy, sz] = group.span.map(L::from_array);
         let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
         let length = (dx * dx + dy * dy + dz * dz).sqrt();
-        let c = length - L::from_array(group.rest_length) * self.rest_scale;
-        let share = c.choose_by_sign(self.share[0], self.share[1]);
-        let compliance = c.choose_by_sign(self.compliance[0], self.compliance[1]);
-        let (share, compliance) = map.scale(c, share, compliance);
-        let softness = compliance * L::from_array(group.slenderness);
-        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
-        let lambda = share * c / ((w_a + w_b + softness) * length + self.tiny);
+        let lambda = law.multiplier(self, group, [length, w_a + w_b]);
         L::transpose([lambda * dx, lambda * dy, lambda * dz, L::splat(R::ZERO)])
     }
 }

@@ -6,9 +6,11 @@
 
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
+use crate::constraints::parallel::LinkLists;
 use crate::constraints::row_loops::for_interface_rows;
 use crate::constraints::strength_map::{StrengthGroup, Uniform};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
+use crate::constraints::weave::{WeaveGroup, WeaveStrength, Woven};
 use crate::constraints::{angle, bend, parallel, stretch};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
@@ -60,11 +62,10 @@ fn sweep_parallel<R: Real>(
     sweeps: &[Sweep<R>],
     pool: &ThreadPool,
 ) {
-    let no_maps = RowList::default();
     for Sweep { effect, .. } in sweeps {
         let (lists, strength) = match effect {
-            Effect::Stretch(strength) => ((&cloth.stretch, &cloth.strength_maps.stretch), strength),
-            Effect::Shear(strength) => ((&cloth.shear, &no_maps), strength),
+            Effect::Stretch(strength, weave) => (LinkLists::stretch(cloth, weave), strength),
+            Effect::Shear(strength, weave) => (LinkLists::shear(cloth, weave), strength),
             Effect::Bend(..) => {
                 let sweeper = Sweeper { points: DisjointSlice::new(displacement), cloth, backward: false };
                 pool.parallel_for(cloth.blocks.len(), |block| sweeper.interior(block, effect));
@@ -72,7 +73,7 @@ fn sweep_parallel<R: Real>(
                 continue;
             }
         };
-        parallel::sweep(displacement, corrections, cloth, lists, strength, pool);
+        parallel::sweep(displacement, corrections, cloth, &lists, strength, pool);
     }
 }
 
@@ -90,10 +91,10 @@ impl<R: Real> Sweeper<'_, R> {
     fn interior(&self, block: usize, effect: &Effect<R>) {
         let (cloth, batch) = (self.cloth, RowBatch::Interior(block));
         match effect {
-            Effect::Stretch(strength) => {
-                self.links(&cloth.stretch, &cloth.strength_maps.stretch, batch, strength)
+            Effect::Stretch(strength, weave) => {
+                self.links(&LinkLists::stretch(cloth, weave), batch, strength);
             }
-            Effect::Shear(strength) => self.links(&cloth.shear, &RowList::default(), batch, strength),
+            Effect::Shear(strength, weave) => self.links(&LinkLists::shear(cloth, weave), batch, strength),
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
                 self.hinges((&cloth.bend, &cloth.bend_angles, &maps.angles), &maps.bend, batch, strength);
@@ -106,11 +107,11 @@ impl<R: Real> Sweeper<'_, R> {
     fn interface(&self, pool: &ThreadPool, effect: &Effect<R>) {
         let (cloth, backward) = (self.cloth, self.backward);
         match effect {
-            Effect::Stretch(strength) => for_interface_rows(pool, &cloth.stretch, backward, |batch| {
-                self.links(&cloth.stretch, &cloth.strength_maps.stretch, batch, strength);
+            Effect::Stretch(strength, weave) => for_interface_rows(pool, &cloth.stretch, backward, |batch| {
+                self.links(&LinkLists::stretch(cloth, weave), batch, strength);
             }),
-            Effect::Shear(strength) => for_interface_rows(pool, &cloth.shear, backward, |batch| {
-                self.links(&cloth.shear, &RowList::default(), batch, strength);
+            Effect::Shear(strength, weave) => for_interface_rows(pool, &cloth.shear, backward, |batch| {
+                self.links(&LinkLists::shear(cloth, weave), batch, strength);
             }),
             Effect::Bend(strength, angles) => {
                 let (maps, strength) = (&cloth.strength_maps, (strength, angles));
@@ -125,16 +126,15 @@ impl<R: Real> Sweeper<'_, R> {
         }
     }
 
-    /// A strength map has the layout of the rows it scales.
     #[allow(unsafe_code)]
-    fn links(
-        &self,
-        rows: &RowList<LinkGroup<R>>,
-        maps: &RowList<StrengthGroup<R>>,
-        batch: RowBatch,
-        strength: &LinkStrength<R>,
-    ) {
-        let (rows, maps) = (rows.batch(batch).iter(), maps.batch(batch).iter());
+    fn links(&self, lists: &LinkLists<'_, R>, batch: RowBatch, strength: &LinkStrength<R>) {
+        let (rows, maps) = (lists.rows.batch(batch).iter(), lists.maps(batch).iter());
+        if let Some((weave, law)) = lists.weave {
+            let weave = weave.batch(batch);
+            // SAFETY: see `Sweeper`.
+            unsafe { self.woven(rows, (weave, law), maps, strength) };
+            return;
+        }
         // SAFETY: see `Sweeper`.
         unsafe {
             match (self.backward, maps.len() > 0) {
@@ -142,6 +142,30 @@ impl<R: Real> Sweeper<'_, R> {
                 (true, false) => stretch::relax(self.points, rows.rev().map(unmapped), strength),
                 (false, true) => stretch::relax(self.points, rows.zip(maps), strength),
                 (true, true) => stretch::relax(self.points, rows.zip(maps).rev(), strength),
+            }
+        }
+    }
+
+    /// # Safety
+    /// See [`Sweeper`].
+    #[allow(unsafe_code)]
+    unsafe fn woven(
+        &self,
+        rows: std::slice::Iter<'_, LinkGroup<R>>,
+        (weave, law): (&[WeaveGroup<R>], &WeaveStrength<R>),
+        maps: std::slice::Iter<'_, StrengthGroup<R>>,
+        strength: &LinkStrength<R>,
+    ) {
+        let rows = rows.zip(weave);
+        let plain = |(row, group)| (row, Woven { group, strength: law, map: Uniform });
+        let mapped = |((row, group), map)| (row, Woven { group, strength: law, map });
+        // SAFETY: the caller's promise.
+        unsafe {
+            match (self.backward, maps.len() > 0) {
+                (false, false) => stretch::relax(self.points, rows.map(plain), strength),
+                (true, false) => stretch::relax(self.points, rows.rev().map(plain), strength),
+                (false, true) => stretch::relax(self.points, rows.zip(maps).map(mapped), strength),
+                (true, true) => stretch::relax(self.points, rows.zip(maps).rev().map(mapped), strength),
             }
         }
     }

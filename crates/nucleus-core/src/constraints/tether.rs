@@ -88,7 +88,12 @@ impl<R: Real> Tethers<R> {
                     let labels = &self.labels[(row - first) as usize];
                     let Some(own) = labels.get(label).filter(|own| own.pin != row - first) else { continue };
                     let rest_length = R::from_f64(own.distance * slack(labels, first, state, duration));
-                    four[filled] = LinkRow { ends: [row, first + own.pin], rest_length, slenderness: R::ONE };
+                    four[filled] = LinkRow {
+                        ends: [row, first + own.pin],
+                        rest_length,
+                        slenderness: R::ONE,
+                        warp: R::ONE,
+                    };
                     filled += 1;
                     if filled == 4 {
                         self.groups.push(LinkRow::group(std::mem::replace(&mut four, [idle; 4])));

@@ -34,6 +34,20 @@ pub enum BuildError {
         /// The face.
         face: usize,
     },
+    /// Woven cloth has not one direction of the warp per face.
+    #[error("there are {given} directions of the warp, but {faces} faces")]
+    WarpCount {
+        /// The number of directions given.
+        given: usize,
+        /// The number of faces.
+        faces: usize,
+    },
+    /// The direction of the warp in a face is zero or not finite.
+    #[error("the warp has no direction in face {face}")]
+    BadWarp {
+        /// The face.
+        face: usize,
+    },
     /// The mesh has faces, but none of them has any area.
     #[error("the mesh has no area")]
     NoArea,

@@ -53,6 +53,8 @@ pub struct ClothLists {
     pub plastic: bool,
     /// Points are tethered to pins at some time.
     pub tethers: bool,
+    /// Links buckle at some time.
+    pub buckling: bool,
 }
 
 impl ClothLists {
@@ -72,6 +74,7 @@ impl ClothLists {
         shells: false,
         plastic: false,
         tethers: false,
+        buckling: false,
     };
     /// Everything off: free points.
     pub const NONE: Self = Self {
@@ -89,6 +92,7 @@ impl ClothLists {
         shells: false,
         plastic: false,
         tethers: false,
+        buckling: false,
     };
 }
 
@@ -116,6 +120,8 @@ pub struct Cloth {
     pub mass: Mass,
     /// The lists that it can ever need.
     pub lists: ClothLists,
+    /// Of woven cloth, the direction of the warp in each face of the surface; empty for other cloth.
+    pub warp: Vec<Vector3<f64>>,
     /// Vertex maps of its attributes.
     pub vertex_maps: VertexMaps,
     /// Positions and velocities at the start, where they differ from the mesh at rest.
@@ -174,6 +180,7 @@ impl Cloth {
             surface,
             mass,
             lists,
+            warp: Vec::new(),
             vertex_maps: VertexMaps::default(),
             start: Start::default(),
             particles: None,
@@ -219,8 +226,8 @@ impl ModelBuilder {
     /// Adds a cloth.
     ///
     /// # Errors
-    /// When the mesh is empty, without area, not finite or names points it does not have, or the mass is
-    /// not positive; see [`BuildError`].
+    /// When the mesh is empty, without area, not finite or names points it does not have, a face of woven cloth has no
+    /// direction of the warp, or the mass is not positive; see [`BuildError`].
     pub fn cloth(&mut self, cloth: Cloth) -> Result<ClothId, BuildError> {
         match &cloth.particles {
             Some(particles) => check_particles(&cloth.surface, particles)?,
@@ -230,6 +237,7 @@ impl ModelBuilder {
         if !(mass > 0.0 && mass.is_finite()) {
             return Err(BuildError::BadMass { mass });
         }
+        check_warp(&cloth)?;
         cloth.vertex_maps.check(cloth.surface.positions.len())?;
         check_start(&cloth.start, cloth.surface.positions.len())?;
         self.cloths.push(cloth);
@@ -303,6 +311,19 @@ fn even_masses(cloth: &Cloth) -> Vec<f64> {
             let average = if average > 0.0 { average } else { 1.0 };
             areas.iter().map(|&area| density * if area > 0.0 { area } else { average }).collect()
         }
+    }
+}
+
+/// Refuses woven cloth in which a face has no direction of the warp.
+fn check_warp(cloth: &Cloth) -> Result<(), BuildError> {
+    let faces = cloth.surface.faces.len();
+    if !cloth.warp.is_empty() && cloth.warp.len() != faces {
+        return Err(BuildError::WarpCount { given: cloth.warp.len(), faces });
+    }
+    let is_direction = |warp: &Vector3<f64>| is_in_range(warp) && warp.norm() > 0.0;
+    match cloth.warp.iter().position(|warp| !is_direction(warp)) {
+        Some(face) => Err(BuildError::BadWarp { face }),
+        None => Ok(()),
     }
 }
 

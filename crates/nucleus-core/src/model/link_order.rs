@@ -79,7 +79,7 @@ mod tests {
         fn rows_that_share_a_point_keep_the_order_of_the_list(
             ends in proptest::collection::vec((0u32..20, 0u32..20), 0..80),
         ) {
-            let row = |&(a, b): &(u32, u32)| LinkRow { ends: [a + 5, b + 5], rest_length: 1.0f64, slenderness: 1.0 };
+            let row = |&(a, b): &(u32, u32)| LinkRow { ends: [a + 5, b + 5], rest_length: 1.0f64, slenderness: 1.0, warp: 1.0 };
             let rows: Vec<_> = ends.iter().filter(|(a, b)| a != b).map(row).collect();
             let levels = levels_of_list(&rows, 5, 20);
             for later in 0..rows.len() {

@@ -14,6 +14,7 @@
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
 //! | blocks of points; colours and lane groups of rows | `blocks.rs`, `rows.rs` |
 //! | distances along a mesh | [`geodesic`] |
+//! | links of woven cloth | [`weave`] |
 //! | vertex maps, as given and per row | [`vertex_maps`], `strength_maps.rs` |
 
 pub mod blocks;
@@ -27,6 +28,7 @@ pub mod strength_maps;
 pub mod surface;
 pub mod topology;
 pub mod vertex_maps;
+pub mod weave;
 
 use std::ops::Range;
 
@@ -43,10 +45,11 @@ use crate::model::blocks::{Blocks, triangles_by_block};
 use crate::model::builder::{Cloth, Collider, LinkOrder, Mass, point_masses};
 use crate::model::order::Order;
 use crate::model::rows::RowList;
-use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps};
+use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps, weave_of};
 use crate::model::surface::Surface;
 use crate::model::topology::{Link, stretch_links};
 use crate::model::vertex_maps::mean;
+use crate::model::weave::woven_links;
 
 /// One cloth: its range in the columns of the state, and its lists. Points are numbered by their row in the columns.
 #[derive(Debug, Clone)]
@@ -130,6 +133,7 @@ impl<R: Real> ClothModel<R> {
             triangles: Vec::new(),
             boundary: BoundaryElements::default(),
             alternates_direction: cloth.lists.cross_links
+                || !cloth.warp.is_empty()
                 || surface.faces.iter().any(|face| face.len() % 2 == 1),
             point_mass,
             edge_length: 0.0,
@@ -160,12 +164,19 @@ impl<R: Real> ClothModel<R> {
             let levels = levels(&rows);
             strength_maps.stretch = maps.links(&rows, &levels);
             strength_maps.damp = maps.damping(&rows, &levels);
+            if cloth.lists.buckling || !cloth.warp.is_empty() {
+                strength_maps.stretch_weave = weave_of(&rows, &levels, &blocks);
+            }
             model.stretch = RowList::in_levels(&rows, &levels, &blocks);
         }
         if cloth.lists.shear {
             let rest = &cloth.vertex_maps.rest_length;
-            let rows = shear_rows(surface, rest, place);
-            model.shear = RowList::in_levels(&rows, &levels(&rows), &blocks);
+            let rows = shear_rows(surface, &cloth.warp, rest, place);
+            let levels = levels(&rows);
+            if !cloth.warp.is_empty() {
+                strength_maps.shear_weave = weave_of(&rows, &levels, &blocks);
+            }
+            model.shear = RowList::in_levels(&rows, &levels, &blocks);
         }
         if cloth.lists.bend {
             let rows = hinge::rows(surface, place);
@@ -299,7 +310,10 @@ impl ColliderModel {
 }
 
 fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {
-    let links = stretch_links(surface, cloth.lists.cross_links);
+    let links = match cloth.warp.is_empty() {
+        true => stretch_links(surface, cloth.lists.cross_links),
+        false => woven_links(surface, &cloth.warp).edges,
+    };
     let rest =
         |link: &Link| mean(&cloth.vertex_maps.rest_length, link.ends.map(|end| end as usize).into_iter());
     links.iter().map(|link| LinkRow::new(link, rest(link), &place)).collect()

@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::constraints::hinge::HingeRow;
 use crate::constraints::strength_map::{StrengthGroup, StrengthRow};
 use crate::constraints::stretch::LinkRow;
+use crate::constraints::weave::{WeaveGroup, WeaveRow};
 use crate::math::Real;
 use crate::model::vertex_maps::{VertexMaps, mean, mean_share};
 
@@ -27,13 +28,27 @@ pub struct StrengthMaps<R> {
     pub angles: RowList<StrengthGroup<R>>,
     /// The same of hinges of six points.
     pub angles_six: RowList<StrengthGroup<R>>,
+    /// Directions of links along edges, in cloth that is woven or buckles.
+    pub stretch_weave: RowList<WeaveGroup<R>>,
+    /// Directions of cross links, in woven cloth.
+    pub shear_weave: RowList<WeaveGroup<R>>,
 }
 
 impl<R> Default for StrengthMaps<R> {
     fn default() -> Self {
         let none = RowList::default;
         let (stretch, damp) = (none(), none());
-        Self { stretch, bend: none(), bend_six: none(), damp, angles: none(), angles_six: none() }
+        let (stretch_weave, shear_weave) = (RowList::default(), RowList::default());
+        Self {
+            stretch,
+            bend: none(),
+            bend_six: none(),
+            damp,
+            angles: none(),
+            angles_six: none(),
+            stretch_weave,
+            shear_weave,
+        }
     }
 }
 
@@ -43,6 +58,16 @@ impl<R> StrengthMaps<R> {
         let lists = [&self.stretch, &self.bend, &self.bend_six, &self.damp, &self.angles, &self.angles_six];
         lists.iter().map(|list| list.len()).sum()
     }
+
+    /// How many links have a direction.
+    pub fn woven(&self) -> usize {
+        self.stretch_weave.len() + self.shear_weave.len()
+    }
+}
+
+/// The directions of links, laid out like them.
+pub fn weave_of<R: Real>(rows: &[LinkRow<R>], levels: &[u32], blocks: &Blocks) -> RowList<WeaveGroup<R>> {
+    RowList::in_levels(&rows.iter().map(WeaveRow::new).collect::<Vec<_>>(), levels, blocks)
 }
 
 /// The factors of the vertex maps on the aerodynamic forces of a point, each over its mass factor.

@@ -15,6 +15,8 @@ pub struct Link {
     /// Length over width of the strip of cloth that the link stands for. The stiffness of the cloth in N/m, divided by
     /// it, is the stiffness of the link.
     pub slenderness: f64,
+    /// Squared cosine of the angle to the warp of woven cloth; 1 in other cloth.
+    pub warp: f64,
 }
 
 /// Two faces that share an edge.
@@ -64,7 +66,7 @@ fn merged(surface: &Surface, mut lines: Vec<Line>) -> Vec<Link> {
         let ends = shared[0].ends;
         let rest_length = distance(surface, ends);
         let strip: f64 = shared.iter().map(|line| line.strip).sum();
-        Link { ends, rest_length, slenderness: slenderness(rest_length, strip) }
+        Link { ends, rest_length, slenderness: slenderness(rest_length, strip), warp: 1.0 }
     };
     strips.map(link).collect()
 }
@@ -91,7 +93,7 @@ fn sides(surface: &Surface, with_cross_links: bool) -> Vec<Line> {
 }
 
 /// The sides of a face, each with its lower end first.
-fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+pub(super) fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     let next = face.iter().cycle().skip(1);
     face.iter().zip(next).map(|(&p, &q)| [p.min(q), p.max(q)])
 }
@@ -104,7 +106,7 @@ fn strip_of_diagonal(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
 }
 
 /// All links of a polygon of five or more corners have the same stiffness, and their strips have three times its area.
-fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
+pub(super) fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
     let pairs = (1..face.len()).flat_map(|k| (0..k).map(move |j| [face[j], face[k]]));
     let squares: f64 = pairs.map(|pair| distance(surface, pair).powi(2)).sum();
     if squares > 0.0 {
@@ -236,15 +238,15 @@ pub fn triangle_area(surface: &Surface, triangle: [u32; 3]) -> f64 {
 }
 
 /// A link of zero length, or without faces, counts as long as it is wide.
-fn slenderness(length: f64, strip_area: f64) -> f64 {
+pub(super) fn slenderness(length: f64, strip_area: f64) -> f64 {
     if length > 0.0 && strip_area > 0.0 { length * length / strip_area } else { 1.0 }
 }
 
-fn distance(surface: &Surface, ends: [u32; 2]) -> f64 {
+pub(super) fn distance(surface: &Surface, ends: [u32; 2]) -> f64 {
     let [a, b]: [Vector3<f64>; 2] = ends.map(|point| surface.positions[point as usize]);
     (b - a).norm()
 }
 
-fn polygon_area(surface: &Surface, face: &[u32]) -> f64 {
+pub(super) fn polygon_area(surface: &Surface, face: &[u32]) -> f64 {
     fan_triangles(face).map(|triangle| triangle_area(surface, triangle)).sum()
 }

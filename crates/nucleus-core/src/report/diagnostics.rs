@@ -10,12 +10,14 @@ use crate::constraints::link::pass::max_weld_gap;
 use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::strength_map::StrengthGroup;
 use crate::constraints::stretch::LinkGroup;
+use crate::constraints::weave::{self, WeaveGroup};
 use crate::contact::cloth::contact::ClothStep;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::system::ContactSystem;
 use crate::contact::time_step::{ColliderStepArgs, ContactCounters};
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::{Real, dot};
+use crate::model::rows::RowList;
 use crate::model::{ClothModel, Model};
 use crate::output::StepReport;
 use crate::schedule::Schedule;
@@ -111,12 +113,25 @@ fn strains<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInp
 pub fn elastic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> f64 {
     let ResistanceModel::Physical { .. } = frame.resistance else { return 0.0 };
     let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
-        let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);
+        let stiffness = PhysicalStiffness::of(settings);
+        let PhysicalStiffness { stretch, compression, shear, bend, .. } = stiffness;
         let scale = settings.rest_length_scale;
         let maps = &cloth.strength_maps;
         let both = [stretch, compression];
-        link_energy(state, cloth.stretch.groups(), maps.stretch.groups(), scale, both)
-            + link_energy(state, cloth.shear.groups(), &[], scale, [shear; 2])
+        let woven = |links: &RowList<LinkGroup<R>>, weave: &RowList<WeaveGroup<R>>, maps| {
+            let law = (&stiffness, settings.buckles);
+            woven_energy(state, (links.groups(), weave.groups()), maps, scale, law)
+        };
+        let stretch = match maps.stretch_weave.len() {
+            0 => link_energy(state, cloth.stretch.groups(), maps.stretch.groups(), scale, both),
+            _ => woven(&cloth.stretch, &maps.stretch_weave, maps.stretch.groups()),
+        };
+        let shear = match maps.shear_weave.len() {
+            0 => link_energy(state, cloth.shear.groups(), &[], scale, [shear; 2]),
+            _ => woven(&cloth.shear, &maps.shear_weave, &[]),
+        };
+        stretch
+            + shear
             + hinge_energy(state, cloth.bend.groups(), maps.bend.groups(), bend)
             + hinge_energy(state, cloth.bend_six.groups(), maps.bend_six.groups(), bend)
     };
@@ -142,6 +157,26 @@ fn link_energy<R: Real>(
         stiffness * stretch * stretch / 2.0
     };
     (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
+}
+
+/// The energy of the links of cloth that is woven or buckles.
+fn woven_energy<R: Real>(
+    state: &State<R>,
+    (links, weave): (&[LinkGroup<R>], &[WeaveGroup<R>]),
+    maps: &[StrengthGroup<R>],
+    rest_scale: f64,
+    (stiffness, buckles): (&PhysicalStiffness, bool),
+) -> f64 {
+    let energy = |(k, lane): (usize, usize)| {
+        let group = &links[k];
+        let rest = group.rest_length[lane].to_f64() * rest_scale;
+        let c = length(state, group, lane) - rest;
+        let own = |share: fn(&StrengthGroup<R>) -> &[R; 4]| share_of(maps.get(k).map(share), lane);
+        let share = if c > 0.0 { own(|share| &share.above) } else { own(|share| &share.below) };
+        let along = weave[k].warp[lane].to_f64();
+        weave::energy(stiffness, buckles, along, share, [c, rest, group.slenderness[lane].to_f64()])
+    };
+    (0..links.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
 }
 
 /// The length of a link in metres.

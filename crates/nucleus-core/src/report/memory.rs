@@ -68,6 +68,10 @@ fn of_cloth<R: Real>(cloth: &ClothModel<R>) -> usize {
         + of_list(&cloth.bend_six)
         + angles
         + maps.into_iter().map(of_list).sum::<usize>()
+        + [&cloth.strength_maps.stretch_weave, &cloth.strength_maps.shear_weave]
+            .into_iter()
+            .map(of_list)
+            .sum::<usize>()
         + per_point.sum::<usize>()
         + triangles.sum::<usize>()
         + size_of_val(&cloth.air[..])

@@ -6,7 +6,9 @@ use crate::constraints::link::sweep::LinkSweep;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
 use crate::input::fields::Field;
-use crate::input::frame::{BendSolver, Bending, ClothFrame, ColliderFrame, ForceField, FrameInput, PushOut};
+use crate::input::frame::{
+    BendSolver, Bending, ClothFrame, ColliderFrame, ForceField, FrameInput, PushOut, ResistanceModel,
+};
 use crate::input::object_fields::PointField;
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
@@ -82,6 +84,11 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     passes.push(PassCost { name: "ramps", rows: ramps, sweeps: f64::from(schedule.substeps) });
     let factors: usize = solver.model.cloths.iter().map(ClothModel::factors).sum::<usize>()
         + solver.contact.material_maps.len();
+    let weave = |cloth: &ClothModel<R>| cloth.strength_maps.woven();
+    let woven = solver.model.cloths.iter().map(weave).sum();
+    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
+    let sweeps = if is_physical { f64::from(steps) } else { 0.0 };
+    passes.push(PassCost { name: "weave", rows: woven, sweeps });
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes
@@ -238,9 +245,9 @@ fn sweeps_of<R: Real>(cloths: &[ClothModel<R>], name: &'static str, schedule: &S
 /// handles both sides and is `stretch`.
 fn named<R: Real>(effect: &Effect<R>, name: &str) -> bool {
     match effect {
-        Effect::Stretch(strength) if strength.share.above == R::ZERO => name == "compress",
-        Effect::Stretch(_) => name == "stretch",
-        Effect::Shear(_) => name == "shear",
+        Effect::Stretch(strength, _) if strength.share.above == R::ZERO => name == "compress",
+        Effect::Stretch(..) => name == "stretch",
+        Effect::Shear(..) => name == "shear",
         Effect::Bend(..) => name == "bend",
     }
 }

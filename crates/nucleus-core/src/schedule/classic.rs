@@ -5,6 +5,7 @@ use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::ShapeStrength;
 use crate::constraints::strength_map::Sides;
 use crate::constraints::stretch::LinkStrength;
+use crate::constraints::weave::WeaveStrength;
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::Real;
 use crate::schedule::pass::{Effect, Pass, Sweep, WholeEffect, WholeSweep};
@@ -77,9 +78,18 @@ fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, EffectOfStrength<R>); 
         rest_scale,
     };
     [
-        (cloth.stretch_resistance, Box::new(move |share| Effect::Stretch(links(share, R::ZERO)))),
-        (cloth.compression_resistance, Box::new(move |share| Effect::Stretch(links(R::ZERO, share)))),
-        (cloth.shear_resistance, Box::new(move |share| Effect::Shear(links(share, share)))),
+        (
+            cloth.stretch_resistance,
+            Box::new(move |share| Effect::Stretch(links(share, R::ZERO), WeaveStrength::rigid())),
+        ),
+        (
+            cloth.compression_resistance,
+            Box::new(move |share| Effect::Stretch(links(R::ZERO, share), WeaveStrength::rigid())),
+        ),
+        (
+            cloth.shear_resistance,
+            Box::new(move |share| Effect::Shear(links(share, share), WeaveStrength::rigid())),
+        ),
         (
             cloth.bend_resistance,
             Box::new(move |share| Effect::Bend(BendStrength { share, compliance: R::ZERO }, angles)),

@@ -4,6 +4,7 @@ use crate::constraints::angle::AngleStrength;
 use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::ShapeStrength;
 use crate::constraints::stretch::LinkStrength;
+use crate::constraints::weave::WeaveStrength;
 
 /// One sweep of one effect over one cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,10 +18,10 @@ pub struct Sweep<R> {
 /// An effect, with the strength of its sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effect<R> {
-    /// Links along edges: stretch, compression or both.
-    Stretch(LinkStrength<R>),
+    /// Links along edges: stretch, compression or both. The strength of woven links replaces the compliances of others.
+    Stretch(LinkStrength<R>, WeaveStrength<R>),
     /// Cross links of quads.
-    Shear(LinkStrength<R>),
+    Shear(LinkStrength<R>, WeaveStrength<R>),
     /// Hinges between faces, and twists of quads.
     Bend(BendStrength<R>, AngleStrength<R>),
 }

@@ -5,6 +5,7 @@ use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
 use crate::constraints::strength_map::Sides;
 use crate::constraints::stretch::LinkStrength;
+use crate::constraints::weave::WeaveStrength;
 use crate::input::frame::{ClothFrame, FrameInput};
 use crate::math::Real;
 use crate::schedule::pass::{Effect, Pass, Sweep, WholeEffect, WholeSweep};
@@ -26,10 +27,13 @@ pub fn physical<R: Real>(
                 sweeps.push(Sweep { cloth, effect });
             }
         };
-        let PhysicalStiffness { stretch, compression, shear, bend } = PhysicalStiffness::of(settings);
+        let stiffness = PhysicalStiffness::of(settings);
+        let PhysicalStiffness { stretch, compression, shear, bend, warp, weft } = stiffness;
+        let weave = WeaveStrength::new(&stiffness, settings.buckles, h);
         let links = |above: f64, below: f64| physical_links(settings, above, below, h);
-        add(stretch.max(compression), Effect::Stretch(links(stretch, compression)));
-        add(shear, Effect::Shear(links(shear, shear)));
+        let above = stretch.max(warp).max(weft);
+        add(above.max(compression), Effect::Stretch(links(stretch, compression), weave));
+        add(shear, Effect::Shear(links(shear, shear), weave));
         let compliance = compliance(bend, h);
         add(
             bend,

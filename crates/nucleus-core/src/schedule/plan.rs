@@ -192,9 +192,9 @@ mod tests {
     /// contact (M), safeguard (S).
     fn letters(schedule: &Schedule<f64>) -> String {
         let letter = |sweep: &Sweep<f64>| match sweep.effect {
-            Effect::Stretch(strength) if strength.share.above == 0.0 => 'c',
-            Effect::Stretch(_) => 's',
-            Effect::Shear(_) => 'h',
+            Effect::Stretch(strength, _) if strength.share.above == 0.0 => 'c',
+            Effect::Stretch(..) => 's',
+            Effect::Shear(..) => 'h',
             Effect::Bend(..) => 'b',
         };
         let pass = |pass: &Pass| match pass {

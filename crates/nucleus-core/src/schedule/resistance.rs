@@ -27,6 +27,10 @@ pub struct PhysicalStiffness {
     pub shear: f64,
     /// In N·m, against bending.
     pub bend: f64,
+    /// In N/m, of links along the warp of woven cloth that are longer than at rest.
+    pub warp: f64,
+    /// The same along the weft.
+    pub weft: f64,
 }
 
 impl PhysicalStiffness {
@@ -34,8 +38,11 @@ impl PhysicalStiffness {
     pub fn of(cloth: &ClothFrame) -> Self {
         let given = &cloth.stiffness;
         let or = |given: Option<f64>, resistance: f64, unit: f64| given.unwrap_or(resistance * unit).max(0.0);
+        let stretch = or(given.stretch, cloth.stretch_resistance, STIFFNESS_PER_RESISTANCE);
         Self {
-            stretch: or(given.stretch, cloth.stretch_resistance, STIFFNESS_PER_RESISTANCE),
+            stretch,
+            warp: given.warp.map_or(stretch, |own| own.max(0.0)),
+            weft: given.weft.map_or(stretch, |own| own.max(0.0)),
             compression: or(given.compression, cloth.compression_resistance, STIFFNESS_PER_RESISTANCE),
             shear: or(given.shear, cloth.shear_resistance, STIFFNESS_PER_RESISTANCE),
             bend: or(given.bend, cloth.bend_resistance, BENDING_PER_RESISTANCE),

@@ -117,6 +117,16 @@ node_table! {
         SHEAR_STIFFNESS: f64 = float("shearStiffness", "shearStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::stretch").extension();
         /// Physical: flexural rigidity, the moment on a width of 1 m that bends the cloth to a radius of 1 m. Below 0: 1e-4 N·m times `bendResistance`.
         BEND_STIFFNESS: f64 = float("bendStiffness", "bendStiffness", -1.0).min(-1.0).soft(-1.0, 0.01).unit("N·m").solved("nucleus_core::constraints::bend").extension();
+        /// Physical: woven cloth. Links along u of the texture coordinates have `warpStiffness`, those along v `weftStiffness`, and all others give way in shear, by `shearStiffness` or `shearResistance` alone; `addCrossLinks` has no effect.
+        WEAVE: bool = toggle("weave", "weave", false).solved("nucleus_core::constraints::weave").fixed().extension();
+        /// Angle of the warp to u, counterclockwise about the normal of the face. At 90 the warp follows v, at 45 the cloth is cut on the bias.
+        WEAVE_ANGLE: f64 = float("weaveAngle", "weaveAngle", 0.0).soft(-180.0, 180.0).unit("degrees").solved("nucleus_graph::compile::weave").fixed().extension();
+        /// Membrane stiffness of woven cloth along the warp. Below 0: that of stretch.
+        WARP_STIFFNESS: f64 = float("warpStiffness", "warpStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::weave").extension();
+        /// Membrane stiffness of woven cloth along the weft. Below 0: that of stretch.
+        WEFT_STIFFNESS: f64 = float("weftStiffness", "weftStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::weave").extension();
+        /// Physical: compressed links resist no more than the load at which a piece of cloth of their length buckles, by the bending stiffness. Cloth on a coarse mesh then gives way where it would fold, and drapes as on a fine one.
+        BUCKLING: bool = toggle("buckling", "buckling", false).solved("nucleus_core::constraints::weave").extension();
         /// No point is farther from its nearest pins than the mesh reaches: cloth of many edges that hangs by pins stretches far less at the same `evaluations`. For cloth that hardly stretches.
         TETHERS: bool = toggle("tethers", "tethers", false).solved("nucleus_core::constraints::tether").extension();
         /// Factor on the lengths of tethers: 1.02 lets a point go 2 % farther than the mesh reaches at rest.

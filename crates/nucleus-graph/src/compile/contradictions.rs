@@ -12,6 +12,8 @@ enum Need {
     Number(&'static Key<f64>),
     /// Another attribute with one of these values, or with any but the first where there is none.
     Choice(&'static Key<Choice>, Option<Choice>),
+    /// A switch that is ever on.
+    On(&'static Key<bool>),
     /// The Classic resistance model.
     Classic,
 }
@@ -32,7 +34,9 @@ const MANUAL: Choice = Choice(0);
 const BY_VOLUME: Choice = Choice(1);
 const BY_VOLUME_HELP: &str = "write `pressureMethod: volumeTrackingModel`";
 
-static DEPENDENCIES: [Dependency; 17] = [
+const WOVEN_HELP: &str = "write `weave: true`";
+
+static DEPENDENCIES: [Dependency; 20] = [
     needs(
         &n_cloth::PRESSURE.row,
         Need::Choice(&n_cloth::PRESSURE_METHOD, Some(MANUAL)),
@@ -100,6 +104,9 @@ static DEPENDENCIES: [Dependency; 17] = [
         Need::Number(&n_cloth::INITIAL_PERTURBATION),
         "give `initialPerturbation`",
     ),
+    needs(&n_cloth::WEAVE_ANGLE.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
+    needs(&n_cloth::WARP_STIFFNESS.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
+    needs(&n_cloth::WEFT_STIFFNESS.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
     needs(&n_cloth::MINIMAL_STRETCH.row, Need::Classic, "it limits counts: write `resistanceModel: classic`"),
     needs(&n_cloth::MINIMAL_BEND.row, Need::Classic, "it limits counts: write `resistanceModel: classic`"),
 ];
@@ -123,6 +130,9 @@ impl Compiler<'_> {
                 {
                     let word = key.row.words().into_iter().find(|(value, _)| *value == node.get(key));
                     format!("`{}` is {}", key.row.name, word.map_or_else(String::new, |(_, word)| word))
+                }
+                Need::On(key) if !graph.is_ever_nonzero(object, key) => {
+                    format!("`{}` is false", key.row.name)
                 }
                 Need::Classic if self.start.get(nucleus, &nucleus::RESISTANCE_MODEL) != CLASSIC => {
                     "`resistanceModel` is physical".to_owned()

@@ -11,6 +11,7 @@
 //! | fields that objects exert                            | `force_fields.rs`                  |
 //! | settings that another setting switches off           | `contradictions.rs`                |
 //! | particles                                            | `particles.rs`                     |
+//! | the directions of woven cloth                        | `weave.rs`                         |
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
 //! | emitters, and the particles born in a frame          | `emission/`                        |
 //! | field nodes                                          | `fields.rs`                        |
@@ -63,6 +64,7 @@ mod texture_coordinates;
 mod thickness;
 mod units;
 mod vertex_maps;
+mod weave;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

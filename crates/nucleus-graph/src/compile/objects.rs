@@ -55,6 +55,7 @@ impl Compiler<'_> {
         let default_thickness = default_thickness(&surface, CLOTH_SHARE);
         let is_dense = is_dense(&surface, CLOTH_SHARE);
         let rest = self.rest_surface(id, mesh, &surface)?;
+        let warp = self.warp(id, mesh, rest.as_ref().unwrap_or(&surface))?;
         self.check_pressure(id, &surface);
         self.warn_of_contradictions(id);
         let given = surface.positions.len();
@@ -101,7 +102,7 @@ impl Compiler<'_> {
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
         let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
         let (face_count, area) = (faces.len(), area(&surface));
-        let cloth = Cloth { surface, mass, lists, vertex_maps, start, particles: None };
+        let cloth = Cloth { surface, mass, lists, warp, vertex_maps, start, particles: None };
         let kilograms = match mass {
             _ if !cloth.vertex_maps.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,
@@ -132,12 +133,23 @@ impl Compiler<'_> {
 
     /// The Classic resistance model has no use for a stiffness.
     fn warn_of_stiffness(&mut self, cloth: NodeId) {
-        use n_cloth::{BEND_STIFFNESS, COMPRESSION_STIFFNESS, SHEAR_STIFFNESS, STRETCH_STIFFNESS};
+        use n_cloth::{
+            BEND_STIFFNESS, COMPRESSION_STIFFNESS, SHEAR_STIFFNESS, STRETCH_STIFFNESS, WARP_STIFFNESS,
+            WEFT_STIFFNESS,
+        };
+        let keys = [
+            &STRETCH_STIFFNESS,
+            &COMPRESSION_STIFFNESS,
+            &SHEAR_STIFFNESS,
+            &BEND_STIFFNESS,
+            &WARP_STIFFNESS,
+            &WEFT_STIFFNESS,
+        ];
         let node = self.scene.graph.node(cloth);
         if self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) != CLASSIC {
             return;
         }
-        for key in [&STRETCH_STIFFNESS, &COMPRESSION_STIFFNESS, &SHEAR_STIFFNESS, &BEND_STIFFNESS] {
+        for key in keys {
             if node.setting(key).is_some() && (node.changes(key) || node.get(key) >= 0.0) {
                 let message = format!(
                     "`{}` of `{}` has no effect: with `resistanceModel: classic` stiffness follows from counts",
@@ -208,9 +220,9 @@ impl Compiler<'_> {
 /// The constraint lists of a cloth: those whose attribute is ever other than zero (N2.2-7).
 fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapScales) -> ClothLists {
     use n_cloth::{
-        ADD_CROSS_LINKS, BEND_RESISTANCE, BEND_STIFFNESS, COMPRESSION_RESISTANCE, COMPRESSION_STIFFNESS,
-        DRAG, LIFT, SHEAR_RESISTANCE, SHEAR_STIFFNESS, STRETCH_DAMP, STRETCH_RESISTANCE, STRETCH_STIFFNESS,
-        TETHERS,
+        ADD_CROSS_LINKS, BEND_RESISTANCE, BEND_STIFFNESS, BUCKLING, COMPRESSION_RESISTANCE,
+        COMPRESSION_STIFFNESS, DRAG, LIFT, SHEAR_RESISTANCE, SHEAR_STIFFNESS, STRETCH_DAMP,
+        STRETCH_RESISTANCE, STRETCH_STIFFNESS, TETHERS, WARP_STIFFNESS, WEAVE, WEFT_STIFFNESS,
     };
     let used = |key, scale: f64| scale != 0.0 && graph.is_ever_nonzero(cloth, key);
     let node = graph.node(cloth);
@@ -223,9 +235,13 @@ fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapS
     };
     let stretch = resists(&STRETCH_RESISTANCE, &STRETCH_STIFFNESS, scales.stretch)
         || resists(&COMPRESSION_RESISTANCE, &COMPRESSION_STIFFNESS, scales.compression);
+    let woven = !classic && node.get(&WEAVE);
+    let threads = [&WARP_STIFFNESS, &WEFT_STIFFNESS];
+    let stretch =
+        stretch || woven && threads.into_iter().any(|own| resists(&STRETCH_RESISTANCE, own, scales.stretch));
     let lists = ClothLists {
         stretch,
-        cross_links: stretch && node.get(&ADD_CROSS_LINKS),
+        cross_links: stretch && !woven && node.get(&ADD_CROSS_LINKS),
         shear: resists(&SHEAR_RESISTANCE, &SHEAR_STIFFNESS, 1.0),
         bend: resists(&BEND_RESISTANCE, &BEND_STIFFNESS, scales.bend),
         air: (used(&DRAG, scales.drag) || used(&LIFT, scales.lift))
@@ -233,6 +249,7 @@ fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapS
         damp: used(&STRETCH_DAMP, 1.0) || used(&n_base::DAMP, scales.damp),
         self_collision: graph.is_ever_nonzero(cloth, &n_base::SELF_COLLIDE),
         tethers: graph.is_ever_nonzero(cloth, &TETHERS),
+        buckling: stretch && !classic && graph.is_ever_nonzero(cloth, &BUCKLING),
         ..ClothLists::NONE
     };
     soft_body::lists(graph, cloth, lists)

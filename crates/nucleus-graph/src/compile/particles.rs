@@ -59,7 +59,9 @@ impl Compiler<'_> {
             mass: masses.iter().map(|kilograms| kilograms / mass).collect(),
             ..VertexMaps::default()
         };
-        let cloth = Cloth { surface, mass: Mass::PerPoint(mass), lists, vertex_maps, start, particles };
+        let warp = Vec::new();
+        let mass_of_each = Mass::PerPoint(mass);
+        let cloth = Cloth { surface, mass: mass_of_each, lists, warp, vertex_maps, start, particles };
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));

@@ -90,8 +90,8 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
     let nothing =
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
     let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: true";
-    let soft =
-        "bend_angles: false, pressure: false, shape: false, shells: false, plastic: false, tethers: false";
+    let soft = "bend_angles: false, pressure: false, shape: false, shells: false, plastic: false, tethers: false, \
+        buckling: false";
     assert_eq!(lists(nothing), format!("{off}, signed_bend: false, {soft}"));
     let on = "stretch: true, cross_links: true, shear: false, bend: true, air: true, damp: true, self_collision: true";
     assert_eq!(lists(""), format!("{on}, signed_bend: true, {soft}"));
@@ -105,6 +105,8 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
         ("bendResistance: 0, bendStiffness: 1e-5", "bend: true"),
         ("bendResistance: 0, bendStiffness: -1", "bend: false"),
         ("addCrossLinks: false", "cross_links: false"),
+        ("weave: true", "cross_links: false"),
+        ("buckling: true", "buckling: true"),
         ("stretchResistance: 0", "stretch: true"),
         ("drag: 0", "air: true"),
         ("stretchDamp: 0, damp: 1", "damp: true"),
@@ -165,13 +167,22 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         forceField: doubleSided, fieldMagnitude: 3, fieldDistance: 4, rigidity: 28, deformResistance: 29, inputMeshAttract: 30, inputAttractDamp: 31, inputMotionDrag: 32, \
         selfCollide: true, selfCollideWidthScale: 21, selfCollisionFlag: VertexFace, windShadowDistance: 33, \
         windShadowDiffusion: 0.34, windSelfShadow: true, airPushDistance: 35, airPushVorticity: 0.36, \
-        pointForceField: worldspace, pointFieldMagnitude: 37, selfAttract: 38, pointFieldDistance: 39, tethers: true, tetherScale: 40";
+        pointForceField: worldspace, pointFieldMagnitude: 37, selfAttract: 38, pointFieldDistance: 39, tethers: true, tetherScale: 40, \
+        warpStiffness: 41, weftStiffness: 42, buckling: true";
     let expected = ClothFrame {
         stretch_resistance: 1.0,
         compression_resistance: 2.0,
         shear_resistance: 3.0,
         bend_resistance: 4.0,
-        stiffness: Stiffness { stretch: Some(20.0), compression: Some(21.0), shear: Some(0.0), bend: None },
+        stiffness: Stiffness {
+            stretch: Some(20.0),
+            compression: Some(21.0),
+            shear: Some(0.0),
+            bend: None,
+            warp: Some(41.0),
+            weft: Some(42.0),
+        },
+        buckles: true,
         rest_length_scale: 5.0,
         tethers: Some(40.0),
         stretch_damp: 6.0,

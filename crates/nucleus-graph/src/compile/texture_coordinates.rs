@@ -1,4 +1,5 @@
-//! Texture coordinates of the meshes of a program, for caches and exports; the solver does not know them.
+//! Texture coordinates of the meshes of a program, for caches, exports and the directions of woven cloth; the
+//! solver does not know them.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +35,8 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
     program.objects().iter().filter_map(of).collect()
 }
 
-fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
+/// The texture coordinates of a mesh node. Files are read again.
+pub(super) fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
     if node.node_type() == &poly_plane::POLY_PLANE {
         use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
         let [across, along] =

@@ -52,7 +52,7 @@ fn the_eight_materials_of_maya_are_as_in_its_manual() {
 #[test]
 fn every_preset_can_be_read_and_has_a_description() {
     let all = presets();
-    assert_eq!(all.len(), 13);
+    assert_eq!(all.len(), 17);
     for preset in &all {
         assert!(preset.doc.ends_with('.'), "{}", preset.name);
         scene(&cloth(&format!("preset: {:?}", preset.name)));

@@ -104,7 +104,7 @@ impl<R: Real> ConstraintLinks<R> {
                 let rest_length = R::from_f64(link.rest);
                 let ends = [ends.rows[0], ends.rows[1]];
                 let slenderness = R::from_f64(if layout.is_weld { 1.0 } else { 1.0 / link.strength });
-                plain.push(LinkRow { ends, rest_length, slenderness });
+                plain.push(LinkRow { ends, rest_length, slenderness, warp: R::ONE });
             } else if is_pair(link, &ends) {
                 pairs.push((at, ends));
             } else if ends.count > 0 {

@@ -2,7 +2,7 @@
 //! with a factor each, and with their loads.
 
 use crate::constraints::strength_map::StrengthMap;
-use crate::constraints::stretch::{LinkGroup, LinkProjection, LinkRow};
+use crate::constraints::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkRow};
 use crate::input::links::Link;
 use crate::math::{Lanes, Real, Row4};
 use crate::model::blocks::AllBlocks;
@@ -35,6 +35,18 @@ impl<R: Real> StrengthMap<R> for &Factors<R> {
     #[inline(always)]
     fn scale(self, _c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
         (share * R::Lanes::from_array(self.share), compliance * R::Lanes::from_array(self.compliance))
+    }
+}
+
+impl<R: Real> LinkLaw<R> for &Factors<R> {
+    #[inline(always)]
+    fn multiplier(
+        self,
+        projection: &LinkProjection<R::Lanes>,
+        group: &LinkGroup<R>,
+        length_and_mobility: [R::Lanes; 2],
+    ) -> R::Lanes {
+        projection.multiplier(group, self, length_and_mobility)
     }
 }
 
@@ -79,7 +91,12 @@ impl<R: Real> PairList<R> {
     pub(super) fn new(all: &[(u32, Ends)], links: &[Link], can_break: bool, blocks: &AllBlocks) -> Self {
         let row = |(at, ends): &(u32, Ends)| {
             let rest_length = R::from_f64(links[*at as usize].rest);
-            let row = LinkRow { ends: [ends.rows[0], ends.rows[1]], rest_length, slenderness: R::ONE };
+            let row = LinkRow {
+                ends: [ends.rows[0], ends.rows[1]],
+                rest_length,
+                slenderness: R::ONE,
+                warp: R::ONE,
+            };
             PairRow { row, link: *at }
         };
         let rows: Vec<PairRow<R>> = all.iter().map(row).collect();

@@ -20,6 +20,9 @@ pub struct ClothFrame {
     pub bend_resistance: f64,
     /// Measured stiffnesses that replace resistances.
     pub stiffness: Stiffness,
+    /// Whether links shorter than at rest resist no more than their buckling load (Physical). It needs
+    /// [`ClothLists::buckling`](crate::ClothLists::buckling).
+    pub buckles: bool,
     /// Factor on all rest lengths.
     pub rest_length_scale: f64,
     /// Factor on the lengths of tethers (`tetherScale`); `None` without tethers. They need
@@ -108,6 +111,7 @@ impl ClothFrame {
         shear_resistance: 0.0,
         bend_resistance: 0.1,
         stiffness: Stiffness::NONE,
+        buckles: false,
         rest_length_scale: 1.0,
         tethers: None,
         stretch_damp: 0.1,

@@ -12,11 +12,16 @@ pub struct Stiffness {
     pub shear: Option<f64>,
     /// Against bending, in N·m: moment per width, over curvature.
     pub bend: Option<f64>,
+    /// Of links along the warp of woven cloth that are longer than at rest, in N/m, in place of `stretch`.
+    pub warp: Option<f64>,
+    /// The same along the weft.
+    pub weft: Option<f64>,
 }
 
 impl Stiffness {
     /// None given: resistances count.
-    pub const NONE: Self = Self { stretch: None, compression: None, shear: None, bend: None };
+    pub const NONE: Self =
+        Self { stretch: None, compression: None, shear: None, bend: None, warp: None, weft: None };
 }
 
 /// How a hinge measures its angle (`bendSolver`).

@@ -21,7 +21,7 @@ const MAX_SIZE: Memory = Memory(1_000_000);
 const MAX_CHAIN: usize = 64;
 
 /// The built-in presets by name.
-static PRESETS: [(&str, &str); 13] = [
+static PRESETS: [(&str, &str); 17] = [
     ("burlap", include_str!("../../../presets/burlap.ron")),
     ("canvas", include_str!("../../../presets/canvas.ron")),
     ("chainmail", include_str!("../../../presets/chainmail.ron")),
@@ -35,6 +35,10 @@ static PRESETS: [(&str, &str); 13] = [
     ("silk", include_str!("../../../presets/silk.ron")),
     ("tShirt", include_str!("../../../presets/tShirt.ron")),
     ("thickLeather", include_str!("../../../presets/thickLeather.ron")),
+    ("wovenCotton", include_str!("../../../presets/wovenCotton.ron")),
+    ("wovenDenim", include_str!("../../../presets/wovenDenim.ron")),
+    ("wovenSilk", include_str!("../../../presets/wovenSilk.ron")),
+    ("wovenWool", include_str!("../../../presets/wovenWool.ron")),
 ];
 
 /// All built-in presets in the order of their names.
