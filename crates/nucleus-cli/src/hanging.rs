@@ -1,9 +1,7 @@
-//! How far sweeps leave cloth stretched that hangs by pins, estimated before a run.
-//!
-//! In a step of h seconds a sweep holds an edge no stiffer than about m / h², whatever its resistance is. Where P pins
-//! carry N points of mass m, an edge of length d beside them is therefore stretched by N g h² / (P d).
+//! Hints at cloth that hangs by pins and that its budget leaves stretched, before a run; and the budget that
+//! `autoEvaluations` chose.
 
-use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, ResistanceModel};
+use nucleus_graph::compile::budget::{Hanging, hanging};
 use nucleus_graph::compile::{ObjectKind, Program};
 
 use crate::figures;
@@ -13,15 +11,6 @@ const MIN_STRAIN: f64 = 0.1;
 /// Strain of the setting that the hint names.
 const WANTED: f64 = 0.01;
 
-/// A cloth that hangs by pins.
-struct Hanging {
-    points: usize,
-    pins: usize,
-    evaluations: f64,
-    /// Estimated strain of the edges at the pins, at rest.
-    strain: f64,
-}
-
 /// Hints at the cloths of a scene that its budget leaves stretched, one line each.
 pub fn hints(program: &Program) -> Vec<String> {
     let mut hints = Vec::new();
@@ -30,52 +19,33 @@ pub fn hints(program: &Program) -> Vec<String> {
             let own = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
             let name = program.objects().iter().find(|object| own(&object.kind)).map(|object| &object.name);
             let found = hanging(index, cloth, &input).filter(|found| found.strain >= MIN_STRAIN);
-            hints.extend(name.zip(found).map(|(name, found)| found.hint(name)));
+            hints.extend(name.zip(found).map(|(name, found)| hint(&found, name)));
         }
     }
     hints
 }
 
-/// The estimate for the `index`th cloth of a nucleus; `None` where sweeps are not what limits it.
-fn hanging(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<Hanging> {
-    let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
-    let settings = input.cloths.get(index)?;
-    let points = cloth.surface.positions.len();
-    let mut pins: Vec<_> =
-        input.pins.iter().filter(|pin| pin.cloth.index() == index).map(|pin| pin.point).collect();
-    pins.sort_unstable();
-    pins.dedup();
-    if !cloth.lists.stretch || pins.is_empty() || settings.tethers.is_some() || !settings.feels_gravity {
-        return None;
-    }
-    let step = COUNT_PERIOD / evaluations;
-    let load = (points - pins.len()) as f64 / pins.len() as f64;
-    let strain = load * input.gravity.norm() * step * step / mean_edge(cloth)?;
-    Some(Hanging { points, pins: pins.len(), evaluations, strain })
+/// `hint: ...`. The strain falls with the square of the evaluations.
+fn hint(found: &Hanging, name: &str) -> String {
+    let Hanging { points, pins, evaluations, strain } = found;
+    let needed = (evaluations * (strain / WANTED).sqrt() / 10.0).ceil() * 10.0;
+    let pins = figures::count(*pins, "pin");
+    format!(
+        "hint: `{name}` hangs {points} points on {pins}: {} `evaluations` leave it stretched by about {} beside them; \
+         `evaluations: {needed}` would leave 1 %; `tethers: true` on the cloth costs less",
+        figures::number(*evaluations),
+        figures::percent((100.0 * strain).round() / 100.0),
+    )
 }
 
-/// Mean length of the sides of the faces in metres; `None` without faces.
-fn mean_edge(cloth: &Cloth) -> Option<f64> {
-    let place = |point: u32| cloth.surface.positions[point as usize];
-    let sides = cloth.surface.faces.iter().flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
-    let lengths = sides.map(|(&a, &b)| (place(a) - place(b)).norm());
-    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
-    (sum > 0.0).then(|| sum / count)
-}
-
-impl Hanging {
-    /// `hint: ...`. The strain falls with the square of the evaluations.
-    fn hint(&self, name: &str) -> String {
-        let Self { points, pins, evaluations, strain } = self;
-        let needed = (evaluations * (strain / WANTED).sqrt() / 10.0).ceil() * 10.0;
-        let pins = figures::count(*pins, "pin");
-        format!(
-            "hint: `{name}` hangs {points} points on {pins}: {} `evaluations` leave it stretched by about {} beside them; \
-             `evaluations: {needed}` would leave 1 %; `tethers: true` on the cloth costs less",
-            figures::number(*evaluations),
-            figures::percent((100.0 * strain).round() / 100.0),
-        )
-    }
+/// The budgets that `autoEvaluations` chose, one line each.
+pub fn budgets(program: &Program) -> Vec<String> {
+    let line = |(index, own): (usize, &nucleus_graph::compile::NucleusProgram)| {
+        let name = program.graph().node(own.node()).name();
+        let budget = figures::number(program.budget(index)?);
+        Some(format!("`{name}` takes {budget} evaluations in 1/24 s (autoEvaluations)"))
+    };
+    program.nuclei().iter().enumerate().filter_map(line).collect()
 }
 
 #[cfg(test)]

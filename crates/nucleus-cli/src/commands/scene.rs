@@ -26,6 +26,7 @@ impl Check {
             None => Ok(Outcome::InvalidInput),
             Some((_, program, _)) => {
                 output::report(&format!("`{}` can run: {count}\n", self.scene.display()));
+                hanging::budgets(&program).iter().for_each(|line| output::report(&format!("{line}\n")));
                 hanging::hints(&program).iter().for_each(|hint| output::report(&format!("{hint}\n")));
                 Ok(Outcome::Success)
             }

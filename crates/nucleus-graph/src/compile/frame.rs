@@ -79,7 +79,9 @@ impl EvaluationInterval<'_> {
             collision_iterations: to.get(nucleus, &nucleus::MAX_COLLISION_ITERATIONS) as f64,
             resistance: match to.get(nucleus, &nucleus::RESISTANCE_MODEL) {
                 CLASSIC => ResistanceModel::Classic,
-                _ => ResistanceModel::Physical { evaluations: to.get(nucleus, &nucleus::EVALUATIONS) },
+                _ => ResistanceModel::Physical {
+                    evaluations: self.budget.unwrap_or_else(|| to.get(nucleus, &nucleus::EVALUATIONS)),
+                },
             },
             gravity: along(&nucleus::GRAVITY_DIRECTION, &nucleus::GRAVITY),
             wind: along(&nucleus::WIND_DIRECTION, &nucleus::WIND_SPEED),

@@ -10,6 +10,7 @@
 //! | attraction to the input mesh, the shape at rest      | `input_mesh.rs`                    |
 //! | fields that objects exert                            | `force_fields.rs`                  |
 //! | settings that another setting switches off           | `contradictions.rs`                |
+//! | stretch that a budget leaves, `autoEvaluations`      | [`budget`]                         |
 //! | particles                                            | `particles.rs`                     |
 //! | the directions of woven cloth                        | `weave.rs`                         |
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
@@ -36,6 +37,7 @@
 
 mod animated_mesh;
 mod attachments;
+pub mod budget;
 mod camera;
 mod compiler;
 mod constraints;
@@ -103,7 +105,10 @@ pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     if findings.errors() > 0 {
         return Err(findings.in_order());
     }
-    Ok(link(scene, compiled, geometry.budget.taken(), findings.in_order()))
+    let mut program = link(scene, compiled, geometry.budget.taken());
+    budget::choose(scene, &mut program, &mut findings);
+    program.set_warnings(findings.in_order());
+    Ok(program)
 }
 
 /// The diagnostics of compiling the valid part of a scene. Nothing is reported about `broken` nodes.
@@ -114,7 +119,7 @@ pub(crate) fn survey(scene: &Scene, broken: &BTreeSet<NodeId>) -> Vec<Diagnostic
 }
 
 /// Joins the nuclei to one program.
-fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, memory: Memory, warnings: Vec<Diagnostic>) -> Program {
+fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, memory: Memory) -> Program {
     let (mut nuclei, mut objects, mut mass) = (Vec::new(), Vec::new(), 0.0);
     for nucleus in compiled {
         nuclei.push(nucleus.program);
@@ -134,7 +139,8 @@ fn link(scene: &Scene, compiled: Vec<CompiledNucleus>, memory: Memory, warnings:
         objects,
         mass,
         memory,
-        warnings,
+        warnings: Vec::new(),
+        budgets: Vec::new(),
     };
     Program { data: Arc::new(data) }
 }

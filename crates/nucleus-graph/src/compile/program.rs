@@ -37,6 +37,8 @@ pub(super) struct ProgramData {
     pub(super) mass: f64,
     pub(super) memory: Memory,
     pub(super) warnings: Vec<Diagnostic>,
+    /// By nucleus: the budget that `autoEvaluations` chose; empty where none does.
+    pub(super) budgets: Vec<Option<f64>>,
 }
 
 /// One nucleus with its cloths, colliders and constraints. Nuclei do not influence each other (N3.1-2).
@@ -109,6 +111,8 @@ pub(crate) struct EvaluationInterval<'p> {
     pub(super) to: EvalContext<'p>,
     /// Length in seconds of animation time.
     pub(super) seconds: f64,
+    /// The budget that `autoEvaluations` chose.
+    pub(super) budget: Option<f64>,
     /// It begins at or before the start frame: objects are in their initial state.
     pub(super) is_first: bool,
     /// The solver's state is not that of `from`, because the interval before was not solved.
@@ -186,6 +190,25 @@ impl Program {
         &self.data.warnings
     }
 
+    /// The evaluations in 1/24 s that `autoEvaluations` chose for a nucleus; `None` where it is off.
+    pub fn budget(&self, nucleus: usize) -> Option<f64> {
+        self.data.budgets.get(nucleus).copied().flatten()
+    }
+
+    /// Sets the budgets by nucleus. Only while the program is made: a clone has its own.
+    pub(super) fn set_budgets(&mut self, budgets: Vec<Option<f64>>) {
+        if let Some(data) = Arc::get_mut(&mut self.data) {
+            data.budgets = budgets;
+        }
+    }
+
+    /// Sets the warnings, under the same condition.
+    pub(super) fn set_warnings(&mut self, warnings: Vec<Diagnostic>) {
+        if let Some(data) = Arc::get_mut(&mut self.data) {
+            data.warnings = warnings;
+        }
+    }
+
     /// The graph that it was compiled from.
     pub fn graph(&self) -> &Graph {
         &self.data.graph
@@ -200,12 +223,13 @@ impl Program {
         elapsed: f64,
         is_discontinuous: bool,
     ) -> EvaluationInterval<'_> {
+        let budget = self.budget(nucleus);
         let nucleus = &self.data.nuclei[nucleus];
         let graph = &self.data.graph;
         let [from, to] = frames.map(|frame| graph.at(frame));
         let seconds = elapsed / self.data.time.fps;
         let is_first = frames[0] <= nucleus.start as f64;
-        EvaluationInterval { nucleus, graph, from, to, seconds, is_first, is_discontinuous }
+        EvaluationInterval { nucleus, graph, from, to, seconds, budget, is_first, is_discontinuous }
     }
 
     /// The nucleus of a cloth, by its index, and the id of the cloth in that nucleus.

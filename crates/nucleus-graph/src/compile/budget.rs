@@ -1,0 +1,188 @@
+//! How far sweeps leave cloth stretched, estimated from its mesh, and the budget that `autoEvaluations` takes from it.
+//!
+//! In a step of h seconds a sweep holds an edge no stiffer than about m / h², whatever its resistance is. An edge of length
+//! d that carries N points of mass m at rest is therefore stretched by N g h² / d: the mass cancels, and a small mesh
+//! needs short steps. Where cloth hangs by P pins, an edge beside them carries (points - P) / P points. Elsewhere an edge
+//! carries at most half the cloth in a line, as over the edge of a table.
+
+use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, PhysicalStiffness, PointId, ResistanceModel};
+
+use crate::attributes::nucleus;
+use crate::diagnostic::Findings;
+use crate::scene::document::Scene;
+
+use super::program::Program;
+
+/// A cloth that hangs by pins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hanging {
+    /// Its points.
+    pub points: usize,
+    /// Those that are pinned.
+    pub pins: usize,
+    /// The budget.
+    pub evaluations: f64,
+    /// Estimated strain of the edges at the pins, at rest.
+    pub strain: f64,
+}
+
+/// The strain that `autoEvaluations` aims at.
+const WANTED: f64 = 0.01;
+/// Its bounds, per 1/24 s.
+const EVALUATIONS: [f64; 2] = [24.0, 10_000.0];
+/// A sweep need not hold an edge stiffer than so many times its own stiffness: it stretches by itself.
+const STIFFER: f64 = 4.0;
+
+/// The estimate for the `index`th cloth of a nucleus; `None` where sweeps are not what limits it.
+pub fn hanging(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<Hanging> {
+    let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
+    let settings = input.cloths.get(index)?;
+    let points = cloth.surface.positions.len();
+    let pins = pins(index, input).len();
+    if !cloth.lists.stretch || pins == 0 || settings.tethers.is_some() || !settings.feels_gravity {
+        return None;
+    }
+    let step = COUNT_PERIOD / evaluations;
+    let load = (points - pins) as f64 / pins as f64;
+    let strain = load * input.gravity.norm() * step * step / mean_edge(cloth)?;
+    Some(Hanging { points, pins, evaluations, strain })
+}
+
+/// The evaluations in 1/24 s that leave a cloth stretched by about 1 % at rest; `None` where nothing stretches it.
+fn evaluations(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<f64> {
+    let settings = input.cloths.get(index)?;
+    let (edge, gravity) = (mean_edge(cloth)?, input.gravity.norm());
+    if !cloth.lists.stretch || !settings.feels_gravity || gravity == 0.0 || settings.is_driven {
+        return None;
+    }
+    let points = cloth.surface.positions.len();
+    let (pins, across) = (pins(index, input).len(), extent(cloth) / edge / 2.0);
+    let at_pins =
+        if pins > 0 && settings.tethers.is_none() { (points - pins) as f64 / pins as f64 } else { 0.0 };
+    let step = (WANTED * edge / (at_pins.max(across) * gravity)).sqrt();
+    let PhysicalStiffness { stretch, warp, weft, .. } = PhysicalStiffness::of(settings);
+    let mass = cloth.point_masses().iter().sum::<f64>() / points as f64;
+    let shortest = (mass / (STIFFER * stretch.max(warp).max(weft))).sqrt();
+    Some(COUNT_PERIOD / step.max(shortest))
+}
+
+/// Sets the budget of each nucleus with `autoEvaluations`, to the next ten.
+pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findings) {
+    let is_auto = |node| scene.graph.node(node).get(&nucleus::AUTO_EVALUATIONS);
+    if !program.nuclei().iter().any(|own| is_auto(own.node())) {
+        return;
+    }
+    let [least, most] = EVALUATIONS;
+    let needed = |(own, input): (&super::NucleusProgram, FrameInput)| {
+        let cloths = own.model().cloths().iter().enumerate();
+        let each = cloths.filter_map(|(index, cloth)| evaluations(index, cloth, &input));
+        let needed = each.fold(least, f64::max);
+        is_auto(own.node()).then(|| ((needed / 10.0 - 1e-9).ceil() * 10.0).clamp(least, most))
+    };
+    let budgets: Vec<Option<f64>> = program.nuclei().iter().zip(program.first_inputs()).map(needed).collect();
+    for own in program.nuclei().iter().filter(|own| is_auto(own.node())) {
+        let node = scene.graph.node(own.node());
+        if node.setting(&nucleus::EVALUATIONS).is_some() {
+            let name = node.name();
+            let place = scene.source.place(&format!("{name}.{}", nucleus::EVALUATIONS.row.name));
+            let message = format!("`evaluations` of `{name}` has no effect: `autoEvaluations` is true");
+            findings.warning(&place, message).help("leave out one of them");
+        }
+    }
+    program.set_budgets(budgets);
+}
+
+/// The pinned points of a cloth, each once.
+fn pins(index: usize, input: &FrameInput) -> Vec<PointId> {
+    let own = input.pins.iter().filter(|pin| pin.cloth.index() == index);
+    let mut pins: Vec<_> = own.map(|pin| pin.point).collect();
+    pins.sort_unstable();
+    pins.dedup();
+    pins
+}
+
+/// Mean length of the sides of the faces in metres; `None` without faces.
+fn mean_edge(cloth: &Cloth) -> Option<f64> {
+    let place = |point: u32| cloth.surface.positions[point as usize];
+    let sides = cloth.surface.faces.iter().flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
+    let lengths = sides.map(|(&a, &b)| (place(a) - place(b)).norm());
+    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
+    (sum > 0.0).then(|| sum / count)
+}
+
+/// The longest side of the box round a cloth at rest, in metres.
+fn extent(cloth: &Cloth) -> f64 {
+    let along = |axis: usize| {
+        let all = cloth.surface.positions.iter().map(|point| point[axis]);
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+        (high - low).max(0.0)
+    };
+    along(0).max(along(1)).max(along(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use nucleus_core::ResistanceModel;
+
+    use super::super::compile;
+    use crate::Simulation;
+    use crate::scene::read_scene_text;
+
+    /// A square of 17² points in two corners, `size` metres wide.
+    fn hung(size: f64, nucleus: &str, cloth: &str) -> crate::compile::Program {
+        let text = format!(
+            "Scene(time: (start: 1, end: 999, fps: 24), nodes: {{
+                \"nucleus\": nucleus({nucleus}),
+                \"plane\": polyPlane(width: {size}, height: {size}, subdivisions: (16, 16)),
+                \"cloth\": nCloth(inputMesh: \"plane\", pointMass: 0.2, {cloth}),
+                \"pins\": dynamicConstraint(constraintType: transform, components: [\"cloth.vtx[0]\", \"cloth.vtx[16]\"]),
+            }})"
+        );
+        let read = read_scene_text(&text, Path::new("hung.ron")).unwrap_or_else(|found| panic!("{found:?}"));
+        compile(&read.0).unwrap_or_else(|found| panic!("{found:?}"))
+    }
+
+    fn budget(program: &crate::compile::Program) -> f64 {
+        let ResistanceModel::Physical { evaluations } = program.first_input().resistance else {
+            panic!("classic")
+        };
+        evaluations
+    }
+
+    #[test]
+    fn the_budget_follows_from_edge_load_and_gravity() {
+        // 287 points on 2 pins: h = √(0.01 · (1/16 m) / (143.5 · 9.8 m/s²)) = 1/1500 s, 63 in 1/24 s.
+        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "")), 70.0);
+        assert_eq!(budget(&hung(0.01, "autoEvaluations: true", "")), 630.0);
+        assert_eq!(budget(&hung(100.0, "autoEvaluations: true", "")), 30.0, "at least 24, to the next ten");
+        assert_eq!(budget(&hung(1.0, "", "")), 96.0);
+        // Tethers carry the load of the pins: 8 points in a line remain, 15 evaluations.
+        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "tethers: true")), 30.0);
+        // Cloth of 5 N/m stretches by itself: h = √(m / 4 K), m = 0.2 kg / 289.
+        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "stretchResistance: 0.01")), 30.0);
+        let both = hung(1.0, "autoEvaluations: true, evaluations: 50", "");
+        assert!(
+            both.warnings()
+                .iter()
+                .any(|warning| warning.message.contains("`evaluations` of `nucleus` has no effect"))
+        );
+    }
+
+    #[test]
+    fn cloth_of_a_millimetre_and_of_a_hundred_metres_hang_equally_well() {
+        let strain = |size: f64| {
+            let program =
+                hung(size, "autoEvaluations: true, gravity: 9.8", "damp: 1, tangentialDrag: 1, drag: 0.5");
+            let mut simulation: Simulation = Simulation::new(&program, 1);
+            // As many frames as a pendulum of this length takes for a swing and a half.
+            let frames = (24.0 * 3.0 * size.sqrt()).clamp(8.0, 480.0) as u32;
+            (0..frames).map(|_| simulation.advance(&mut ()).report.strain_99).last().unwrap_or(1.0)
+        };
+        for size in [1e-3, 0.1, 1.0, 100.0] {
+            let found = strain(size);
+            assert!(found < 0.02, "{size} m: 99 % of the edges are below {found}");
+        }
+    }
+}
