@@ -1,10 +1,11 @@
 //! The scene of a sweep, its facts before a run, and the scene at another setting.
 
 use nalgebra::Vector3;
-use nucleus_core::{Mass, Real, ResistanceModel};
+use nucleus_core::{ClothId, Mass, Real, ResistanceModel};
 use nucleus_graph::Simulation;
 use nucleus_graph::animation::Curve;
 use nucleus_graph::attributes::{Attribute, Choice, Key, Value, n_base, n_cloth, nucleus};
+use nucleus_graph::compile::budget::hanging;
 use nucleus_graph::compile::{Object, ObjectKind, Program, compile};
 use nucleus_graph::graph::{Graph, NodeId, Setting as Held};
 use nucleus_graph::scene::edit::{Edit, NewValue};
@@ -106,6 +107,8 @@ struct ClothFacts {
     points: usize,
     /// Area in m².
     area: f64,
+    /// Whether it hangs by pins, without tethers.
+    hangs: bool,
 }
 
 impl Benchmark {
@@ -152,6 +155,11 @@ impl Benchmark {
         self.own
     }
 
+    /// Whether cloth hangs by pins, without tethers.
+    pub fn hangs(&self) -> bool {
+        self.cloths.iter().any(|cloth| cloth.hangs)
+    }
+
     /// The unchanged scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
@@ -188,6 +196,11 @@ impl Benchmark {
             if factor != 1.0 {
                 let mass = node.get(&n_base::POINT_MASS) * factor;
                 put(&mut scene.graph, cloth.node, &n_base::POINT_MASS.row, Held::Fixed(Value::Float(mass)));
+            }
+        }
+        if setting.tethers {
+            for cloth in self.cloths.iter().filter(|cloth| cloth.hangs) {
+                put(&mut scene.graph, cloth.node, &n_cloth::TETHERS.row, Held::Fixed(Value::Bool(true)));
             }
         }
         if setting.reading == Reading::Classic && setting.resistance != 1.0 {
@@ -274,6 +287,7 @@ impl Benchmark {
             collision_iterations: 1,
             evaluations: 100.0,
             resistance: 1.0,
+            tethers: false,
         };
         set_quality(&mut scene.graph, &neutral);
         scene.checks.clear();
@@ -327,9 +341,17 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
             edges: Edges::of(&cloth.surface),
             points: object.points,
             area,
+            hangs: hangs(program, object),
         })
     };
     cloths.filter_map(facts).collect()
+}
+
+/// Whether a cloth of the first nucleus hangs by pins at the first frame, without tethers, and sweeps limit its stretch.
+fn hangs(program: &Program, object: &Object) -> bool {
+    let ObjectKind::Cloth(ClothId(id)) = object.kind else { return false };
+    let cloth = program.model().cloths().get(id as usize);
+    cloth.is_some_and(|cloth| hanging(id as usize, cloth, &program.first_input()).is_some())
 }
 
 /// Triangles of all cloth, with the points of all cloth numbered through.
@@ -357,6 +379,13 @@ fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
         _ => default,
     };
     let number = |key: &Key<i64>, default: f64| most(node.and_then(|node| node.setting(key)), default);
+    // The budget of a scene with `autoEvaluations`.
+    let auto = node.filter(|node| node.get(&nucleus::AUTO_EVALUATIONS));
+    let chosen = match model {
+        ResistanceModel::Physical { evaluations } => auto.map(|_| evaluations),
+        ResistanceModel::Classic => None,
+    };
+    let given = || most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), 96.0);
     Setting {
         reading: match model {
             ResistanceModel::Classic => Reading::Classic,
@@ -364,8 +393,9 @@ fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
         },
         substeps: number(&nucleus::SUB_STEPS, 3.0) as u32,
         collision_iterations: number(&nucleus::MAX_COLLISION_ITERATIONS, 4.0) as u32,
-        evaluations: most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), 96.0),
+        evaluations: chosen.unwrap_or_else(given),
         resistance: 1.0,
+        tethers: false,
     }
 }
 
@@ -402,6 +432,9 @@ fn set_quality(graph: &mut Graph, setting: &Setting) {
     put(graph, id, &nucleus::SUB_STEPS.row, int(setting.substeps));
     put(graph, id, &nucleus::MAX_COLLISION_ITERATIONS.row, int(setting.collision_iterations));
     put(graph, id, &nucleus::EVALUATIONS.row, evaluations);
+    if graph.node(id).get(&nucleus::AUTO_EVALUATIONS) {
+        put(graph, id, &nucleus::AUTO_EVALUATIONS.row, Held::Fixed(Value::Bool(false)));
+    }
 }
 
 fn scale_resistances(graph: &mut Graph, cloth: NodeId, factor: f64) {

@@ -343,6 +343,7 @@ pub(super) mod tests {
             collision_iterations: 4,
             evaluations: ms,
             resistance: 1.0,
+            tethers: false,
         };
         Point {
             setting,

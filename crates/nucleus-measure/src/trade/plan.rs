@@ -87,6 +87,7 @@ pub fn references(benchmark: &Benchmark, settings: &[Setting], finer: [f64; 2]) 
         collision_iterations: own.collision_iterations,
         evaluations: most * finer,
         resistance: 1.0,
+        tethers: false,
     }))
 }
 
@@ -177,6 +178,11 @@ fn physical(benchmark: &Benchmark, options: &SweepOptions) -> Result<Vec<Setting
             }));
         }
     }
+    // Tethers are a bias, and cost less than the evaluations that they save: references are without them.
+    if benchmark.hangs() {
+        let tethered = all.iter().map(|setting| Setting { tethers: true, ..*setting });
+        all.extend(tethered.collect::<Vec<_>>());
+    }
     Ok(all)
 }
 
@@ -192,7 +198,7 @@ fn iterations_matter(benchmark: &Benchmark, setting: &Setting) -> Result<bool, T
 
 /// Collision iterations are tied to substeps: equal, slightly more, and four times as many (N2.4-15).
 fn classic(benchmark: &Benchmark, options: &SweepOptions) -> Vec<Setting> {
-    let own = Setting { reading: Reading::Classic, ..benchmark.own() };
+    let own = Setting { reading: Reading::Classic, tethers: false, ..benchmark.own() };
     let mut all = Vec::new();
     for substeps in or_default(&options.substeps, || CLASSIC_SUBSTEPS.to_vec()) {
         for collision_iterations in or_default(&options.collision_iterations, || {

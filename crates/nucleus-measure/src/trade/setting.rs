@@ -27,6 +27,9 @@ pub struct Setting {
     pub evaluations: f64,
     /// Classic: factor on stretch, compression and shear resistance.
     pub resistance: f64,
+    /// Physical: `tethers` on every cloth that hangs by pins; off, each cloth has its own.
+    #[serde(default)]
+    pub tethers: bool,
 }
 
 impl Setting {
@@ -38,8 +41,9 @@ impl Setting {
     /// Unique name, for files and lists.
     pub fn key(&self) -> String {
         let Self { substeps, collision_iterations: passes, evaluations, resistance, .. } = self;
+        let tethers = if self.tethers { "-t" } else { "" };
         match self.reading {
-            Reading::Physical => format!("physical-s{substeps}-c{passes}-e{evaluations}"),
+            Reading::Physical => format!("physical-s{substeps}-c{passes}-e{evaluations}{tethers}"),
             Reading::Classic => format!("classic-s{substeps}-c{passes}-x{resistance}"),
         }
     }
@@ -51,7 +55,10 @@ impl fmt::Display for Setting {
         let Self { substeps, collision_iterations: passes, evaluations, resistance, .. } = self;
         let plural = if *substeps == 1 { "" } else { "s" };
         match self.reading {
-            Reading::Physical => write!(f, "{evaluations} evaluations in {substeps} substep{plural}"),
+            Reading::Physical => {
+                let tethers = if self.tethers { " with tethers" } else { "" };
+                write!(f, "{evaluations} evaluations in {substeps} substep{plural}{tethers}")
+            }
             Reading::Classic => {
                 write!(f, "{substeps} substep{plural}, {passes} collision iterations")?;
                 if *resistance == 1.0 { Ok(()) } else { write!(f, ", resistances x {resistance}") }
@@ -72,7 +79,11 @@ mod tests {
             collision_iterations: 4,
             evaluations: 96.0,
             resistance: 1.0,
+            tethers: false,
         };
+        let tethered = Setting { tethers: true, ..physical };
+        assert_eq!(tethered.to_string(), "96 evaluations in 1 substep with tethers");
+        assert_ne!(physical.key(), tethered.key());
         let classic = Setting { reading: Reading::Classic, substeps: 8, resistance: 0.25, ..physical };
         assert_eq!(physical.to_string(), "96 evaluations in 1 substep");
         assert_eq!(classic.to_string(), "8 substeps, 4 collision iterations, resistances x 0.25");
