@@ -32,11 +32,12 @@ pub const CASES: &[Case] = &[
     Case {
         name: "lateral-buckling",
         description: "A strip on edge, clamped at one end, buckles sideways under its own weight at q L³ / √(EI GJ) = 12.854 \
-            (Michell, Prandtl). A plate of Poisson's ratio zero has GJ = 2 EI. After a sideways impulse: maximum \
-            out-of-plane displacement of the tip from 6 to 10 s, over that from 2 to 6 s.",
+            (Michell, Prandtl). A plate of Poisson's ratio zero has GJ = 2 EI. After a sideways impulse, while gravity \
+            rises for 2 s: maximum out-of-plane displacement of the tip from 6 to 10 s, over that from 2 to 6 s. Under \
+            sudden gravity the strip swings in its plane, buckles at once, and has its full amplitude before 6 s.",
         known_failure: Some(
-            "It stays in its plane, at 1.15 times the load too. The reason is unknown: a vertical strip buckles \
-                as expected.",
+            "The critical load found is about 5 % above the exact one, with four cells across the strip too; the cause of \
+                these 5 % is unknown. At 1.05 the strip is nearly in balance, at 1.1 it buckles.",
         ),
         run: lateral,
     },
@@ -189,12 +190,13 @@ fn carry_tip(strip: &mut Strip, goal: Curve, frames: u32) {
 const KICK: f64 = 1e-10;
 
 /// After an impulse along `aside`: maximum displacement of the tip from 6 to 10 s, over that from 2 to 6 s. Near the
-/// critical load a stable strip oscillates at about 1 rad/s.
-fn growth(mut strip: Strip, gravity: f64, aside: Vec3) -> f64 {
-    strip.fixture.frame.gravity = -Vec3::y() * gravity;
+/// critical load a stable strip oscillates at about 1 rad/s. Gravity rises for `rise` frames.
+fn growth(mut strip: Strip, gravity: f64, aside: Vec3, rise: u32) -> f64 {
     let start = strip.tip().dot(&aside);
     let mut far = Vec::new();
     for frame in 0..240 {
+        let share = if frame < rise { f64::from(frame + 1) / f64::from(rise) } else { 1.0 };
+        strip.fixture.frame.gravity = -Vec3::y() * gravity * share;
         strip.fixture.cloth().local_force = if frame < 6 { aside * KICK } else { Vec3::zeros() };
         strip.fixture.step();
         far.push((strip.tip().dot(&aside) - start).abs());
@@ -210,9 +212,12 @@ fn lateral() -> Result<Vec<Comparison>, BuildError> {
     let growth_at = |share: f64| -> Result<f64, BuildError> {
         let mut strip = Strip::new([40, 2], width, [Vec3::x(), Vec3::y()], 1500.0)?;
         strip.fixture.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(2e5) };
-        Ok(growth(strip, share * critical, Vec3::z()))
+        Ok(growth(strip, share * critical, Vec3::z(), 48))
     };
-    buckling(growth_at)
+    let mut comparisons = buckling(growth_at)?;
+    let beyond = growth_at(1.1)?;
+    comparisons.push(Comparison::new("growth at 1.1 of the critical load", 3.0, beyond, Tolerance::AtLeast));
+    Ok(comparisons)
 }
 
 fn column() -> Result<Vec<Comparison>, BuildError> {
@@ -220,7 +225,7 @@ fn column() -> Result<Vec<Comparison>, BuildError> {
     let growth_at = |share: f64| -> Result<f64, BuildError> {
         let mut strip = Strip::new([50, 1], 0.05, [Vec3::y(), Vec3::z()], 1500.0)?;
         strip.fixture.cloth().stiffness = Stiffness { bend: Some(BEND), ..membrane(5e4) };
-        Ok(growth(strip, share * critical, Vec3::x()))
+        Ok(growth(strip, share * critical, Vec3::x(), 0))
     };
     buckling(growth_at)
 }
