@@ -126,9 +126,10 @@ fn a_string_of_particles_swings_with_the_period_of_a_hanging_chain() {
     assert!((period / theory - 1.0).abs() < 0.03, "{period} s, not {theory}");
 }
 
-/// A body of revolution or extrusion round the z axis with a radius of 10 cm, and the direction in which its surface is away
-/// from the middle.
-const BODIES: [(&str, fn(&Vec3) -> Vec3); 2] = [
+/// A body with a radius of 10 cm, and the part of a place that counts for its distance from the middle.
+type Body = (&'static str, fn(&Vec3) -> Vec3);
+
+const BODIES: [Body; 2] = [
     ("polySphere(radius: 10, subdivisions: (48, 32))", |place| *place),
     ("polyCylinder(radius: 10, height: 30, subdivisions: (64, 1, 1), rotate: (90, 0, 0))", |place| {
         Vec3::new(place.x, place.y, 0.0)
