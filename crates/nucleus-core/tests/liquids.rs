@@ -123,7 +123,7 @@ fn a_liquid_at_rest_keeps_its_volume_at_any_number_of_substeps() {
             }
         }
         assert!(error < 0.01, "{substeps} substeps, {resistance:?}: density {error}");
-        assert!((below - 1.0).abs() < 0.025, "{substeps} substeps, {resistance:?}: filled {below}");
+        assert!((below - 1.0).abs() < 0.01, "{substeps} substeps, {resistance:?}: filled {below}");
     }
 }
 
@@ -177,8 +177,7 @@ fn the_density_of_a_liquid_at_rest_is_the_same_at_all_depths() {
     println!("density and depth by band: {bands:.4?}");
     let [low, high] = [f64::min, f64::max].map(|pick| bands.iter().map(|band| band[0]).reduce(pick).unwrap());
     assert!(high / low < 1.01, "{bands:?}");
-    // Measured: 1.7 % above that at rest, at all depths.
-    assert!(bands.iter().all(|[density, _]| (density - 1.0).abs() < 0.02), "{bands:?}");
+    assert!(bands.iter().all(|[density, _]| (density - 1.0).abs() < 0.01), "{bands:?}");
 }
 
 // EVIDENCE: N1.2-12  water splashes where it meets water
