@@ -1,4 +1,4 @@
-//! Shared code of the tests over the whole pipeline. The tests themselves are in `tests/tests/`.
+//! Shared code of the tests over the whole pipeline. The tests themselves are in `tests/pipeline/`.
 //!
 //! | You want to know…                         | Read             |
 //! |-------------------------------------------|------------------|

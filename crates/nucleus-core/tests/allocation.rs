@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code)]
 
+#[path = "core/scenes/mod.rs"]
 mod scenes;
 
 use std::alloc::{GlobalAlloc, Layout, System};

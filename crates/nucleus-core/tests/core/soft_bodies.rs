@@ -1,16 +1,14 @@
 //! Pressure, shape, the input mesh, signed angles, and deformation that stays.
 
-mod scenes;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::scenes::{Vec3, frame};
 use nucleus_core::{
     BendSolver, Bending, Cloth, ClothFrame, ClothId, ClothLists, Faces, FrameInput, InputAttract, InputMesh,
     Mass, ModelBuilder, Pin, PointId, Pressure, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
     Surface,
 };
 use proptest::prelude::*;
-use scenes::{Vec3, frame};
 
 const CLOTH: ClothId = ClothId(0);
 const PHYSICAL: ResistanceModel = ResistanceModel::Physical { evaluations: 96.0 };

@@ -1,13 +1,11 @@
 //! Attributes that differ by particle, collision events, and particles that lose speed.
 
-mod scenes;
-
+use crate::scenes::{Vec3, frame, ground, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, CollisionEvent, Elements, FrameInput, Mass,
     ModelBuilder, ParticleChange, ParticleRamp, Particles, PointId, RampInput, RampTarget, ResistanceModel,
     SelfCollision, Solver, StateView, Surface,
 };
-use scenes::{Vec3, frame, ground, still};
 
 const BEADS: ClothId = ClothId(0);
 const CLASSIC: ResistanceModel = ResistanceModel::Classic;

@@ -1,13 +1,11 @@
 //! Particles that are born and die.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements,
     FrameInput, Mass, ModelBuilder, ParticleAge, Particles, ResistanceModel, SelfCollision, Solver,
     StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 
 const BEADS: ClothId = ClothId(0);
 const CLASSIC: ResistanceModel = ResistanceModel::Classic;
@@ -324,7 +322,7 @@ fn particles_born_inside_the_reach_of_a_moving_collider_stay_outside_of_it() {
         };
         let report = solver.step(&input, &mut ());
         assert_eq!(report.pairs_unresolved, 0, "frame {number}");
-        let inside = |p: &Vec3| (p - centre(number + 1)).norm() < scenes::INSCRIBED * 0.2;
+        let inside = |p: &Vec3| (p - centre(number + 1)).norm() < crate::scenes::INSCRIBED * 0.2;
         assert_eq!(places(&solver).iter().filter(|p| inside(p)).count(), 0, "frame {number}");
     }
 }

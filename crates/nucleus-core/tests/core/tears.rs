@@ -1,13 +1,11 @@
 //! Surfaces that tear: where a tear runs, on meshes of several kinds.
 
-mod scenes;
-
+use crate::scenes::links::{PHYSICAL, point, run, tied};
+use crate::scenes::{LINKS, Vec3, pins};
 use nucleus_core::{
     Cloth, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, Mass, ModelBuilder, Solver, StepReport,
     Surface,
 };
-use scenes::links::{PHYSICAL, point, run, tied};
-use scenes::{LINKS, Vec3, pins};
 
 /// How the quads of a grid are cut into triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,11 @@
 //! Woven cloth: its moduli along warp, weft and bias, compression up to the buckling load, and the laws of every pass.
 
-mod scenes;
-
+use crate::scenes::{Vec3, drape, frame, grid, physical, pins, still};
 use nucleus_core::{
     BuildError, Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, Pin, PointId, Solver,
     StateView, Stiffness, Surface,
 };
 use proptest::prelude::*;
-use scenes::{Vec3, drape, frame, grid, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 const WOVEN: ClothLists = ClothLists { stretch: true, shear: true, ..ClothLists::NONE };

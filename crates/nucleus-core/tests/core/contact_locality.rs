@@ -1,14 +1,12 @@
 //! Contact is local: no cloth or collider far away changes a bit of a cloth in contact, and neither does the number of
 //! threads. The order of vertices changes rounding and the order of sweeps, and nothing else.
 
-mod scenes;
-
+use crate::scenes::{Vec3, frame, grid, physical, sphere, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
     ModelBuilder, SelfCollision, Solver, StateView, Surface,
 };
 use proptest::prelude::*;
-use scenes::{Vec3, frame, grid, physical, sphere, still};
 
 const THICKNESS: f64 = 0.004;
 const FRAMES: usize = 6;
@@ -181,7 +179,7 @@ proptest! {
         let (both, _) = scene.run(1);
         prop_assert!(both != alone, "it passes without effect");
         let centre = fast.place + fast.ball * (FRAMES as f64 / 24.0);
-        let inside = both[FRAMES - 1].iter().flatten().filter(|p| (*p - centre).norm() < 0.3 * scenes::INSCRIBED);
+        let inside = both[FRAMES - 1].iter().flatten().filter(|p| (*p - centre).norm() < 0.3 * crate::scenes::INSCRIBED);
         prop_assert_eq!(inside.count(), 0);
     }
 

@@ -1,20 +1,18 @@
 //! Checkpoints with a valid checksum and damaged content: restoring refuses or accepts them, and never panics.
 
-mod scenes;
-
 use std::sync::OnceLock;
 
+use crate::scenes::{Vec3, frame, grid, ground, physical, sphere, still};
 use nucleus_core::{
     Collider, FrameInput, ModelBuilder, RestoreError, SelfCollision, Solver, add_checksum, verify_checksum,
 };
 use proptest::prelude::*;
-use scenes::{Vec3, frame, grid, ground, physical, sphere, still};
 
 /// A cloth with self-collision that falls on a ball and the ground.
 fn scene() -> (ModelBuilder, FrameInput) {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.5, 0.21, -0.5));
-    let mut builder = scenes::one_cloth(sheet, nucleus_core::ClothLists::ALL);
+    let mut builder = crate::scenes::one_cloth(sheet, nucleus_core::ClothLists::ALL);
     builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
     let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
     let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };

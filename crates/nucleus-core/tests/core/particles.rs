@@ -1,12 +1,10 @@
 //! Particles: points without links, against cloth, colliders, the ground and each other.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput,
     Mass, ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 
 const BEADS: ClothId = ClothId(0);
 const CLASSIC: ResistanceModel = ResistanceModel::Classic;
@@ -310,7 +308,7 @@ fn particles_stay_outside_of_static_and_moving_colliders() {
                 let report = solver.step(&input, &mut ());
                 assert_eq!(report.pairs_unresolved, 0, "{speed} m/s, {resistance:?}, frame {step}");
                 let centre = Vec3::y() * height(step + 1);
-                let inside = |p: &Vec3| (p - centre).norm() < scenes::INSCRIBED * 0.3;
+                let inside = |p: &Vec3| (p - centre).norm() < crate::scenes::INSCRIBED * 0.3;
                 assert_eq!(points(&solver, BEADS, places.len()).iter().filter(|p| inside(p)).count(), 0);
             }
         }

@@ -1,13 +1,11 @@
 //! Contact with colliders and the ground: no penetration, rest at the thickness, friction, restitution.
 
-mod scenes;
-
+use crate::scenes::{
+    INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
+};
 use nucleus_core::{
     ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ContactState, FrameInput, GroundPlane, Pin,
     PointId, ResistanceModel, Solver, StateView, StepObserver, SubstepIndex, Surface,
-};
-use scenes::{
-    INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
 };
 
 const CLOTH: ClothId = ClothId(0);

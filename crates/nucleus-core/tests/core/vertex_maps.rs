@@ -1,13 +1,11 @@
 //! Vertex maps: factors on attributes, point by point; and the start of a cloth.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, still};
 use nucleus_core::{
     BendSolver, Bending, BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame,
     FrameInput, GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, Start, StateView,
     Surface, VertexMaps,
 };
-use scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 const SIDE: u32 = 9;

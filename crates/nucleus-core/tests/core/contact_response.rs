@@ -1,13 +1,11 @@
 //! Contact response: adhesion, restitution, partial collision, push-out, vertex maps.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, pins, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces, FrameInput,
     GroundPlane, Mass, ModelBuilder, PushOut, ResistanceModel, SelfCollision, Solver, Start, StateView,
     Surface, VertexMaps,
 };
-use scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, pins, still};
 
 const FIRST: ClothId = ClothId(0);
 const SECOND: ClothId = ClothId(1);

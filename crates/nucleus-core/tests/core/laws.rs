@@ -1,9 +1,8 @@
 //! Invariants of every scene: energy, momentum, translation, determinism, and the contract of the observer.
 
-mod scenes;
-
 use std::ops::ControlFlow;
 
+use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, still};
 use nalgebra::{Rotation3, Vector3};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
@@ -11,7 +10,6 @@ use nucleus_core::{
     SubstepIndex,
 };
 use proptest::prelude::*;
-use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 
@@ -94,7 +92,7 @@ fn a_curved_cloth_at_rest_stays_at_rest() {
     for (evaluations, bend) in
         [(24.0, 0.2), (48.0, 0.2), (96.0, 0.0), (96.0, 2.0), (192.0, 0.0), (192.0, 20.0)]
     {
-        let (strain, energy) = at_rest(scenes::sphere(0.3, Vec3::zeros()), evaluations, bend, 48);
+        let (strain, energy) = at_rest(crate::scenes::sphere(0.3, Vec3::zeros()), evaluations, bend, 48);
         assert!(strain < 1e-5, "{evaluations} evaluations, bend {bend}: strain {strain:e}, {energy:e} J");
     }
 }
@@ -120,7 +118,7 @@ fn uneven(seed: u64, quads: bool) -> nucleus_core::Surface {
 /// The positions of a small drape after eight frames of a rotated and translated scene, transformed back.
 fn moved(turn: Rotation3<f64>, shift: Vec3) -> Vec<Vec3> {
     let (_, input) = drape(17, 48.0);
-    let builder = scenes::drape_placed(17, |p| turn * p + shift);
+    let builder = crate::scenes::drape_placed(17, |p| turn * p + shift);
     let input = FrameInput { gravity: turn * input.gravity, ..input };
     let mut solver = Solver::<f64>::new(builder, 1);
     (0..8).for_each(|_| {
@@ -174,7 +172,7 @@ fn a_heap(place: Vec3, speed: f64, builder: &mut ModelBuilder, input: &mut Frame
         let own = SelfCollision { on: true, thickness: 0.004, elements: Elements::Faces, edges: true };
         input.cloths.push(ClothFrame { thickness: 0.004, friction: 0.3, self_collision: own, ..still() });
     }
-    builder.collider(Collider { surface: scenes::sphere(0.3, place) }).expect("a good mesh");
+    builder.collider(Collider { surface: crate::scenes::sphere(0.3, place) }).expect("a good mesh");
     input.colliders.push(ColliderFrame { collide: true, friction: 0.3, ..ColliderFrame::default() });
 }
 
@@ -261,7 +259,7 @@ fn pins_and_colliders_move_along_straight_lines_inside_a_frame() {
     let (builder, input) = drape(5, 8.0);
     let start = Vec3::new(-0.5, 0.35, -0.5);
     let pin = Pin { start, end: start + Vec3::x(), ..pins(&grid(5, 5, Vec3::x(), Vec3::z()), [0])[0] };
-    let ball = scenes::sphere(0.31, Vec3::zeros()).positions;
+    let ball = crate::scenes::sphere(0.31, Vec3::zeros()).positions;
     let end: Vec<Vec3> = ball.iter().map(|p| p + Vec3::y() * 4.0).collect();
     let colliders = vec![ColliderFrame { start: ball, end, collide: false, ..ColliderFrame::default() }];
     let input = FrameInput { substeps: 4, pins: vec![pin], colliders, ..input };
@@ -294,7 +292,7 @@ proptest! {
         let surface = grid(9, 9, Vec3::x(), Vec3::z());
         let held = pins(&surface, [0]);
         builder.cloth(Cloth::new(surface, Mass::PerPoint(mass), ClothLists::ALL)).expect("a good mesh");
-        builder.collider(Collider { surface: scenes::sphere(0.3, Vec3::new(0.5, -0.4, 0.5)) }).expect("a good mesh");
+        builder.collider(Collider { surface: crate::scenes::sphere(0.3, Vec3::new(0.5, -0.4, 0.5)) }).expect("a good mesh");
         let resistance = if classic { ResistanceModel::Classic } else { physical(evaluations) };
         let cloth = ClothFrame { stretch_resistance: stretch, bend_resistance: bend, shear_resistance: shear,
             thickness: 0.02, friction, ..ClothFrame::default() };

@@ -1,13 +1,11 @@
 //! A scene pays only for the features it uses: a feature that is off has no rows and no passes.
 
-mod scenes;
-
+use crate::scenes::{Vec3, frame, grid, physical};
 use nucleus_core::{
     BendSolver, Bending, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FieldSide,
     ForceField, FrameInput, GroundPlane, InputAttract, InputMesh, Mass, ModelBuilder, PointField, Pressure,
     Solver, WindField,
 };
-use scenes::{Vec3, frame, grid, physical};
 
 /// Cells along each side of the sheet, and its points, edges, diagonals and cells.
 const CELLS: usize = 16;
@@ -59,7 +57,7 @@ fn passes(lists: ClothLists, frame: &FrameInput) -> Vec<(&'static str, usize)> {
     let surface = grid(side, side, Vec3::x(), Vec3::z());
     builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
     if !frame.colliders.is_empty() {
-        builder.collider(Collider { surface: scenes::sphere(0.3, -Vec3::y()) }).expect("a good mesh");
+        builder.collider(Collider { surface: crate::scenes::sphere(0.3, -Vec3::y()) }).expect("a good mesh");
     }
     let passes = Solver::<f32>::new(builder, 1).passes(frame);
     passes.iter().map(|pass| (pass.name, pass.rows)).collect()

@@ -1,16 +1,14 @@
 //! An invalid value in the input of a frame is replaced and reported; the rest of the frame is solved as usual.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 use nucleus_core::{
     ClothFrame, ClothId, ColliderFrame, ColliderId, FrameInput, InputMesh, InvalidInput, MAX_COORDINATE, Pin,
     PointId, Solver, StateView,
 };
-use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 
 /// The points of the ball at this height in metres.
 fn ball(height: f64) -> Vec<Vec3> {
-    scenes::sphere(0.31, Vec3::y() * height).positions
+    crate::scenes::sphere(0.31, Vec3::y() * height).positions
 }
 
 /// Runs a solver for twelve frames; `plant` may change the input of the sixth. The hash of the state at the end, the

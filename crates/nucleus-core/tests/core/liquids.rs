@@ -1,12 +1,10 @@
 //! Liquids: their volume at rest, momentum, walls, and the dam break of Martin & Moyce (1952).
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, still};
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces,
     FrameInput, Liquid, Mass, ModelBuilder, ResistanceModel, Solver, Start, StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, ground, physical, still};
 
 const WATER: ClothId = ClothId(0);
 

@@ -1,12 +1,10 @@
 //! Force fields on particles and cloth.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, still};
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Field, FieldKind, FrameInput, Mass, ModelBuilder,
     Noise, Reach, ResistanceModel, Solver, StateView, Surface, VolumeAxis,
 };
-use scenes::{LINKS, Vec3, frame, grid, still};
 
 const POINTS: ClothId = ClothId(0);
 

@@ -1,12 +1,10 @@
 //! Stacks and folds at rest do not creep.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, SelfCollision, Solver,
     StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, ground, physical, still};
 
 const SHEETS: u32 = 5;
 /// Points of a sheet.

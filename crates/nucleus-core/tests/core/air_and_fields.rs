@@ -1,13 +1,11 @@
 //! Lift, wind shadows, pushed air, and the force fields of points.
 
-mod scenes;
-
+use crate::scenes::{Vec3, frame, grid, physical, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, FieldSide, ForceField,
     FrameInput, LinkOrder, Mass, ModelBuilder, PointField, Real, Solver, StateView, Surface, VertexMaps,
     WindField,
 };
-use scenes::{Vec3, frame, grid, physical, still};
 
 const CLOTH: ClothId = ClothId(0);
 const AIRY: ClothLists = ClothLists { air: true, ..ClothLists::NONE };
@@ -158,7 +156,7 @@ fn a_moving_object_makes_wind_and_one_at_rest_slows_it() {
 fn the_air_of_objects_and_parallel_links_give_the_same_bits_on_any_number_of_threads() {
     let hash = |threads: usize| {
         let mut builder = ModelBuilder::new();
-        let lists = ClothLists { air: true, ..scenes::LINKS };
+        let lists = ClothLists { air: true, ..crate::scenes::LINKS };
         for height in [0.0, 0.3] {
             let mut sheet = grid(40, 40, Vec3::x(), -Vec3::y());
             sheet.positions.iter_mut().for_each(|p| p.z += height + 0.05 * (7.0 * p.x).sin());

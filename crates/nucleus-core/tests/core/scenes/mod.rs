@@ -1,5 +1,5 @@
 //! Meshes and frames that several tests share.
-#![allow(dead_code)] // each test binary uses its own part
+#![allow(dead_code)] // each program of tests uses its own part
 
 pub mod links;
 

@@ -1,18 +1,16 @@
 //! Links of dynamic constraints: periods, welds, glue, sliding, momentum, and elements that do not collide.
 
-mod scenes;
-
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::scenes::links::{PHYSICAL, model, place, point, points, run, tied};
+use crate::scenes::{LINKS, Vec3, frame, grid, pins, sphere, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, ConstraintFrame,
     ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkMethod, LinkSide, Mass,
     ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView, Surface, fold_link,
 };
 use proptest::prelude::*;
-use scenes::links::{PHYSICAL, model, place, point, points, run, tied};
-use scenes::{LINKS, Vec3, frame, grid, pins, sphere, still};
 
 // EVIDENCE: N2.4-3  a spring between components has the stiffness that its strength says
 #[test]

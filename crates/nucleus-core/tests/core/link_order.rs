@@ -1,12 +1,10 @@
 //! The order of links: all from the same state, or outwards from held points.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, physical, pins, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, FrameInput, LinkOrder, Mass, ModelBuilder, PointId,
     ResistanceModel, Solver, StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 

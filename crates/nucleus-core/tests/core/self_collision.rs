@@ -1,12 +1,10 @@
 //! Self-collision and contact between cloths: no penetration, rest.
 
-mod scenes;
-
+use crate::scenes::{Vec3, frame, grid, ground, physical, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, ResistanceModel,
     SelfCollision, Solver, Surface,
 };
-use scenes::{Vec3, frame, grid, ground, physical, still};
 
 const LISTS: ClothLists = ClothLists { stretch: true, bend: true, self_collision: true, ..ClothLists::NONE };
 
@@ -60,8 +58,8 @@ fn a_sheet_with_doubled_faces_has_no_self_contact() {
     let mut sheet = grid(17, 17, u, v);
     let faces: Vec<Vec<u32>> = sheet.faces.iter().map(<[u32]>::to_vec).collect();
     faces.iter().for_each(|face| sheet.faces.push(&face.iter().rev().copied().collect::<Vec<_>>()));
-    let pins = scenes::pins(&sheet, 0..17);
-    let mut solver = Solver::<f32>::new(scenes::one_cloth(sheet, LISTS), 1);
+    let pins = crate::scenes::pins(&sheet, 0..17);
+    let mut solver = Solver::<f32>::new(crate::scenes::one_cloth(sheet, LISTS), 1);
     let cloths = vec![ClothFrame { self_collision: full_surface(0.01), ..still() }];
     let input = FrameInput { pins, cloths, ..frame(3, physical(48.0)) };
     for step in 0..24 {

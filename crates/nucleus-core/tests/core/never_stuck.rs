@@ -1,12 +1,10 @@
 //! Infeasible contact neither locks nor explodes, and recovers once it is feasible.
 
-mod scenes;
-
+use crate::scenes::{INSCRIBED, LINKS, Vec3, cuboid, frame, grid, one_cloth, physical, pins, sphere, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
     ModelBuilder, Pin, PointId, ResistanceModel, Solver, StateView, StepReport, Surface,
 };
-use scenes::{INSCRIBED, LINKS, Vec3, cuboid, frame, grid, one_cloth, physical, pins, sphere, still};
 
 /// A sheet held at two edges between two boxes, which close on it within a second until there is `gap` between them,
 /// stay for a second, and part again. The report of each frame.
@@ -51,7 +49,7 @@ fn pinch(gap: f64) -> Vec<StepReport> {
             pins: held.clone(),
             colliders: vec![collider(-1.0), collider(1.0)],
             cloths: vec![cloth],
-            ..scenes::frame(3, physical(96.0))
+            ..crate::scenes::frame(3, physical(96.0))
         }
     };
     (0..130).map(|frame| solver.step(&one(frame), &mut ())).collect()

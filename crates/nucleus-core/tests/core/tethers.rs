@@ -1,13 +1,11 @@
 //! Tethers: what they hold, what they leave alone, and their pass.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, Pin, PointId, Solver, StateView,
     Stiffness, VertexMaps,
 };
 use proptest::prelude::*;
-use scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 const TETHERED: ClothLists = ClothLists { tethers: true, ..LINKS };

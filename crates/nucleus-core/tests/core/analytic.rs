@@ -1,12 +1,10 @@
 //! Comparison with closed forms and published tables.
 
-mod scenes;
-
+use crate::scenes::{LINKS, Vec3, frame, grid, one_cloth, physical, pins, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, ResistanceModel, Solver,
     StateView, Surface,
 };
-use scenes::{LINKS, Vec3, frame, grid, one_cloth, physical, pins, still};
 
 const CLOTH: ClothId = ClothId(0);
 

@@ -1,13 +1,11 @@
 //! Classic against recorded output of the original: falls, impacts and grip, in scenes of our own with the stated sizes
 //! and attributes. The figures of the records are facts; the tolerances are those of the record, not of the solver.
 
-mod scenes;
-
+use crate::scenes::{Vec3, grid};
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, LinkOrder,
     Mass, ModelBuilder, ResistanceModel, Solver, StateView, Surface,
 };
-use scenes::{Vec3, grid};
 
 const CLOTH: ClothId = ClothId(0);
 
