@@ -16,7 +16,7 @@ use super::strength_map::{StrengthGroup, Uniform};
 use super::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkStrength};
 use super::weave::{WeaveGroup, WeaveStrength, Woven};
 
-/// The links of one effect of a cloth, and what lies beside them in the same layout.
+/// The links of one effect of a cloth, and the columns of the same layout.
 #[derive(Debug)]
 pub struct LinkLists<'a, R> {
     /// The links.

@@ -98,6 +98,9 @@ impl Aabb {
         let (mut first, mut last) = (0.0f64, end);
         for k in 0..3 {
             let [low, high] = [self.low[k], self.high[k]].map(|side| f64::from(side) - from[k]);
+            if low > high {
+                return false; // the empty box
+            }
             if ray[k] == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return false;
@@ -223,6 +226,7 @@ mod tests {
             let bounds = Aabb::new(low, high);
             let (from, through) = (corners[0][0], low + (high - low) * at);
             let ray = through - from;
+            prop_assert!(!Aabb::EMPTY.meets_ray(from, ray, 1.0));
             prop_assert!(bounds.meets_ray(from, ray, 1.0 + 1e-9));
             // Halfway to a box that lies wholly behind a plane across the ray, nothing is met.
             let nearest = (0..8).map(|k| ray.dot(&(Vector3::from_fn(|axis, _| if k >> axis & 1 == 0 { low } else { high }[axis]) - from)));

@@ -272,7 +272,7 @@ const SLOWER_FRONT: [[f64; 2]; 8] = [
 
 #[test]
 fn a_dam_breaks_as_measured() {
-    let (a, across) = (0.05715, 12);
+    let (a, across) = (0.05715, 16);
     let spacing = a / across as f64;
     let cloth = water(block(Vec3::zeros(), [across, 2 * across, 6], spacing), Vec::new(), spacing);
     let count = cloth.surface.positions.len();

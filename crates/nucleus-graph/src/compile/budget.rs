@@ -11,7 +11,7 @@ use crate::attributes::nucleus;
 use crate::diagnostic::Findings;
 use crate::scene::document::Scene;
 
-use super::program::Program;
+use super::program::{NucleusProgram, Program};
 
 /// A cloth that hangs by pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +73,7 @@ pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findin
         return;
     }
     let [least, most] = EVALUATIONS;
-    let needed = |(own, input): (&super::NucleusProgram, FrameInput)| {
+    let needed = |(own, input): (&NucleusProgram, FrameInput)| {
         let cloths = own.model().cloths().iter().enumerate();
         let each = cloths.filter_map(|(index, cloth)| evaluations(index, cloth, &input));
         let needed = each.fold(least, f64::max);
@@ -118,71 +118,4 @@ fn extent(cloth: &Cloth) -> f64 {
         (high - low).max(0.0)
     };
     along(0).max(along(1)).max(along(2))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use nucleus_core::ResistanceModel;
-
-    use super::super::compile;
-    use crate::Simulation;
-    use crate::scene::read_scene_text;
-
-    /// A square of 17² points in two corners, `size` metres wide.
-    fn hung(size: f64, nucleus: &str, cloth: &str) -> crate::compile::Program {
-        let text = format!(
-            "Scene(time: (start: 1, end: 999, fps: 24), nodes: {{
-                \"nucleus\": nucleus({nucleus}),
-                \"plane\": polyPlane(width: {size}, height: {size}, subdivisions: (16, 16)),
-                \"cloth\": nCloth(inputMesh: \"plane\", pointMass: 0.2, {cloth}),
-                \"pins\": dynamicConstraint(constraintType: transform, components: [\"cloth.vtx[0]\", \"cloth.vtx[16]\"]),
-            }})"
-        );
-        let read = read_scene_text(&text, Path::new("hung.ron")).unwrap_or_else(|found| panic!("{found:?}"));
-        compile(&read.0).unwrap_or_else(|found| panic!("{found:?}"))
-    }
-
-    fn budget(program: &crate::compile::Program) -> f64 {
-        let ResistanceModel::Physical { evaluations } = program.first_input().resistance else {
-            panic!("classic")
-        };
-        evaluations
-    }
-
-    #[test]
-    fn the_budget_follows_from_edge_load_and_gravity() {
-        // 287 points on 2 pins: h = √(0.01 · (1/16 m) / (143.5 · 9.8 m/s²)) = 1/1500 s, 63 in 1/24 s.
-        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "")), 70.0);
-        assert_eq!(budget(&hung(0.01, "autoEvaluations: true", "")), 630.0);
-        assert_eq!(budget(&hung(100.0, "autoEvaluations: true", "")), 30.0, "at least 24, to the next ten");
-        assert_eq!(budget(&hung(1.0, "", "")), 96.0);
-        // Tethers carry the load of the pins: 8 points in a line remain, 15 evaluations.
-        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "tethers: true")), 30.0);
-        // Cloth of 5 N/m stretches by itself: h = √(m / 4 K), m = 0.2 kg / 289.
-        assert_eq!(budget(&hung(1.0, "autoEvaluations: true", "stretchResistance: 0.01")), 30.0);
-        let both = hung(1.0, "autoEvaluations: true, evaluations: 50", "");
-        assert!(
-            both.warnings()
-                .iter()
-                .any(|warning| warning.message.contains("`evaluations` of `nucleus` has no effect"))
-        );
-    }
-
-    #[test]
-    fn cloth_of_a_millimetre_and_of_a_hundred_metres_hang_equally_well() {
-        let strain = |size: f64| {
-            let program =
-                hung(size, "autoEvaluations: true, gravity: 9.8", "damp: 1, tangentialDrag: 1, drag: 0.5");
-            let mut simulation: Simulation = Simulation::new(&program, 1);
-            // As many frames as a pendulum of this length takes for a swing and a half.
-            let frames = (24.0 * 3.0 * size.sqrt()).clamp(8.0, 480.0) as u32;
-            (0..frames).map(|_| simulation.advance(&mut ()).report.strain_99).last().unwrap_or(1.0)
-        };
-        for size in [1e-3, 0.1, 1.0, 100.0] {
-            let found = strain(size);
-            assert!(found < 0.02, "{size} m: 99 % of the edges are below {found}");
-        }
-    }
 }

@@ -14,6 +14,7 @@ use crate::graph::Setting;
 use crate::scene::read_scene_text;
 
 mod attachments;
+mod budget;
 
 /// A scene of these nodes, over frames 1 to 24.
 fn scene(nodes: &str) -> Scene {
