@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-use std::{env, fs, thread};
+use std::{env, fs, iter, thread};
 
 use anyhow::{Context, bail, ensure};
 
@@ -110,17 +110,18 @@ fn scenes(root: &Path) -> anyhow::Result<()> {
     ensure!(!scenes.is_empty(), "there are no scenes");
     let next = AtomicUsize::new(0);
     let jobs = thread::available_parallelism().map_or(1, NonZero::get);
-    let run_all = || {
-        // A failure ends the job; the others finish their scenes, so that all failures are seen.
-        while let Some(scene) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
-            run_scene(root, &program, scene)?;
-        }
-        anyhow::Ok(())
+    // All scenes run, so that all failures are seen.
+    let run_all = || -> Vec<anyhow::Error> {
+        let mine = iter::from_fn(|| scenes.get(next.fetch_add(1, Ordering::Relaxed)));
+        mine.filter_map(|scene| run_scene(root, &program, scene).err()).collect()
     };
-    thread::scope(|scope| {
+    let failures: Vec<_> = thread::scope(|scope| {
         let jobs: Vec<_> = (0..jobs).map(|_| scope.spawn(run_all)).collect();
-        jobs.into_iter().try_for_each(|job| job.join().expect("a job does not panic"))
-    })
+        jobs.into_iter().flat_map(|job| job.join().expect("a job does not panic")).collect()
+    });
+    failures.iter().for_each(|failure| eprintln!("{failure:#}"));
+    ensure!(failures.is_empty(), "{} scenes failed", failures.len());
+    Ok(())
 }
 
 /// Runs a scene on one thread, with its output in one piece.
