@@ -132,19 +132,10 @@ impl<R: Real> LinkGroup<R> {
     }
 }
 
-/// How four links side by side resist: a strength map, or the law of [`Woven`](super::weave::Woven) links.
-pub trait LinkLaw<R: Real>: Copy {
+/// How four links side by side resist. By itself a strength map scales the compliance of the sweep.
+pub trait LinkLaw<R: Real>: StrengthMap<R> {
     /// The multipliers of the corrections, over the lengths of the links, from those lengths and the sums of the
     /// inverse masses.
-    fn multiplier(
-        self,
-        projection: &LinkProjection<R::Lanes>,
-        group: &LinkGroup<R>,
-        length_and_mobility: [R::Lanes; 2],
-    ) -> R::Lanes;
-}
-
-impl<R: Real> LinkLaw<R> for Uniform {
     #[inline(always)]
     fn multiplier(
         self,
@@ -156,17 +147,8 @@ impl<R: Real> LinkLaw<R> for Uniform {
     }
 }
 
-impl<R: Real> LinkLaw<R> for &StrengthGroup<R> {
-    #[inline(always)]
-    fn multiplier(
-        self,
-        projection: &LinkProjection<R::Lanes>,
-        group: &LinkGroup<R>,
-        length_and_mobility: [R::Lanes; 2],
-    ) -> R::Lanes {
-        projection.multiplier(group, self, length_and_mobility)
-    }
-}
+impl<R: Real> LinkLaw<R> for Uniform {}
+impl<R: Real> LinkLaw<R> for &StrengthGroup<R> {}
 
 /// Sweeps the links of `groups` once, each group with its law.
 ///

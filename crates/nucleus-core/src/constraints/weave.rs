@@ -112,6 +112,13 @@ pub struct Woven<'a, R, P> {
     pub map: P,
 }
 
+impl<R: Real, P: StrengthMap<R>> StrengthMap<R> for Woven<'_, R, P> {
+    #[inline(always)]
+    fn scale(self, c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
+        self.map.scale(c, share, compliance)
+    }
+}
+
 impl<R: Real, P: StrengthMap<R>> LinkLaw<R> for Woven<'_, R, P> {
     #[inline(always)]
     fn multiplier(
@@ -131,7 +138,7 @@ impl<R: Real, P: StrengthMap<R>> LinkLaw<R> for Woven<'_, R, P> {
         let side = |sides: &Sides<R>| c.choose_by_sign(splat(sides.above), splat(sides.below));
         let threads = along * along * side(warp) + across * across * side(weft);
         let compliance = threads + along * across * splat(*shear);
-        let (share, compliance) = self.map.scale(c, projection.share(c), compliance);
+        let (share, compliance) = self.scale(c, projection.share(c), compliance);
         let elastic = share * c / ((mobility + compliance * slenderness) * length + tiny);
         // λ = -P (2 l - c) / (2 l² s + P w) solves λ = -h² N (1 + ε/2) · width at the end of the step.
         let load = splat(*buckling);

@@ -38,17 +38,7 @@ impl<R: Real> StrengthMap<R> for &Factors<R> {
     }
 }
 
-impl<R: Real> LinkLaw<R> for &Factors<R> {
-    #[inline(always)]
-    fn multiplier(
-        self,
-        projection: &LinkProjection<R::Lanes>,
-        group: &LinkGroup<R>,
-        length_and_mobility: [R::Lanes; 2],
-    ) -> R::Lanes {
-        projection.multiplier(group, self, length_and_mobility)
-    }
-}
+impl<R: Real> LinkLaw<R> for &Factors<R> {}
 
 /// A pair before it is laid out.
 #[derive(Debug, Clone, Copy)]
