@@ -10,11 +10,11 @@
 //! It is linear in the compliances, so a row needs one number, cos²φ. Shorter than at rest, warp and weft both have the
 //! compression stiffness.
 //!
-//! **Buckling.** Cloth folds under a compression of N = π² B / l² per width over a length l (Euler), and carries
-//! N (1 + ε/2) when it is shortened by the strain ε beyond (elastica of pinned ends, first order). A mesh has no fold
-//! shorter than its edges: compressed along an edge it stays straight and pushes back with its whole stiffness. With
-//! `buckling` a link shorter than at rest resists with the smaller of the two. It then stands for the folds that the mesh
-//! cannot show; the folds that it can show are longer, and buckle first.
+//! **Buckling.** The shortest fold that a mesh can show is a zigzag of two edges, whose hinges resist it. An edge of length l
+//! that is compressed between two points stays straight and pushes back with its whole stiffness, where cloth would fold: a
+//! column whose ends turn with the mesh, clamped, carries N = 4π² B / l² per width (Euler), and N (1 + ε/2) when it is
+//! shortened by the strain ε beyond (elastica, first order). With `buckling` a link shorter than at rest resists with the
+//! smaller of the two. It then stands for the folds that the mesh cannot show; those that it can show buckle first.
 
 use crate::constraints::strength_map::{Sides, StrengthMap};
 use crate::constraints::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkRow};
@@ -69,7 +69,7 @@ pub struct WeaveStrength<R> {
     pub weft: Sides<R>,
     /// Against shear.
     pub shear: R,
-    /// π² B h² in kg·m², or [`NO_BUCKLING`].
+    /// 4π² B h² in kg·m², or [`NO_BUCKLING`].
     pub buckling: R,
 }
 
@@ -77,8 +77,8 @@ pub struct WeaveStrength<R> {
 const NO_BUCKLING: f64 = 1e20;
 /// Upper bound of a compliance, finite in `f32` also times the slenderness of a link.
 const MAX_COMPLIANCE: f64 = 1e25;
-/// Square of π.
-const PI_SQUARED: f64 = std::f64::consts::PI * std::f64::consts::PI;
+/// Square of 2π.
+const FOUR_PI_SQUARED: f64 = 4.0 * std::f64::consts::PI * std::f64::consts::PI;
 
 impl<R: Real> WeaveStrength<R> {
     /// Rigid links, which do not buckle: of sweeps without compliance.
@@ -91,7 +91,8 @@ impl<R: Real> WeaveStrength<R> {
     pub fn new(stiffness: &PhysicalStiffness, buckles: bool, h: f64) -> Self {
         let compliance = |stiffness: f64| R::from_f64((1.0 / (stiffness * h * h)).min(MAX_COMPLIANCE));
         let below = compliance(stiffness.compression);
-        let load = if buckles { (PI_SQUARED * stiffness.bend * h * h).min(NO_BUCKLING) } else { NO_BUCKLING };
+        let load =
+            if buckles { (FOUR_PI_SQUARED * stiffness.bend * h * h).min(NO_BUCKLING) } else { NO_BUCKLING };
         Self {
             warp: Sides { above: compliance(stiffness.warp), below },
             weft: Sides { above: compliance(stiffness.weft), below },
@@ -167,7 +168,7 @@ pub fn energy(
         return half(c);
     }
     // Force N (1 + s / 2l) over the width l / slenderness, from where it is below that of the elastic link.
-    let load = PI_SQUARED * stiffness.bend / (rest * slenderness);
+    let load = FOUR_PI_SQUARED * stiffness.bend / (rest * slenderness);
     let soft = load / (2.0 * rest);
     let start = if elastic > soft { load / (elastic - soft) } else { f64::INFINITY };
     let s = -c;

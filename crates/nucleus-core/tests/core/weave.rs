@@ -100,8 +100,9 @@ fn quads_cut_on_the_bias_have_the_same_moduli_along_their_diagonals() {
 
 #[test]
 fn compressed_threads_carry_the_load_of_an_elastica_and_no_more() {
-    // Euler's load per width over an edge of 1/8 m; an elastica that is shortened by ε carries 1 + ε/2 times as much.
-    let load = std::f64::consts::PI.powi(2) * BEND * 64.0;
+    // Euler's load per width of an edge of 1/8 m with clamped ends; an elastica that is shortened by ε carries 1 + ε/2 times
+    // as much.
+    let load = 4.0 * std::f64::consts::PI.powi(2) * BEND * 64.0;
     let of = |strain: f64, buckles: bool| {
         energy(square(false), Vec3::x(), buckles, |p| Vec3::new(p.x * (1.0 - strain), p.y, p.z))
     };
@@ -112,7 +113,7 @@ fn compressed_threads_carry_the_load_of_an_elastica_and_no_more() {
     for strain in [0.001, 0.01, 0.05] {
         let own = force(strain, true) / (load * (1.0 + strain / 2.0));
         assert!((1.0..1.6).contains(&own), "{strain}: {own} times the load");
-        assert!(force(strain, false) > 40.0 * load, "{strain}");
+        assert!(force(strain, false) > 10.0 * load, "{strain}");
     }
     let weak = load / COMPRESSION / 10.0;
     assert!(
@@ -129,7 +130,7 @@ fn a_column_shortens_to_where_its_buckling_load_carries_its_weight() {
     let side = 0.1;
     let column = grid(2, 2, Vec3::x() * side, Vec3::y() * side);
     let lists = ClothLists { air: true, buckling: true, ..WOVEN };
-    let load = std::f64::consts::PI.powi(2) * BEND / (side * side) * (side / 2.0);
+    let load = 4.0 * std::f64::consts::PI.powi(2) * BEND / (side * side) * (side / 2.0);
     let strain = 0.04;
     let mass = load * (1.0 + strain / 2.0) / 9.81;
     let cloth = Cloth { mass: Mass::PerPoint(mass), ..woven(column.clone(), lists, Vec3::x()) };
