@@ -24,11 +24,9 @@ pub const CASES: &[Case] = &[
     Case {
         name: "capstan",
         description: "A ribbon lies over half a cylinder, with ends of different length. It slips when the tension of one end \
-            exceeds exp(μ π) times that of the other (capstan equation), including the weight on the cylinder.",
-        known_failure: Some(
-            "More evaluations hold less, so the smaller number holds by error. Friction of a sheet on a plane is \
-                exact; the cause of the loss on a faceted cylinder is unknown.",
-        ),
+            exceeds exp(μ π) times that of the other (capstan equation), including the weight on the cylinder. The error \
+            is that of the ribbon's elements, here of 2.4 mm: elements of 29 mm hold 31 % less, of 15 mm 8 %, of 7 mm 4 %.",
+        known_failure: None,
         run: capstan,
     },
 ];
@@ -147,12 +145,12 @@ fn capstan() -> Result<Vec<Comparison>, BuildError> {
         let quantity = format!("longest end that is held at {evaluations} evaluations, m");
         Ok(Comparison::new(quantity, exact, (low + high) / 2.0, Tolerance::Relative(0.02)))
     };
-    [240.0, 480.0].into_iter().map(held).collect()
+    [480.0, 960.0].into_iter().map(held).collect()
 }
 
 fn ribbon_slip(radius: f64, long: f64, evaluations: f64) -> Result<f64, BuildError> {
     let length = SHORT + std::f64::consts::PI * radius + long;
-    let columns = 121u32;
+    let columns = 361u32;
     // Laid out straight, then wound: so it is longer than its links by the difference of arc and chord, 1e-5.
     let mut ribbon = sheet([columns, 2], Vec3::zeros(), Vec3::x() * length, Vec3::z() * 0.01);
     for p in &mut ribbon.positions {
