@@ -110,9 +110,6 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     }
     record_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
-    if let Some(contacts) = &mut solver.contact.cloth_contacts {
-        contacts.cache.update_anchors(&solver.state.anchor);
-    }
     for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
         collider.begin_frame(&motion.start, &motion.end);
     }

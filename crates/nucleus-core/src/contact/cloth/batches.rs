@@ -1,16 +1,12 @@
-//! Contacts of one kind in batches, and the colouring that lets threads share a batch.
-//!
-//! Contacts between the same blocks of points form a task. Tasks of one colour share no block and run in
-//! parallel. The colouring depends on the contacts and the mesh alone, so the order of all sums is the same on
-//! any number of threads.
+//! Contacts of one kind in batches, in the order of their tasks.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::contact::{ClothContact, ClothStep};
+use crate::contact::cloth::colouring::{Colouring, Place, permute};
+use crate::contact::cloth::contact::{Candidate, ClothContact, ClothStep};
 use crate::contact::cloth::search::RefreshKind;
-use crate::math::Real;
+use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -24,45 +20,65 @@ pub struct ContactList<R, const N: usize, const M: usize> {
     initial: ContactBatch<R, N, M>,
     /// Contacts of cloth found later.
     incremental: ContactBatch<R, N, M>,
-    /// Contacts of free points, and of cloth, that wait for their batch.
-    pending: [Vec<ClothContact<R, N, M>>; 2],
 }
 
 /// Contacts in the order of their tasks.
 #[derive(Debug)]
 struct ContactBatch<R, const N: usize, const M: usize> {
     list: Vec<ClothContact<R, N, M>>,
+    /// How many of them are disabled.
+    disabled: usize,
     colouring: Colouring,
 }
 
 checkpoint_struct!([R: Real, const N: usize, const M: usize] ContactList<R, N, M> {
-    columns: [], values: [], parts: [free_points, initial, incremental], rebuilt: [pending],
+    columns: [], values: [], parts: [free_points, initial, incremental], rebuilt: [],
 });
 
-// The colouring is rebuilt when the next candidate interval begins.
+// Colouring and count are rebuilt when the next candidate interval begins.
 checkpoint_struct!([R: Real, const N: usize, const M: usize] ContactBatch<R, N, M> {
-    columns: [], values: [list], parts: [], rebuilt: [colouring],
+    columns: [], values: [list], parts: [], rebuilt: [disabled, colouring],
 });
 
 impl<R, const N: usize, const M: usize> Default for ContactList<R, N, M> {
     fn default() -> Self {
-        Self {
-            free_points: ContactBatch::default(),
-            initial: ContactBatch::default(),
-            incremental: ContactBatch::default(),
-            pending: Default::default(),
-        }
+        let (initial, incremental) = (ContactBatch::default(), ContactBatch::default());
+        Self { free_points: ContactBatch::default(), initial, incremental }
     }
 }
 
 impl<R, const N: usize, const M: usize> Default for ContactBatch<R, N, M> {
     fn default() -> Self {
-        Self { list: Vec::new(), colouring: Colouring::default() }
+        Self { list: Vec::new(), disabled: 0, colouring: Colouring::default() }
     }
 }
 
+/// Part of a list that stays spare when it grows.
+const SPARE: usize = 8;
+
 /// The block of each point, and the number of blocks.
 pub type Blocks<'a> = (&'a [u32], u32);
+
+/// What the lists are updated by, besides the candidates that a search has found.
+#[derive(Clone, Copy)]
+pub struct ListUpdate<'a, R> {
+    /// Points whose contacts are replaced.
+    pub bounds_violated: &'a [bool],
+    /// Which contacts the search has replaced.
+    pub refresh: RefreshKind,
+    /// The block of each point.
+    pub blocks: Blocks<'a>,
+    /// Whether a point of each block violated its bound.
+    pub has_violations: &'a [bool],
+    /// Anchors in metres, and displacements at the start of the time step.
+    pub start: (&'a [[f64; 3]], &'a [Row4<R>]),
+}
+
+impl<R: Real> ListUpdate<'_, R> {
+    fn keeps<const N: usize, const M: usize>(&self, contact: &ClothContact<R, N, M>) -> bool {
+        !contact.is_disabled() && !contact.points().iter().any(|&point| self.bounds_violated[point as usize])
+    }
+}
 
 impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
     /// All enabled contacts.
@@ -77,30 +93,10 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         batches.into_iter().flat_map(|batch| &mut batch.list).filter(|contact| !contact.is_disabled())
     }
 
-    /// Updates the local anchors of all contacts to these anchors.
-    pub fn update_anchors(&mut self, anchors: &[[f64; 3]]) {
-        self.iter_mut().for_each(|contact| contact.update_anchors(anchors));
-    }
-
-    /// Removes the contacts of points that violated their bounds. A full refresh moves all others to `pending`;
-    /// an incremental one leaves the initial batch in place.
-    pub fn remove_violated(&mut self, bounds_violated: &[bool], refresh: RefreshKind) {
-        let Self { free_points, initial, incremental, pending } = self;
-        let is_kept = |contact: &ClothContact<R, N, M>| {
-            !contact.is_disabled() && !contact.points().iter().any(|&point| bounds_violated[point as usize])
-        };
-        let [of_points, of_cloth] = pending;
-        of_points.clear();
-        of_points.extend(free_points.list.iter().filter(|contact| is_kept(contact)));
-        of_cloth.clear();
-        if refresh.is_incremental() {
-            initial.list.iter_mut().filter(|contact| !is_kept(contact)).for_each(ClothContact::disable);
-        } else {
-            of_cloth.extend(initial.list.iter().filter(|contact| is_kept(contact)));
-            initial.clear();
-        }
-        of_cloth.extend(incremental.list.iter().filter(|contact| is_kept(contact)));
-        incremental.clear();
+    /// The number of enabled contacts after an update.
+    pub fn len(&self) -> usize {
+        let batches = [&self.free_points, &self.initial, &self.incremental];
+        batches.iter().map(|batch| batch.list.len() - batch.disabled).sum()
     }
 
     /// Renumbers the rows of points; disables contacts of a point without a number.
@@ -108,23 +104,33 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.iter_mut().for_each(|contact| contact.renumber(number));
     }
 
-    /// Assigns to batches the contacts that wait for it, and then those that each of the tasks of a search has `found`.
-    pub fn assign_batches<'a>(
+    /// Removes the contacts of points that violated their bounds, and adds the candidates that a search has `found`. An
+    /// incremental update leaves the initial batch in place.
+    pub fn update<'a>(
         &mut self,
-        tasks: usize,
-        found: impl Fn(usize) -> &'a [ClothContact<R, N, M>],
-        refresh: RefreshKind,
-        blocks: Blocks<'_>,
+        found: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
+        update: &ListUpdate<'_, R>,
+        order: &mut Vec<Place>,
     ) {
-        let Self { free_points, initial, incremental, pending: [of_points, of_cloth] } = self;
-        for task in 0..tasks {
-            of_points.extend(found(task).iter().filter(|contact| contact.has_free_point()));
-        }
-        of_points.sort_by_key(ClothContact::points);
-        free_points.assign(1, |_| &of_points[..], |_| true, blocks);
-        let batch = if refresh.is_incremental() { incremental } else { initial };
-        let source = |source: usize| if source == 0 { &of_cloth[..] } else { found(source - 1) };
-        batch.assign(tasks + 1, source, |contact| !contact.has_free_point(), blocks);
+        let Self { free_points, initial, incremental } = self;
+        let of =
+            |is_free: bool| found.clone().filter(move |candidate| candidate.params.has_free_point == is_free);
+        free_points.list.retain(|contact| update.keeps(contact));
+        free_points.add(of(true), update);
+        free_points.list.sort_by_key(ClothContact::points);
+        free_points.sort_by_task(update.blocks, order);
+        let batch = if update.refresh.is_incremental() {
+            initial.disable_violated(update);
+            incremental.list.retain(|contact| update.keeps(contact));
+            incremental
+        } else {
+            initial.list.retain(|contact| update.keeps(contact));
+            initial.list.extend(incremental.list.iter().filter(|contact| update.keeps(contact)));
+            incremental.clear();
+            initial
+        };
+        batch.add(of(false), update);
+        batch.sort_by_task(update.blocks, order);
     }
 
     /// Calls `work` with each contact, tasks in parallel. Returns how often it answered `true`.
@@ -163,30 +169,53 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
 impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
     fn clear(&mut self) {
         self.list.clear();
+        self.disabled = 0;
         self.colouring.clear();
     }
 
-    /// Takes the contacts of some sources that are `own`, sorted by task.
-    fn assign<'a>(
+    /// Disables contacts of points that violated their bounds. Skips tasks between blocks without such points.
+    fn disable_violated(&mut self, update: &ListUpdate<'_, R>) {
+        let Self { list, disabled, colouring } = self;
+        for (task, blocks) in colouring.tasks.iter().zip(&colouring.task_blocks) {
+            if blocks.iter().all(|&block| update.has_violations.get(block as usize) == Some(&false)) {
+                continue;
+            }
+            let contacts = &mut list[task.start as usize..task.end as usize];
+            for contact in contacts {
+                if !contact.is_disabled() && !update.keeps(contact) {
+                    contact.disable();
+                    *disabled += 1;
+                }
+            }
+        }
+    }
+
+    /// Appends the contacts of candidates.
+    fn add<'a>(
         &mut self,
-        sources: usize,
-        source: impl Fn(usize) -> &'a [ClothContact<R, N, M>],
-        is_own: impl Fn(&ClothContact<R, N, M>) -> bool,
-        (block, blocks): Blocks<'_>,
+        candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
+        update: &ListUpdate<'_, R>,
     ) {
+        let (count, list) = (candidates.clone().count(), &mut self.list);
+        if list.capacity() - list.len() < count {
+            // A list of millions must not double.
+            list.reserve_exact(count + (list.len() + count) / SPARE);
+        }
+        list.extend(candidates.map(|candidate| ClothContact::new(candidate, update.start)));
+    }
+
+    /// Sorts the contacts by task.
+    fn sort_by_task(&mut self, (block, blocks): Blocks<'_>, order: &mut Vec<Place>) {
+        let Self { list, disabled, colouring } = self;
+        *disabled = 0; // retained contacts are enabled
         let of_points = |contact: &ClothContact<R, N, M>| contact.points().map(|point| block[point as usize]);
-        let all = (0..sources).flat_map(|at| (0..).zip(source(at)).map(move |(k, contact)| (at, k, contact)));
-        let own = all.filter(|&(.., contact)| is_own(contact));
-        self.colouring
-            .assign(own.map(|(at, k, contact)| (of_points(contact), (at as u64) << 32 | k)), blocks);
-        self.list.clear();
-        let contact = |index: u64| source((index >> 32) as usize)[index as u32 as usize];
-        self.list.extend(self.colouring.order.iter().map(|&(_, index)| contact(index)));
+        colouring.assign(list.iter().map(of_points), blocks, order);
+        permute(list, order);
     }
 
     fn count(&mut self, pool: &ThreadPool, work: impl Fn(&mut ClothContact<R, N, M>) -> bool + Sync) -> u64 {
         let count = AtomicU64::new(0);
-        let Self { list, colouring } = self;
+        let Self { list, colouring, .. } = self;
         let list = DisjointSlice::new(list);
         for colour in &colouring.colours {
             pool.parallel_for(colour.len(), |task| {
@@ -203,126 +232,5 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
             });
         }
         count.into_inner()
-    }
-}
-
-/// Tasks by colour. Every task is a run of the contacts in [`order`](Colouring::order).
-#[derive(Debug, Clone, Default)]
-pub struct Colouring {
-    /// The contacts in the order of the tasks: sort key, and former index.
-    pub order: Vec<(u64, u64)>,
-    /// The run of each task.
-    pub tasks: Vec<Range<u32>>,
-    /// The tasks of each colour.
-    pub colours: Vec<Range<u32>>,
-    /// The colour of each task, while colours are found.
-    colour_of: Vec<u32>,
-    /// The occupied blocks, a row of bits for each colour.
-    taken: Vec<u64>,
-    sorted: Vec<(u32, u32)>,
-}
-
-/// Key of contacts between more than two blocks, which run last, one after the other.
-const SERIAL: u64 = u64::MAX;
-
-impl Colouring {
-    /// No tasks.
-    pub fn clear(&mut self) {
-        self.order.clear();
-        self.tasks.clear();
-        self.colours.clear();
-    }
-
-    /// Colours contacts, each given by the blocks of its points and its index. There are `blocks` blocks.
-    pub fn assign(&mut self, contacts: impl Iterator<Item = ([u32; 4], u64)>, blocks: u32) {
-        self.order.clear();
-        self.order.extend(contacts.map(|(blocks, index)| (key(blocks), index)));
-        self.order.sort_unstable();
-        self.tasks.clear();
-        let mut from = 0;
-        for run in self.order.chunk_by(|a, b| a.0 == b.0) {
-            self.tasks.push(from..from + run.len() as u32);
-            from += run.len() as u32;
-        }
-        self.assign_colours(blocks);
-        self.sort_by_colour();
-    }
-
-    /// Greedy colouring: each task takes the first colour in which both of its blocks are free.
-    fn assign_colours(&mut self, blocks: u32) {
-        let words = blocks.div_ceil(64) as usize;
-        self.taken.clear();
-        self.colour_of.clear();
-        let mut last = 0;
-        for run in &self.tasks {
-            let key = self.order[run.start as usize].0;
-            if key == SERIAL {
-                self.colour_of.push(last);
-                continue;
-            }
-            let ends = [(key >> 32) as usize, (key & u64::from(u32::MAX)) as usize];
-            let is_free = |row: &[u64]| ends.iter().all(|&block| row[block / 64] & (1 << (block % 64)) == 0);
-            let free = self.taken.chunks(words).position(is_free);
-            let colour = free.unwrap_or(self.taken.len() / words);
-            self.taken.resize(self.taken.len().max((colour + 1) * words), 0);
-            ends.iter().for_each(|&block| self.taken[colour * words + block / 64] |= 1 << (block % 64));
-            self.colour_of.push(colour as u32);
-            last = last.max(colour as u32 + 1);
-        }
-    }
-
-    fn sort_by_colour(&mut self) {
-        self.sorted.clear();
-        self.sorted.extend(self.colour_of.iter().copied().zip(0..));
-        self.sorted.sort_unstable();
-        self.colours.clear();
-        let mut from = 0;
-        for colour in self.sorted.chunk_by(|a, b| a.0 == b.0) {
-            self.colours.push(from..from + colour.len() as u32);
-            from += colour.len() as u32;
-        }
-    }
-
-    /// The run of a task of a colour.
-    pub fn task(&self, colour: &Range<u32>, task: usize) -> Range<u32> {
-        self.tasks[self.sorted[colour.start as usize + task].1 as usize].clone()
-    }
-}
-
-/// The one or two blocks of a contact, as a sort key.
-fn key(blocks: [u32; 4]) -> u64 {
-    let low = blocks.into_iter().min().unwrap_or(0);
-    let high = blocks.into_iter().max().unwrap_or(0);
-    let between = blocks.into_iter().any(|block| block != low && block != high);
-    if between { SERIAL } else { u64::from(low) << 32 | u64::from(high) }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn tasks_of_one_colour_share_no_block_and_every_contact_has_a_task(
-            contacts in proptest::collection::vec(proptest::array::uniform4(0u32..70), 0..200)
-        ) {
-            let mut colouring = Colouring::default();
-            colouring.assign(contacts.iter().copied().zip(0..), 70);
-            let mut places = 0;
-            for colour in &colouring.colours {
-                let mut taken = std::collections::HashMap::new();
-                for task in 0..colour.len() {
-                    for &(_, contact) in &colouring.order[colouring.task(colour, task).start as usize..colouring.task(colour, task).end as usize] {
-                        places += 1;
-                        for block in contacts[contact as usize] {
-                            prop_assert_eq!(*taken.entry(block).or_insert(task), task);
-                        }
-                    }
-                }
-            }
-            prop_assert_eq!(places, contacts.len());
-        }
     }
 }

@@ -5,6 +5,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::bvh::Aabb;
+use crate::contact::cloth::batches::ListUpdate;
 use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers};
 use crate::contact::cloth::intersections::find_intersections;
 use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory, mean_motion};
@@ -183,7 +184,7 @@ fn predict_trajectories<R: Real>(
         });
     }
     if !refresh.is_incremental() {
-        cache.carry_anchors(&state.start, interval_start);
+        cache.carry_anchors(&state.anchor, &state.start, interval_start);
         interval_start.clone_from(&state.start);
     }
 }
@@ -209,7 +210,7 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, tasks, .. } = buffers;
+    let SearchBuffers { bounds, group_bounds, groups, tasks, orders, has_violations, .. } = buffers;
     let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
     tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
     let own = DisjointSlice::new(tasks);
@@ -224,7 +225,18 @@ fn find_candidates<R: Real>(
         let end = ((task + 1) * GROUPS_PER_TASK).min(groups.len());
         groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, found));
     });
-    cache.update(&tasks[..chunks], bounds_violated, refresh, (&elements.block, elements.blocks), pool);
+    has_violations.clear();
+    has_violations.resize(elements.blocks as usize, false);
+    let violated = bounds_violated.iter().zip(&elements.block).filter(|(is_violated, _)| **is_violated);
+    violated.for_each(|(_, &block)| has_violations[block as usize] = true);
+    let update = ListUpdate {
+        bounds_violated,
+        has_violations,
+        refresh,
+        blocks: (&elements.block, elements.blocks),
+        start: (input.anchors, input.displacement[0]),
+    };
+    cache.update(&tasks[..chunks], &update, orders, pool);
     bounds_violated.fill(false);
 }
 

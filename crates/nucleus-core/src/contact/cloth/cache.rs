@@ -4,10 +4,10 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::batches::{Blocks, ContactList};
+use crate::contact::cloth::batches::{ContactList, ListUpdate};
+use crate::contact::cloth::colouring::Place;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::query::FoundContacts;
-use crate::contact::cloth::search::RefreshKind;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
@@ -41,61 +41,33 @@ impl<R> Default for ContactCache<R> {
     }
 }
 
-/// The result of a search, and the contacts that it replaces.
-struct CacheUpdate<'a, R> {
-    tasks: &'a [FoundContacts<R>],
-    bounds_violated: &'a [bool],
-    refresh: RefreshKind,
-    blocks: Blocks<'a>,
-}
-
-impl<R: Real> CacheUpdate<'_, R> {
-    /// Updates the contacts of a kind, in the order of the tasks.
-    fn update<const N: usize, const M: usize>(
-        &self,
-        contacts: &mut ContactList<R, N, M>,
-        of: impl Fn(&FoundContacts<R>) -> &[ClothContact<R, N, M>],
-    ) {
-        contacts.remove_violated(self.bounds_violated, self.refresh);
-        let found = |task: usize| of(&self.tasks[task]);
-        contacts.assign_batches(self.tasks.len(), found, self.refresh, self.blocks);
-    }
-}
-
 impl<R: Real> ContactCache<R> {
-    /// Updates the local anchors of all contacts.
-    pub fn update_anchors(&mut self, anchors: &[[f64; 3]]) {
-        self.point_face.update_anchors(anchors);
-        self.edge_edge.update_anchors(anchors);
-        self.point_edge.update_anchors(anchors);
-        self.point_point.update_anchors(anchors);
-    }
-
     /// Adds the contacts that tasks found, in their order, and removes those of points that violated their
     /// bounds.
     pub(super) fn update(
         &mut self,
         tasks: &[FoundContacts<R>],
-        bounds_violated: &[bool],
-        refresh: RefreshKind,
-        blocks: Blocks<'_>,
+        update: &ListUpdate<'_, R>,
+        orders: &mut [Vec<Place>; 2],
         pool: &ThreadPool,
     ) {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
+        let [of_points, of_edges] = orders;
         // Two tasks of about the same length, with separate lists.
-        let of_points = Mutex::new((point_face, point_point));
-        let of_edges = Mutex::new((edge_edge, point_edge));
-        let update = CacheUpdate { tasks, bounds_violated, refresh, blocks };
+        let of_points = Mutex::new((point_face, point_point, of_points));
+        let of_edges = Mutex::new((edge_edge, point_edge, of_edges));
         pool.parallel_for(2, |half| match half {
             0 => {
                 let Ok(mut lists) = of_points.lock() else { return };
-                update.update(lists.0, |found| &found.point_face);
-                update.update(lists.1, |found| &found.point_point);
+                let (faces, points, order) = &mut *lists;
+                faces.update(tasks.iter().flat_map(|found| &found.point_face), update, order);
+                points.update(tasks.iter().flat_map(|found| &found.point_point), update, order);
             }
             _ => {
                 let Ok(mut lists) = of_edges.lock() else { return };
-                update.update(lists.0, |found| &found.edge_edge);
-                update.update(lists.1, |found| &found.point_edge);
+                let (edges, points, order) = &mut *lists;
+                edges.update(tasks.iter().flat_map(|found| &found.edge_edge), update, order);
+                points.update(tasks.iter().flat_map(|found| &found.point_edge), update, order);
             }
         });
     }
@@ -109,11 +81,10 @@ impl<R: Real> ContactCache<R> {
         self.point_point.renumber(number);
     }
 
-    /// The number of contacts.
+    /// The number of contacts after an update.
     pub fn len(&self) -> u64 {
-        let lists = [self.point_face.iter().count(), self.edge_edge.iter().count()];
-        let lesser = [self.point_edge.iter().count(), self.point_point.iter().count()];
-        lists.iter().chain(&lesser).sum::<usize>() as u64
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        (point_face.len() + edge_edge.len() + point_edge.len() + point_point.len()) as u64
     }
 
     /// The number of contacts that keep less than the cloth's thickness, because their elements are neighbours at
@@ -166,11 +137,12 @@ impl<R: Real> ContactCache<R> {
 
     /// Carries friction anchors over into a candidate interval that begins at `start`; the last one began at
     /// `interval_start`.
-    pub fn carry_anchors(&mut self, start: &[Row4<R>], interval_start: &[Row4<R>]) {
-        self.point_face.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
-        self.edge_edge.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
-        self.point_edge.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
-        self.point_point.iter_mut().for_each(|contact| contact.carry_anchor(start, interval_start));
+    pub fn carry_anchors(&mut self, origins: &[[f64; 3]], start: &[Row4<R>], interval_start: &[Row4<R>]) {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        point_face.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
+        edge_edge.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
+        point_edge.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
+        point_point.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
     }
 
     /// The number of contacts without certificate. Marks their cloths.

@@ -10,7 +10,7 @@ use crate::contact::cloth::element_bounds::ElementPoints;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
 use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
 use crate::contact::time_step::PositionWriter;
-use crate::math::{Real, Row4, add};
+use crate::math::{Real, Row4, add, sub};
 use crate::state::State;
 
 /// A time step of all cloths.
@@ -20,6 +20,8 @@ pub struct ClothStep<'a, R> {
     pub writer: PositionWriter<'a, R>,
     /// Displacements at the start of the step.
     pub start: &'a [Row4<R>],
+    /// The anchors that displacements are relative to, in metres.
+    pub origins: &'a [[f64; 3]],
     /// Friction anchors; `None` outside of contact passes.
     pub anchors: Option<FrictionAnchors<'a, R>>,
     /// The cloths whose contacts are resolved; all where it is empty.
@@ -64,9 +66,19 @@ impl<'a, R: Real> ClothStep<'a, R> {
         material_maps: &'a MaterialMaps<R>,
         h: f64,
     ) -> Self {
-        let (writer, start, _) = PositionWriter::of(state);
+        let (writer, start, origins) = PositionWriter::of(state);
         let (h, thickness_scale) = (R::from_f64(h), R::ONE);
-        Self { writer, start, anchors: None, mask: &[], materials, material_maps, h, thickness_scale }
+        Self {
+            writer,
+            start,
+            origins,
+            anchors: None,
+            mask: &[],
+            materials,
+            material_maps,
+            h,
+            thickness_scale,
+        }
     }
 }
 
@@ -105,6 +117,15 @@ pub struct ContactParams<R> {
     pub has_anchor: bool,
 }
 
+/// Two elements that a search has found: they can touch within the candidate interval.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate<R, const N: usize, const M: usize> {
+    /// Points of the one element and of the other, as rows of the solver.
+    pub points: ElementPoints<N, M>,
+    /// The parameters of their contact.
+    pub params: ContactParams<R>,
+}
+
 /// A contact: `N` points of one element, `M` of the other.
 #[derive(Debug, Clone, Copy)]
 pub struct ClothContact<R, const N: usize, const M: usize> {
@@ -112,8 +133,6 @@ pub struct ClothContact<R, const N: usize, const M: usize> {
     pub ours: [u32; N],
     /// Points of the other.
     pub theirs: [u32; M],
-    /// The points' anchors, in metres relative to the anchor of the first.
-    local_anchors: ([[R; 3]; N], [[R; 3]; M]),
     /// From theirs to ours; it separated the two at the start of the step. Zero if no direction held throughout
     /// the last one.
     pub(super) normal: [R; 3],
@@ -128,17 +147,15 @@ encode_struct!([R: Real] ContactParams<R> { thickness: R, material: u32, rest_li
 impl<R: Real, const N: usize, const M: usize> Encode for ClothContact<R, N, M> {
     const SIZE: usize = <ElementPoints<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + ContactParams::<R>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
-        // Local anchors are set anew in the next frame.
-        let Self { ours, theirs, local_anchors: _, normal, friction_anchor, params } = self;
+        let Self { ours, theirs, normal, friction_anchor, params } = self;
         (*ours, *theirs).encode(out);
         [*normal, *friction_anchor].encode(out);
         params.encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
         let (ours, theirs) = Encode::decode(from)?;
-        let local_anchors = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
         let [normal, friction_anchor] = Encode::decode(from)?;
-        Some(Self { ours, theirs, local_anchors, normal, friction_anchor, params: Encode::decode(from)? })
+        Some(Self { ours, theirs, normal, friction_anchor, params: Encode::decode(from)? })
     }
 }
 
@@ -146,32 +163,47 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// A contact along the shortest line at the start of a time step. `start` holds displacements.
     #[inline]
     pub fn new(
-        (ours, theirs): ElementPoints<N, M>,
-        params: ContactParams<R>,
-        anchors: &[[f64; 3]],
-        start: &[Row4<R>],
+        &Candidate { points: (ours, theirs), params }: &Candidate<R, N, M>,
+        (origins, start): (&[[f64; 3]], &[Row4<R>]),
     ) -> Self {
-        let local_anchors = local_anchors((ours, theirs), anchors);
         let [normal, friction_anchor] = [[R::ZERO; 3]; 2];
-        let mut contact = Self { ours, theirs, local_anchors, normal, friction_anchor, params };
-        contact.normal = shortest_line(contact.positions(|point| start[point as usize].xyz())).0;
+        let mut contact = Self { ours, theirs, normal, friction_anchor, params };
+        contact.normal = shortest_line(contact.positions(origins, |point| start[point as usize].xyz())).0;
         contact
     }
 
+    /// The positions of its points, in metres relative to the anchor of the first.
     #[inline(always)]
-    pub(super) fn positions(&self, displacement: impl Fn(u32) -> [R; 3]) -> ElementPositions<R, N, M> {
-        let ours = std::array::from_fn(|k| add(self.local_anchors.0[k], displacement(self.ours[k])));
-        (ours, std::array::from_fn(|k| add(self.local_anchors.1[k], displacement(self.theirs[k]))))
+    pub(super) fn positions(
+        &self,
+        origins: &[[f64; 3]],
+        displacement: impl Fn(u32) -> [R; 3],
+    ) -> ElementPositions<R, N, M> {
+        let first = origins[self.ours[0] as usize];
+        let position = |point: u32| {
+            let [x, y, z] = sub(origins[point as usize], first);
+            add([R::from_f64(x), R::from_f64(y), R::from_f64(z)], displacement(point))
+        };
+        // Loops, because maps over these arrays are not inlined.
+        let mut at = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
+        at.0[0] = displacement(self.ours[0]);
+        for k in 1..N {
+            at.0[k] = position(self.ours[k]);
+        }
+        for k in 0..M {
+            at.1[k] = position(self.theirs[k]);
+        }
+        at
     }
 
     #[inline(always)]
     pub(super) fn end_positions(&self, step: &ClothStep<'_, R>) -> ElementPositions<R, N, M> {
-        self.positions(|point| step.row(point).xyz())
+        self.positions(step.origins, |point| step.row(point).xyz())
     }
 
     #[inline(always)]
     pub(super) fn start_positions(&self, step: &ClothStep<'_, R>) -> ElementPositions<R, N, M> {
-        self.positions(|point| step.start(point))
+        self.positions(step.origins, |point| step.start(point))
     }
 
     /// The contact material of the two cloths.
@@ -239,21 +271,12 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     pub(super) fn gap(&self, at: &ElementPositions<R, N, M>) -> R {
         gap_along(self.normal, at)
     }
-    /// Whether one side is a free point.
-    pub fn has_free_point(&self) -> bool {
-        self.params.has_free_point
-    }
 
     /// Its points, first ours, then theirs; the rest repeats the first.
     pub fn points(&self) -> [u32; 4] {
         let mut points = [self.ours[0]; 4];
         points.iter_mut().zip(self.ours.iter().chain(&self.theirs)).for_each(|(at, point)| *at = *point);
         points
-    }
-
-    /// Updates the local anchors.
-    pub fn update_anchors(&mut self, anchors: &[[f64; 3]]) {
-        self.local_anchors = local_anchors((self.ours, self.theirs), anchors);
     }
 
     /// Whether the thickness is reduced, because the two are neighbours at rest.
@@ -296,18 +319,4 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let (_, weights, distance) = shortest_line(self.end_positions(step));
         distance / self.rest_gap(step, &weights)
     }
-}
-
-/// The anchors of some points, in metres relative to the anchor of our first.
-#[inline(always)]
-fn local_anchors<R: Real, const N: usize, const M: usize>(
-    (ours, theirs): ElementPoints<N, M>,
-    anchors: &[[f64; 3]],
-) -> ElementPositions<R, N, M> {
-    let origin = anchors[ours[0] as usize];
-    let place = |point: u32| {
-        let anchor = anchors[point as usize];
-        std::array::from_fn(|axis| R::from_f64(anchor[axis] - origin[axis]))
-    };
-    (ours.map(place), theirs.map(place))
 }

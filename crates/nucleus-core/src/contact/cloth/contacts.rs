@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use crate::contact::cloth::batches::ListUpdate;
 use crate::contact::cloth::cache::ContactCache;
+use crate::contact::cloth::colouring::Place;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
 use crate::contact::cloth::group_bounds::GroupBounds;
@@ -79,7 +81,14 @@ impl<R: Real> ClothContacts<R> {
             false => Some(row),
         });
         let none_violated = vec![false; bounds_violated.len()];
-        cache.update(&[], &none_violated, RefreshKind::Full, (&elements.block, elements.blocks), pool);
+        let update = ListUpdate {
+            bounds_violated: &none_violated,
+            has_violations: &[],
+            refresh: RefreshKind::Full,
+            blocks: (&elements.block, elements.blocks),
+            start: (&[], &[]),
+        };
+        cache.update(&[], &update, &mut buffers.orders, pool);
     }
 
     /// Whether any two cloths can collide in this frame.
@@ -140,7 +149,11 @@ pub struct SearchBuffers<R> {
     changed: Vec<u32>,
     /// The groups that are searched.
     pub(super) groups: Vec<u32>,
-    /// The contacts that each task has found.
+    /// The orders of contacts that are being sorted.
+    pub(super) orders: [Vec<Place>; 2],
+    /// Whether a point of each block violated its bound.
+    pub(super) has_violations: Vec<bool>,
+    /// The candidates that each task has found.
     pub(super) tasks: Vec<FoundContacts<R>>,
 }
 
@@ -155,6 +168,8 @@ impl<R> Default for SearchBuffers<R> {
             bounds_margin: None,
             changed: Vec::new(),
             groups: Vec::new(),
+            orders: Default::default(),
+            has_violations: Vec::new(),
             tasks: Vec::new(),
         }
     }

@@ -8,7 +8,7 @@
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
 //! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`] |
-//! | the contacts by kind, in batches that threads share | [`cache`], [`batches`] |
+//! | the contacts by kind, in batches that threads share | [`cache`], [`batches`], [`colouring`] |
 //! | one contact | [`contact`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
 //! | its certificate, truncation and freezing | [`certify`] |
@@ -19,6 +19,7 @@ pub mod batches;
 pub mod broad_phase;
 pub mod cache;
 mod certify;
+mod colouring;
 pub mod contact;
 pub mod contacts;
 mod element_bounds;

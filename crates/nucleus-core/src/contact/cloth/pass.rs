@@ -72,14 +72,8 @@ pub fn resolve_cloth_contacts<R: Real>(
     let ClothContacts { elements, materials, cache, interval_start, untangling, .. } = cloth_contacts;
     if untangling.any() {
         let most = elements.edge_length * UNTANGLING_SPEED * schedule.h;
-        let anchors = std::mem::take(&mut state.anchor);
-        untangling.untangle(
-            &anchors,
-            &ClothStep { mask, ..ClothStep::new(state, materials, material_maps, schedule.h) },
-            &elements.cloth,
-            most,
-        );
-        state.anchor = anchors;
+        let step = ClothStep { mask, ..ClothStep::new(state, materials, material_maps, schedule.h) };
+        untangling.untangle(&step, &elements.cloth, most);
     }
     let anchors = Some(FrictionAnchors { interval_start, intersecting: untangling.cloth_pairs() });
     let thickness_scale = R::from_f64(thickness_scale);

@@ -2,24 +2,24 @@
 
 use crate::contact::box_row::BoxRow;
 use crate::contact::bvh::SweptBox;
-use crate::contact::cloth::contact::{ClothContact, ContactParams};
+use crate::contact::cloth::contact::{Candidate, ContactParams};
 use crate::contact::cloth::element_bounds::ElementPoints;
 use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;
 use crate::math::Real;
 
-/// The contacts that a search task finds.
+/// The candidates that a search task finds.
 #[derive(Debug)]
 pub struct FoundContacts<R> {
     /// Points and faces.
-    pub point_face: Vec<ClothContact<R, 1, 3>>,
+    pub point_face: Vec<Candidate<R, 1, 3>>,
     /// Edges and edges.
-    pub edge_edge: Vec<ClothContact<R, 2, 2>>,
+    pub edge_edge: Vec<Candidate<R, 2, 2>>,
     /// Points and edges.
-    pub point_edge: Vec<ClothContact<R, 1, 2>>,
+    pub point_edge: Vec<Candidate<R, 1, 2>>,
     /// Points and points.
-    pub point_point: Vec<ClothContact<R, 1, 1>>,
+    pub point_point: Vec<Candidate<R, 1, 1>>,
 }
 
 impl<R> Default for FoundContacts<R> {
@@ -107,7 +107,7 @@ impl<R: Real> GroupPair<'_, R> {
         (self.ours.points.as_chunks().0, &self.ours.bounds.points)
     }
 
-    fn points_against_points(&self, found: &mut Vec<ClothContact<R, 1, 1>>) {
+    fn points_against_points(&self, found: &mut Vec<Candidate<R, 1, 1>>) {
         self.for_each_new(self.our_points(), |_, [p], here| {
             self.theirs.bounds.points.for_each_overlap(here, |at| {
                 let q = self.theirs.points[at];
@@ -123,7 +123,7 @@ impl<R: Real> GroupPair<'_, R> {
     fn points_against_elements<const N: usize>(
         &self,
         (elements, boxes): (&[[u32; N]], &BoxRow),
-        found: &mut Vec<ClothContact<R, 1, N>>,
+        found: &mut Vec<Candidate<R, 1, N>>,
     ) {
         self.for_each_new(self.our_points(), |_, [p], here| {
             boxes.for_each_overlap(here, |at| {
@@ -138,7 +138,7 @@ impl<R: Real> GroupPair<'_, R> {
     fn elements_against_points<const N: usize>(
         &self,
         ours: (&[[u32; N]], &BoxRow),
-        found: &mut Vec<ClothContact<R, 1, N>>,
+        found: &mut Vec<Candidate<R, 1, N>>,
     ) {
         if self.all_new {
             return;
@@ -153,7 +153,7 @@ impl<R: Real> GroupPair<'_, R> {
         });
     }
 
-    fn edges_against_edges(&self, found: &mut Vec<ClothContact<R, 2, 2>>) {
+    fn edges_against_edges(&self, found: &mut Vec<Candidate<R, 2, 2>>) {
         let [our_first, their_first] = [self.ours.first_edge, self.theirs.first_edge];
         if self.all_new && our_first > their_first {
             return; // every pair is found from theirs
@@ -202,7 +202,7 @@ impl<'a, R: Real> ClothPair<'a, R> {
     fn contact<const N: usize, const M: usize>(
         &self,
         points: ElementPoints<N, M>,
-    ) -> Option<ClothContact<R, N, M>> {
+    ) -> Option<Candidate<R, N, M>> {
         let ClothSearch { bounds, input, untangling, elements, .. } = self.search;
         let distance = bounds.contact_distance(
             points,
@@ -225,6 +225,6 @@ impl<'a, R: Real> ClothPair<'a, R> {
             has_free_point: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
             has_anchor: false,
         };
-        Some(ClothContact::new(points, params, input.anchors, input.displacement[0]))
+        Some(Candidate { points, params })
     }
 }

@@ -210,7 +210,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         most: R,
     ) -> [R; 3] {
         let Some(anchors) = step.anchors else { return [R::ZERO; 3] };
-        let start = self.positions(|point| anchors.interval_start[point as usize].xyz());
+        let start = self.positions(step.origins, |point| anchors.interval_start[point as usize].xyz());
         let in_interval = sub(line_before, self.contact_line(&start, weights));
         let is_valid =
             self.params.has_anchor && !anchors.are_intersecting(self.params.material, step.materials.len());
@@ -223,15 +223,20 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
 
     /// Carries the friction anchor over into a candidate interval that begins at `start`; the last one began at
     /// `interval_start`.
-    pub(super) fn carry_anchor(&mut self, start: &[Row4<R>], interval_start: &[Row4<R>]) {
+    pub(super) fn carry_anchor(
+        &mut self,
+        origins: &[[f64; 3]],
+        start: &[Row4<R>],
+        interval_start: &[Row4<R>],
+    ) {
         if !self.params.has_anchor {
             return;
         }
-        let now = self.positions(|point| start[point as usize].xyz());
+        let now = self.positions(origins, |point| start[point as usize].xyz());
         let weights = shortest_line(now).1;
         let line = |at: &ElementPositions<R, N, M>| self.contact_line(at, &weights);
         let in_interval =
-            sub(line(&now), line(&self.positions(|point| interval_start[point as usize].xyz())));
+            sub(line(&now), line(&self.positions(origins, |point| interval_start[point as usize].xyz())));
         self.friction_anchor = add(self.friction_anchor, in_interval);
     }
 }

@@ -114,7 +114,7 @@ impl Untangling {
 
     /// Applies the corrections of all intersections that persist, by `most` metres at most, times the untangling
     /// rate of the material. `cloth` holds the cloth of each point.
-    pub fn untangle<R: Real>(&self, anchors: &[Vector], step: &ClothStep<'_, R>, cloth: &[u32], most: f64) {
+    pub fn untangle<R: Real>(&self, step: &ClothStep<'_, R>, cloth: &[u32], most: f64) {
         let cloths = step.materials.len().isqrt();
         for intersection in &self.intersections {
             let [ours, theirs] =
@@ -124,7 +124,7 @@ impl Untangling {
             }
             let material = &step.materials[ours * cloths + theirs];
             let rate = material.as_ref().map_or(1.0, |material| material.untangling_rate);
-            intersection.untangle(anchors, step, most * rate);
+            intersection.untangle(step, most * rate);
         }
     }
 }
@@ -160,8 +160,8 @@ pub fn pierces(edge: [Vector; 2], face: [Vector; 3]) -> bool {
 
 impl Intersection {
     /// Corrects the intersection by `most` metres at most, if it persists.
-    fn untangle<R: Real>(&self, anchors: &[Vector], step: &ClothStep<'_, R>, most: f64) {
-        let position = |point: u32| add(anchors[point as usize], step.row(point).xyz().map(R::to_f64));
+    fn untangle<R: Real>(&self, step: &ClothStep<'_, R>, most: f64) {
+        let position = |point: u32| add(step.origins[point as usize], step.row(point).xyz().map(R::to_f64));
         let ends = self.edge.map(position);
         let Some(piercing) = piercing(ends, self.face.map(position)) else { return };
         match self.correction {

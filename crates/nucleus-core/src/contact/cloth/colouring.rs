@@ -1,0 +1,157 @@
+//! The order of contacts, and the colouring that lets threads share a batch.
+//!
+//! Contacts between the same blocks of points form a task. Tasks of one colour share no block and run in
+//! parallel. The colouring depends on the contacts and the mesh alone, so the order of all sums is the same on
+//! any number of threads.
+
+use std::ops::Range;
+
+/// Moves the contact of each place to it. The order is lost.
+pub fn permute<T: Copy>(list: &mut [T], order: &mut [Place]) {
+    for first in 0..list.len() {
+        let (held, mut to) = (list[first], first);
+        loop {
+            let from = std::mem::replace(&mut order[to].1, to as u32) as usize;
+            if from == first {
+                break;
+            }
+            list[to] = list[from];
+            to = from;
+        }
+        list[to] = held;
+    }
+}
+
+/// The place of a contact in the order of the tasks: its blocks, and its former index.
+pub type Place = ([u32; 2], u32);
+
+/// Tasks by colour. Every task is a run of the contacts.
+#[derive(Debug, Clone, Default)]
+pub struct Colouring {
+    /// The run of each task.
+    pub tasks: Vec<Range<u32>>,
+    /// The blocks of each task; [`SERIAL`] for contacts between more than two.
+    pub task_blocks: Vec<[u32; 2]>,
+    /// The tasks of each colour.
+    pub colours: Vec<Range<u32>>,
+    /// The colour of each task, while colours are found.
+    colour_of: Vec<u32>,
+    /// The occupied blocks, a row of bits for each colour.
+    taken: Vec<u64>,
+    sorted: Vec<(u32, u32)>,
+}
+
+/// Blocks of contacts between more than two, which run last, one after the other.
+const SERIAL: [u32; 2] = [u32::MAX; 2];
+
+impl Colouring {
+    /// No tasks.
+    pub fn clear(&mut self) {
+        self.tasks.clear();
+        self.task_blocks.clear();
+        self.colours.clear();
+    }
+
+    /// Colours contacts, each given by the blocks of its points. There are `blocks` blocks. Writes the order of the tasks.
+    pub fn assign(&mut self, contacts: impl Iterator<Item = [u32; 4]>, blocks: u32, order: &mut Vec<Place>) {
+        order.clear();
+        order.extend(contacts.map(key).zip(0..));
+        order.sort_unstable();
+        self.tasks.clear();
+        self.task_blocks.clear();
+        let mut from = 0;
+        for run in order.chunk_by(|a, b| a.0 == b.0) {
+            self.tasks.push(from..from + run.len() as u32);
+            self.task_blocks.push(run[0].0);
+            from += run.len() as u32;
+        }
+        self.assign_colours(blocks);
+        self.sort_by_colour();
+    }
+
+    /// Greedy colouring: each task takes the first colour in which both of its blocks are free.
+    fn assign_colours(&mut self, blocks: u32) {
+        let words = blocks.div_ceil(64) as usize;
+        self.taken.clear();
+        self.colour_of.clear();
+        let mut last = 0;
+        for &key in &self.task_blocks {
+            if key == SERIAL {
+                self.colour_of.push(last);
+                continue;
+            }
+            let ends = key.map(|block| block as usize);
+            let is_free = |row: &[u64]| ends.iter().all(|&block| row[block / 64] & (1 << (block % 64)) == 0);
+            let free = self.taken.chunks(words).position(is_free);
+            let colour = free.unwrap_or(self.taken.len() / words);
+            self.taken.resize(self.taken.len().max((colour + 1) * words), 0);
+            ends.iter().for_each(|&block| self.taken[colour * words + block / 64] |= 1 << (block % 64));
+            self.colour_of.push(colour as u32);
+            last = last.max(colour as u32 + 1);
+        }
+    }
+
+    fn sort_by_colour(&mut self) {
+        self.sorted.clear();
+        self.sorted.extend(self.colour_of.iter().copied().zip(0..));
+        self.sorted.sort_unstable();
+        self.colours.clear();
+        let mut from = 0;
+        for colour in self.sorted.chunk_by(|a, b| a.0 == b.0) {
+            self.colours.push(from..from + colour.len() as u32);
+            from += colour.len() as u32;
+        }
+    }
+
+    /// The run of a task of a colour.
+    pub fn task(&self, colour: &Range<u32>, task: usize) -> Range<u32> {
+        self.tasks[self.sorted[colour.start as usize + task].1 as usize].clone()
+    }
+}
+
+/// The one or two blocks of a contact, the lower first.
+fn key(blocks: [u32; 4]) -> [u32; 2] {
+    let low = blocks.into_iter().min().unwrap_or(0);
+    let high = blocks.into_iter().max().unwrap_or(0);
+    let between = blocks.into_iter().any(|block| block != low && block != high);
+    if between { SERIAL } else { [low, high] }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn tasks_of_one_colour_share_no_block_and_every_contact_has_a_task(
+            contacts in proptest::collection::vec(proptest::array::uniform4(0u32..70), 0..200)
+        ) {
+            let (mut colouring, mut order) = (Colouring::default(), Vec::new());
+            colouring.assign(contacts.iter().copied(), 70, &mut order);
+            let mut places = 0;
+            for colour in &colouring.colours {
+                let mut taken = std::collections::HashMap::new();
+                for task in 0..colour.len() {
+                    let run = colouring.task(colour, task);
+                    for &(_, contact) in &order[run.start as usize..run.end as usize] {
+                        places += 1;
+                        for block in contacts[contact as usize] {
+                            prop_assert_eq!(*taken.entry(block).or_insert(task), task);
+                        }
+                    }
+                }
+            }
+            prop_assert_eq!(places, contacts.len());
+        }
+
+        #[test]
+        fn a_list_is_permuted_in_place(order in proptest::sample::subsequence((0..50u32).collect::<Vec<_>>(), 50).prop_shuffle()) {
+            let mut list: Vec<u32> = (100..150).collect();
+            let mut places: Vec<Place> = order.iter().map(|&from| ([0; 2], from)).collect();
+            permute(&mut list, &mut places);
+            prop_assert_eq!(list, order.iter().map(|from| 100 + from).collect::<Vec<_>>());
+        }
+    }
+}
