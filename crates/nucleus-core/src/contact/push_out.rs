@@ -77,7 +77,7 @@ fn push_out_of<R: Real>(
         contact.active_windows[cloth] = [0.0; 2];
         if let Some(cloth_contacts) = &mut contact.cloth_contacts {
             cloth_contacts.interval = [0.0; 2];
-            cloth_contacts.untangling.is_search_due = true;
+            cloth_contacts.untangling.is_search_due[cloth] = true;
         }
     }
 }

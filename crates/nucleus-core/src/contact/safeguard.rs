@@ -140,6 +140,12 @@ fn clear_frozen<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>) {
 fn accept_unresolved<R: Real>(pass: &mut ContactPass<'_, R>, among_cloths: bool) {
     accept_unresolved_collider_contacts(pass);
     if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
-        cloth_contacts.untangling.is_search_due |= among_cloths;
+        let marks = pass.contact.has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed) && among_cloths);
+        cloth_contacts
+            .untangling
+            .is_search_due
+            .iter_mut()
+            .zip(marks)
+            .for_each(|(is_due, mark)| *is_due |= mark);
     }
 }

@@ -4,7 +4,7 @@
 use crate::scenes::{Vec3, frame, grid, physical, sphere, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
-    ModelBuilder, SelfCollision, Solver, StateView, Surface,
+    ModelBuilder, Pin, PointId, SelfCollision, Solver, StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -25,6 +25,8 @@ struct Heap {
     flies: bool,
     /// Whether its second sheet starts through the first.
     is_tangled: bool,
+    /// Whether pins carry its second sheet through the first, which they hold.
+    is_forced: bool,
 }
 
 fn heaps() -> impl Strategy<Value = Heap> {
@@ -39,6 +41,7 @@ fn heaps() -> impl Strategy<Value = Heap> {
             ball: Vec3::zeros(),
             flies: false,
             is_tangled: false,
+            is_forced: false,
         },
     )
 }
@@ -48,6 +51,8 @@ struct Scene {
     heaps: Vec<Heap>,
     builder: ModelBuilder,
     input: FrameInput,
+    /// Points that are pinned, their places at the start and their motion in a frame.
+    pinned: Vec<(ClothId, PointId, Vec3, Vec3)>,
 }
 
 impl Scene {
@@ -56,6 +61,7 @@ impl Scene {
             heaps: heaps.to_vec(),
             builder: ModelBuilder::new(),
             input: FrameInput { cloths: Vec::new(), ..frame(3, physical(48.0)) },
+            pinned: Vec::new(),
         };
         heaps.iter().for_each(|heap| scene.add(heap));
         scene
@@ -70,6 +76,12 @@ impl Scene {
             let across = Vec3::new(0.6, 0.6 * slope, 0.0);
             let mut surface = grid(heap.points, heap.points, across, Vec3::z() * 0.6);
             surface.positions.iter_mut().for_each(|p| *p += heap.place + Vec3::new(-0.3, height, -0.3));
+            if heap.is_forced {
+                let (cloth, motion) =
+                    (ClothId(self.input.cloths.len() as u32), Vec3::y() * (-THICKNESS * sheet as f64));
+                let points = surface.positions.iter().zip(0..);
+                self.pinned.extend(points.map(|(&place, point)| (cloth, PointId(point), place, motion)));
+            }
             self.builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
             let own =
                 SelfCollision { on: true, thickness: THICKNESS, elements: Elements::Faces, edges: true };
@@ -89,12 +101,23 @@ impl Scene {
 
     /// Positions of all points of each cloth after each frame, and the contacts of the run.
     fn run(self, threads: usize) -> (Vec<Vec<Vec<Vec3>>>, u64) {
-        let Self { heaps, builder, mut input } = self;
+        let (run, contacts, _) = self.run_and_count(threads);
+        (run, contacts)
+    }
+
+    /// The same, and the number of pairs that stayed unresolved.
+    fn run_and_count(self, threads: usize) -> (Vec<Vec<Vec<Vec3>>>, u64, u64) {
+        let Self { heaps, builder, mut input, pinned } = self;
         let counts: Vec<usize> =
             heaps.iter().flat_map(|heap| vec![(heap.points * heap.points) as usize; heap.sheets]).collect();
         let mut solver = Solver::<f32>::new(builder, threads);
-        let mut contacts = 0;
+        let (mut contacts, mut unresolved) = (0, 0);
         let mut one = |index: usize| {
+            let pin = |&(cloth, point, place, motion): &(_, _, Vec3, Vec3)| {
+                let [start, end] = [index, index + 1].map(|frame| place + motion * frame as f64);
+                Pin { cloth, point, start, end }
+            };
+            input.pins = pinned.iter().map(pin).collect();
             for (heap, collider) in heaps.iter().zip(&mut input.colliders) {
                 if heap.ball != Vec3::zeros() {
                     let at = |frame: usize| {
@@ -103,13 +126,15 @@ impl Scene {
                     (collider.start, collider.end) = (at(index), at(index + 1));
                 }
             }
-            contacts += solver.step(&input, &mut ()).contacts;
+            let report = solver.step(&input, &mut ());
+            contacts += report.contacts;
+            unresolved += report.pairs_unresolved;
             let cloth = |(cloth, &count): (usize, &usize)| {
                 (0..count).map(|k| solver.point(ClothId(cloth as u32), k)).collect()
             };
             counts.iter().enumerate().map(cloth).collect()
         };
-        ((0..FRAMES).map(&mut one).collect(), contacts)
+        ((0..FRAMES).map(&mut one).collect(), contacts, unresolved)
     }
 }
 
@@ -158,6 +183,19 @@ proptest! {
         prop_assert!(contacts > 0);
         let (both, _) = Scene::new(&[near.clone(), tangled]).run(1);
         prop_assert!(cloths(&both, 0..near.sheets) == alone, "the far tangle changes the near heap");
+    }
+
+    #[test]
+    fn sheets_that_pins_carry_through_each_other_far_away_do_not_change_a_bit(near in heaps(), far in heaps()) {
+        let place = far.place + Vec3::new(40.0, 0.0, 3.0);
+        let forced = Heap { place, points: 6, sheets: 2, is_forced: true, ..far };
+        let (alone, contacts) = Scene::new(std::slice::from_ref(&near)).run(1);
+        prop_assert!(contacts > 0);
+        let (forced_alone, _, unresolved) = Scene::new(std::slice::from_ref(&forced)).run_and_count(1);
+        prop_assert!(unresolved > 0);
+        let (both, _) = Scene::new(&[near.clone(), forced]).run(1);
+        prop_assert!(cloths(&both, 0..near.sheets) == alone, "the far pair changes the near heap");
+        prop_assert!(cloths(&both, near.sheets..near.sheets + 2) == forced_alone, "the near heap changes the far pair");
     }
 
     #[test]

@@ -80,15 +80,13 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
     *counters.broad_phases.get_mut() += 1;
 }
 
-/// Has all bounds of intersecting cloths renewed, or of all cloths where intersections may exist that are not known: which
-/// contacts are disabled changes with the contours.
+/// Has all bounds renewed of cloths that intersect, or whose intersections are not all known: which contacts are disabled
+/// changes with the contours.
 fn renew_intersecting<R: Real>(cloths: &[ClothModel<R>], cloth_contacts: &mut ClothContacts<R>) {
     let ClothContacts { untangling, bounds_violated, .. } = cloth_contacts;
-    if untangling.is_search_due {
-        return bounds_violated.fill(true);
-    }
-    for &cloth in untangling.cloth_pairs().iter().flatten() {
-        let points = cloths[cloth as usize].points();
+    let due = (0..cloths.len()).filter(|&cloth| untangling.is_search_due[cloth]);
+    for cloth in due.chain(untangling.cloth_pairs().iter().flatten().map(|&cloth| cloth as usize)) {
+        let points = cloths[cloth].points();
         bounds_violated[points.start as usize..points.end as usize].fill(true);
     }
 }

@@ -57,7 +57,7 @@ impl<R: Real> ClothContacts<R> {
             cache: ContactCache::default(),
             buffers: SearchBuffers::default(),
             frozen: Vec::new(),
-            untangling: Untangling::new(rows),
+            untangling: Untangling::new(rows, cloths.len()),
         }
     }
 

@@ -16,7 +16,7 @@ pub fn find_intersections<R: Real>(
     input: &SearchInput<'_, R>,
     untangling: &mut Untangling,
 ) {
-    untangling.is_search_due = false;
+    untangling.is_search_due.fill(false);
     untangling.intersections.clear();
     let SearchInput { cloths, anchors, displacement: [_, displacement], strength, filter, .. } = *input;
     let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength, filter };

@@ -17,12 +17,15 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
     let ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. } = contact else { return };
     let materials: Vec<Option<ContactMaterial<R>>> =
         (0..frame.cloths.len()).flat_map(|cloth| materials_of(cloth, frame, material_maps)).collect();
-    let collides_fully = |materials: &[Option<ContactMaterial<R>>]| -> Vec<bool> {
-        let is_full = |material: &ContactMaterial<R>| !material.is_partial(material_maps);
-        materials.iter().map(|material| material.as_ref().is_some_and(is_full)).collect()
+    let is_full = |material: &Option<ContactMaterial<R>>| {
+        material.as_ref().is_some_and(|material| !material.is_partial(material_maps))
     };
-    if collides_fully(&materials) != collides_fully(&cloth_contacts.materials) {
-        cloth_contacts.untangling.is_search_due = true; // pairs that could pass may intersect now
+    // Pairs that could pass may intersect now. In the first frame all searches are due.
+    let changed = |(now, before)| is_full(now) != is_full(before);
+    for (at, pair) in materials.iter().zip(&cloth_contacts.materials).enumerate() {
+        if changed(pair) {
+            cloth_contacts.untangling.is_search_due[at / frame.cloths.len()] = true;
+        }
     }
     if !ContactMaterial::same_candidates(&materials, &cloth_contacts.materials) {
         cloth_contacts.bounds_violated.fill(true);

@@ -62,29 +62,29 @@ pub struct Untangling {
     pub(super) is_on_wrong_side: Vec<bool>,
     /// For two intersecting cloths, whether the first belongs on the outer side of the second.
     pub(super) sides: Vec<([u32; 2], bool)>,
-    /// Whether intersections may exist that no search has found.
-    pub is_search_due: bool,
+    /// Whether each cloth may have intersections that no search has found.
+    pub is_search_due: Vec<bool>,
     /// The faces at each edge, sorted; built when the first intersection is found.
     pub(super) wings: Vec<Wing>,
 }
 
 checkpoint_struct!([] Untangling {
-    columns: [near_contour, is_on_wrong_side],
-    values: [intersections, cloth_pairs, sides, is_search_due],
+    columns: [near_contour, is_on_wrong_side, is_search_due],
+    values: [intersections, cloth_pairs, sides],
     parts: [],
     rebuilt: [wings],
 });
 
 impl Untangling {
-    /// No intersections yet; the start is searched.
-    pub fn new(rows: usize) -> Self {
+    /// No intersections yet; the start of all cloths is searched.
+    pub fn new(rows: usize, cloths: usize) -> Self {
         Self {
             intersections: Vec::new(),
             near_contour: vec![false; rows],
             is_on_wrong_side: vec![false; rows],
             sides: Vec::new(),
             cloth_pairs: Vec::new(),
-            is_search_due: true,
+            is_search_due: vec![true; cloths],
             wings: Vec::new(),
         }
     }
@@ -101,7 +101,7 @@ impl Untangling {
 
     /// Whether any is known, or a search is due.
     pub fn may_exist(&self) -> bool {
-        self.is_search_due || self.any()
+        self.is_search_due.contains(&true) || self.any()
     }
 
     /// Whether contacts between two elements are disabled: both are near a contour of their cloths.
