@@ -262,6 +262,23 @@ impl<R: Real> ColliderStep<'_, R> {
         std::array::from_fn(|end| std::array::from_fn(|k| self.collider_position(points[k], self.time[end])))
     }
 
+    /// The largest n·q of some points of the collider, at the start and at the end of the candidate interval.
+    #[inline]
+    pub(in crate::contact) fn support(&self, normal: Point, points: &[u32]) -> [f64; 2] {
+        let (mut support, mut moves) = ([f64::NEG_INFINITY; 2], false);
+        for &point in points {
+            let [start, end] = self.collider.map(|points| points[point as usize]);
+            moves |= start != end;
+            support[0] = support[0].max(normal.dot(&(start + (end - start) * self.interval[0])));
+        }
+        support[1] = support[0];
+        if moves {
+            let at_end = points.iter().map(|&q| normal.dot(&self.collider_position(q, self.interval[1])));
+            support[1] = at_end.fold(f64::NEG_INFINITY, f64::max);
+        }
+        support
+    }
+
     /// A point of the collider at a time of the frame.
     #[inline]
     pub(in crate::contact) fn collider_position(&self, point: u32, time: f64) -> Point {

@@ -138,7 +138,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         step: &ColliderStep<'_, R>,
         bounds: &MotionBounds<'_, R>,
     ) -> Option<Self> {
-        let (x, q) = (step.cloth_start_positions(points), step.collider_positions(collider_points)[0]);
+        let x = step.cloth_start_positions(points);
+        let q = collider_points.map(|point| step.collider_position(point, step.time[0]));
         let (b, c) = closest(x, q);
         let line = interpolate(x, b) - interpolate(q, c);
         // Neither side moves farther than the diagonal of its bound.
@@ -163,10 +164,13 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             plane_origin: zero,
             idle_until: [R::ZERO; N],
         };
-        contact.set_plane(normal, (b, c), step);
+        contact.set_plane_offsets(normal, step);
         let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
         let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
-        (gap < range).then_some(contact)
+        (gap < range).then(|| {
+            contact.set_plane_origin((b, c), step);
+            contact
+        })
     }
 
     /// A contact with a plane of its own, for tests.
@@ -186,12 +190,14 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
     }
 
-    /// Whether the contact is in the interior of the cloth's element, and on the far side of the surface. `outward` is the
-    /// pseudonormal there.
-    pub fn is_behind_surface(&self, outward: Point) -> bool {
-        let interior = R::from_f64(1e-4);
-        let normal = Point::from(self.normal.map(R::to_f64));
-        self.weights.iter().all(|&weight| weight > interior) && normal.dot(&outward) < 0.0
+    /// Whether the contact is in the interior of the cloth's element.
+    pub fn is_interior(&self) -> bool {
+        self.weights.iter().all(|&weight| weight > R::from_f64(1e-4))
+    }
+
+    /// Whether the contact is on the far side of the surface. `outward` is the pseudonormal there.
+    pub fn is_behind(&self, outward: Point) -> bool {
+        Point::from(self.normal.map(R::to_f64)).dot(&outward) < 0.0
     }
 
     /// Whether the contact certainly stays inactive, given the growth of each point's window bounds in this frame.
@@ -306,19 +312,30 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub(super) fn set_plane(
         &mut self,
         normal: Point,
-        (b, c): ([f64; N], [f64; M]),
+        weights: ([f64; N], [f64; M]),
         step: &ColliderStep<'_, R>,
     ) {
+        self.set_plane_offsets(normal, step);
+        self.set_plane_origin(weights, step);
+    }
+
+    /// Sets the normal of the plane, and its offset for each point.
+    #[inline]
+    fn set_plane_offsets(&mut self, normal: Point, step: &ColliderStep<'_, R>) {
         self.normal = [normal.x, normal.y, normal.z].map(R::from_f64);
         // Rounds first, so that offset and direction belong together to the last bit.
         let normal = Point::from(self.normal.map(R::to_f64));
-        for (end, time) in step.interval.into_iter().enumerate() {
-            let support = self.collider_points.iter().map(|&q| normal.dot(&step.collider_position(q, time)));
-            let support = support.fold(f64::NEG_INFINITY, f64::max);
-            self.plane[end] = self
-                .points
-                .map(|point| R::from_f64(support - normal.dot(&Point::from(step.anchors[point as usize]))));
+        let [start, end] = step.support(normal, &self.collider_points);
+        // Loops, because maps over these arrays are not inlined.
+        for k in 0..N {
+            let anchor = normal.dot(&Point::from(step.anchors[self.points[k] as usize]));
+            (self.plane[0][k], self.plane[1][k]) = (R::from_f64(start - anchor), R::from_f64(end - anchor));
         }
+    }
+
+    /// Sets the weights of the contact, and the place where its plane was set.
+    #[inline]
+    fn set_plane_origin(&mut self, (b, c): ([f64; N], [f64; M]), step: &ColliderStep<'_, R>) {
         let ends =
             step.collider.map(|points| interpolate(self.collider_points.map(|q| points[q as usize]), c));
         let motion = ends[1] - ends[0];

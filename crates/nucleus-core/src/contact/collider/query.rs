@@ -224,10 +224,8 @@ impl<R: Real> ColliderQuery<'_, R> {
             let [from, _] = self.step.collider_positions(self.collider.boundary.triangles[face as usize]);
             (from[1] - from[0]).cross(&(from[2] - from[0])).try_normalize(0.0).unwrap_or_default()
         };
-        self.collider
-            .pseudonormals
-            .as_ref()
-            .is_some_and(|pseudonormals| contact.is_behind_surface(outward(pseudonormals, &normal)))
+        let pseudonormals = self.collider.pseudonormals.as_ref().filter(|_| contact.is_interior());
+        pseudonormals.is_some_and(|pseudonormals| contact.is_behind(outward(pseudonormals, &normal)))
     }
 
     /// Whether a point is behind the plane of a face.
