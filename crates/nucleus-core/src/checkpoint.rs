@@ -123,6 +123,9 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         contact_mask: _,
         has_unproven: _,
         has_touched: _,
+        is_free: _,
+        free_gap: _,
+        free_tasks: _,
         interval_bounds,
         bounds_violated,
         collider_materials,
@@ -149,7 +152,11 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 
 fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
     let Solver { model, state, contact, links, .. } = solver;
-    load_column(&mut contact.interval_bounds, from)?;
+    // Empty where all points are free.
+    contact.interval_bounds = Encode::decode(from)?;
+    let rows = contact.interval_bounds.len();
+    (rows == 0 || rows == state.anchor.len() && !model.colliders.is_empty()).then_some(())?;
+    contact.resize_bounds(rows);
     load_column(&mut contact.bounds_violated, from)?;
     contact.collider_materials = Encode::decode(from)?;
     contact.ground_materials = Encode::decode(from)?;
@@ -291,7 +298,8 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
     let fixed = (0..solver.model.cloths.len()).filter(is_fixed).map(|at| &solver.model.cloths[at]);
     let masses =
         fixed.flat_map(ClothModel::points).map(|row| solver.state.inverse_mass[row as usize].to_bits());
-    let rows = [solver.contact.cloth_contacts.is_some() as u64, solver.contact.interval_bounds.len() as u64];
+    let bounded = if solver.model.colliders.is_empty() { 0 } else { solver.state.anchor.len() };
+    let rows = [solver.contact.cloth_contacts.is_some() as u64, bounded as u64];
     cloths.chain([0]).chain(colliders).chain(masses).chain(rows).fold(HASH_SEED, hash_word)
 }
 
@@ -375,7 +383,7 @@ checkpoint_struct!([R: Real] State<R> {
     values: [wind_travel],
     parts: [populations],
     rebuilt: [
-        start, depenetration_by_collider, depenetration_by_cloth, step_length, predicted, normal, corrections, area, added_wind,
+        start, depenetration_by_collider, depenetration_by_cloth, displaced, step_length, predicted, normal, corrections, area, added_wind,
         field,
         inverse_mass
     ],

@@ -9,6 +9,8 @@
 //! 4. **velocities** follow the position corrections;
 //! 5. **restitution** adds the rebound of contacts.
 //!
+//! Free points take all of these stages at once ([`crate::particles::free`]).
+//!
 //! Normals and `pushOut` come once at the start of a substep, damping and the observer once at its end.
 
 use std::ops::ControlFlow;
@@ -40,6 +42,7 @@ use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
+use crate::particles::free::{advance_free_points, find_free_objects};
 use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
 use crate::particles::slowing::slow_particles;
@@ -93,6 +96,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     solver.contact.has_touched.iter_mut().for_each(|mark| *mark.get_mut() = false);
     begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
+    find_free_objects(&solver.model, &mut solver.state, &mut solver.contact, frame);
     solver.state.move_anchors();
     solver.state.carry_air(frame);
     solver.state.populations.iter_mut().for_each(Population::begin_frame);
@@ -117,7 +121,8 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     let Solver { model, state, contact, links, .. } = solver;
     let links_changed = begin_links(links, model, state, &contact.collider_states, frame);
     update_pair_filter(contact, model, links, frame, links_changed);
-    contact.ground.begin_frame(frame.plane.as_ref(), &state.anchor, &contact.pair_filter);
+    let anchors = if contact.is_free.contains(&false) { &state.anchor[..] } else { &[] };
+    contact.ground.begin_frame(frame.plane.as_ref(), anchors, &contact.pair_filter);
     solver.liquids.iter_mut().for_each(LiquidSolver::begin_frame);
     for (tethers, cloth) in solver.tethers.iter_mut().zip(&solver.model.cloths) {
         tethers.begin_frame(cloth, &solver.state, frame.duration);
@@ -218,12 +223,13 @@ fn solve_time_step<R: CompiledReal>(
 ) -> ControlFlow<()> {
     let TimeStep { frame, schedule, span, .. } = *now;
     observer.enter(Stage::Predict);
-    let can_touch = frame.plane.is_some()
+    let is_touchable = frame.plane.is_some()
         || !solver.model.colliders.is_empty()
         || solver.contact.cloth_contacts.is_some();
+    let can_touch = is_touchable && solver.contact.is_free.contains(&false);
     solver.state.store_step_start(schedule.h, can_touch);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
-    predict(&solver.model.cloths, &mut solver.state, now, &solver.pool);
+    predict(&solver.model.cloths, &mut solver.state, now, &solver.contact.is_free, &solver.pool);
     let Solver { model, state, contact, links, .. } = solver;
     let models = (&model.cloths[..], &model.colliders[..]);
     slide_links(links, models, state, &contact.collider_states, frame, [span.to, schedule.h]);
@@ -231,9 +237,13 @@ fn solve_time_step<R: CompiledReal>(
         observer.should_continue()?;
         apply_pass(pass, solver, now, counters, observer);
     }
+    observer.enter(Stage::Contact);
+    let Solver { model, state, contact, pool, .. } = solver;
+    advance_free_points((model, state, contact), now, counters, pool);
     whole::remember_deformation(&mut solver.model.cloths, &solver.state, frame, &solver.pool);
     observer.enter(Stage::Velocity);
-    update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, &solver.pool);
+    let is_free = &solver.contact.is_free;
+    update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, is_free, &solver.pool);
     apply_restitution(&mut solver.contact_pass(frame, schedule, span, counters));
     observer.step(span.to, solver);
     ControlFlow::Continue(())

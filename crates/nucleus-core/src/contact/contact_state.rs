@@ -1,5 +1,8 @@
 //! The contact state of each point of a cloth at the end of a step. Computed only on request of an observer.
 
+use nalgebra::Vector3;
+
+use crate::contact::bvh::Aabb;
 use crate::contact::cloth::contact::ClothContact;
 use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::contacts::ColliderContacts;
@@ -82,7 +85,12 @@ impl<R: Real> ContactPoints<'_, R> {
     fn contact_states(&self) -> Vec<ContactState> {
         let mut states = HighestStates(vec![ContactState::Free; self.state.anchor.len()]);
         self.set_ground_states(&mut states);
-        self.contact.collider_contacts.iter().for_each(|list| self.set_collider_states(list, &mut states));
+        for list in &self.contact.collider_contacts {
+            if self.contact.is_free[list.cloth] {
+                self.set_free_states(list, &mut states);
+            }
+            self.set_collider_states(list, &mut states);
+        }
         self.set_cloth_states(&mut states);
         states.0
     }
@@ -121,6 +129,23 @@ impl<R: Real> ContactPoints<'_, R> {
             .for_each(|&k| self.set_collider_state(&face_point[k as usize], collider, material, states));
     }
 
+    /// Free points have no list of contacts: their nearest faces are searched.
+    fn set_free_states(&self, list: &ColliderContacts<R>, states: &mut HighestStates) {
+        let Some(Some(material)) = self.contact.collider_materials_of(list.cloth).get(list.collider) else {
+            return;
+        };
+        let (cloth, collider) = (&self.model.cloths[list.cloth], &self.model.colliders[list.collider]);
+        let state = &self.contact.collider_states[list.collider];
+        let (origin, range) = (state.origin(state.now), material.thickness * TOUCHING);
+        for row in cloth.points() {
+            let place = Vector3::from(self.state.position(row)) - origin;
+            state.bvh.query(&Aabb::new(place.add_scalar(-range), place.add_scalar(range)), |face| {
+                let corners = collider.boundary.triangles[face as usize];
+                self.set_state([row], corners, list.collider, material, states);
+            });
+        }
+    }
+
     fn set_collider_state<const N: usize, const M: usize>(
         &self,
         contact: &ColliderContact<R, N, M>,
@@ -128,21 +153,32 @@ impl<R: Real> ContactPoints<'_, R> {
         material: &ContactMaterial<R>,
         states: &mut HighestStates,
     ) {
+        self.set_state(contact.points, contact.collider_points, collider, material, states);
+    }
+
+    fn set_state<const N: usize, const M: usize>(
+        &self,
+        points: [u32; N],
+        collider_points: [u32; M],
+        collider: usize,
+        material: &ContactMaterial<R>,
+        states: &mut HighestStates,
+    ) {
         let state = &self.contact.collider_states[collider];
-        let ours = contact.points.map(|point| self.state.position(point));
-        let theirs = contact.collider_points.map(|point| state.point(point, state.now).into());
+        let ours = points.map(|point| self.state.position(point));
+        let theirs = collider_points.map(|point| state.point(point, state.now).into());
         let (_, (shares, weights), distance) = shortest_line::<f64, N, M>((ours, theirs));
         let maps = self.contact.material_maps.of_collider(collider);
         let thickness = match maps {
-            None => self.rest_gap(material, contact.points, shares.map(R::from_f64)),
+            None => self.rest_gap(material, points, shares.map(R::from_f64)),
             Some(maps) => {
-                let material = material.scaled(maps.at(contact.collider_points, weights));
-                let (most, points) = (R::from_f64(material.thickness), contact.points);
-                let points = (points, [], &(shares.map(R::from_f64), []));
-                material.mapped_thickness(&self.contact.material_maps, points, most).to_f64()
+                let material = material.scaled(maps.at(collider_points, weights));
+                let most = R::from_f64(material.thickness);
+                let of_points = (points, [], &(shares.map(R::from_f64), []));
+                material.mapped_thickness(&self.contact.material_maps, of_points, most).to_f64()
             }
         };
-        states.raise_all_by_gap(contact.points, shares, distance / thickness);
+        states.raise_all_by_gap(points, shares, distance / thickness);
     }
 
     /// The contact thickness of a cloth's element with a collider or the plane, in metres.

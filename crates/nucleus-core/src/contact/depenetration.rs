@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use crate::bytes::encode_struct;
 use crate::contact::bvh::Aabb;
 use crate::contact::collider::ColliderState;
+use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
@@ -55,6 +56,18 @@ impl Depenetration {
         self.suspects = std::mem::take(&mut self.suspects).into_iter().filter_map(number).collect();
     }
 
+    /// Whether the starting positions have been tested.
+    pub fn has_begun(&self) -> bool {
+        self.has_begun
+    }
+
+    /// Forgets all points once a time step has found those that are still inside, which follow. `material` is that of
+    /// the two, if they collide.
+    pub fn begin_points<R>(&mut self, material: Option<&ContactMaterial<R>>) {
+        self.points.clear();
+        self.has_begun |= material.is_some_and(|material| material.depenetrates);
+    }
+
     /// Suspects all points that start in the bounding box of a closed collider.
     pub fn suspect_start<R: Real>(
         &mut self,
@@ -87,9 +100,9 @@ impl Depenetration {
         let before = std::mem::take(points);
         for point in suspects.drain(..).filter(|&point| step.has_full_strength(point)) {
             let place = step.start_position(point);
-            if is_inside(place, collider, state, step.time[0]) {
-                points.extend(nearest_face(place, collider, state, step.time[0]).map(|face| (point, face)));
-            } else if before.binary_search_by_key(&point, |&(point, _)| point).is_ok() {
+            let face = exit_face(place, collider, state, step.time[0]);
+            points.extend(face.map(|face| (point, face)));
+            if face.is_none() && before.binary_search_by_key(&point, |&(point, _)| point).is_ok() {
                 freed(point);
             }
         }
@@ -97,25 +110,29 @@ impl Depenetration {
 
     /// Moves every point at least a step farther out, along its face's normal. Along the face it is free.
     pub fn push_outward<R: Real>(&self, collider: &ColliderModel, step: &ColliderStep<'_, R>) {
-        for &(point, face) in &self.points {
-            let [from, to] = step.collider_positions(collider.boundary.triangles[face as usize]);
-            let normal = |corners: [Point; 3]| {
-                let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-                normal.try_normalize(0.0).unwrap_or_default()
-            };
-            let outward = normal(to);
-            let before = normal(from).dot(&(step.start_position(point) - from[0]));
-            let now = outward.dot(&(step.end_position(point) - to[0]));
-            let target = (before + DEPENETRATION_SPEED * step.h.to_f64()).min(step.thickness.to_f64());
-            if now < target {
-                step.push_point(
-                    point,
-                    outward * (target - now),
-                    outward * (target - now).min(target - before),
-                );
-            }
-        }
+        self.points.iter().for_each(|&(point, face)| push_outward(point, face, collider, step));
     }
+}
+
+/// Moves a point at least a step farther out, along the normal of its exit face.
+pub fn push_outward<R: Real>(point: u32, face: u32, collider: &ColliderModel, step: &ColliderStep<'_, R>) {
+    let [from, to] = step.collider_positions(collider.boundary.triangles[face as usize]);
+    let normal = |corners: [Point; 3]| {
+        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        normal.try_normalize(0.0).unwrap_or_default()
+    };
+    let outward = normal(to);
+    let before = normal(from).dot(&(step.start_position(point) - from[0]));
+    let now = outward.dot(&(step.end_position(point) - to[0]));
+    let target = (before + DEPENETRATION_SPEED * step.h.to_f64()).min(step.thickness.to_f64());
+    if now < target {
+        step.push_point(point, outward * (target - now), outward * (target - now).min(target - before));
+    }
+}
+
+/// The face nearest to a position inside a closed collider; `None` outside.
+pub fn exit_face(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> Option<u32> {
+    is_inside(place, collider, state, time).then(|| nearest_face(place, collider, state, time)).flatten()
 }
 
 /// Inside test: whether a ray from a position leaves a closed mesh an odd number of times. A ray through an edge

@@ -20,6 +20,9 @@ use crate::schedule::StepInterval;
 /// Height in metres of points that do not collide with the plane.
 const FAR_ABOVE: f64 = 1e12;
 
+/// Depth below the thickness that is none, as a share of the thickness.
+const TOUCHING: f64 = 1e-3;
+
 /// A point of a plane in metres, and its unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
@@ -64,6 +67,7 @@ impl<R: Real> Default for Ground<R> {
 impl<R: Real> Ground<R> {
     /// Takes up the plane of a frame. It starts where the last frame left it; a plane that appears or turns over
     /// at once does not move. Points that do not collide with it are far above it.
+    /// Without anchors it is a plane for [`GroundStep::over`] alone.
     pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]], filter: &PairFilter) {
         let now = ground.map(Plane::new);
         let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
@@ -90,7 +94,8 @@ impl<R: Real> Ground<R> {
         for (heights, plane) in self.heights.iter_mut().zip([self.start, self.end]) {
             let Some(plane) = plane else { continue };
             for point in points.clone().map(|point| point as usize) {
-                heights[point] = R::from_f64(plane.height(anchors[point]));
+                let height = R::from_f64(plane.height(anchors[point]));
+                heights.get_mut(point).into_iter().for_each(|of_point| *of_point = height);
             }
         }
     }
@@ -118,7 +123,21 @@ impl<R: Real> Ground<R> {
             End { normal: normal.map(|x| R::from_f64(x / length)), share }
         });
         let travel = sub(to.origin, from.origin).map(|x| R::from_f64(x * (now.to - now.from)));
-        Some(GroundStep { heights: [&self.heights[0], &self.heights[1]], ends, travel })
+        Some(GroundStep { heights: [&self.heights[0], &self.heights[1]], first: 0, ends, travel })
+    }
+
+    /// Heights of some anchors above the plane at the start and at the end of the frame, in metres.
+    pub fn heights_of(&self, anchors: &[[f64; 3]], [at_start, at_end]: [&mut [R]; 2]) {
+        let (Some(start), Some(end)) = (self.start, self.end) else { return };
+        for (height, &anchor) in at_start.iter_mut().zip(anchors) {
+            *height = R::from_f64(start.height(anchor));
+        }
+        if start == end {
+            return at_end.copy_from_slice(at_start);
+        }
+        for (height, &anchor) in at_end.iter_mut().zip(anchors) {
+            *height = R::from_f64(end.height(anchor));
+        }
     }
 }
 
@@ -133,16 +152,23 @@ struct End<R> {
 #[derive(Debug, Clone, Copy)]
 pub struct GroundStep<'a, R> {
     heights: [&'a [R]; 2],
+    /// The row of the first height.
+    first: u32,
     ends: [End<R>; 2],
     /// Motion of its origin in the step, in metres.
     travel: [R; 3],
 }
 
-impl<R: Real> GroundStep<'_, R> {
+impl<'a, R: Real> GroundStep<'a, R> {
+    /// The same plane for a run of points from the row `first` on, given their [`Ground::heights_of`].
+    pub fn over(self, heights: [&'a [R]; 2], first: u32) -> Self {
+        Self { heights, first, ..self }
+    }
+
     #[inline(always)]
     fn height(&self, end: usize, point: u32, displacement: [R; 3]) -> R {
         let End { normal, share } = self.ends[end];
-        let point = point as usize;
+        let point = (point - self.first) as usize;
         self.heights[0][point] * share[0] + self.heights[1][point] * share[1] + dot(normal, displacement)
     }
 
@@ -168,7 +194,7 @@ impl<R: Real> GroundStep<'_, R> {
 pub struct GroundContact<'a, R> {
     /// Positions of the points.
     pub writer: PositionWriter<'a, R>,
-    /// Displacements at the start of the step.
+    /// Displacements at the start of the step, at [`PositionWriter::place_of`] a point.
     pub start: &'a [Row4<R>],
     /// The plane.
     pub plane: GroundStep<'a, R>,
@@ -202,11 +228,18 @@ impl<R: Real> GroundContact<'_, R> {
         contacts
     }
 
+    /// Whether something has pressed a point below its thickness, by more than rounding.
+    pub fn is_pressed(&self, point: u32) -> bool {
+        let row = self.writer.row(point);
+        let gap = self.plane.height_now(point, row.xyz());
+        gap < self.thickness(point) * R::from_f64(1.0 - TOUCHING) && row.0[3] > R::ZERO
+    }
+
     /// Applies adhesion between the points of a range and the plane.
     pub fn adhere(&self, points: Range<u32>) {
         let rows = points.map(|point| (self.writer.row(point), point));
         for (mut row, point) in rows.filter(|(row, _)| row.0[3] > R::ZERO) {
-            let start = self.start[point as usize].xyz();
+            let start = self.start[self.writer.place_of(point)].xyz();
             let normal = self.plane.normal();
             let material = &self.material;
             let adhesion = Adhesion {
@@ -235,7 +268,7 @@ impl<R: Real> GroundContact<'_, R> {
     }
 
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {
-        let start = self.start[point as usize].xyz();
+        let start = self.start[self.writer.place_of(point)].xyz();
         let normal = self.plane.normal();
         let depenetration = self.writer.collider_depenetration(point);
         let before = self.plane.height(0, point, start);

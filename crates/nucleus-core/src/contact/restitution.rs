@@ -26,8 +26,8 @@ pub fn apply_restitution<R: Real>(pass: &mut ContactPass<'_, R>) {
 
 fn restitution_at_ground<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Restitution<R>) {
     for cloth in 0..pass.model.cloths.len() {
-        let Some(material) =
-            pass.contact.ground_materials[cloth].filter(|material| material.has_restitution())
+        let Some(material) = pass.contact.ground_materials[cloth]
+            .filter(|material| material.has_restitution() && !pass.contact.is_free[cloth])
         else {
             continue;
         };

@@ -1,5 +1,7 @@
 //! The state of contact, and the inputs and outputs of its passes.
 
+use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::cloth::cache::ContactCache;
@@ -8,6 +10,7 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::collider::ColliderState;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::motion_bounds::MotionBox;
+use crate::contact::collider::near_points::NearPoints;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
@@ -33,7 +36,7 @@ pub struct ContactSystem<R: Real> {
     /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
     pub frame_travel: Vec<[R; 3]>,
     /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
-    /// scene has no collider.
+    /// scene has no collider, or nothing but free points.
     pub window_bounds: Vec<MotionBox<R>>,
     pub interval_bounds: Vec<MotionBox<R>>,
     /// How far the window bounds of each point have grown in this frame, in metres.
@@ -60,6 +63,12 @@ pub struct ContactSystem<R: Real> {
     pub has_touched: Vec<AtomicBool>,
     /// The ground plane.
     pub ground: Ground<R>,
+    /// Whether each cloth is an object of free points in this frame, without lists of contacts.
+    pub is_free: Vec<bool>,
+    /// The smallest gap of a free point to a collider at the end of the frame, over its thickness.
+    pub free_gap: f64,
+    /// The results of tasks over free points.
+    pub free_tasks: Vec<Mutex<NearPoints<R>>>,
 }
 
 impl<R: Real> ContactSystem<R> {
@@ -72,7 +81,6 @@ impl<R: Real> ContactSystem<R> {
         self_collides: bool,
     ) -> Self {
         let (colliders, collider_maps) = colliders;
-        let bounded = if colliders.is_empty() { 0 } else { state.anchor.len() };
         let with_each =
             |cloth| (0..colliders.len()).map(move |collider| ColliderContacts::new(cloth, collider));
         Self {
@@ -81,10 +89,10 @@ impl<R: Real> ContactSystem<R> {
             candidate_intervals: vec![[0.0; 2]; models.len()],
             active_windows: vec![[0.0; 2]; models.len()],
             frame_travel: vec![[R::ZERO; 3]; models.len()],
-            window_bounds: vec![[Row4::ZERO; 2]; bounded],
-            interval_bounds: vec![[Row4::ZERO; 2]; bounded],
-            bound_growth: vec![R::ZERO; bounded],
-            bounds_violated: vec![true; bounded],
+            window_bounds: Vec::new(),
+            interval_bounds: Vec::new(),
+            bound_growth: Vec::new(),
+            bounds_violated: Vec::new(),
             collider_materials: Vec::new(),
             ground_materials: Vec::new(),
             material_maps: MaterialMaps::new(cloths, models, state.anchor.len(), collider_maps),
@@ -96,7 +104,43 @@ impl<R: Real> ContactSystem<R> {
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),
             has_touched: models.iter().map(|_| AtomicBool::new(false)).collect(),
             ground: Ground::default(),
+            is_free: vec![false; models.len()],
+            free_gap: f64::INFINITY,
+            free_tasks: Vec::new(),
         }
+    }
+
+    /// Makes the columns of motion bounds, once a cloth has lists of contacts with colliders. Free points have neither.
+    pub fn begin_lists(&mut self, model: &Model<R>, rows: usize) {
+        let is_listed = !self.collider_states.is_empty() && self.is_free.contains(&false);
+        if is_listed && self.bounds_violated.is_empty() {
+            self.resize_bounds(rows);
+        }
+        for list in self.collider_contacts.iter_mut().filter(|list| self.is_free[list.cloth]) {
+            list.clear();
+            let points = model.cloths[list.cloth].points();
+            let rows = points.start as usize..points.end as usize;
+            self.bounds_violated.get_mut(rows).unwrap_or_default().fill(true);
+        }
+    }
+
+    /// Sets the number of motion bounds; new ones are violated.
+    pub fn resize_bounds(&mut self, rows: usize) {
+        self.window_bounds.resize(rows, [Row4::ZERO; 2]);
+        self.interval_bounds.resize(rows, [Row4::ZERO; 2]);
+        self.bound_growth.resize(rows, R::ZERO);
+        self.bounds_violated.resize(rows, true);
+    }
+
+    /// Whether a cloth has lists of contacts with colliders and the ground in this frame, and a pass resolves them.
+    pub fn is_listed(&self, cloth: usize) -> bool {
+        !self.is_free[cloth] && self.is_resolved(cloth)
+    }
+
+    /// The places of a cloth's lists of contacts with each collider.
+    pub fn lists_of(&self, cloth: usize) -> Range<usize> {
+        let colliders = self.collider_states.len();
+        cloth * colliders..(cloth + 1) * colliders
     }
 
     /// The contact materials of a cloth with each collider.

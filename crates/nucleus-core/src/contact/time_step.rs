@@ -1,6 +1,6 @@
 //! A time step as contacts read and write it: positions, collider motion, and counters.
 
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::Vector3;
 
@@ -32,6 +32,20 @@ pub struct ContactCounters {
     pub births_refused: u64,
 }
 
+impl ContactCounters {
+    /// Adds those of a task.
+    pub fn add(&mut self, of_task: &Self) {
+        for (all, own) in [
+            (&mut self.contacts, &of_task.contacts),
+            (&mut self.pairs_reverted, &of_task.pairs_reverted),
+            (&mut self.pairs_unresolved, &of_task.pairs_unresolved),
+            (&mut self.candidate_pairs, &of_task.candidate_pairs),
+        ] {
+            *all.get_mut() += own.load(Ordering::Relaxed);
+        }
+    }
+}
+
 /// Writes positions, and records depenetration: the part of a push that does not become velocity.
 #[derive(Clone, Copy)]
 pub struct PositionWriter<'a, R> {
@@ -39,6 +53,8 @@ pub struct PositionWriter<'a, R> {
     by_collider: DisjointSlice<'a, Row4<R>>,
     by_cloth: DisjointSlice<'a, Row4<R>>,
     predicted: &'a [Row4<R>],
+    /// The row of the first entry of all columns but the displacements.
+    first: u32,
 }
 
 #[allow(unsafe_code)]
@@ -58,15 +74,41 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         let [displacement, by_collider, by_cloth] =
             [displacement, depenetration_by_collider, depenetration_by_cloth]
                 .map(|column| DisjointSlice::new(column));
-        (Self { displacement, by_collider, by_cloth, predicted }, start, anchor)
+        (Self { displacement, by_collider, by_cloth, predicted, first: 0 }, start, anchor)
+    }
+
+    /// The columns of a run of points from the row `first` on, of which a task keeps all but the displacements. The second
+    /// argument holds the depenetration by colliders and by cloth.
+    pub fn of_run(
+        displacement: DisjointSlice<'a, Row4<R>>,
+        [by_collider, by_cloth]: [&'a mut [Row4<R>]; 2],
+        predicted: &'a [Row4<R>],
+        first: u32,
+    ) -> Self {
+        let [by_collider, by_cloth] = [by_collider, by_cloth].map(DisjointSlice::new);
+        Self { displacement, by_collider, by_cloth, predicted, first }
+    }
+
+    /// The place of a point in all columns but the displacements.
+    #[inline(always)]
+    pub fn place_of(&self, point: u32) -> usize {
+        (point - self.first) as usize
     }
 
     /// The displacement of a point without constraints and contacts, but with its depenetration.
     #[inline(always)]
     pub fn predicted(&self, point: u32) -> [R; 3] {
         // SAFETY: as below.
-        let by_cloth = unsafe { self.by_cloth.get(point) }.xyz();
-        add(self.predicted[point as usize].xyz(), add(self.collider_depenetration(point), by_cloth))
+        let by_cloth = unsafe { self.by_cloth.get(point - self.first) }.xyz();
+        add(self.predicted[self.place_of(point)].xyz(), add(self.collider_depenetration(point), by_cloth))
+    }
+
+    /// How far constraints and contacts have moved a point that touches no cloth, without its depenetration, in metres.
+    #[inline(always)]
+    pub fn correction(&self, point: u32) -> R::Lanes {
+        // SAFETY: as below.
+        let by_collider = unsafe { self.by_collider.get(point - self.first) };
+        self.row(point).lanes() - self.predicted[self.place_of(point)].lanes() - by_collider.lanes()
     }
 
     /// A point's displacement in metres, and its inverse mass in 1/kg.
@@ -80,7 +122,7 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     #[inline(always)]
     pub fn collider_depenetration(&self, point: u32) -> [R; 3] {
         // SAFETY: as above.
-        unsafe { self.by_collider.get(point) }.xyz()
+        unsafe { self.by_collider.get(point - self.first) }.xyz()
     }
 
     /// Moves a point off a collider; `depenetration` is the part of the push without velocity.
@@ -90,7 +132,7 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
-            self.by_collider.set(point, Row4([x, y, z, R::ZERO]));
+            self.by_collider.set(point - self.first, Row4([x, y, z, R::ZERO]));
         }
     }
 
@@ -100,10 +142,10 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     pub fn push_by_cloth(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
         // SAFETY: as above.
         unsafe {
-            let mut by_cloth = self.by_cloth.get(point);
+            let mut by_cloth = self.by_cloth.get(point - self.first);
             (0..3).for_each(|axis| by_cloth.0[axis] += depenetration[axis]);
             self.displacement.set(point, row);
-            self.by_cloth.set(point, by_cloth);
+            self.by_cloth.set(point - self.first, by_cloth);
         }
     }
 
@@ -113,8 +155,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
-            self.by_collider.set(point, Row4::ZERO);
-            self.by_cloth.set(point, Row4::ZERO);
+            self.by_collider.set(point - self.first, Row4::ZERO);
+            self.by_cloth.set(point - self.first, Row4::ZERO);
         }
     }
 }
@@ -123,7 +165,7 @@ impl<'a, R: Real> PositionWriter<'a, R> {
 pub struct ColliderStep<'a, R> {
     /// The cloth's positions.
     pub writer: PositionWriter<'a, R>,
-    /// Displacements at the start of the step, in metres.
+    /// Displacements at the start of the step, in metres, at [`PositionWriter::place_of`] a point.
     pub start: &'a [Row4<R>],
     /// Anchors in metres.
     pub anchors: &'a [[f64; 3]],
@@ -253,7 +295,7 @@ impl<R: Real> ColliderStep<'_, R> {
 
     #[inline(always)]
     pub(in crate::contact) fn start(&self, point: u32) -> [R; 3] {
-        self.start[point as usize].xyz()
+        self.start[self.writer.place_of(point)].xyz()
     }
 
     /// The collider's points at the start and at the end of the step.
@@ -312,7 +354,15 @@ impl<R: Real> ColliderStepArgs<'_, R> {
 
     /// The step of a cloth in `state` and a collider.
     pub fn of<'s>(&'s self, state: &'s mut State<R>, collider: &'s ColliderState) -> ColliderStep<'s, R> {
-        let (writer, start, anchors) = PositionWriter::of(state);
+        self.with_columns(PositionWriter::of(state), collider)
+    }
+
+    /// The step of a cloth with these positions, displacements at the start and anchors, and a collider.
+    pub fn with_columns<'s>(
+        &'s self,
+        (writer, start, anchors): (PositionWriter<'s, R>, &'s [Row4<R>], &'s [[f64; 3]]),
+        collider: &'s ColliderState,
+    ) -> ColliderStep<'s, R> {
         ColliderStep {
             writer,
             start,

@@ -31,24 +31,55 @@ pub fn max_speeds<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &F
     cloths.iter().map(|cloth| of_cloth(cloth.points())).collect()
 }
 
-/// Applies external forces and moves all points: writes velocity, displacement and predicted displacement.
+/// Applies external forces and moves the points of all cloths but those of free points: writes velocity, displacement and
+/// predicted displacement.
 pub fn predict<R: Real>(
     cloths: &[ClothModel<R>],
     state: &mut State<R>,
     now: &TimeStep<'_, R>,
+    is_free: &[bool],
     pool: &ThreadPool,
 ) {
-    let TimeStep { frame, schedule, .. } = *now;
+    let predicted = DisjointSlice::new(&mut state.predicted);
     let columns = MotionColumns {
         displacement: DisjointSlice::new(&mut state.displacement),
         velocity: DisjointSlice::new(&mut state.velocity),
-        predicted: DisjointSlice::new(&mut state.predicted),
         normal: &state.normal,
         added_wind: &state.added_wind,
         field: &state.field,
     };
-    for ((cloth, settings), &max_speed) in cloths.iter().zip(&frame.cloths).zip(now.max_speeds) {
-        let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, max_speed);
+    for (index, cloth) in cloths.iter().enumerate().filter(|(index, _)| !is_free[*index]) {
+        let prediction = Prediction::new(columns, cloth, now, index);
+        pool.parallel_for(cloth.blocks.len(), |block| {
+            let points = cloth.blocks.range(block);
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            unsafe {
+                prediction.move_points(points.clone(), predicted.run(points));
+            }
+        });
+    }
+}
+
+/// The prediction of one cloth in one time step.
+#[derive(Clone, Copy)]
+pub struct Prediction<'a, R> {
+    /// The columns that it reads and writes.
+    pub columns: MotionColumns<'a, R>,
+    cloth: &'a ClothModel<R>,
+    forces: ExternalForces<'a, R>,
+}
+
+impl<'a, R: Real> Prediction<'a, R> {
+    /// That of a cloth, by its index.
+    pub fn new(
+        columns: MotionColumns<'a, R>,
+        cloth: &'a ClothModel<R>,
+        now: &TimeStep<'_, R>,
+        index: usize,
+    ) -> Self {
+        let (TimeStep { frame, schedule, .. }, settings) = (*now, &now.frame.cloths[index]);
+        let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, now.max_speeds[index]);
         let air = AirForces::new(frame, settings, cloth.point_mass, schedule.h);
         let air = air.map(|air| if cloth.has_faces { air } else { air.on_particles(frame.resistance) });
         let forces = ExternalForces {
@@ -58,15 +89,18 @@ pub fn predict<R: Real>(
             air_factors: &[],
             h: R::from_f64(schedule.h),
         };
-        pool.parallel_for(cloth.blocks.len(), |block| {
-            let points = cloth.blocks.range(block);
-            let forces = ExternalForces { air_factors: cloth.air_factors(&points), ..forces };
-            // SAFETY: blocks do not overlap.
-            #[allow(unsafe_code)]
-            unsafe {
-                move_points(&columns, points, &forces);
-            }
-        });
+        Self { columns, cloth, forces }
+    }
+
+    /// Moves a run of points, and writes their displacements to `predicted` as well.
+    ///
+    /// # Safety
+    /// No other task of the loop touches these points.
+    #[allow(unsafe_code)]
+    pub unsafe fn move_points(&self, points: Range<u32>, predicted: &mut [Row4<R>]) {
+        let forces = ExternalForces { air_factors: self.cloth.air_factors(&points), ..self.forces };
+        // SAFETY: the caller's promise.
+        unsafe { move_points(&self.columns, points, predicted, &forces) };
     }
 }
 
@@ -87,19 +121,17 @@ struct ExternalForces<'a, R> {
 
 /// The columns that a prediction reads and writes.
 #[derive(Clone, Copy)]
-struct MotionColumns<'a, R> {
+pub struct MotionColumns<'a, R> {
     /// Displacement in metres, and inverse mass in 1/kg.
-    displacement: DisjointSlice<'a, Row4<R>>,
+    pub displacement: DisjointSlice<'a, Row4<R>>,
     /// Velocity in m/s.
-    velocity: DisjointSlice<'a, Row4<R>>,
-    /// Displacement before constraints and contacts correct it, in metres.
-    predicted: DisjointSlice<'a, Row4<R>>,
+    pub velocity: DisjointSlice<'a, Row4<R>>,
     /// Normals of unit length; empty where no air is felt.
-    normal: &'a [Row4<R>],
+    pub normal: &'a [Row4<R>],
     /// What gusts, wind shadows and pushed air add to the wind in m/s; empty where nothing does.
-    added_wind: &'a [Row4<R>],
+    pub added_wind: &'a [Row4<R>],
     /// Acceleration by fields in m/s²; empty without fields.
-    field: &'a [Row4<R>],
+    pub field: &'a [Row4<R>],
 }
 
 /// Moves a run of points. A pinned point keeps its velocity, which is that of its pin.
@@ -110,16 +142,12 @@ struct MotionColumns<'a, R> {
 unsafe fn move_points<R: Real>(
     columns: &MotionColumns<'_, R>,
     points: Range<u32>,
+    predicted: &mut [Row4<R>],
     forces: &ExternalForces<'_, R>,
 ) {
     // SAFETY: the caller's promise.
-    let (displacement, velocity, predicted) = unsafe {
-        (
-            columns.displacement.run(points.clone()),
-            columns.velocity.run(points.clone()),
-            columns.predicted.run(points.clone()),
-        )
-    };
+    let (displacement, velocity) =
+        unsafe { (columns.displacement.run(points.clone()), columns.velocity.run(points.clone())) };
     let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
     let (gravity, impulse, zero) = (four(forces.gravity), four(forces.impulse), R::Lanes::splat(R::ZERO));
     let h = four([forces.h; 3]);
@@ -154,14 +182,20 @@ unsafe fn move_points<R: Real>(
 
 /// Adds the position corrections of the time step to the velocities, over `h` seconds. Motion that resolves a
 /// penetration is no velocity and is left out.
-pub fn update_velocities<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>, h: f64, pool: &ThreadPool) {
+pub fn update_velocities<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &mut State<R>,
+    h: f64,
+    is_free: &[bool],
+    pool: &ThreadPool,
+) {
     let State {
         displacement, predicted, velocity, depenetration_by_collider, depenetration_by_cloth, ..
     } = state;
     let depenetration = [&depenetration_by_collider[..], &depenetration_by_cloth[..]];
     let velocity = DisjointSlice::new(velocity);
     let h = R::from_f64(h);
-    for cloth in cloths {
+    for cloth in cloths.iter().zip(is_free).filter(|(_, is_free)| !**is_free).map(|(cloth, _)| cloth) {
         pool.parallel_for(cloth.blocks.len(), |block| {
             let points = cloth.blocks.range(block);
             // SAFETY: blocks do not overlap.
@@ -179,8 +213,9 @@ pub fn update_velocities<R: Real>(cloths: &[ClothModel<R>], state: &mut State<R>
     }
 }
 
-/// Both columns of `depenetration` are empty where the scene has no contact.
-fn add_corrections<R: Real>(
+/// Adds the corrections of a run of points to their velocities, over `h` seconds. Both columns of `depenetration` are empty
+/// where the scene has no contact.
+pub fn add_corrections<R: Real>(
     [displacement, predicted]: [&[Row4<R>]; 2],
     depenetration: [&[Row4<R>]; 2],
     velocity: &mut [Row4<R>],

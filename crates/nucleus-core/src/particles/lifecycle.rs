@@ -234,6 +234,10 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
     ] {
         close_up(column.get_mut(rows.clone()).unwrap_or_default(), kept);
     }
+    state.displaced = std::mem::take(&mut state.displaced)
+        .into_iter()
+        .filter_map(|(row, motion)| Some((number_after(row, &points, kept)?, motion)))
+        .collect();
     let dead = rows.start + kept.len()..rows.end;
     state.anchor[dead.clone()].fill([0.0; 3]);
     state.displacement[dead.clone()].fill(Row4::ZERO);
@@ -242,6 +246,14 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
     model.cloths[cloth].resize(kept.len());
     renumber_contacts(contact, cloth, points.clone(), kept, pool);
     contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
+}
+
+/// The row of a point once an object, whose rows were `before`, has kept only some places; `None` if it is gone.
+fn number_after(row: u32, before: &Range<u32>, kept: &[u32]) -> Option<u32> {
+    match before.contains(&row) {
+        true => kept.binary_search(&(row - before.start)).ok().map(|at| before.start + at as u32),
+        false => Some(row),
+    }
 }
 
 /// Follows the rows of an object that have moved. Contacts with colliders are searched anew; those among cloths keep their
@@ -256,7 +268,7 @@ fn renumber_contacts<R: Real>(
     let bounds = contact.bounds_violated.get_mut(before.start as usize..before.end as usize);
     bounds.unwrap_or_default().fill(true);
     contact.active_windows[cloth] = [0.0; 2];
-    let number = |row: u32| kept.binary_search(&(row - before.start)).ok().map(|at| before.start + at as u32);
+    let number = |row: u32| number_after(row, &before, kept);
     for list in contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
         list.clear();
         list.depenetration.renumber(number);

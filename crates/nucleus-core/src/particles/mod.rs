@@ -1,4 +1,4 @@
-//! Particles that are born and die.
+//! Particles that are born and die, and time steps of free points.
 //!
 //! An object of particles has room for a fixed number of them. Living particles are the first rows of the object, in the
 //! order of their birth, and only these rows are swept, so a row without a particle costs nothing. Particles that are near
@@ -12,6 +12,7 @@
 //! |---|---|
 //! | ages, lifespans and numbers | [`population`] |
 //! | births and deaths in the solver's columns | [`lifecycle`] |
+//! | time steps of particles that depend on nothing but colliders | [`free`], then [`free_run`] |
 //! | attributes that differ by particle | [`ramps`] |
 //! | what an observer draws of them | [`looks`] |
 //! | what happens at collisions | [`events`] |
@@ -19,6 +20,8 @@
 //! | new particles that would overlap others | [`pruning`] |
 
 pub mod events;
+pub mod free;
+pub mod free_run;
 pub mod lifecycle;
 pub mod looks;
 pub mod population;

@@ -246,10 +246,13 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &
     let Solver {
         state,
         model: Model { cloths, .. },
-        contact: ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. },
+        contact:
+            ContactSystem {
+                collider_states, collider_contacts, collider_materials, material_maps, free_gap, ..
+            },
         ..
     } = solver;
-    let mut least = smallest_ground_gap(cloths, state, frame);
+    let mut least = smallest_ground_gap(cloths, state, frame).min(*free_gap);
     for list in collider_contacts.iter() {
         let Some(material) = collider_materials[list.cloth * collider_states.len() + list.collider] else {
             continue;

@@ -43,7 +43,10 @@ impl<R: Real> State<R> {
 
     /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
     pub fn store_step_start(&mut self, h: f64, can_touch: bool) {
-        let Self { start, depenetration_by_collider, depenetration_by_cloth, displacement, .. } = self;
+        let Self {
+            start, depenetration_by_collider, depenetration_by_cloth, displacement, displaced, ..
+        } = self;
+        displaced.clear();
         // Also where contact has just become impossible: a ground plane can be keyed off.
         depenetration_by_collider.clear();
         depenetration_by_cloth.clear();

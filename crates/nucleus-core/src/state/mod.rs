@@ -21,7 +21,8 @@ pub struct State<R> {
     pub displacement: Vec<Row4<R>>,
     /// Velocity in m/s.
     pub velocity: Vec<Row4<R>>,
-    /// Displacement at the start of the time step, in metres; empty where no contact is possible.
+    /// Displacement at the start of the time step, in metres; empty where no contact is possible,
+    /// or only that of free points.
     pub start: Vec<Row4<R>>,
     /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where
     /// no contact is possible.
@@ -30,9 +31,12 @@ pub struct State<R> {
     /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
     /// is possible.
     pub depenetration_by_cloth: Vec<Row4<R>>,
+    /// Free points that contact has displaced without velocity in the time step, in order, and their motion in m/s.
+    pub displaced: Vec<(u32, [R; 3])>,
     /// Length of the last time step in seconds.
     pub step_length: f64,
-    /// Displacement before constraints and contacts, in metres. Written by prediction, read by the velocity update.
+    /// Displacement before constraints and contacts, in metres; empty where all points are free. Written by prediction,
+    /// read by the velocity update.
     pub predicted: Vec<Row4<R>>,
     /// Sums of corrections in metres; empty where every cloth corrects its links one after another. Written and read in
     /// a sweep.
@@ -84,6 +88,9 @@ impl<R: Real> State<R> {
     /// The velocity of a point in m/s, for observers: where contacts displaced the point without velocity, its motion
     /// in the last time step. Resting cloth has a stored velocity there that contacts cancel in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
+        if let Ok(at) = self.displaced.binary_search_by_key(&row, |&(row, _)| row) {
+            return self.displaced[at].1.map(R::to_f64);
+        }
         let row = row as usize;
         let is_depenetrated =
             |column: &[Row4<R>]| column.get(row).is_some_and(|row| row.xyz() != [R::ZERO; 3]);

@@ -18,8 +18,9 @@ impl<R: Real> State<R> {
             start: Vec::new(),
             depenetration_by_collider: Vec::new(),
             depenetration_by_cloth: Vec::new(),
+            displaced: Vec::new(),
             step_length: 0.0,
-            predicted: vec![Row4::ZERO; rows],
+            predicted: Vec::new(),
             corrections: vec![
                 Row4::ZERO;
                 if models.iter().any(|m| !m.valence.is_empty()) { rows } else { 0 }

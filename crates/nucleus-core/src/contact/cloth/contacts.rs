@@ -91,6 +91,15 @@ impl<R: Real> ClothContacts<R> {
         cache.update(&[], &update, &mut buffers.orders, pool);
     }
 
+    /// Whether a cloth can collide with itself or with another in this frame.
+    pub fn touches(&self, cloth: usize) -> bool {
+        let cloths = self.materials.len().isqrt();
+        (0..cloths).any(|other| {
+            self.materials[cloth * cloths + other].is_some()
+                || self.materials[other * cloths + cloth].is_some()
+        })
+    }
+
     /// Whether any two cloths can collide in this frame.
     pub fn is_enabled(&self) -> bool {
         self.materials.iter().any(Option::is_some)

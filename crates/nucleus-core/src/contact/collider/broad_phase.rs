@@ -68,7 +68,7 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
             },
         ..
     } = pass;
-    let bounds = MotionBounds { boxes: window_bounds, frame_travel: frame_travel[cloth] };
+    let bounds = MotionBounds { boxes: window_bounds, first: 0, frame_travel: frame_travel[cloth] };
     for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
         if let Some(material) = &collider_materials[cloth * colliders.len() + list.collider] {
             let is_at_rest = !collider_states[list.collider].moves && frame_travel[cloth] == [R::ZERO; 3];
@@ -144,7 +144,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
         ..
     } = pass;
     let interval = candidate_intervals[cloth];
-    let bounds = MotionBounds { boxes: interval_bounds, frame_travel: frame_travel[cloth] };
+    let bounds = MotionBounds { boxes: interval_bounds, first: 0, frame_travel: frame_travel[cloth] };
     let mut freed = Vec::new();
     for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
         let collider = list.collider;

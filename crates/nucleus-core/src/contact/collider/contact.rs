@@ -105,7 +105,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// Counts it. Returns whether the contact moved anything.
-    pub(super) fn count(self, counters: &ContactCounters) -> bool {
+    pub fn count(self, counters: &ContactCounters) -> bool {
         match self {
             Self::Separated | Self::Inseparable => return false,
             Self::Pushed => counters.contacts.fetch_add(1, Ordering::Relaxed),
@@ -345,6 +345,76 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let time = R::from_f64(step.time[1]);
         self.plane_origin = std::array::from_fn(|axis| contact[axis] - self.surface_motion[axis] * time);
     }
+}
+
+/// Distance from the plane of a face, in interaction ranges, beyond which a free point begins with that plane.
+const FAR: f64 = 2.0;
+/// Displacement of a contact whose plane is valid nowhere: it serves certificates, and a push needs another.
+const NOWHERE: f64 = 1e18;
+
+impl<R: Real> ColliderContact<R, 1, 3> {
+    /// The same for a free point, and whether it passes the face. A point that starts far from the face begins with a plane
+    /// that certifies its motion, if there is one: the plane of the face or, if it flies past the face, one along its way.
+    /// The closest points are found where it comes near.
+    pub fn of_free_point(
+        point: u32,
+        corners: [u32; 3],
+        step: &ColliderStep<'_, R>,
+        bounds: &MotionBounds<'_, R>,
+    ) -> Option<(Self, bool)> {
+        let (way, faces) =
+            ([step.start_position(point), step.end_position(point)], step.collider_positions(corners));
+        let across = (faces[0][1] - faces[0][0]).cross(&(faces[0][2] - faces[0][0]));
+        let height = across.dot(&(way[0] - faces[0][0]));
+        let length = across.norm();
+        if height.abs() <= FAR * step.interaction_range().to_f64() * length || length <= f64::MIN_POSITIVE {
+            return Self::candidate([point], corners, 0, step, bounds).map(|contact| (contact, false));
+        }
+        let ahead = across * (height.signum() / length);
+        let is_behind = faces[1].iter().any(|corner| ahead.dot(&(way[1] - corner)) < 0.0);
+        let aside = is_behind.then(|| plane_along(way, faces)).flatten();
+        let zero = [R::ZERO; 3];
+        let mut contact = Self {
+            points: [point],
+            collider_points: corners,
+            group: 0,
+            normal: zero,
+            plane: [[R::ZERO; 1]; 2],
+            weights: [R::ZERO; 1],
+            surface_motion: zero,
+            plane_origin: zero,
+            idle_until: [R::ZERO; 1],
+        };
+        contact.set_plane(aside.unwrap_or(ahead), ([1.0], [1.0 / 3.0; 3]), step);
+        contact.plane_origin = [R::from_f64(NOWHERE); 3];
+        let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
+        let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
+        (gap < step.interaction_range()).then_some((contact, is_behind && aside.is_none()))
+    }
+}
+
+/// A plane along the way of a point that has a face on its other side from the start to the end: the one with the largest
+/// gap of those through the way and parallel to an edge. For a face that does not turn there is one if the way misses the
+/// face between its corners.
+fn plane_along([start, end]: [Point; 2], [from, to]: [[Point; 3]; 2]) -> Option<Point> {
+    let middle = |corners: [Point; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
+    let way = (end - start) - (middle(to) - middle(from));
+    let gap = |normal: Point, place: Point, corners: [Point; 3]| {
+        normal.dot(&place)
+            - corners.map(|corner| normal.dot(&corner)).into_iter().fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut best = (0.0, None);
+    for k in 0..3 {
+        let edge = from[(k + 1) % 3] - from[k];
+        let Some(normal) = way.cross(&edge).try_normalize(f64::MIN_POSITIVE) else { continue };
+        // The third corner is on the other side of the plane through the edge.
+        let normal = if normal.dot(&(from[(k + 2) % 3] - from[k])) > 0.0 { -normal } else { normal };
+        let gap = gap(normal, start, from).min(gap(normal, end, to));
+        if gap > best.0 {
+            best = (gap, Some(normal));
+        }
+    }
+    best.1
 }
 
 /// The closest points of two elements, as weights.

@@ -50,7 +50,9 @@ fn rebase_contacts<R: Real>(
     let ContactSystem { collider_contacts, interval_bounds, bounds_violated, .. } = contact;
     for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
         // Points inside a collider are tested in every frame.
-        list.depenetration.points.iter().for_each(|&(point, _)| bounds_violated[point as usize] = true);
+        for &(point, _) in &list.depenetration.points {
+            bounds_violated.get_mut(point as usize).into_iter().for_each(|is_violated| *is_violated = true);
+        }
         list.shift_anchors(&state.displacement);
     }
     let rows = rows_of(model, cloth);

@@ -6,7 +6,6 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::collider::broad_phase::update_collider_candidates;
 use crate::contact::collider::contact::{Certificate, Outcome};
 use crate::contact::collider::contacts::ColliderContacts;
@@ -33,16 +32,8 @@ pub fn settle_free_points<R: Real>(pass: &mut ContactPass<'_, R>) {
 
 /// Whether the points of a cloth depend on nothing but colliders.
 fn is_independent<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
-    let touches_cloth = |contacts: &ClothContacts<R>| {
-        let cloths = pass.model.cloths.len();
-        (0..cloths).any(|other| {
-            [cloth * cloths + other, other * cloths + cloth]
-                .iter()
-                .any(|&at| contacts.materials.get(at).is_some_and(Option::is_some))
-        })
-    };
     pass.model.cloths[cloth].boundary.triangles.is_empty()
-        && !pass.contact.cloth_contacts.as_ref().is_some_and(touches_cloth)
+        && !pass.contact.cloth_contacts.as_ref().is_some_and(|contacts| contacts.touches(cloth))
 }
 
 /// Returns whether every contact has a certificate.

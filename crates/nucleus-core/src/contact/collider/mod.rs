@@ -15,6 +15,8 @@
 //! | the planes of the active contacts, four at a time | [`plane_columns`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
 //! | its push, friction, adhesion and restitution | [`response`] |
+//! | free points: contacts of one time step | [`near_points`] |
+//! | fallbacks for points of a liquid or of links | [`free_points`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
 //! | the passes of a time step | [`pass`] |
 
@@ -25,6 +27,7 @@ pub mod contacts;
 pub mod frame_start;
 pub mod free_points;
 pub mod motion_bounds;
+pub mod near_points;
 pub mod pass;
 mod plane_columns;
 pub mod query;

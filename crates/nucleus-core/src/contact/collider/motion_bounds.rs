@@ -11,8 +11,10 @@ pub type MotionBox<R> = [Row4<R>; 2];
 /// The motion bounds of a cloth's points.
 #[derive(Debug, Clone, Copy)]
 pub struct MotionBounds<'a, R> {
-    /// One for each row.
+    /// One for each row from `first` on.
     pub boxes: &'a [MotionBox<R>],
+    /// The row of the first bound.
+    pub first: u32,
     /// Motion of the moving frame in a frame, in metres.
     pub frame_travel: [R; 3],
 }
@@ -21,7 +23,7 @@ impl<R: Real> MotionBounds<'_, R> {
     /// The bound of one point.
     #[inline(always)]
     pub fn of(&self, point: u32) -> MotionBox<R> {
-        self.boxes[point as usize]
+        self.boxes[(point - self.first) as usize]
     }
 
     /// Motion of the moving frame up to a time, given as a share of the frame.

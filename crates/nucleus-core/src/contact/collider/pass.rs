@@ -26,7 +26,7 @@ pub fn resolve_collider_contacts<R: Real>(
     resolve_ground_contacts(pass, thickness_scale);
     let model = pass.model;
     for cloth in 0..model.cloths.len() {
-        if !pass.contact.has_collider_material(cloth) || !pass.contact.is_resolved(cloth) {
+        if !pass.contact.has_collider_material(cloth) || !pass.contact.is_listed(cloth) {
             continue;
         }
         update_collider_candidates(pass, cloth);
@@ -54,7 +54,9 @@ pub fn apply_collider_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
         });
     }
     for cloth in 0..pass.model.cloths.len() {
-        if pass.contact.collider_materials_of(cloth).iter().flatten().any(ContactMaterial::has_adhesion) {
+        let has_adhesion = ContactMaterial::has_adhesion;
+        let materials = pass.contact.collider_materials_of(cloth);
+        if !pass.contact.is_free[cloth] && materials.iter().flatten().any(has_adhesion) {
             update_collider_candidates(pass, cloth);
             for_contacts_of(pass, cloth, |list, step, pool, _| {
                 if step.material.has_adhesion() {
@@ -112,7 +114,7 @@ fn for_all_contacts<R: Real>(
     mut work: impl FnMut(&mut ColliderContacts<R>, &ColliderStep<'_, R>, &ThreadPool, &ContactCounters),
 ) {
     for cloth in 0..pass.model.cloths.len() {
-        if pass.contact.has_collider_material(cloth) {
+        if pass.contact.has_collider_material(cloth) && !pass.contact.is_free[cloth] {
             update_collider_candidates(pass, cloth);
             for_contacts_of(pass, cloth, |list, step, pool, counters| work(list, &step, pool, counters));
         }
@@ -180,12 +182,11 @@ fn for_ground_contacts<R: Real>(
     work: impl Fn(usize, &GroundContact<'_, R>, &ThreadPool, &ContactCounters),
 ) {
     let ContactPass { state, pool, contact, counters, .. } = pass;
-    let ContactSystem { ground, ground_materials, material_maps, contact_mask, has_touched, .. } = &**contact;
+    let ContactSystem { ground, ground_materials, material_maps, has_touched, .. } = &**contact;
     let Some(plane) = ground.in_step(pass.span) else { return };
     let (writer, start, _) = PositionWriter::of(state);
     for (index, material) in ground_materials.iter().enumerate() {
-        let is_resolved = contact_mask.get(index).is_none_or(|&is_resolved| is_resolved);
-        let Some(material) = material.filter(|_| is_resolved) else { continue };
+        let Some(material) = material.filter(|_| contact.is_listed(index)) else { continue };
         let ground = GroundContact {
             writer,
             start,

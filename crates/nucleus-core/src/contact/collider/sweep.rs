@@ -128,9 +128,19 @@ pub(super) fn resolve_point<R: Real>(
     step: &ColliderStep<'_, R>,
     counters: &ContactCounters,
 ) {
+    resolve_contacts(pairs, of_point.iter().copied(), step, counters);
+}
+
+/// The same for contacts whose indices an iterator gives.
+pub fn resolve_contacts<R: Real>(
+    pairs: DisjointSlice<'_, ColliderContact<R, 1, 3>>,
+    of_point: impl ExactSizeIterator<Item = u32> + Clone,
+    step: &ColliderStep<'_, R>,
+    counters: &ContactCounters,
+) {
     for round in 1..=MAX_ROUNDS {
         let (mut pushed, mut reverted) = (0, false);
-        for &index in of_point {
+        for index in of_point.clone() {
             // SAFETY: the contacts of a point belong to the task of its block.
             #[allow(unsafe_code)]
             let [contact] = (unsafe { pairs.run(index..index + 1) }) else { continue };

@@ -1,0 +1,405 @@
+//! A time step of a run of free points: all stages, in buffers that fit into the nearest cache.
+//!
+//! 1. The points **move** by their velocity and external forces.
+//! 2. The **ground** pushes them, then **colliders** push those near them. A point that a collider pushes into the ground is
+//!    pushed by the two in turn, and the ground has the last word.
+//! 3. The **safeguard** certifies that no point has passed a collider, and applies fallbacks to those without certificate.
+//! 4. **Velocities** follow the corrections, and points **rebound**.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use crate::contact::collider::near_points::{NearCollider, NearPoints};
+use crate::contact::ground::{GroundContact, GroundStep};
+use crate::contact::material::ContactMaterial;
+use crate::contact::response::{Impact, Restitution};
+use crate::contact::system::ContactSystem;
+use crate::contact::time_step::{ColliderStep, ColliderStepArgs, PositionWriter};
+use crate::integrate::predict::{MotionColumns, Prediction};
+use crate::math::{Lanes, Real, Row4, sub};
+use crate::model::Model;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::schedule::{Pass, TimeStep};
+use crate::state::State;
+
+/// Points of a run: their buffers fit into the nearest cache.
+const RUN: usize = 128;
+/// Turns of colliders and the ground at a point that they push into each other.
+const TURNS: usize = 8;
+/// Attempts of the safeguard to push, to push with a smaller and smaller share of the thickness, to move a point with the
+/// surface and off the ground, and to move it with the surface alone.
+const ATTEMPTS: [usize; 4] = [4, 6, 4, 4];
+
+/// The buffers of a run of points.
+struct Buffers<R> {
+    start: [Row4<R>; RUN],
+    predicted: [Row4<R>; RUN],
+    by_collider: [Row4<R>; RUN],
+    by_cloth: [Row4<R>; RUN],
+    heights: [[R; RUN]; 2],
+}
+
+impl<R: Real> Buffers<R> {
+    fn new() -> Self {
+        let rows = [Row4::ZERO; RUN];
+        let heights = [[R::ZERO; RUN]; 2];
+        Self { start: rows, predicted: rows, by_collider: rows, by_cloth: rows, heights }
+    }
+}
+
+/// A time step of the points of one object.
+pub struct FreePass<'a, R: Real> {
+    cloth: usize,
+    model: &'a Model<R>,
+    contact: &'a ContactSystem<R>,
+    now: &'a TimeStep<'a, R>,
+    prediction: Prediction<'a, R>,
+    anchors: &'a [[f64; 3]],
+    plane: Option<(GroundStep<'a, R>, ContactMaterial<R>)>,
+    has_colliders: bool,
+    /// Sweeps over the contacts.
+    sweeps: usize,
+    /// Restitution without its coefficient.
+    restitution: Restitution<R>,
+    /// Length of the frame in seconds.
+    frame: f64,
+}
+
+/// A run of points within a task.
+struct Run<'a, R: Real> {
+    pass: &'a FreePass<'a, R>,
+    rows: Range<u32>,
+    writer: PositionWriter<'a, R>,
+    start: &'a [Row4<R>],
+    heights: [&'a [R]; 2],
+}
+
+impl<'a, R: Real> FreePass<'a, R> {
+    /// The time step `now` of an object, by its index.
+    pub fn new(
+        cloth: usize,
+        (model, state, contact): (&'a Model<R>, &'a mut State<R>, &'a ContactSystem<R>),
+        now: &'a TimeStep<'a, R>,
+    ) -> Self {
+        let h = now.schedule.h;
+        let columns = MotionColumns {
+            displacement: DisjointSlice::new(&mut state.displacement),
+            velocity: DisjointSlice::new(&mut state.velocity),
+            normal: &state.normal,
+            added_wind: &state.added_wind,
+            field: &state.field,
+        };
+        let min_speed = R::from_f64(2.0 * now.frame.gravity.norm() * h);
+        Self {
+            cloth,
+            model,
+            contact,
+            now,
+            prediction: Prediction::new(columns, &model.cloths[cloth], now, cloth),
+            anchors: &state.anchor,
+            plane: contact.ground.in_step(now.span).zip(contact.ground_materials[cloth]),
+            has_colliders: contact.has_collider_material(cloth),
+            sweeps: now.schedule.passes.iter().filter(|pass| **pass == Pass::ColliderContact).count(),
+            restitution: Restitution { coefficient: R::ZERO, min_speed, h: R::from_f64(h) },
+            frame: now.frame.duration,
+        }
+    }
+
+    /// All stages of the time step for the points of a task.
+    pub fn advance(&self, points: Range<u32>, near: &mut NearPoints<R>) {
+        let mut buffers = Buffers::new();
+        near.begin();
+        for first in points.clone().step_by(RUN) {
+            self.advance_run(first..points.end.min(first + RUN as u32), &mut buffers, near);
+        }
+        if near.counters.contacts.load(Ordering::Relaxed) > 0 {
+            self.contact.has_touched[self.cloth].store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn advance_run(&self, rows: Range<u32>, buffers: &mut Buffers<R>, near: &mut NearPoints<R>) {
+        let Buffers { start, predicted, by_collider, by_cloth, heights: [at_start, at_end] } = buffers;
+        let (count, displacement) = (rows.len(), self.prediction.columns.displacement);
+        // SAFETY: tasks do not overlap, nor do their runs.
+        #[allow(unsafe_code)]
+        unsafe {
+            start[..count].copy_from_slice(displacement.run(rows.clone()));
+            self.prediction.move_points(rows.clone(), &mut predicted[..count]);
+        }
+        if self.plane.is_none() && !self.has_colliders {
+            return;
+        }
+        by_collider[..count].fill(Row4::ZERO);
+        by_cloth[..count].fill(Row4::ZERO);
+        let anchors = &self.anchors[rows.start as usize..rows.end as usize];
+        self.contact.ground.heights_of(anchors, [&mut at_start[..count], &mut at_end[..count]]);
+        let writer =
+            PositionWriter::of_run(displacement, [by_collider, by_cloth], &predicted[..count], rows.start);
+        let heights = [&at_start[..count], &at_end[..count]];
+        Run { pass: self, writer, rows, start: &start[..count], heights }.advance(near);
+    }
+
+    /// The colliders that the points can touch, with their places.
+    fn colliders(&self) -> impl Iterator<Item = (usize, NearCollider<'_, R>)> {
+        let (contact, span) = (self.contact, self.now.span);
+        let (h, time) = (self.now.schedule.h, [span.from, span.to]);
+        let lists = &contact.collider_contacts[contact.lists_of(self.cloth)];
+        let near = lists.iter().filter_map(move |list| {
+            let (at, material_maps) = (list.collider, &contact.material_maps);
+            let material = contact.collider_materials_of(self.cloth)[at]?;
+            let args = ColliderStepArgs { material, material_maps, at, h, time, interval: time };
+            let (model, state) = (&self.model.colliders[at], &contact.collider_states[at]);
+            Some(NearCollider::new(args, model, state, &list.depenetration, list.is_near))
+        });
+        near.enumerate()
+    }
+}
+
+impl<R: Real> Run<'_, R> {
+    /// The stages behind the move.
+    fn advance(&self, near: &mut NearPoints<R>) {
+        let contacts = near.counters.contacts.load(Ordering::Relaxed);
+        near.begin_run();
+        self.touch(near);
+        let is_pressed = near.counters.contacts.load(Ordering::Relaxed) > contacts;
+        if near.is_empty() && !is_pressed && !self.ground_holds() {
+            return;
+        }
+        self.safeguard(near);
+        self.update_velocities();
+        self.rebound(near);
+        self.list_displaced(near);
+    }
+
+    /// Whether the ground may correct points that it does not push.
+    fn ground_holds(&self) -> bool {
+        self.pass.plane.as_ref().is_some_and(|(_, material)| material.has_adhesion() || material.grips)
+    }
+
+    /// Sweeps over contact with the ground and with colliders.
+    fn touch(&self, near: &mut NearPoints<R>) {
+        for sweep in 0..self.pass.sweeps {
+            self.push_by_ground(sweep == 0, near);
+            if sweep == 0 {
+                self.find_near_points(near);
+            }
+            if near.is_empty() {
+                continue;
+            }
+            for (at, collider) in self.pass.colliders() {
+                near.adhere(at, &collider, &self.step(&collider));
+            }
+            self.push_by_colliders(None, 1.0, near);
+            for k in 0..near.len() {
+                self.take_turns(near.point(k), near);
+            }
+        }
+    }
+
+    /// Finds the points that come near colliders in this step, by the bound of the run first.
+    fn find_near_points(&self, near: &mut NearPoints<R>) {
+        if !self.pass.has_colliders {
+            return;
+        }
+        let bound = self.bound();
+        for (at, collider) in self.pass.colliders().filter(|(_, collider)| collider.reaches(bound)) {
+            near.find(at, &collider, &self.step(&collider), self.rows.clone());
+        }
+        if !near.is_empty() && self.pass.colliders().nth(1).is_some() {
+            near.begin_following();
+            for (at, collider) in self.pass.colliders() {
+                near.follow(at, &collider, &self.step(&collider));
+            }
+        }
+    }
+
+    /// The box around the motion of all points in this step, in metres.
+    fn bound(&self) -> [[f64; 3]; 2] {
+        let mut bound = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        let anchors = &self.pass.anchors[self.rows.start as usize..self.rows.end as usize];
+        for ((anchor, start), point) in anchors.iter().zip(self.start).zip(self.rows.clone()) {
+            for place in [start.xyz(), self.writer.row(point).xyz()] {
+                for axis in 0..3 {
+                    let x = anchor[axis] + place[axis].to_f64();
+                    bound[0][axis] = if x < bound[0][axis] { x } else { bound[0][axis] };
+                    bound[1][axis] = if x > bound[1][axis] { x } else { bound[1][axis] };
+                }
+            }
+        }
+        bound
+    }
+
+    /// Pushes the points above the ground, after adhesion. Without adhesion one sweep is exact.
+    fn push_by_ground(&self, is_first: bool, near: &mut NearPoints<R>) {
+        let Some(ground) = self.ground(1.0) else { return };
+        let has_adhesion = ground.material.has_adhesion();
+        if has_adhesion {
+            ground.adhere(self.rows.clone());
+        }
+        if is_first || self.ground_holds() {
+            *near.counters.contacts.get_mut() += ground.resolve(self.rows.clone());
+        }
+    }
+
+    /// One sweep over the contacts with colliders, with a factor on their thickness; of one point only, if it is given.
+    fn push_by_colliders(&self, only: Option<u32>, thickness_scale: f64, near: &mut NearPoints<R>) {
+        for (at, collider) in self.pass.colliders() {
+            let step = self.step(&collider).with_thickness_scale(thickness_scale);
+            near.resolve(at, only, &collider, &step);
+        }
+    }
+
+    /// The ground and colliders push a point in turn, if colliders have pushed it into the ground.
+    fn take_turns(&self, point: u32, near: &mut NearPoints<R>) {
+        let Some(ground) = self.ground(1.0) else { return };
+        for _ in 0..TURNS {
+            if !ground.is_pressed(point) {
+                return;
+            }
+            self.push_by_colliders(Some(point), 1.0, near);
+            *near.counters.contacts.get_mut() += ground.resolve(point..point + 1);
+        }
+    }
+
+    /// Certifies the contacts of all points near colliders, and applies the fallbacks to those without certificate.
+    fn safeguard(&self, near: &mut NearPoints<R>) {
+        for (at, collider) in self.pass.colliders() {
+            let [_, inseparable] = near.certify(at, None, &collider, &self.step(&collider));
+            *near.counters.pairs_unresolved.get_mut() += inseparable;
+        }
+        near.begin_fallbacks();
+        while let Some(point) = near.next_unproven() {
+            let unresolved = self.settle(point, near);
+            *near.counters.pairs_unresolved.get_mut() += unresolved;
+        }
+        if self.pass.now.span.to >= 1.0 {
+            for (at, collider) in self.pass.colliders() {
+                near.measure(at, &self.step(&collider));
+            }
+        }
+    }
+
+    /// Applies the fallbacks to a point until it has its certificates. Returns the number of contacts without.
+    fn settle(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
+        let mut unproven = 0;
+        for attempt in 0..ATTEMPTS.iter().sum() {
+            let scale = 0.5f64.powi((attempt + 1).saturating_sub(ATTEMPTS[0]).min(ATTEMPTS[1]) as i32);
+            if attempt < ATTEMPTS[0] + ATTEMPTS[1] {
+                self.push_by_colliders(Some(point), scale, near);
+            } else {
+                self.revert(point, near);
+            }
+            if attempt < ATTEMPTS[..3].iter().sum()
+                && let Some(ground) = self.ground(scale)
+            {
+                ground.resolve(point..point + 1);
+            }
+            unproven = self.certify(point, near);
+            if unproven == 0 {
+                break;
+            }
+        }
+        unproven
+    }
+
+    /// Moves a point with the surfaces of its contacts without certificate.
+    fn revert(&self, point: u32, near: &mut NearPoints<R>) {
+        for (at, collider) in self.pass.colliders() {
+            near.revert(at, point, &self.step(&collider));
+        }
+    }
+
+    /// The number of contacts of a point without certificate.
+    fn certify(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
+        let of = |(at, collider): (usize, NearCollider<'_, R>)| {
+            near.certify(at, Some(point), &collider, &self.step(&collider))[0]
+        };
+        self.pass.colliders().map(of).sum()
+    }
+
+    /// Velocities follow the corrections.
+    fn update_velocities(&self) {
+        let columns = &self.pass.prediction.columns;
+        let per_h = R::Lanes::splat(R::ONE / self.pass.restitution.h);
+        for point in self.rows.clone() {
+            let corrected = self.writer.correction(point);
+            // SAFETY: the point belongs to this task.
+            #[allow(unsafe_code)]
+            unsafe {
+                let velocity = columns.velocity.get(point).lanes() + corrected * per_h;
+                columns.velocity.set(point, Row4(velocity.to_array()));
+            }
+        }
+    }
+
+    /// Lists the points that contact has displaced without velocity, with their motion in this step in m/s.
+    fn list_displaced(&self, near: &mut NearPoints<R>) {
+        let per_h = R::ONE / self.pass.restitution.h;
+        for (point, start) in self.rows.clone().zip(self.start) {
+            if self.writer.collider_depenetration(point) != [R::ZERO; 3] {
+                let moved = sub(self.writer.row(point).xyz(), start.xyz());
+                near.displaced.push((point, moved.map(|x| x * per_h)));
+            }
+        }
+    }
+
+    /// Restitution at the ground and at colliders.
+    fn rebound(&self, near: &NearPoints<R>) {
+        let velocity = self.pass.prediction.columns.velocity;
+        if let Some(ground) = self.ground(1.0).filter(|ground| ground.material.has_restitution()) {
+            for point in self.rows.clone() {
+                self.rebound_from_ground(point, &ground);
+            }
+        }
+        let is_elastic = |(_, collider): &(_, NearCollider<'_, R>)| collider.args.material.has_restitution();
+        for (at, collider) in self.pass.colliders().filter(is_elastic) {
+            near.rebound(at, &self.step(&collider), self.pass.restitution, velocity, self.pass.frame);
+        }
+    }
+
+    fn rebound_from_ground(&self, point: u32, ground: &GroundContact<'_, R>) {
+        let (columns, row) = (&self.pass.prediction.columns, self.writer.row(point));
+        let (of_point, material) = (([point], [], &([R::ONE], [])), &ground.material);
+        let thickness = material.thickness_at(
+            &self.pass.contact.material_maps,
+            of_point,
+            R::from_f64(material.thickness),
+        );
+        let coefficient = material.bounce_at(&self.pass.contact.material_maps, of_point);
+        let touches = Restitution::touches(ground.plane.height_now(point, row.xyz()), thickness);
+        if !touches || coefficient <= R::ZERO || row.0[3] <= R::ZERO {
+            return;
+        }
+        let restitution = Restitution { coefficient, ..self.pass.restitution };
+        let surface = ground.plane.velocity(point, row.xyz(), restitution.h);
+        // SAFETY: the point belongs to this task.
+        #[allow(unsafe_code)]
+        unsafe {
+            let velocity = columns.velocity.get(point).xyz();
+            let impact =
+                Impact { predicted: self.writer.predicted(point), displacement: row.xyz(), velocity };
+            let [x, y, z] = restitution.velocity_after(&impact, ground.plane.normal(), surface);
+            columns.velocity.set(point, Row4([x, y, z, R::ZERO]));
+        }
+    }
+
+    /// The time step of the run and a collider.
+    fn step<'s>(&'s self, collider: &'s NearCollider<'_, R>) -> ColliderStep<'s, R> {
+        collider.args.with_columns((self.writer, self.start, self.pass.anchors), collider.state())
+    }
+
+    /// The contact of the run with the ground, with a factor on every thickness.
+    fn ground(&self, thickness_scale: f64) -> Option<GroundContact<'_, R>> {
+        let (plane, material) = self.pass.plane?;
+        Some(GroundContact {
+            writer: self.writer,
+            start: self.start,
+            plane: plane.over(self.heights, self.rows.start),
+            thickness_scale: R::from_f64(thickness_scale),
+            material,
+            material_maps: &self.pass.contact.material_maps,
+            h: self.pass.restitution.h,
+            has_touched: &self.pass.contact.has_touched[self.pass.cloth],
+        })
+    }
+}
