@@ -76,6 +76,8 @@ pub struct RunInfo {
     pub strain: bool,
     /// Whether particles have looks of their own, which are then recorded: radius, opacity and colours.
     pub looks: bool,
+    /// Whether contact turns particles, whose orientations are then recorded.
+    pub rotation: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
     /// The ground plane at each frame from the start frame on; empty if it does not move.
@@ -113,6 +115,7 @@ impl Default for RunInfo {
             contacts: false,
             strain: false,
             looks: false,
+            rotation: false,
             ground: None,
             ground_motion: Vec::new(),
             radii: BTreeMap::new(),

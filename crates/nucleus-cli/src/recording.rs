@@ -110,6 +110,7 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         selections: program.nuclei().iter().flat_map(NucleusProgram::selections).map(selected).collect(),
         radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
         looks: program.has_looks(),
+        rotation: program.has_rotation(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         ..RunInfo::default()
     })

@@ -89,6 +89,12 @@ pub trait StateView {
         let _ = cloth;
         out.clear();
     }
+    /// Replaces `out` by the orientations of the particles of an object, in the order of their positions, as unit
+    /// quaternions x, y, z, w; none where they do not rotate.
+    fn orientations(&self, cloth: ClothId, out: &mut Vec<[f32; 4]>) {
+        let _ = cloth;
+        out.clear();
+    }
     /// Replaces `out` by the positions of a collider.
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Whether the collider moved in this frame.

@@ -272,6 +272,11 @@ impl<R: CompiledReal> StateView for Solver<R> {
         }
     }
 
+    fn orientations(&self, cloth: ClothId, out: &mut Vec<[f32; 4]>) {
+        out.clear();
+        out.extend(self.state.population_of(cloth.index()).into_iter().flat_map(Population::orientations));
+    }
+
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let state = &self.contact.collider_states[collider.index()];
         out.clear();

@@ -45,6 +45,7 @@ use crate::output::{Stage, StepObserver, SubstepIndex};
 use crate::particles::free::{advance_free_points, find_free_objects};
 use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
+use crate::particles::rotation::turn_particles;
 use crate::particles::slowing::slow_particles;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
@@ -202,10 +203,11 @@ fn end_substep<R: CompiledReal>(
     counters: &mut ContactCounters,
 ) {
     let substep_length = schedule.h * f64::from(schedule.steps);
+    let end = f64::from(substep) / f64::from(schedule.substeps);
+    turn_particles(solver, frame, [end, substep_length]);
     age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
     slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
-    let end = f64::from(substep) / f64::from(schedule.substeps);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
     let scene = (&*model, &contact.collider_states[..]);

@@ -298,6 +298,10 @@ impl<R: Real> StateView for Simulation<R> {
         self.combined().looks(cloth, out);
     }
 
+    fn orientations(&self, cloth: ClothId, out: &mut Vec<[f32; 4]>) {
+        self.combined().orientations(cloth, out);
+    }
+
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
         self.combined().ages(cloth, out);
     }

@@ -243,6 +243,21 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         }
     }
 
+    /// Orientations of particles at a sample, as unit quaternions x, y, z, w; `None` if they do not rotate.
+    ///
+    /// # Errors
+    /// When the frame is damaged.
+    pub fn orientations(
+        &mut self,
+        object: usize,
+        sample: usize,
+    ) -> Result<Option<Vec<[f32; 4]>>, ExportError> {
+        match self.cache.run().rotation {
+            true => Ok(self.cache.orientations(self.objects[object], self.samples[sample].moment)?),
+            false => Ok(None),
+        }
+    }
+
     /// Velocities of an object at a sample in exported units per second; `None` if they were not recorded.
     ///
     /// # Errors

@@ -160,6 +160,21 @@ fn usda_states_its_units_and_times_and_keeps_substeps_between_frames() {
 }
 
 #[test]
+fn usd_has_the_orientations_of_particles_that_rotate() {
+    let (_folder, out) = all(Format::Usda);
+    let text = fs::read_to_string(out).unwrap();
+    assert_eq!(text.matches("quatf[] primvars:orient.timeSamples").count(), 1, "of the dust alone");
+    // The real part comes first.
+    let [x, y, z, w] = sample::turns((END - START) as f32)[4];
+    assert!(text.contains(&format!(", ({w}, {x}, {y}, {z})]")), "{text}");
+    let (_folder, out) = all(Format::Usdc);
+    let bytes = fs::read(out).unwrap();
+    let last: Vec<u8> =
+        sample::turns((END - START) as f32).iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    assert!(bytes.windows(last.len()).any(|part| part == last), "x, y, z and w of five particles");
+}
+
+#[test]
 fn an_ncache_has_a_file_for_each_frame_and_names_its_channels() {
     let (_folder, out) = all(Format::Mc);
     let text = fs::read_to_string(out.join("dust.xml")).unwrap();

@@ -52,8 +52,19 @@ red, green and blue of the light it gives off.
     width: 32,
 };
 
+pub(crate) const ROTATION: Attribute = Attribute {
+    topic: "rotation",
+    encoding: "nucleus.rotation.v1",
+    schema: "\
+Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then four f32
+for each particle, as four planes of 4 count bytes: plane k holds byte k of every f32 (0 is the lowest). They are x, y, z and w
+of a unit quaternion, the turn of the particle since its birth.
+",
+    width: 16,
+};
+
 /// All attributes.
-pub(crate) const ALL: [&Attribute; 3] = [&CONTACTS, &STRAIN, &LOOKS];
+pub(crate) const ALL: [&Attribute; 4] = [&CONTACTS, &STRAIN, &LOOKS, &ROTATION];
 
 impl Attribute {
     /// Whether a run records it.
@@ -61,6 +72,7 @@ impl Attribute {
         (self.encoding == CONTACTS.encoding && run.contacts)
             || (self.encoding == STRAIN.encoding && run.strain)
             || (self.encoding == LOOKS.encoding && run.looks)
+            || (self.encoding == ROTATION.encoding && run.rotation)
     }
 
     /// The bytes of the values in a message; `None` when its time stamp or its number of points differs. Without a

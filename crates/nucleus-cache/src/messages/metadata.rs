@@ -7,7 +7,7 @@ use mcap::records::Metadata;
 
 use crate::camera;
 use crate::error::OpenError;
-use crate::messages::attribute::{CONTACTS, LOOKS, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo};
 use crate::{selections, texture_coordinates};
 
@@ -59,6 +59,9 @@ impl RunInfo {
         run.extend(also.map(|(key, is_there)| (key.to_owned(), is_there.to_string())));
         if self.looks {
             run.insert(LOOKS.topic.to_owned(), true.to_string());
+        }
+        if self.rotation {
+            run.insert(ROTATION.topic.to_owned(), true.to_string());
         }
         if !self.cameras.is_empty() {
             run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
@@ -132,6 +135,7 @@ impl RunInfo {
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
             looks: run.flag(LOOKS.topic),
+            rotation: run.flag(ROTATION.topic),
             ground: run.ground()?,
             ground_motion: run.ground_motion()?,
             radii: run.radii()?,

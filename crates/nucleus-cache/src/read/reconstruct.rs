@@ -62,9 +62,16 @@ impl<R: Read + Seek> Playback<R> {
             self.file_index.channels.values().any(|channel| channel.message_encoding == attribute.encoding)
         };
         let (contacts, strain) = (has(&attribute::CONTACTS), has(&attribute::STRAIN));
-        let looks = has(&attribute::LOOKS);
-        let known =
-            RunInfo { velocities, contacts, strain, looks, version: String::new(), ..RunInfo::default() };
+        let (looks, rotation) = (has(&attribute::LOOKS), has(&attribute::ROTATION));
+        let known = RunInfo {
+            velocities,
+            contacts,
+            strain,
+            looks,
+            rotation,
+            version: String::new(),
+            ..RunInfo::default()
+        };
         Ok(of_stamps(&stamps, known).map(|run| metadata::with_cameras(run, &self.file_index.metadata)))
     }
 
@@ -101,7 +108,16 @@ impl<R: Read + Seek> Playback<R> {
         }
         if std::mem::take(&mut self.corruption.run) {
             let RunInfo {
-                start, end, frames_per_second, detail, velocities, contacts, strain, looks, ..
+                start,
+                end,
+                frames_per_second,
+                detail,
+                velocities,
+                contacts,
+                strain,
+                looks,
+                rotation,
+                ..
             } = found;
             let run = RunInfo {
                 start,
@@ -112,6 +128,7 @@ impl<R: Read + Seek> Playback<R> {
                 contacts,
                 strain,
                 looks,
+                rotation,
                 checkpoint: 0,
                 ..run.clone()
             };

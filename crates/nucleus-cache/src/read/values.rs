@@ -77,6 +77,18 @@ impl<R: Read + Seek> Playback<R> {
         Ok(self.attribute(object, sample, &attribute::LOOKS)?.map(attribute::read_looks))
     }
 
+    /// The orientations of the particles of an object at a time sample, as unit quaternions x, y, z, w; `None` where they do
+    /// not rotate.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn orientations(&mut self, object: usize, sample: usize) -> Result<Option<Vec<[f32; 4]>>, ReadError> {
+        let Some(planes) = self.attribute(object, sample, &attribute::ROTATION)? else { return Ok(None) };
+        let mut orientations = vec![[0.0; 4]; planes.len() / 16];
+        unshuffle(planes, orientations.as_flattened_mut());
+        Ok(Some(orientations))
+    }
+
     /// The bytes of an attribute of an object at a time sample.
     fn attribute(
         &mut self,

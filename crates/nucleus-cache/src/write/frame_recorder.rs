@@ -124,6 +124,7 @@ impl<W: Write + Seek> Recorder<W> {
             if let Source::Cloth(id) = source {
                 self.record_attributes(k, id, points, &stamp)?;
                 self.record_looks(k, id, &stamp, state)?;
+                self.record_orientations(k, id, &stamp, state)?;
             }
         }
         self.time_samples += 1;
@@ -170,6 +171,25 @@ impl<W: Write + Seek> Recorder<W> {
         }
         points::write_head(stamp, looks.len(), 0, false, &mut self.message);
         write_looks(&looks, &mut self.message);
+        self.writer.send(stamp, channel, &self.message)
+    }
+
+    /// Writes the orientations of particles.
+    fn record_orientations(
+        &mut self,
+        track: usize,
+        cloth: ClothId,
+        stamp: &Stamp,
+        state: &dyn StateView,
+    ) -> Result<(), RecordError> {
+        let Some(channel) = self.tracks[track].rotation else { return Ok(()) };
+        let mut orientations = Vec::new();
+        state.orientations(cloth, &mut orientations);
+        if orientations.is_empty() {
+            return Ok(());
+        }
+        points::write_head(stamp, orientations.len(), 0, false, &mut self.message);
+        shuffle(orientations.as_flattened(), &mut self.message);
         self.writer.send(stamp, channel, &self.message)
     }
 

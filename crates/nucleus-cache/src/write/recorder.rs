@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
-use crate::messages::attribute::{CONTACTS, LOOKS, RestEdges, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, RestEdges, STRAIN};
 use crate::messages::points::{self, Stamp};
 use crate::messages::{checkpoint, topology};
 use crate::run::{ObjectInfo, ObjectKind, RunInfo, Source};
@@ -79,6 +79,8 @@ pub(crate) struct Track {
     pub strain: Option<(u16, RestEdges)>,
     /// Channel of the looks of particles, if recorded.
     pub looks: Option<u16>,
+    /// Channel of the orientations of particles, if recorded.
+    pub rotation: Option<u16>,
     /// Whether it has moved since it was last recorded.
     pub has_moved: bool,
 }
@@ -298,6 +300,10 @@ impl<W: Write + Seek> Recorder<W> {
                 true => Some(self.channel(&schemas, &name, LOOKS.topic, LOOKS.encoding)?),
                 false => None,
             };
+            let rotation = match is_cloth && self.run.rotation && object.kind == ObjectKind::Particles {
+                true => Some(self.channel(&schemas, &name, ROTATION.topic, ROTATION.encoding)?),
+                false => None,
+            };
             self.tracks.push(Track {
                 name,
                 source: *source,
@@ -309,6 +315,7 @@ impl<W: Write + Seek> Recorder<W> {
                 contacts,
                 strain,
                 looks,
+                rotation,
                 has_moved: false,
             });
         }

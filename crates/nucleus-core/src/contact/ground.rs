@@ -110,6 +110,23 @@ impl<R: Real> Ground<R> {
         self.end.map(|plane| plane.height(place))
     }
 
+    /// The normal of the plane at a time, given as a share of the frame, and the height of a position above it in metres.
+    pub fn at(&self, place: [f64; 3], time: f64) -> Option<([f64; 3], f64)> {
+        let (from, to) = (self.start?, self.end?);
+        let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * time);
+        let normal: [f64; 3] = mix(from.normal, to.normal);
+        let normal = scale(normal, 1.0 / dot(normal, normal).sqrt());
+        Some((normal, dot(normal, sub(place, mix(from.origin, to.origin)))))
+    }
+
+    /// The velocity of its origin in m/s, in a frame of `duration` seconds.
+    pub fn velocity(&self, duration: f64) -> [f64; 3] {
+        match (self.start, self.end) {
+            (Some(from), Some(to)) => sub(to.origin, from.origin).map(|x| x / duration),
+            _ => [0.0; 3],
+        }
+    }
+
     /// The plane in a time step.
     pub fn in_step(&self, now: StepInterval) -> Option<GroundStep<'_, R>> {
         let (from, to) = (self.start?, self.end?);

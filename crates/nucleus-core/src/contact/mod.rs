@@ -53,6 +53,7 @@
 //! | the state of contact, and the inputs and outputs of its passes | [`system`] |
 //! | certificates and fallbacks at the end of a step | [`safeguard`] |
 //! | the contact state of each point, for observers | [`contact_state`] |
+//! | what particles touch, for their rotation | [`touches`] |
 //!
 //! # Tuned constants
 //!
@@ -111,3 +112,4 @@ pub mod restitution;
 pub mod safeguard;
 pub mod system;
 pub mod time_step;
+pub mod touches;

@@ -117,7 +117,7 @@ impl<R: Real> Adhesion<R> {
 
 /// The share of a motion that is removed in a step of length `h`.
 #[inline(always)]
-fn share_per_step<R: Real>(grip: R, h: R) -> R {
+pub fn share_per_step<R: Real>(grip: R, h: R) -> R {
     let left = (R::ONE - grip) * R::from_f64(ADHESION_PERIOD);
     if left <= R::ZERO { R::ONE } else { grip * h / (left + grip * h) }
 }

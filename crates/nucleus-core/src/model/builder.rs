@@ -147,12 +147,14 @@ pub struct Particles {
     pub ramps: Vec<ParticleRamp>,
     /// What happens when particles collide.
     pub events: Vec<CollisionEvent>,
+    /// Whether contact turns them (`computeRotation`).
+    pub rotates: bool,
 }
 
 /// Without the room, which says how far a run goes and nothing about its objects.
 impl fmt::Debug for Particles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { capacity: _, lifespans, ages, ids, radius, ramps, events } = self;
+        let Self { capacity: _, lifespans, ages, ids, radius, ramps, events, rotates } = self;
         f.debug_struct("Particles")
             .field("lifespans", lifespans)
             .field("ages", ages)
@@ -160,6 +162,7 @@ impl fmt::Debug for Particles {
             .field("radius", radius)
             .field("ramps", ramps)
             .field("events", events)
+            .field("rotates", rotates)
             .finish_non_exhaustive()
     }
 }

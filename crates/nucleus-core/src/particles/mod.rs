@@ -16,6 +16,7 @@
 //! | attributes that differ by particle | [`ramps`] |
 //! | what an observer draws of them | [`looks`] |
 //! | what happens at collisions | [`events`] |
+//! | `computeRotation` | [`rotation`] |
 //! | `conserve` and `damp` | [`slowing`] |
 //! | new particles that would overlap others | [`pruning`] |
 
@@ -27,4 +28,5 @@ pub mod looks;
 pub mod population;
 pub mod pruning;
 pub mod ramps;
+pub mod rotation;
 pub mod slowing;

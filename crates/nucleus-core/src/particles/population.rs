@@ -1,10 +1,26 @@
 //! The living particles of one object: their numbers, ages and lifespans.
 
-use crate::bytes::checkpoint_struct;
+use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::Birth;
 use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
 use crate::model::builder::{Cloth, Mass, point_masses};
 use crate::output::ParticleAge;
+
+/// The rotation of a particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation {
+    /// The turn since its birth, as a unit quaternion x, y, z, w.
+    pub orientation: [f64; 4],
+    /// Angular velocity in rad/s.
+    pub spin: [f64; 3],
+}
+
+impl Rotation {
+    /// At rest, and not turned.
+    pub const NONE: Self = Self { orientation: [0.0, 0.0, 0.0, 1.0], spin: [0.0; 3] };
+}
+
+encode_struct!([] Rotation { orientation: [f64; 4], spin: [f64; 3] });
 
 /// The living particles of one object, in the order of birth, which is that of their rows.
 #[derive(Debug, Clone)]
@@ -33,6 +49,11 @@ pub struct Population {
     field_factors: Vec<f32>,
     viscosity_factors: Vec<f32>,
     tension_factors: Vec<f32>,
+    /// Rotation by particle; empty where they do not rotate.
+    rotations: Vec<Rotation>,
+    rotates: bool,
+    /// Counts births and deaths: what is kept by row elsewhere belongs to one of its values.
+    topology: u64,
     /// The number of the next particle.
     next_id: u64,
     /// Time since the start in seconds.
@@ -53,10 +74,10 @@ pub struct Population {
 
 checkpoint_struct!([] Population {
     columns: [],
-    values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, next_id, now],
+    values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, rotations, next_id, now],
     parts: [],
     rebuilt: [
-        cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, field_factors, viscosity_factors,
+        cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
         tension_factors
     ],
 });
@@ -72,6 +93,7 @@ impl Population {
             + size_of_val(&self.last_velocity[..])
             + size_of_val(&self.touches[..])
             + size_of_val(&self.collisions[..])
+            + size_of_val(&self.rotations[..])
     }
 
     /// The particles of a cloth at the start; `None` where none are born or die.
@@ -93,6 +115,9 @@ impl Population {
             acceleration: Vec::new(),
             touches: Vec::new(),
             collisions: Vec::new(),
+            rotations: Vec::new(),
+            rotates: particles.rotates,
+            topology: 0,
             field_factors: Vec::new(),
             viscosity_factors: Vec::new(),
             tension_factors: Vec::new(),
@@ -148,6 +173,27 @@ impl Population {
     /// Whether its particles differ in their looks.
     pub fn has_looks(&self) -> bool {
         self.ramps.iter().any(|ramp| ramp.target == RampTarget::Radius || ramp.target.is_look())
+    }
+
+    /// The rotation of each particle; empty where they do not rotate.
+    pub fn rotations(&self) -> &[Rotation] {
+        &self.rotations
+    }
+
+    /// Replaces the rotation of each particle.
+    pub fn set_rotations(&mut self, rotations: Vec<Rotation>) {
+        debug_assert_eq!(rotations.len(), self.rotations.len());
+        self.rotations = rotations;
+    }
+
+    /// The orientations of its particles as unit quaternions x, y, z, w; none where they do not rotate.
+    pub fn orientations(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        self.rotations.iter().map(|rotation| rotation.orientation.map(|x| x as f32))
+    }
+
+    /// A number that changes with every birth and death.
+    pub fn topology(&self) -> u64 {
+        self.topology
     }
 
     /// What happens at collisions.
@@ -237,6 +283,9 @@ impl Population {
             self.touches.push(false);
             self.collisions.push(0);
         }
+        if self.rotates {
+            self.rotations.push(Rotation::NONE);
+        }
         for (target, column) in [
             (RampTarget::PointField, &mut self.field_factors),
             (RampTarget::Viscosity, &mut self.viscosity_factors),
@@ -275,6 +324,7 @@ impl Population {
     pub fn add(&mut self, age: f64, lifespan: f64, velocity: [f64; 3]) -> bool {
         let id = self.next_id;
         self.next_id += 1;
+        self.topology += 1;
         if age >= lifespan {
             return false;
         }
@@ -295,6 +345,7 @@ impl Population {
         }
         let dies = |at: usize| self.now >= self.born[at] + self.lifespan[at];
         let kept: Vec<u32> = (0..self.len()).filter(|&at| !dies(at)).map(|at| at as u32).collect();
+        self.topology += 1;
         keep(&mut self.id, &kept);
         keep(&mut self.born, &kept);
         keep(&mut self.lifespan, &kept);
@@ -303,6 +354,7 @@ impl Population {
         keep(&mut self.acceleration, &kept);
         keep(&mut self.touches, &kept);
         keep(&mut self.collisions, &kept);
+        keep(&mut self.rotations, &kept);
         keep(&mut self.field_factors, &kept);
         keep(&mut self.viscosity_factors, &kept);
         keep(&mut self.tension_factors, &kept);
@@ -327,6 +379,7 @@ impl Population {
         let is_valid = lengths.iter().all(|&length| length == self.len())
             && [self.last_velocity.len(), self.acceleration.len()] == [accelerated; 2]
             && [self.touches.len(), self.collisions.len()] == [colliding; 2]
+            && self.rotations.len() == if self.rotates { self.len() } else { 0 }
             && self.len() <= self.capacity
             && self.mass.iter().all(|&mass| mass > 0.0);
         self.find_next_death();

@@ -20,6 +20,7 @@ mod never_stuck;
 mod particle_ramps;
 mod particles;
 mod rest;
+mod rotation;
 mod scenes;
 mod self_collision;
 mod soft_bodies;

@@ -185,6 +185,7 @@ fn a_checkpoint_continues_ramps_and_events_with_the_same_bits() {
         lifespans: vec![0.9, f64::INFINITY],
         ramps,
         events: vec![event],
+        rotates: true,
     };
     let own = cloth(&[Vec3::new(0.0, 0.3, 0.0), Vec3::new(0.02, 0.5, 0.0)], particles);
     let mut builder = ModelBuilder::new();

@@ -177,12 +177,12 @@ node_table! {
         EMISSION_OVERLAP_PRUNING: f64 = float("emissionOverlapPruning", "eopr", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::particles::pruning");
     }
     "Rotation" {
-        /// Computes rotations of particles from friction.
-        COMPUTE_ROTATION: bool = toggle("computeRotation", "cprt", false).elsewhere("particles are balls, and nothing that would show their rotation is placed on them");
-        /// Share of friction that rotates particles.
-        ROTATION_FRICTION: f64 = float("rotationFriction", "rtfr", 0.9).soft(0.0, 1.0).elsewhere("particles are balls, and nothing that would show their rotation is placed on them");
-        /// Damping of rotations.
-        ROTATION_DAMP: f64 = float("rotationDamp", "rtdp", 0.001).soft(0.0, 1.0).elsewhere("particles are balls, and nothing that would show their rotation is placed on them");
+        /// Contact turns the particles; their orientation is recorded.
+        COMPUTE_ROTATION: bool = toggle("computeRotation", "cprt", false).solved("nucleus_core::particles::rotation").fixed();
+        /// Share of its slip that a contact takes from a particle in a default substep; at 1 it rolls.
+        ROTATION_FRICTION: f64 = float("rotationFriction", "rtfr", 0.9).min(0.0).max(1.0).solved("nucleus_core::particles::rotation");
+        /// Share of the spin that is lost in 1/24 s, as a rate.
+        ROTATION_DAMP: f64 = float("rotationDamp", "rtdp", 0.001).min(0.0).soft(0.0, 1.0).solved("nucleus_core::particles::rotation");
     }
     "Liquid Simulation" {
         /// Simulates the particles as a liquid; Enable Liquid Simulation in Maya's attribute editor.

@@ -115,7 +115,8 @@ impl Compiler<'_> {
         let is_target = is_event_target(graph, id);
         let differs = !ramps.is_empty() || !events.is_empty() || is_target || runs;
         let varies = dies(graph, id) || differs || recorded > points;
-        if emitters.is_empty() && !varies && numbers.is_empty() && ages.is_empty() {
+        let rotates = self.start.get(id, &n_particle::COMPUTE_ROTATION);
+        if emitters.is_empty() && !varies && !rotates && numbers.is_empty() && ages.is_empty() {
             return Some(None);
         }
         let mut room = self.room_for_particles(id, points, emitters).max(recorded as u64);
@@ -151,6 +152,7 @@ impl Compiler<'_> {
             radius,
             ramps,
             events,
+            rotates,
         }))
     }
 }
@@ -216,6 +218,8 @@ impl EvaluationInterval<'_> {
             point_field: self.point_field(node, radius),
             liquid: self.liquid(node),
             conserve: number(&particle::CONSERVE),
+            rotation_friction: number(&n_particle::ROTATION_FRICTION),
+            rotation_damp: number(&n_particle::ROTATION_DAMP),
             damp: number(&n_particle::DAMP),
             overlap_pruning: number(&n_particle::EMISSION_OVERLAP_PRUNING),
             ..ClothFrame::default()

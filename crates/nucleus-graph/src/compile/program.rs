@@ -140,6 +140,12 @@ impl Program {
         self.nuclei().iter().any(|nucleus| nucleus.model.cloths().iter().any(ramps))
     }
 
+    /// Whether contact turns any particles.
+    pub fn has_rotation(&self) -> bool {
+        let rotates = |cloth: &Cloth| cloth.particles.as_ref().is_some_and(|particles| particles.rotates);
+        self.nuclei().iter().any(|nucleus| nucleus.model.cloths().iter().any(rotates))
+    }
+
     /// All objects: cloths, then colliders, each in the order of their ids.
     pub fn objects(&self) -> &[Object] {
         &self.data.objects

@@ -248,6 +248,8 @@ fn every_attribute_of_cloth_reaches_the_frame_input() {
         }),
         liquid: None,
         conserve: 1.0,
+        rotation_friction: 0.9,
+        rotation_damp: 0.001,
         overlap_pruning: 0.0,
         wind_field: WindField {
             shadow_distance: 33.0,

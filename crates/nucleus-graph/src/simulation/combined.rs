@@ -62,6 +62,11 @@ impl StateView for CombinedState<'_> {
         part.looks(id, out);
     }
 
+    fn orientations(&self, cloth: ClothId, out: &mut Vec<[f32; 4]>) {
+        let (part, id, _) = self.cloth(cloth);
+        part.orientations(id, out);
+    }
+
     fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
         let (part, id, _) = self.cloth(cloth);
         part.ages(id, out);

@@ -151,12 +151,13 @@ fn settings_without_effect_on_particles_give_a_warning() {
     let of = |fields: &str| warnings(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), ""));
     assert_eq!(of("position: [(0, 0, 0)]"), Vec::<String>::new());
     assert_eq!(of(""), ["`q` has no particles, and does nothing"]);
-    for name in ["parallelSPH: true", "computeRotation: true", "meshMethod: \"Quad Mesh\"", "inputAttract: 1"]
-    {
+    for name in ["parallelSPH: true", "meshMethod: \"Quad Mesh\"", "inputAttract: 1"] {
         let messages = of(&format!("position: [(0, 0, 0)], {name}"));
         assert!(messages.len() == 1 && messages[0].contains("has no effect: "), "{name}: {messages:?}");
     }
-    for name in ["damp: 1", "conserve: 0.5", "opacity: 0.5", "stickinessRandomize: 1"] {
+    for name in
+        ["damp: 1", "computeRotation: true", "conserve: 0.5", "opacity: 0.5", "stickinessRandomize: 1"]
+    {
         assert_eq!(of(&format!("position: [(0, 0, 0)], {name}")), Vec::<String>::new(), "{name}");
     }
     for name in ["thickness: 1", "startPositions: [(0, 0, 0)]", "restLengthScale: 2"] {

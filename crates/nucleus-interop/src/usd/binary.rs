@@ -35,6 +35,7 @@ enum Type {
     String = 10,
     Token = 11,
     Matrix4d = 15,
+    Quatf = 17,
     Vec2f = 20,
     Vec3f = 24,
     TokenListOp = 32,
@@ -242,6 +243,9 @@ impl BinaryStage {
             }
             Value::Vec3s(all) => {
                 self.array(Type::Vec3f, all.len(), all.as_flattened().iter().flat_map(|x| x.to_le_bytes()))
+            }
+            Value::Quaternions(all) => {
+                self.array(Type::Quatf, all.len(), all.as_flattened().iter().flat_map(|x| x.to_le_bytes()))
             }
         }
     }

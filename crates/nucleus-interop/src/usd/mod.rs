@@ -134,6 +134,7 @@ fn write_object<R: Read + Seek>(
         }
         stage.end_samples();
     }
+    write_orientations(clip, object, stage)?;
     write_velocities(clip, object, stage)?;
     stage.end();
     Ok(())
@@ -205,6 +206,27 @@ fn write_texture_coordinates<R: Read + Seek>(
     if !per_point {
         stage.attribute(&Attribute::of("int[]", "primvars:st:indices"), &Value::Ints(&uvs.corners));
     }
+}
+
+/// Writes the orientations of particles that rotate, as the primvar that instancers read.
+fn write_orientations<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    stage: &mut impl Stage,
+) -> Result<(), ExportError> {
+    let mut begins = true;
+    for index in 0..clip.samples().len() {
+        // Particles that are yet to be born have none.
+        let Some(orientations) = clip.orientations(object, index)? else { continue };
+        if std::mem::take(&mut begins) {
+            stage.begin_samples(&Attribute::of("quatf[]", "primvars:orient").interpolated("vertex"));
+        }
+        stage.sample(clip.samples()[index].frame_time, &Value::Quaternions(&orientations));
+    }
+    if !begins {
+        stage.end_samples();
+    }
+    Ok(())
 }
 
 fn write_velocities<R: Read + Seek>(

@@ -64,6 +64,8 @@ pub(super) enum Value<'a> {
     Floats(&'a [f32]),
     Vec2s(&'a [[f32; 2]]),
     Vec3s(&'a [[f32; 3]]),
+    /// Quaternions x, y, z, w.
+    Quaternions(&'a [[f32; 4]]),
 }
 
 /// Takes up a stage part by part, so that no more than one sample is in memory.

@@ -61,6 +61,8 @@ impl TextStage {
             Value::Floats(values) => self.list(values.iter()),
             Value::Vec2s(values) => self.list(values.iter().map(|v| tuple(v))),
             Value::Vec3s(values) => self.list(values.iter().map(|v| tuple(v))),
+            // In text the real part comes first.
+            Value::Quaternions(values) => self.list(values.iter().map(|&[x, y, z, w]| tuple(&[w, x, y, z]))),
         }
     }
 

@@ -43,6 +43,7 @@ fn record(path: &Path, tears: bool) {
         units_per_metre: UNITS,
         detail: Detail::Substeps,
         velocities: true,
+        rotation: true,
         radii: [("dust".to_owned(), 0.25)].into(),
         cameras: vec![camera()],
         texture_coordinates: [("wall", &[][..]), ("1 cart", &[1, 0, 1, 0, 1])]
@@ -134,6 +135,11 @@ fn sheet(time: f32) -> Vec<[f32; 3]> {
     (0..11u8).map(|k| [f32::from(k % 3), 1.0 + 0.1 * (time + f32::from(k)).sin(), f32::from(k / 3)]).collect()
 }
 
+/// The turns of the dust about the y axis, as quaternions x, y, z, w.
+pub fn turns(time: f32) -> Vec<[f32; 4]> {
+    (0..5u8).map(|k| (0.1 * time * f32::from(k)).sin_cos()).map(|(sin, cos)| [0.0, sin, 0.0, cos]).collect()
+}
+
 fn dust(time: f32) -> Vec<[f32; 3]> {
     (0..5u8).map(|k| [f32::from(k), 3.0 - 0.01 * time * time, f32::from(k * k) + 0.1 * time]).collect()
 }
@@ -155,6 +161,10 @@ struct State {
 }
 
 impl StateView for State {
+    fn orientations(&self, cloth: ClothId, out: &mut Vec<[f32; 4]>) {
+        out.clear();
+        out.extend((cloth != SHEET).then(|| turns(self.time)).into_iter().flatten());
+    }
     fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = positions(if cloth == SHEET { "ns:sheet|1" } else { "dust" }, self.time);
         if cloth == SHEET && self.tears && self.frame >= TORN {

@@ -98,6 +98,10 @@ pub struct ClothFrame {
     pub liquid: Option<Liquid>,
     /// Share of the velocity that particles keep from the start of a frame to its end.
     pub conserve: f64,
+    /// Share of its slip that a contact takes from the spin of a particle in Maya's default substep (`rotationFriction`).
+    pub rotation_friction: f64,
+    /// Rate at which particles lose their spin, in Maya's unit of damping (`rotationDamp`).
+    pub rotation_damp: f64,
     /// New particles nearer to others of the object than this share of their contact distance are left out; 0 keeps all
     /// (`emissionOverlapPruning`).
     pub overlap_pruning: f64,
@@ -147,6 +151,8 @@ impl ClothFrame {
         wind_field: WindField::OFF,
         liquid: None,
         conserve: 1.0,
+        rotation_friction: 0.9,
+        rotation_damp: 0.001,
         overlap_pruning: 0.0,
     };
 }

@@ -53,6 +53,8 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.stretch_damp, default.stretch_damp),
         (&mut cloth.damp, default.damp),
         (&mut cloth.conserve, default.conserve),
+        (&mut cloth.rotation_friction, default.rotation_friction),
+        (&mut cloth.rotation_damp, default.rotation_damp),
         (&mut cloth.overlap_pruning, default.overlap_pruning),
         (&mut cloth.drag, default.drag),
         (&mut cloth.tangential_drag, default.tangential_drag),
