@@ -2,8 +2,8 @@
 
 use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, still};
 use nucleus_core::{
-    COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces,
-    FrameInput, Liquid, Mass, ModelBuilder, ResistanceModel, Solver, Start, StateView, Surface,
+    Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces,
+    FrameInput, Liquid, Mass, ModelBuilder, Particles, ResistanceModel, Solver, Start, StateView, Surface,
 };
 
 const WATER: ClothId = ClothId(0);
@@ -418,4 +418,46 @@ fn the_cost_of_a_liquid_grows_linearly_with_its_particles() {
         each.push(taken / count as f64);
     }
     assert!(each[2] < 3.0 * each[0], "{each:?}");
+}
+
+#[test]
+fn a_death_and_a_birth_in_one_frame_act_on_a_liquid_like_the_death_alone() {
+    let spacing = 0.05;
+    let mut positions = vec![Vec3::new(5.0, 5.0, 5.0)];
+    positions.extend(block(Vec3::new(0.0, 0.5 * spacing, 0.0), [6, 8, 6], spacing));
+    let count = positions.len();
+    let run = |is_born: bool| {
+        let mut cloth = water(positions.clone(), Vec::new(), spacing);
+        let length = frame(6, ResistanceModel::Classic).duration;
+        // The first particle, far away from the others, dies in the middle of the third frame.
+        let mut lifespans = vec![f64::INFINITY; count];
+        lifespans[0] = 2.4 * length;
+        cloth.particles = Some(Particles { capacity: count, lifespans, ..Particles::default() });
+        let mut solver = Solver::<f32>::new(built([cloth], Vec::new()), 1);
+        let input = FrameInput {
+            cloths: vec![liquid(spacing)],
+            plane: Some(ground(0.0)),
+            ..frame(6, ResistanceModel::Classic)
+        };
+        let birth = Birth {
+            cloth: ClothId(0),
+            time: 2.45 - 2.0,
+            position: Vec3::new(-5.0, 5.0, 5.0),
+            velocity: Vec3::zeros(),
+            lifespan: f64::INFINITY,
+        };
+        for step in 0..3 {
+            let births = if is_born && step == 2 { vec![birth] } else { Vec::new() };
+            let report = solver.step(&FrameInput { births, ..input.clone() }, &mut ());
+            assert_eq!(
+                (report.deaths, report.births),
+                (u64::from(step == 2), u64::from(step == 2 && is_born))
+            );
+        }
+        // The others have moved up by a row.
+        (0..count - 1).map(|at| solver.point(ClothId(0), at)).collect::<Vec<_>>()
+    };
+    let (both, death) = (run(true), run(false));
+    let apart = both.iter().zip(&death).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-4 * spacing, "{apart} m apart");
 }

@@ -73,6 +73,8 @@ pub struct LiquidSolver {
     /// Where lengths are taken from in this frame, in metres.
     origin: Vector3<f64>,
     density_error: f64,
+    /// The births and deaths of its particles that the columns by particle follow.
+    topology: u64,
 }
 
 /// One time step of one liquid.
@@ -140,7 +142,10 @@ impl LiquidSolver {
     ) {
         let rows = scene.model.cloths[cloth].points();
         let Some(settings) = scene.frame.cloths[cloth].liquid.filter(|_| !rows.is_empty()) else { return };
-        let begins = self.pressure.len() != rows.len();
+        // A birth and a death in one frame leave the number of particles as it is.
+        let topology = state.population_of(cloth).map_or(0, Population::topology);
+        let begins = self.pressure.len() != rows.len() || self.topology != topology;
+        self.topology = topology;
         if begins {
             self.origin = Vector3::from(state.position(rows.start));
             self.walls.forget();
