@@ -78,7 +78,7 @@ pub use read::diff::{Comparison, Difference, PointDifference, compare};
 pub use read::playback::{Playback, Sizes};
 pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
-pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source};
+pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source, SurfaceShape};
 pub use selections::SelectedPoints;
 pub use texture_coordinates::TextureCoordinates;
 pub use write::frame_recorder::FrameRecorder;

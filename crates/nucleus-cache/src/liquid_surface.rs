@@ -11,7 +11,7 @@ use std::io::{Read, Seek};
 
 use crate::error::ReadError;
 use crate::read::playback::Playback;
-use crate::run::ObjectKind;
+use crate::run::{ObjectKind, SurfaceShape};
 
 /// The reach of a particle in its spacings.
 const REACH: f32 = 2.0;
@@ -19,8 +19,8 @@ const REACH: f32 = 2.0;
 const RADIUS: f32 = 0.55;
 /// Cells of the grid along a spacing.
 const CELLS: f32 = 2.0;
-/// Weight below which the distance grows: between particles that are far apart their mean is no surface.
-const LEAST_WEIGHT: f32 = 0.1;
+/// Scale of the radius, at most: the reach grows with it.
+const MAX_RADIUS_SCALE: f32 = 4.0;
 /// Cells from the origin, at most: particles beyond, as of a broken run, have no surface.
 const MAX_CELLS: f32 = 1e9;
 /// Cells along the side of a block.
@@ -48,6 +48,12 @@ pub struct LiquidSurface {
 }
 
 impl<R: Read + Seek> Playback<R> {
+    /// The shape of the surface of an object's particles.
+    pub fn surface_shape(&self, object: usize) -> SurfaceShape {
+        let stated = self.run().surfaces.get(&self.objects()[object].name);
+        stated.copied().unwrap_or(SurfaceShape::DEFAULT)
+    }
+
     /// The spacing of an object's particles in scene units: the median distance to the nearest other, at the first recorded
     /// time that has several. `None` for other objects.
     ///
@@ -91,8 +97,16 @@ fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
 
 impl LiquidSurface {
     /// The surface of particles of this spacing, in their units.
-    pub fn of(particles: &[[f32; 3]], spacing: f32) -> Self {
-        let mut grid = Grid { width: spacing / CELLS, blocks: BTreeMap::new() };
+    pub fn of(particles: &[[f32; 3]], spacing: f32, shape: SurfaceShape) -> Self {
+        let scale = shape.radius_scale.min(MAX_RADIUS_SCALE);
+        let mut grid = Grid {
+            width: spacing / CELLS,
+            reach: REACH.max(1.5 * RADIUS * scale),
+            radius: RADIUS * scale,
+            // Weight below which the distance grows: between particles that are far apart their mean is no surface.
+            least_weight: shape.threshold.max(1e-6),
+            blocks: BTreeMap::new(),
+        };
         let is_in_reach = |place: &&[f32; 3]| place.iter().all(|x| (x / grid.width).abs() < MAX_CELLS);
         let reached: Vec<_> = particles.iter().filter(is_in_reach).collect();
         reached.into_iter().for_each(|place| grid.add(*place));
@@ -110,6 +124,10 @@ impl LiquidSurface {
 
 struct Grid {
     width: f32,
+    /// The reach of a particle, and the radius that it has on its own, in spacings.
+    reach: f32,
+    radius: f32,
+    least_weight: f32,
     /// By their place in blocks.
     blocks: BTreeMap<[i32; 3], Block>,
 }
@@ -131,7 +149,7 @@ impl Grid {
     /// Adds a particle to the corners in its reach, and makes room for the cells about them.
     fn add(&mut self, place: [f32; 3]) {
         let place = place.map(|x| x / self.width);
-        let reach = REACH * CELLS;
+        let reach = self.reach * CELLS;
         let [low, high] = [-1.0f32, 1.0].map(|side| place.map(|x| (x + side * (reach + 1.0)).floor() as i32));
         let blocks = [low, high].map(|corner| index(corner).0);
         for x in blocks[0][0]..=blocks[1][0] {
@@ -147,7 +165,8 @@ impl Grid {
                             for i in range(0, x) {
                                 let apart = [place[0] - i as f32, place[1] - j as f32, place[2] - k as f32]
                                     .map(|x| x / CELLS);
-                                let square = apart.iter().map(|x| x * x).sum::<f32>() / (REACH * REACH);
+                                let square =
+                                    apart.iter().map(|x| x * x).sum::<f32>() / (self.reach * self.reach);
                                 let left = (1.0 - square).max(0.0);
                                 let weight = left * left * left;
                                 let sum = &mut block.sums[index([i, j, k]).1];
@@ -165,9 +184,9 @@ impl Grid {
     fn distance(&self, corner: [i32; 3]) -> f32 {
         let (block, at) = index(corner);
         let [x, y, z, weight] = self.blocks.get(&block).map_or([0.0; 4], |block| block.sums[at]);
-        let sparse = (1.0 - weight / LEAST_WEIGHT).max(0.0) * REACH;
+        let sparse = (1.0 - weight / self.least_weight).max(0.0) * self.reach;
         let length = (x * x + y * y + z * z).sqrt() / weight.max(1e-9);
-        length.min(REACH) - RADIUS + sparse
+        length.min(self.reach) - self.radius + sparse
     }
 
     /// Adds a point in each cell of a block that the surface passes.
@@ -251,7 +270,7 @@ mod tests {
     fn the_surface_is_closed_and_holds_the_volume_of_its_particles() {
         let spacing = 0.02;
         let particles = ball(0.2, spacing);
-        let surface = LiquidSurface::of(&particles, spacing);
+        let surface = LiquidSurface::of(&particles, spacing, SurfaceShape::DEFAULT);
         let mut edges = BTreeMap::new();
         for quad in &surface.quads {
             for k in 0..4 {
@@ -268,7 +287,7 @@ mod tests {
     #[test]
     fn a_single_particle_is_a_ball_and_particles_far_apart_are_not_joined() {
         let particles = [[1.0, 2.0, 3.0], [1.36, 2.0, 3.0]];
-        let found = LiquidSurface::of(&particles, 0.1);
+        let found = LiquidSurface::of(&particles, 0.1, SurfaceShape::DEFAULT);
         assert!(!found.quads.is_empty());
         for place in &found.positions {
             let distance = |particle: &[f32; 3]| {
@@ -281,11 +300,34 @@ mod tests {
     }
 
     #[test]
+    fn a_higher_threshold_leaves_out_single_particles_and_a_larger_radius_widens_the_surface() {
+        let spacing = 0.02;
+        let mut particles = ball(0.1, spacing);
+        particles.push([0.3, 0.0, 0.0]);
+        let of = |threshold: f32, radius_scale: f32| {
+            LiquidSurface::of(&particles, spacing, SurfaceShape { threshold, radius_scale })
+        };
+        let has_single = |surface: &LiquidSurface| surface.positions.iter().any(|place| place[0] > 0.2);
+        let [plain, dense, wide] = [of(0.1, 1.0), of(1.5, 1.0), of(0.1, 2.0)];
+        assert!(has_single(&plain) && !has_single(&dense) && has_single(&wide));
+        // The ball loses less than a spacing all around, and gains the growth of a radius.
+        let radius = |surface: &LiquidSurface| (volume(surface) * 0.75 / std::f32::consts::PI).cbrt();
+        let own = radius(&LiquidSurface::of(&ball(0.1, spacing), spacing, SurfaceShape::DEFAULT));
+        assert!(radius(&dense) < own && radius(&dense) > own - spacing, "{} of {own}", radius(&dense));
+        let most = own + 2.0 * RADIUS * spacing;
+        assert!(
+            radius(&wide) > own + 0.3 * RADIUS * spacing && radius(&wide) < most,
+            "{} of {own}",
+            radius(&wide)
+        );
+    }
+
+    #[test]
     fn particles_that_are_nowhere_change_no_surface() {
         let mut particles = ball(0.1, 0.02);
-        let alone = LiquidSurface::of(&particles, 0.02);
+        let alone = LiquidSurface::of(&particles, 0.02, SurfaceShape::DEFAULT);
         particles.extend([[f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0], [0.0, 0.0, -f32::MAX]]);
-        assert_eq!(LiquidSurface::of(&particles, 0.02), alone);
+        assert_eq!(LiquidSurface::of(&particles, 0.02, SurfaceShape::DEFAULT), alone);
     }
 
     #[test]

@@ -84,6 +84,8 @@ pub struct RunInfo {
     pub ground_motion: Vec<Plane>,
     /// Particle radius of each particle object, by object name, in scene units.
     pub radii: BTreeMap<String, f64>,
+    /// The shape of the surface of each particle object that states one, by object name.
+    pub surfaces: BTreeMap<String, SurfaceShape>,
     /// Cameras of the scene; the first is the default for pictures.
     pub cameras: Vec<Camera>,
     /// Texture coordinates of each object that has any, by object name.
@@ -98,6 +100,20 @@ pub struct RunInfo {
     pub version: String,
     /// Further metadata. Keys that the format defines are ignored when writing.
     pub extra: BTreeMap<String, String>,
+}
+
+/// How the surface of particles follows from them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceShape {
+    /// The density at the surface (`threshold`): sparser particles have none. A particle on its own has a density of 1.
+    pub threshold: f32,
+    /// Factor on the radius that a particle has on its own (`blobbyRadiusScale`).
+    pub radius_scale: f32,
+}
+
+impl SurfaceShape {
+    /// Maya's defaults.
+    pub const DEFAULT: Self = Self { threshold: 0.1, radius_scale: 1.0 };
 }
 
 impl Default for RunInfo {
@@ -119,6 +135,7 @@ impl Default for RunInfo {
             ground: None,
             ground_motion: Vec::new(),
             radii: BTreeMap::new(),
+            surfaces: BTreeMap::new(),
             cameras: Vec::new(),
             texture_coordinates: BTreeMap::new(),
             selections: Vec::new(),

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use nucleus_cache::{
     Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, SelectedPoints,
-    Source, TextureCoordinates,
+    Source, SurfaceShape, TextureCoordinates,
 };
 use nucleus_core::{GroundPlane, Real};
 use nucleus_graph::Simulation;
@@ -109,11 +109,19 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         ground_motion,
         selections: program.nuclei().iter().flat_map(NucleusProgram::selections).map(selected).collect(),
         radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
+        surfaces: simulation.objects().iter().filter_map(surface).collect(),
         looks: program.has_looks(),
         rotation: program.has_rotation(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         ..RunInfo::default()
     })
+}
+
+/// The name of a particle object and the shape of its surface, if it is not the default.
+fn surface(object: &compile::Object) -> Option<(String, SurfaceShape)> {
+    let [threshold, radius_scale] = object.surface.map(|x| x as f32);
+    let shape = SurfaceShape { threshold, radius_scale };
+    (object.radius.is_some() && shape != SurfaceShape::DEFAULT).then(|| (object.name.clone(), shape))
 }
 
 fn selected(selection: &compile::NamedSelection) -> SelectedPoints {

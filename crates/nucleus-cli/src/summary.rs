@@ -309,6 +309,7 @@ mod tests {
             points: 3,
             faces: Faces::default(),
             radius: None,
+            surface: [0.1, 1.0],
             varies: false,
         };
         let objects = [

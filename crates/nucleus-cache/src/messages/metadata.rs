@@ -8,7 +8,7 @@ use mcap::records::Metadata;
 use crate::camera;
 use crate::error::OpenError;
 use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, STRAIN};
-use crate::run::{Detail, Packing, Plane, RunInfo};
+use crate::run::{Detail, Packing, Plane, RunInfo, SurfaceShape};
 use crate::{selections, texture_coordinates};
 
 /// Format version. A reader refuses a higher one.
@@ -28,6 +28,8 @@ const GROUND: &str = "ground";
 const GROUND_MOTION: &str = "ground motion";
 /// Prefix of the key for the particle radius of an object; the object's name follows.
 const RADIUS: &str = "radius of ";
+/// Prefix of the key for threshold and radius scale of the surface of an object; the object's name follows.
+const SURFACE: &str = "surface of ";
 const CHECKPOINT: &str = "checkpoint";
 const PACKING: &str = "packing";
 const SMALL: &str = "small";
@@ -68,6 +70,9 @@ impl RunInfo {
         }
         // Keys with default values are left out.
         run.extend(self.radii.iter().map(|(name, radius)| (format!("{RADIUS}{name}"), radius.to_string())));
+        run.extend(self.surfaces.iter().map(|(name, shape)| {
+            (format!("{SURFACE}{name}"), format!("{} {}", shape.threshold, shape.radius_scale))
+        }));
         if self.checkpoint > 0 {
             run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
         }
@@ -139,6 +144,7 @@ impl RunInfo {
             ground: run.ground()?,
             ground_motion: run.ground_motion()?,
             radii: run.radii()?,
+            surfaces: run.surfaces()?,
             cameras,
             texture_coordinates: uvs,
             selections,
@@ -217,6 +223,23 @@ impl Keys {
         }
     }
 
+    /// The shapes of surfaces; removes their keys.
+    fn surfaces(&mut self) -> Result<BTreeMap<String, SurfaceShape>, OpenError> {
+        let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(SURFACE)).cloned().collect();
+        let mut surfaces = BTreeMap::new();
+        for key in keys {
+            let text = self.0.remove(&key).unwrap_or_default();
+            let numbers = text.split(' ').map(|number| number.parse::<f32>().ok().filter(|x| *x >= 0.0));
+            match numbers.collect::<Option<Vec<_>>>().as_deref() {
+                Some(&[threshold, radius_scale]) => {
+                    surfaces.insert(key[SURFACE.len()..].to_owned(), SurfaceShape { threshold, radius_scale })
+                }
+                _ => return Err(OpenError::BadValue { key: "surface of", value: text }),
+            };
+        }
+        Ok(surfaces)
+    }
+
     /// The particle radii; removes their keys.
     fn radii(&mut self) -> Result<BTreeMap<String, f64>, OpenError> {
         let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(RADIUS)).cloned().collect();
@@ -280,6 +303,10 @@ mod tests {
             ground_motion: ground.into_iter().chain([raised]).collect(),
             contacts: true,
             radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
+            surfaces: BTreeMap::from([(
+                "beads of glass".to_owned(),
+                SurfaceShape { threshold: 0.7, radius_scale: 1.5 },
+            )]),
             ..RunInfo::default()
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {

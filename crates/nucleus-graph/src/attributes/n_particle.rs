@@ -211,8 +211,8 @@ node_table! {
         RADIUS_SCALE_SPH: f64 = float("radiusScaleSPH", "rsph", 1.0).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::liquid").fixed();
     }
     "Shading" {
-        /// Density at the drawn surface, without effect on the motion.
-        THRESHOLD: f64 = float("threshold", "thr", 0.1).min(0.0).soft(0.0, 2.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
+        /// Density at the surface of a liquid in pictures, the player and exports: a higher one leaves out sparse particles.
+        THRESHOLD: f64 = float("threshold", "thr", 0.1).min(0.0).soft(0.0, 2.0).solved("nucleus_cache::liquid_surface").fixed();
         /// Opacity of the particles.
         OPACITY: f64 = float("opacity", "op", 1.0).min(0.0).max(1.0).solved("nucleus_core::particles::ramps").fixed();
         /// Ramp of factors on opacity, per particle.
@@ -300,7 +300,7 @@ node_table! {
     }
     "Output Mesh" {
         /// Factor on the radius for the surface around the particles.
-        BLOBBY_RADIUS_SCALE: f64 = float("blobbyRadiusScale", "brs", 1.0).min(0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
+        BLOBBY_RADIUS_SCALE: f64 = float("blobbyRadiusScale", "brs", 1.0).min(0.0).soft(0.0, 10.0).solved("nucleus_cache::liquid_surface").fixed();
         /// Stretch of the surface along the motion.
         MOTION_STREAK: f64 = float("motionStreak", "mstr", 0.0).soft(0.0, 10.0).elsewhere("a run makes no surface; `--surface` of `nucleus export` and `nucleus render` makes one, which follows from the spacing of the particles");
         /// Stores colours on the surface.

@@ -156,7 +156,15 @@ impl<'a> Compiler<'a> {
     ) {
         self.mass += mass;
         let name = self.scene.graph.node(node).name().to_owned();
-        self.objects.push(Object { name, kind, points, faces, radius: None, varies: false });
+        self.objects.push(Object {
+            name,
+            kind,
+            points,
+            faces,
+            radius: None,
+            surface: [0.1, 1.0],
+            varies: false,
+        });
     }
 
     /// Reports an object that the model builder refuses, at the attribute or mesh that causes it.

@@ -71,8 +71,10 @@ impl Compiler<'_> {
                 };
                 self.add_object(id, kind, points, Faces::default(), kilograms);
                 let radius = self.start.get(id, &n_particle::RADIUS);
+                let surface = [&n_particle::THRESHOLD, &n_particle::BLOBBY_RADIUS_SCALE];
+                let surface = surface.map(|key| self.start.get(id, key));
                 if let Some(object) = self.objects.last_mut() {
-                    (object.radius, object.varies) = (Some(radius), varies);
+                    (object.radius, object.surface, object.varies) = (Some(radius), surface, varies);
                 }
             }
             Err(error) => return self.report_refused(id, id, &error),

@@ -75,6 +75,8 @@ pub struct Object {
     pub faces: Faces,
     /// Radius of its particles in scene units; `None` for a mesh.
     pub radius: Option<f64>,
+    /// `threshold` and `blobbyRadiusScale` of the surface of its particles.
+    pub surface: [f64; 2],
     /// Whether its points are particles that are born and die; `points` is then their number at the start.
     pub varies: bool,
 }

@@ -3,7 +3,7 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::{CameraView, LiquidSurface, ObjectKind, Playback};
+use nucleus_cache::{CameraView, LiquidSurface, ObjectKind, Playback, SurfaceShape};
 use nucleus_core::{Faces, ParticleLook};
 
 use super::animation::AnimationWriter;
@@ -181,8 +181,8 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// If the index is out of range, or the frame is damaged.
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (mut states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
-        for (state, spacing) in states.iter_mut().zip(&self.spacings) {
-            spacing.iter().for_each(|spacing| state.cover(*spacing));
+        for (object, (state, spacing)) in states.iter_mut().zip(&self.spacings).enumerate() {
+            spacing.iter().for_each(|spacing| state.cover(*spacing, self.cache.surface_shape(object)));
         }
         let style = Style { ground: self.ground_at(moment), ..self.style.clone() };
         Ok(draw_with(&mut self.fragments, &objects(self.cache, moment, &states)?, &camera, &style))
@@ -238,8 +238,8 @@ struct ObjectState {
 
 impl ObjectState {
     /// Replaces particles by their surface.
-    fn cover(&mut self, spacing: f32) {
-        let LiquidSurface { positions, quads } = LiquidSurface::of(&self.positions, spacing);
+    fn cover(&mut self, spacing: f32, shape: SurfaceShape) {
+        let LiquidSurface { positions, quads } = LiquidSurface::of(&self.positions, spacing, shape);
         let faces = quads.iter().map(|quad| &quad[..]).collect();
         *self = Self { positions, looks: None, surface: Some(faces) };
     }

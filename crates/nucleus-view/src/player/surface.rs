@@ -18,7 +18,8 @@ pub(super) fn surface(cache: &Path, wanted: &str) -> Option<Vec<u8>> {
     let samples = cache.time_samples();
     let sample = (0..samples.len()).filter(|&at| samples[at].frame == frame).nth(k)?;
     let spacing = cache.particle_spacing(object).ok()??;
-    Some(encoded(&LiquidSurface::of(&cache.positions(object, sample).ok()?, spacing)))
+    let (positions, shape) = (cache.positions(object, sample).ok()?, cache.surface_shape(object));
+    Some(encoded(&LiquidSurface::of(&positions, spacing, shape)))
 }
 
 fn encoded(LiquidSurface { positions, quads }: &LiquidSurface) -> Vec<u8> {
@@ -51,6 +52,8 @@ fn decoded(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use nucleus_cache::SurfaceShape;
+
     use super::*;
 
     #[test]
@@ -64,7 +67,7 @@ mod tests {
     #[test]
     fn a_surface_is_two_counts_and_their_numbers() {
         let particles: Vec<[f32; 3]> = (0..27u8).map(|k| [k % 3, k / 3 % 3, k / 9].map(f32::from)).collect();
-        let surface = LiquidSurface::of(&particles, 1.0);
+        let surface = LiquidSurface::of(&particles, 1.0, SurfaceShape::DEFAULT);
         let bytes = encoded(&surface);
         assert_eq!(bytes.len(), 8 + 12 * surface.positions.len() + 16 * surface.quads.len());
         assert_eq!(bytes[..4], (surface.positions.len() as u32).to_le_bytes());
