@@ -91,7 +91,8 @@ fn renew_intersecting<R: Real>(cloths: &[ClothModel<R>], cloth_contacts: &mut Cl
     }
 }
 
-/// Marks the points that violate their bounds at the end of the step. Returns whether there are any.
+/// Marks the points that violate their bounds at the end of the step; those marked since the last search stay so. Returns
+/// whether there are any.
 fn find_violations<R: Real>(
     cloths: &[ClothModel<R>],
     state: &State<R>,
@@ -108,11 +109,12 @@ fn find_violations<R: Real>(
             let mut any_here = false;
             for row in cloth.blocks.range(block) {
                 let is_inside = trajectories.of(row).contains(share, state.displacement[row as usize].xyz());
-                any_here |= !is_inside;
                 // SAFETY: blocks do not overlap.
                 #[allow(unsafe_code)]
                 unsafe {
-                    bounds_violated.set(row, !is_inside);
+                    let is_violated = !is_inside || bounds_violated.get(row);
+                    any_here |= is_violated;
+                    bounds_violated.set(row, is_violated);
                 }
             }
             any.fetch_or(any_here, Ordering::Relaxed);
