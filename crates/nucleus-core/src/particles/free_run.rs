@@ -2,7 +2,7 @@
 //!
 //! 1. The points **move** by their velocity and external forces.
 //! 2. The **ground** pushes them, then **colliders** push those near them. A point that a collider pushes into the ground is
-//!    pushed by the two in turn, and the ground has the last word.
+//!    pushed by the two in turn, by the ground last.
 //! 3. The **safeguard** certifies that no point has passed a collider, and applies fallbacks to those without certificate.
 //! 4. **Velocities** follow the corrections, and points **rebound**.
 
