@@ -180,7 +180,7 @@ node_table! {
         /// Contact turns the particles; their orientation is recorded.
         COMPUTE_ROTATION: bool = toggle("computeRotation", "cprt", false).solved("nucleus_core::particles::rotation").fixed();
         /// Share of its slip that a contact takes from a particle in a default substep; at 1 it rolls.
-        ROTATION_FRICTION: f64 = float("rotationFriction", "rtfr", 0.9).min(0.0).max(1.0).solved("nucleus_core::particles::rotation");
+        ROTATION_FRICTION: f64 = float("rotationFriction", "rtfr", 0.9).min(0.0).max(1.0).soft(0.0, 1.0).solved("nucleus_core::particles::rotation");
         /// Share of the spin that is lost in 1/24 s, as a rate.
         ROTATION_DAMP: f64 = float("rotationDamp", "rtdp", 0.001).min(0.0).soft(0.0, 1.0).solved("nucleus_core::particles::rotation");
     }
